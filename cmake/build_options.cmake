@@ -1,0 +1,29 @@
+# Flags that every target shares, as one interface library.
+add_library(pliant_options INTERFACE)
+target_compile_features(pliant_options INTERFACE cxx_std_20)
+# No contraction into fused multiply-add: the same bits on every machine (lockstep).
+target_compile_options(pliant_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Werror
+                                                -ffp-contract=off)
+target_include_directories(pliant_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                    $<INSTALL_INTERFACE:include/pliant>)
+if(PLIANT_VALIDATE)
+  target_compile_definitions(pliant_options INTERFACE PLIANT_VALIDATE)
+endif()
+if(PLIANT_SANITIZE)
+  target_compile_options(pliant_options INTERFACE -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(pliant_options INTERFACE -fsanitize=${PLIANT_SANITIZE})
+  target_compile_definitions(pliant_options INTERFACE PLIANT_SANITIZED)
+endif()
+if(PLIANT_FUZZ)
+  target_compile_options(pliant_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# A library of one folder (and its subfolders): pliant_library(name DEPENDS ...).
+function(pliant_library name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  add_library(pliant_${name} STATIC ${sources})
+  add_library(pliant::${name} ALIAS pliant_${name})
+  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME ${name})
+  target_link_libraries(pliant_${name} PUBLIC pliant_options ${ARG_DEPENDS})
+endfunction()

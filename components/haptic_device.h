@@ -1,0 +1,48 @@
+// A device that moves a probe and may push back. Drivers live in systems/device, one file each; this is all that the
+// rest of the house knows of them. Workspace-to-world is a scale about the node's own frame.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "components/math.h"
+#include "runtime/store.h"
+
+namespace pliant {
+
+enum class Driver : std::uint8_t { kNull, kScript, kOrbit, kMouse, kExternal };
+
+// Unknown state means zero force.
+enum class DeviceStatus : std::uint8_t { kLost, kReady };
+
+// A path in time: script files, orbits, replays. Linear between rows, slerp for rotation; holds the last row.
+struct PathRow {
+  double time = 0.0;           // [s] ascending
+  dvec3 position{0};           // [m] world
+  dquat rotation{1, 0, 0, 0};
+};
+struct Path {
+  std::vector<PathRow> rows;
+  bool repeats = false;        // starts over after the last row (whose position equals the first's)
+};
+
+// Rate: touch. Writer: read_devices (what was sensed), write_devices (what was sent). Keys of PLIANT_haptic_device.
+struct HapticDevice {
+  Driver driver = Driver::kNull;
+  std::string file;            // of the script, relative to the level
+  double scale = 1.0;          // [1] workspace -> world
+  double max_force = 3.3;      // [N] norm of the force sent
+  double max_stiffness = 0.0;  // [N/m] 0: no limit; else the force may not rise faster with displacement than this
+  double max_slew = 1000.0;    // [N/s] of the norm of the change
+  std::string id;              // external drivers: which one
+
+  Handle<Path> path;           // script, orbit, replay
+  DeviceStatus status = DeviceStatus::kReady;
+  dvec3 position{0};           // [m] world, as last sensed
+  dquat rotation{1, 0, 0, 0};
+  double sensed_at = 0.0;      // [s] when; older than kStaleAfter: treated as lost
+  dvec3 force_sent{0};         // [N] world, what left for the hand in this tick
+};
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+// What the touch clock shows to the visual clock: the streams of zones that changed, and the probes.
+// Travels by TripleBuffer. A snapshot carries at most kMaxPublishedZones zones an object, so publishing has a bounded
+// cost; what did not fit, or was replaced before the reader saw it, stays dirty and comes with a later one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "components/math.h"
+#include "runtime/entity.h"
+
+namespace pliant {
+
+inline constexpr std::uint32_t kMaxPublishedZones = 512;
+
+struct ObjectSnapshot {
+  Entity object;                      // has a Deformable
+  std::uint32_t zone_count = 0;       // valid entries of `zones`
+  std::vector<std::uint32_t> zones;   // which zones, capacity min(all, kMaxPublishedZones)
+  std::vector<vec4> stream;           // kZoneSize (nx, ny, nz, h) for each of them, packed in the same order
+  std::uint32_t awake_vertices = 0;
+};
+
+struct ProbeSnapshot {
+  Entity probe;
+  dvec3 position{0};  // [m] world
+  dquat rotation{1, 0, 0, 0};
+  dvec3 force{0};     // [N] world, as sent to the hand
+  bool touching = false;
+  double depth = 0.0;  // [m] below the undeformed surface, of the deepest contact
+};
+
+struct Snapshot {
+  std::uint64_t tick = 0;
+  double time = 0.0;  // [s]
+  bool complete = true;  // false: more dirty zones are waiting
+  std::vector<ObjectSnapshot> objects;
+  std::vector<ProbeSnapshot> probes;
+};
+
+}  // namespace pliant

@@ -1,0 +1,71 @@
+// A level in memory: one registry, the stores of what is too large for components, and the touch tick's working memory.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/appearance.h"
+#include "components/contact.h"
+#include "components/deformable.h"
+#include "components/haptic_device.h"
+#include "components/height_field.h"
+#include "components/mesh.h"
+#include "components/name.h"
+#include "components/probe.h"
+#include "components/snapshot.h"
+#include "components/transform.h"
+#include "runtime/clock.h"
+#include "runtime/exchange.h"
+#include "runtime/hierarchy.h"
+#include "runtime/registry.h"
+#include "runtime/store.h"
+
+namespace pliant {
+
+// What a step had to leave out, as bits; each says its cure.
+enum DroppedBit : std::uint32_t {
+  kDroppedContacts = 1,       // more probes on one object than kMaxContactsPerObject: use fewer, or split the object
+  kDroppedNonFinite = 2,      // a pose or force was not a number and was replaced by zero: check the device
+  kDroppedTravel = 4,         // a probe moved farther in a tick than the level is large: check the device's units
+  kDroppedFlood = 8,          // a contact reached more zones than the flood holds: reduce `reach`
+  kDroppedStale = 16,         // a device's pose came too late and its force went to zero: check its connection
+};
+
+struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
+
+// Keys of PLIANT_simulation.
+struct Simulation {
+  double touch_rate = 1000.0;      // [Hz]
+  double soft_step = 1.0 / 60.0;   // [s]
+  dvec3 gravity{0, -9.81, 0};      // [m/s2]
+};
+
+struct World {
+  World();
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  std::string name;
+  Registry registry;
+  Hierarchy hierarchy;
+  Store<Mesh> meshes;
+  Store<DrawMesh> draw_meshes;
+  Store<HeightField> fields;
+  Store<Path> paths;
+  std::vector<Material> materials;
+  std::vector<Image> images;
+  Environment environment;
+  Simulation simulation;
+  std::uint32_t dropped = 0;              // DroppedBit
+  std::shared_ptr<TouchState> touch;      // null until prepare_touch
+  std::unique_ptr<TripleBuffer<Snapshot>> snapshots;  // touch clock -> visual clock; null until prepare_touch
+};
+
+// The first entity with this name, or kNoEntity.
+Entity find_by_name(const World& world, const std::string& name);
+// One sentence per set bit of `dropped`.
+std::vector<std::string> explain_dropped(std::uint32_t dropped);
+
+}  // namespace pliant

@@ -1,0 +1,101 @@
+// A level as a document: what a glTF file says, decoded and checked, before anything is welded, reordered or simulated.
+// load_level reads it, save_level writes what was read, spawn turns it into a World.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/appearance.h"
+#include "components/deformable.h"
+#include "components/haptic_device.h"
+#include "components/probe.h"
+#include "components/soft_body.h"
+#include "components/transform.h"
+#include "components/world.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// One primitive as triangles. Attribute arrays are empty or as long as `position`. Strips, fans, quantised, sparse and
+// Draco-compressed data are already resolved; nothing is welded yet.
+struct Primitive {
+  std::vector<vec3> position;            // [m] mesh frame
+  std::vector<vec3> normal;
+  std::vector<vec4> tangent;
+  std::vector<vec2> uv;
+  std::vector<float> stiffness;          // _STIFFNESS
+  std::vector<float> friction;           // _FRICTION
+  std::vector<std::uint32_t> index;      // three per triangle
+  std::int32_t material = -1;
+};
+
+struct LevelMesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+struct LevelNode {
+  std::string name;
+  std::int32_t parent = -1;
+  std::vector<std::int32_t> children;
+  LocalTransform local;
+  bool in_scene = true;                  // reached from the scene that is shown
+  std::int32_t mesh = -1;                // into Level::meshes
+  std::optional<Light> light;
+  std::optional<Camera> camera;
+  std::optional<Deformable> deformable;  // PLIANT_deformable
+  std::optional<Probe> probe;            // PLIANT_probe; `device` is in probe_device
+  std::string probe_device;              // name of the node with the probe's PLIANT_haptic_device; "": none
+  std::optional<HapticDevice> device;    // PLIANT_haptic_device
+  std::optional<SoftBody> soft_body;     // PLIANT_soft_body
+  std::optional<Handle6> handle;         // PLIANT_handle
+  std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
+};
+
+struct LevelEnvironment {  // PLIANT_environment
+  std::string panorama;    // .exr, relative to the level
+  double intensity = 1.0;  // [1]
+  double rotation = 0.0;   // [rad] about +Y
+};
+
+struct SourceDocument;  // the parsed glTF, kept so that saving loses nothing
+
+struct Level {
+  std::string name;                      // file name without extension
+  std::filesystem::path path;
+  std::vector<LevelNode> nodes;          // parents stand before children
+  std::vector<LevelMesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Image> images;
+  std::optional<LevelEnvironment> environment;
+  Simulation simulation;                 // PLIANT_simulation
+  std::vector<std::string> notes;        // what was read differently than a user might expect (skins, skipped points...)
+  std::shared_ptr<SourceDocument> source;
+
+  bool has_pliant() const;               // any PLIANT_* extension; false: a bare mesh
+};
+
+// Reads .gltf, .glb (and, through Assimp, what convert reads). Every failure is one sentence with file and JSON pointer.
+Result<Level> load_level(const std::filesystem::path& path);
+
+struct SaveOptions {
+  int draco_bits = 0;  // 0: no Draco; else position quantisation bits (8..24)
+};
+// Writes .gltf (with a .bin beside it) or .glb by the extension; the file appears whole (written aside, then renamed).
+Status save_level(const Level& level, const std::filesystem::path& path, const SaveOptions& options = {});
+
+// --set NODE.EXT.KEY=VALUE (level-format.md). NODE is a name or `*`. The error names what was not understood.
+Status set_key(Level& level, const std::string& assignment);
+
+// A bare mesh becomes touchable: every mesh node gets a default Deformable.
+void make_touchable(Level& level);
+
+// Level -> World: nodes become entities (Name, transforms, Hierarchy), meshes are welded, cleaned, put in Hilbert order
+// and zoned, scale is baked in; images and the panorama are decoded; scripts are read. Progress over a second goes to
+// stderr. The World is not yet prepared for touch (prepare_touch).
+Result<World> spawn(const Level& level);
+
+}  // namespace pliant

@@ -1,0 +1,12 @@
+// Devices in and out of the touch tick. A driver's poses arrive in HapticDevice; only what passed the safety layer leaves.
+#pragma once
+
+#include "components/world.h"
+#include "runtime/clock.h"
+
+namespace pliant {
+
+void read_devices(World& world, Tick tick);   // HapticDevice -> Probe pose and velocity
+void write_devices(World& world, Tick tick);  // Probe force -> safety -> HapticDevice::force_sent
+
+}  // namespace pliant

@@ -1,0 +1,13 @@
+// The lists of systems, in order. schedule.cpp is where to start reading.
+#pragma once
+
+#include <vector>
+
+#include "components/world.h"
+#include "runtime/schedule.h"
+
+namespace pliant {
+
+std::vector<System<World>> touch_schedule();   // 1 kHz
+
+}  // namespace pliant

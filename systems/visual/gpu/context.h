@@ -1,0 +1,25 @@
+// An OpenGL 4.5 core context without a window: EGL on a device with a card if there is one, else surfaceless.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "runtime/result.h"
+
+namespace pliant {
+
+class HeadlessContext {
+ public:
+  // Made current on the calling thread. The error says what is missing and which package brings it.
+  static Result<std::unique_ptr<HeadlessContext>> create();
+  ~HeadlessContext();
+  const std::string& renderer_name() const { return renderer_name_; }
+
+ private:
+  HeadlessContext() = default;
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+  std::string renderer_name_;
+};
+
+}  // namespace pliant

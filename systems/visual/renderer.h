@@ -1,0 +1,48 @@
+// Draws a prepared World on a graphics context: deformed surfaces by P1's two lines, probes and their forces.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "components/appearance.h"
+#include "components/snapshot.h"
+#include "components/world.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct FrameStats {
+  double draw_ms = 0.0;              // upload and draw until the picture is complete
+  std::uint64_t upload_bytes = 0;    // that travelled for this frame (awake zones, probes, constants)
+};
+
+// Where the picture is taken from. Chosen from the level's camera or its bounds.
+struct Viewpoint {
+  dvec3 eye{0, 0, 1};      // [m] world
+  dvec3 target{0};         // [m]
+  dvec3 up{0, 1, 0};
+  float yfov = 0.7f;       // [rad]
+};
+// The level's first camera, else one that frames every deformable from the front, slightly above.
+Viewpoint default_viewpoint(const World& world);
+
+class Renderer {
+ public:
+  // Uploads what never changes. Needs a current OpenGL 4.5 context (gpu/context.h).
+  static Result<std::unique_ptr<Renderer>> create(const World& world);
+  ~Renderer();
+
+  // Takes the newest zones and probes; call for every snapshot that was acquired, before draw.
+  void update(const Snapshot& snapshot);
+  // Draws into the framebuffer `target` of width x height pixels.
+  FrameStats draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height);
+  // Draws into an own framebuffer and reads it back, rows top to bottom.
+  Image picture(const Viewpoint& viewpoint, int width, int height, FrameStats* stats = nullptr);
+
+ private:
+  Renderer();
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace pliant
