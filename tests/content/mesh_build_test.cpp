@@ -1,0 +1,303 @@
+#include "content/mesh_build.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "content/hilbert.h"
+#include "tests/content/mesh_shapes.h"
+#include "runtime/hash.h"
+#include "runtime/parallel.h"
+
+namespace pliant {
+namespace {
+
+using test::icosphere;
+using test::sheet;
+using test::unshared;
+
+BuiltMesh build(const Primitive& p, const mat4& to_object = mat4(1.0f)) {
+  Result<BuiltMesh> built = build_mesh("test", {&p, 1}, to_object);
+  EXPECT_TRUE(built.ok()) << built.error().message();
+  return std::move(*built);
+}
+
+double net_area(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const uvec3& t : mesh.triangles) {
+    const dvec3 a(mesh.position(t.x)), b(mesh.position(t.y)), c(mesh.position(t.z));
+    sum += 0.5 * length(cross(b - a, c - a));
+  }
+  return sum;
+}
+
+double signed_volume(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const uvec3& t : mesh.triangles)
+    sum += dot(dvec3(mesh.position(t.x)), cross(dvec3(mesh.position(t.y)), dvec3(mesh.position(t.z)))) / 6.0;
+  return sum;
+}
+
+template <class T>
+void add(Hash& hash, const std::vector<T>& values) {
+  hash.add_bytes(values.data(), values.size() * sizeof(T));
+}
+
+std::uint64_t hash_of(const BuiltMesh& built) {
+  const Mesh& m = built.mesh;
+  Hash hash;
+  for (const auto* v : {&m.px, &m.py, &m.pz, &m.nx, &m.ny, &m.nz, &m.area, &m.stiffness_factor, &m.friction_factor}) add(hash, *v);
+  add(hash, m.triangles);
+  add(hash, m.across);
+  for (const auto& level : m.tree.levels) add(hash, level);
+  add(hash, m.zone_box);
+  add(hash, m.zone_neighbour_first);
+  add(hash, m.zone_neighbours);
+  for (const DrawVertex& v : built.draw.vertices) hash.add_bytes(&v, sizeof v);
+  add(hash, built.draw.indices);
+  return hash.value();
+}
+
+// Each edge, by its ends in order, with the triangles that run it that way.
+std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edge_map(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int i = 0; i < 3; ++i) edges[{mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]}].push_back(t);
+  return edges;
+}
+
+void expect_adjacency_of_naive_map(const Mesh& mesh, const MeshReport& report) {
+  const auto edges = edge_map(mesh);
+  const auto runs = [&](std::uint32_t a, std::uint32_t b) {
+    const auto e = edges.find({a, b});
+    return e == edges.end() ? std::vector<std::uint32_t>{} : e->second;
+  };
+  std::set<std::pair<std::uint32_t, std::uint32_t>> border, non_manifold;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
+      const auto same = runs(a, b), opposite = runs(b, a);
+      const bool manifold = same.size() == 1 && opposite.size() == 1;
+      ASSERT_EQ(mesh.across[t][i], manifold ? opposite[0] : kBorder) << "triangle " << t << " edge " << i;
+      if (same.size() + opposite.size() == 1) border.insert(std::minmax(a, b));
+      if (same.size() + opposite.size() > 1 && !manifold) non_manifold.insert(std::minmax(a, b));
+    }
+  EXPECT_EQ(report.border_edges, border.size());
+  EXPECT_EQ(report.non_manifold_edges, non_manifold.size());
+  EXPECT_EQ(mesh.closed, border.empty() && non_manifold.empty());
+}
+
+TEST(MeshBuild, UnsharedSphereWeldsToTheEulerCountAndIsClosed) {
+  const Primitive sphere = icosphere(3);
+  const BuiltMesh built = build(unshared(sphere));
+  EXPECT_EQ(built.mesh.triangles.size(), 20u * 64u);
+  EXPECT_EQ(built.mesh.vertex_count, built.mesh.triangles.size() / 2 + 2);  // V - E + F = 2 with E = 3F/2
+  EXPECT_EQ(built.report.welded_vertices, 3 * built.mesh.triangles.size() - built.mesh.vertex_count);
+  EXPECT_EQ(built.report.degenerate_triangles + built.report.duplicate_triangles, 0u);
+  EXPECT_TRUE(built.mesh.closed);
+}
+
+TEST(MeshBuild, VertexAreasSumToTheTriangles) {
+  for (const Primitive& p : {icosphere(4), sheet(17)}) {
+    const Mesh mesh = build(p).mesh;
+    double sum = 0.0;
+    for (const float a : mesh.area) sum += static_cast<double>(a);
+    EXPECT_NEAR(sum, net_area(mesh), 1e-6 * sum);
+  }
+}
+
+TEST(MeshBuild, SphereNormalsConvergeToTheRadiusWithTheEdge) {
+  double previous = 0.0;
+  for (const int levels : {2, 3, 4}) {
+    const Mesh mesh = build(icosphere(levels)).mesh;
+    double worst = 0.0;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+      worst = std::max(worst, std::acos(std::min(1.0, dot(dvec3(mesh.normal(v)), normalize(dvec3(mesh.position(v)))))));
+    EXPECT_LT(worst, 0.04 * static_cast<double>(mesh.mean_edge)) << levels;
+    if (previous > 0.0) {
+      EXPECT_LT(worst, previous / 1.9) << levels;
+    }
+    previous = worst;
+  }
+}
+
+TEST(MeshBuild, NormalsAreWeightedByAngleSoThatACubeCornerPointsAlongItsDiagonalHoweverItsFacesAreSplit) {
+  Primitive p;  // three faces meet at the origin; two triangles on one of them, one on each of the others
+  p.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}};
+  p.index = {0, 4, 1, 0, 2, 4, 0, 3, 2, 0, 1, 3};
+  const Mesh mesh = build(p).mesh;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+    if (mesh.position(v) == vec3(0)) {
+      EXPECT_LT(length(mesh.normal(v) - normalize(vec3(-1, -1, -1))), 1e-6f);
+    }
+}
+
+TEST(MeshBuild, DegenerateTrianglesAreDroppedAndCounted) {
+  Primitive p = sheet(1);
+  p.position.push_back({0.5f, 0.5f, 0.0f});  // on the diagonal: flat together with its ends
+  p.uv.emplace_back(0.5f, 0.5f);
+  for (const std::uint32_t v : {0u, 0u, 1u, 0u, 4u, 3u, 2u, 2u, 2u}) p.index.push_back(v);
+  const BuiltMesh built = build(p);
+  EXPECT_EQ(built.report.degenerate_triangles, 3u);
+  EXPECT_EQ(built.mesh.triangles.size(), 2u);
+  EXPECT_EQ(built.mesh.vertex_count, 4u);  // the one that only a dropped triangle named is gone
+  EXPECT_EQ(built.draw.indices.size(), 6u);
+}
+
+TEST(MeshBuild, DuplicatesAreTouchedOnceWhateverTheirRotationAndAReversedOneIsStillDrawn) {
+  Primitive p = sheet(1);
+  p.index = {0, 1, 3, 1, 3, 0, 3, 1, 0, 0, 3, 2, 1, 0, 3};
+  const BuiltMesh built = build(p);
+  EXPECT_EQ(built.report.duplicate_triangles, 3u);
+  EXPECT_EQ(built.mesh.triangles.size(), 2u);
+  EXPECT_EQ(built.draw.indices.size(), 9u);
+  for (std::uint32_t v = 0; v < built.mesh.vertex_count; ++v) EXPECT_EQ(built.mesh.normal(v), vec3(0, 0, 1));
+  EXPECT_EQ(built.report.non_manifold_edges, 0u);
+}
+
+TEST(MeshBuild, MinusZeroAndZeroAreOnePosition) {
+  Primitive p;
+  p.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0f, -0.0f, 0}, {1, -0.0f, -0.0f}, {0, -1, 0}};
+  p.index = {0, 1, 2, 4, 3, 5};
+  const BuiltMesh built = build(p);
+  EXPECT_EQ(built.mesh.vertex_count, 4u);
+  EXPECT_EQ(built.report.border_edges, 4u);
+}
+
+TEST(MeshBuild, AdjacencyEqualsANaiveMapOnClosedOpenAndBrokenSurfaces) {
+  Primitive fan = sheet(6);  // a third triangle on an inner edge, one with its orientation turned, one hanging on a corner
+  fan.position.insert(fan.position.end(), {{0.5f, 0.5f, 1.0f}, {2, 2, 2}, {3, 2, 2}});
+  fan.uv.resize(fan.position.size());
+  for (const std::uint32_t v : {10u, 11u, 49u, 0u, 50u, 51u}) fan.index.push_back(v);
+  std::swap(fan.index[30], fan.index[31]);
+  for (const Primitive& p : {unshared(icosphere(3)), sheet(9), fan}) {
+    const BuiltMesh built = build(p);
+    expect_adjacency_of_naive_map(built.mesh, built.report);
+  }
+}
+
+TEST(MeshBuild, RandomTriangleSoupKeepsTheAdjacencyOfANaiveMap) {
+  std::mt19937 random(7);
+  Primitive p;
+  for (int i = 0; i < 40; ++i) p.position.emplace_back(random() % 8, random() % 8, random() % 8);
+  for (int i = 0; i < 600; ++i) p.index.push_back(static_cast<std::uint32_t>(random() % 40));
+  const BuiltMesh built = build(p);
+  expect_adjacency_of_naive_map(built.mesh, built.report);
+  std::set<std::array<std::uint32_t, 3>> seen;
+  for (const uvec3& t : built.mesh.triangles) {
+    std::array<std::uint32_t, 3> corners{t.x, t.y, t.z};
+    std::sort(corners.begin(), corners.end());
+    EXPECT_TRUE(seen.insert(corners).second) << "the same three corners twice";
+    EXPECT_TRUE(corners[0] < corners[1] && corners[1] < corners[2]);
+  }
+}
+
+TEST(MeshBuild, AMirroringFrameKeepsTheSurfaceOutward) {
+  for (const vec3& scale : {vec3(1, 1, 1), vec3(-1, 1, 1), vec3(2, -0.5f, 1), vec3(-1, -1, -3)}) {
+    mat4 frame(1.0f);
+    for (int i = 0; i < 3; ++i) frame[i] *= scale[i];
+    Primitive p = icosphere(2);
+    p.normal = p.position;
+    const BuiltMesh built = build(p, frame);
+    EXPECT_GT(signed_volume(built.mesh), 0.0);
+    for (std::uint32_t v = 0; v < built.mesh.vertex_count; ++v) EXPECT_GT(dot(built.mesh.normal(v), built.mesh.position(v)), 0.0f);
+    for (const DrawVertex& v : built.draw.vertices) {
+      const vec3 exact = normalize(v.position / (scale * scale));  // gradient of the ellipsoid
+      EXPECT_LT(length(v.normal - exact), 1e-5f);
+    }
+  }
+}
+
+TEST(MeshBuild, DrawVerticesSplitAtATextureSeamAndNowhereElse) {
+  Primitive left = sheet(4), right = sheet(4);
+  for (vec3& p : right.position) p.x += 1.0f;
+  left.material = 1;
+  right.material = 0;
+  const std::vector<Primitive> both{left, right};
+  Result<BuiltMesh> built = build_mesh("two", both, mat4(1.0f));
+  ASSERT_TRUE(built.ok());
+  EXPECT_EQ(built->mesh.vertex_count, 5u * 9u);
+  EXPECT_EQ(built->draw.vertices.size(), 2u * 25u);  // the shared column has uv.x = 1 on one side, 0 on the other
+  ASSERT_EQ(built->draw.parts.size(), 2u);
+  EXPECT_EQ(built->draw.parts[0].material, 0);
+  EXPECT_EQ(built->draw.parts[1].material, 1);
+  for (const DrawPart& part : built->draw.parts) {
+    EXPECT_EQ(part.index_count, 3u * 32u);
+    for (std::uint32_t i = 0; i < part.index_count; i += 3) {
+      const DrawVertex& v = built->draw.vertices[built->draw.indices[part.first_index + i]];
+      EXPECT_EQ(v.position, built->mesh.position(v.touch_vertex));
+      EXPECT_NEAR(v.uv.x, v.position.x - (part.material == 0 ? 1.0f : 0.0f), 1e-6f);
+    }
+  }
+}
+
+TEST(MeshBuild, TangentsFollowGrowingUAndMirroredTextureTurnsTheBitangentOver) {
+  Primitive p = sheet(4);
+  for (vec2& uv : p.uv) uv = vec2(std::abs(uv.x - 0.5f), uv.y);  // mirrored about x = 0.5
+  const BuiltMesh built = build(p);
+  EXPECT_TRUE(built.report.made_tangents);
+  EXPECT_EQ(built.mesh.vertex_count, 25u);
+  EXPECT_EQ(built.draw.vertices.size(), 30u);  // the middle column is on both sides of the mirror
+  for (std::size_t i = 0; i < built.draw.indices.size(); i += 3) {
+    float x = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) x += built.draw.vertices[built.draw.indices[i + k]].position.x / 3.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const DrawVertex& v = built.draw.vertices[built.draw.indices[i + k]];
+      const float side = x > 0.5f ? 1.0f : -1.0f;
+      EXPECT_LT(length(vec3(v.tangent) - vec3(side, 0, 0)), 1e-6f);
+      const vec3 bitangent = cross(v.normal, vec3(v.tangent)) * v.tangent.w;
+      EXPECT_LT(length(bitangent - vec3(0, 1, 0)), 1e-6f);
+    }
+  }
+}
+
+TEST(MeshBuild, PaintedFactorsAreTheMeanOfWeldedCopies) {
+  Primitive a = sheet(1), b = sheet(1);
+  for (vec3& p : b.position) p.x += 1.0f;
+  a.stiffness.assign(4, 2.0f);
+  b.stiffness.assign(4, 4.0f);
+  const std::vector<Primitive> both{a, b};
+  Result<BuiltMesh> built = build_mesh("two", both, mat4(1.0f));
+  ASSERT_TRUE(built.ok());
+  for (std::uint32_t v = 0; v < built->mesh.vertex_count; ++v)
+    EXPECT_EQ(built->mesh.stiffness_factor[v], 2.0f + built->mesh.px[v]);
+  EXPECT_TRUE(built->mesh.friction_factor.empty());
+}
+
+TEST(MeshBuild, RefusesWhatIsNoSurfaceWithOneSentence) {
+  Primitive p = sheet(1);
+  Primitive nan = p, far = p, empty, flat = p, bad_index = p, negative = p;
+  nan.position[2].y = std::numeric_limits<float>::quiet_NaN();
+  far.position[0].x = 1e30f;
+  flat.index = {0, 0, 1};
+  bad_index.index[0] = 4;
+  negative.stiffness.assign(4, -1.0f);
+  for (const Primitive& bad : {nan, far, empty, flat, bad_index, negative}) {
+    Result<BuiltMesh> built = build_mesh("bad", {&bad, 1}, mat4(1.0f));
+    ASSERT_FALSE(built.ok());
+    EXPECT_THAT(built.error().message(), testing::HasSubstr("mesh `bad`: "));
+    EXPECT_THAT(built.error().what, testing::HasSubstr(";"));
+  }
+}
+
+TEST(MeshBuild, ResultHasTheSameBitsOnAnyNumberOfThreads) {
+  Primitive p = unshared(icosphere(5));
+  p.uv.resize(p.position.size());
+  for (std::size_t i = 0; i < p.uv.size(); ++i) p.uv[i] = vec2(p.position[i]);
+  p.stiffness.assign(p.position.size(), 1.5f);
+  set_thread_count(1);
+  const std::uint64_t alone = hash_of(build(p));
+  for (const unsigned threads : {2u, 4u}) {
+    set_thread_count(threads);
+    EXPECT_EQ(hash_of(build(p)), alone) << threads;
+  }
+  set_thread_count(0);
+}
+
+}  // namespace
+}  // namespace pliant
