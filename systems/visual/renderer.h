@@ -26,14 +26,22 @@ struct Viewpoint {
 // The level's first camera, else one that frames every deformable from the front, slightly above.
 Viewpoint default_viewpoint(const World& world);
 
+// How to draw, for looking closer. Defaults are what a reader of a picture expects.
+struct RenderOptions {
+  float tint_height = 0.0f;  // [m] height that is drawn fully blue (in) or red (out); 0: surfaces keep their colours
+  bool markers = true;       // probes and their forces
+};
+
 class Renderer {
  public:
-  // Uploads what never changes. Needs a current OpenGL 4.5 context (gpu/context.h).
+  // Uploads what never changes, and heights as they stand now, so call it while the touch clock does not run. Needs a
+  // current OpenGL 4.5 context (gpu/context.h), here and in every later call. Call again after structural changes.
   static Result<std::unique_ptr<Renderer>> create(const World& world);
   ~Renderer();
 
   // Takes the newest zones and probes; call for every snapshot that was acquired, before draw.
   void update(const Snapshot& snapshot);
+  RenderOptions& options();
   // Draws into the framebuffer `target` of width x height pixels.
   FrameStats draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height);
   // Draws into an own framebuffer and reads it back, rows top to bottom.

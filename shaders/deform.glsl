@@ -1,0 +1,12 @@
+// P1's two lines, for every pass that draws a surface: colour, shadow and picking alike.
+//
+//   position = P0 + h N0
+//   normal   = N0 + (nx, ny, nz)
+//
+// P0 and N0 never change and lie in vertex buffers; (nx, ny, nz, h) comes from the stream of the touch vertex. The height
+// acts along the touch normal; the correction is a gradient, in the object frame, and serves any unit shading normal.
+
+layout(std430, binding = 0) readonly buffer Stream { vec4 stream[]; };  // [1,1,1,m] by touch vertex
+
+vec3 deformed_position(vec3 P0, vec3 N0, vec4 s) { return P0 + s.w * N0; }
+vec3 deformed_normal(vec3 N0, vec4 s) { return normalize(N0 + s.xyz); }

@@ -1,0 +1,61 @@
+// Shape functions of the force field: arithmetic that is at once GLSL and C++ (systems/touch/shape.h), so that the
+// processor and the card agree to rounding. methods.md 1.3; P1 section 3.
+//
+// f(rho) is the share of the amplitude that a vertex at distance r = rho R from the contact gives way; f(0) = 1.
+// Each function takes u = rho^2 in [0, 1] and returns (f, df/du): the gradient along the surface is 2 (df/du) d / R^2,
+// with d the vector from the contact, so no square root is needed where f is a polynomial in u.
+// SHARED is `inline` in C++ and nothing in GLSL.
+
+// Volume-preserving: (1-u)^3 (1 - c u). On a flat surface c = 5 leaves no net volume; force_field finds c on the mesh.
+SHARED vec2 shape_volume(float u, float c) {
+  float w = 1.0f - u;
+  float w2 = w * w;
+  return vec2(w2 * w * (1.0f - c * u), -w2 * (3.0f * (1.0f - c * u) + c * w));
+}
+
+// Wendland C2: (1-rho)^4 (4 rho + 1).
+SHARED vec2 shape_wendland(float u) {
+  float rho = sqrt(u);
+  float w = 1.0f - rho;
+  float w3 = w * w * w;
+  return vec2(w3 * w * (4.0f * rho + 1.0f), -10.0f * w3);
+}
+
+// Takes a shape of infinite support to zero at u = 1: one for u < 1/4, then a C2 fall. Returns (w, dw/du).
+SHARED vec2 shape_window(float u) {
+  float s = clamp((u - 0.25f) * (4.0f / 3.0f), 0.0f, 1.0f);
+  float q = 1.0f - s;
+  return vec2(q * q * q * (1.0f + s * (3.0f + 6.0f * s)), -40.0f * s * s * q * q);
+}
+
+SHARED vec2 shape_windowed(vec2 f, float u) {
+  vec2 w = shape_window(u);
+  return vec2(f.x * w.x, f.y * w.x + f.x * w.y);
+}
+
+// exp(-(3 rho)^2), windowed.
+SHARED vec2 shape_gaussian(float u) {
+  float e = exp(-9.0f * u);
+  return shape_windowed(vec2(e, -9.0f * e), u);
+}
+
+// Rigid flat punch of radius a on a half-space, inner = (a/R)^2: 1 inside, (2/pi) asin(a/r) outside; windowed.
+SHARED vec2 shape_punch(float u, float inner) {
+  if (u <= inner) return shape_windowed(vec2(1.0f, 0.0f), u);
+  float q = inner / u;
+  float slope = -0.31830989f * sqrt(q / max(1.0f - q, 1e-6f)) / u;
+  return shape_windowed(vec2(0.63661977f * asin(sqrt(q)), slope), u);
+}
+
+// Hertz: sphere on a half-space, contact radius a, inner = (a/R)^2; windowed.
+SHARED vec2 shape_hertz(float u, float inner) {
+  if (u <= inner) return shape_windowed(vec2(1.0f - 0.5f * u / inner, -0.5f / inner), u);
+  float q = u / inner;
+  float s = asin(sqrt(inner / u));
+  float root = sqrt(q - 1.0f);
+  return shape_windowed(vec2(0.31830989f * ((2.0f - q) * s + root), 0.31830989f * (root / q - s) / inner), u);
+}
+
+// How much of the field a vertex takes whose normal makes an angle with the contact's: all up to 75 degrees, nothing
+// from 90 on, so that the far side of a thin part is not dented.
+SHARED float shape_facing(float cosine) { return clamp(4.0f * cosine, 0.0f, 1.0f); }

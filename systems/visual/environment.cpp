@@ -1,0 +1,173 @@
+#include "systems/visual/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "systems/visual/viewpoint.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::uint32_t kWidest = 256;  // [pixels] of the panorama on the card: only blurred views of it are shown
+constexpr float kSunClip = 20.0f;       // [1] a sun above this share of the mean would make nine coefficients ring
+constexpr float kPi = std::numbers::pi_v<float>;
+
+float luminance(vec3 c) { return dot(c, vec3(0.2126f, 0.7152f, 0.0722f)); }
+
+vec3 pixel(const Panorama& p, std::uint32_t x, std::uint32_t y) {
+  const float* rgb = &p.rgb[3 * (std::size_t{y} * p.width + x)];
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+// Unit direction through the middle of a pixel.
+vec3 direction(const Panorama& p, std::uint32_t x, std::uint32_t y) {
+  const float azimuth = 2 * kPi * ((static_cast<float>(x) + 0.5f) / static_cast<float>(p.width) - 0.5f);
+  const float polar = kPi * (static_cast<float>(y) + 0.5f) / static_cast<float>(p.height);
+  return {std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)};
+}
+
+// [sr] that a pixel of row y covers.
+float solid_angle(const Panorama& p, std::uint32_t y) {
+  const float step = kPi / static_cast<float>(p.height), top = step * static_cast<float>(y);
+  return (std::cos(top) - std::cos(top + step)) * 2 * kPi / static_cast<float>(p.width);
+}
+
+// A quiet studio: bright overhead, warm horizon, dark floor.
+Panorama studio() {
+  Panorama p{.name = "studio", .width = 64, .height = 32, .rgb = {}};
+  const vec3 zenith(0.62f, 0.70f, 0.82f), horizon(0.52f, 0.50f, 0.48f), floor(0.10f, 0.10f, 0.115f);
+  for (std::uint32_t y = 0; y < p.height; ++y)
+    for (std::uint32_t x = 0; x < p.width; ++x) {
+      const float up = direction(p, x, y).y;
+      const vec3 c = up > 0 ? glm::mix(horizon, zenith, std::sqrt(up)) : glm::mix(horizon, floor, std::pow(-up, 0.45f));
+      p.rgb.insert(p.rgb.end(), {c.r, c.g, c.b});
+    }
+  return p;
+}
+
+// Averages whole blocks of pixels, so that the picture is at most kWidest wide.
+Panorama scaled_down(const Panorama& p) {
+  const std::uint32_t block = (p.width + kWidest - 1) / kWidest;
+  if (block <= 1) return p;
+  Panorama small{.name = p.name, .width = p.width / block, .height = std::max(1u, p.height / block), .rgb = {}};
+  small.rgb.reserve(std::size_t{3} * small.width * small.height);
+  for (std::uint32_t y = 0; y < small.height; ++y)
+    for (std::uint32_t x = 0; x < small.width; ++x) {
+      vec3 sum(0);
+      for (std::uint32_t j = 0; j < block; ++j)
+        for (std::uint32_t i = 0; i < block; ++i) sum += pixel(p, x * block + i, std::min(y * block + j, p.height - 1));
+      sum /= static_cast<float>(block * block);
+      small.rgb.insert(small.rgb.end(), {sum.r, sum.g, sum.b});
+    }
+  return small;
+}
+
+// Where most of the light comes from: the polynomial's linear part. Never from below, so that shapes read.
+vec3 dominant_direction(const std::array<vec4, 9>& c, float rotation) {
+  const vec3 p(luminance(c[3]), luminance(c[1]), luminance(c[2]));
+  const float cosine = std::cos(rotation), sine = std::sin(rotation);
+  vec3 d(cosine * p.x + sine * p.z, p.y, -sine * p.x + cosine * p.z);
+  const float flat = length(vec2(d.x, d.z));
+  // A sky without a side to it: light from the left, as draughtsmen have it, low enough to show relief.
+  if (flat < 0.2f * std::abs(d.y) || length(d) < 1e-6f) return normalize(vec3(-0.75f, 0.75f, 0.35f));
+  d.y = glm::clamp(d.y, 0.6f * flat, 1.2f * flat);
+  return normalize(d);
+}
+
+// The level's first light, placed and scaled; false where there is none.
+bool level_light(const World& world, FrameConstants& frame) {
+  for (auto [entity, light] : world.registry.view<Light>()) {
+    const WorldTransform* transform = world.registry.find<WorldTransform>(entity);
+    const mat4 m = transform ? transform->matrix : mat4(1);
+    const vec3 backward = normalize(vec3(m[2]));
+    const bool placed = light.kind != Light::Kind::kDirectional;
+    frame.key_place = placed ? vec4(vec3(m[3]), 1) : vec4(backward, 0);
+    frame.key_color = vec4(light.color * light.intensity, placed ? light.range : 0.0f);
+    if (light.kind == Light::Kind::kSpot) {
+      const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+      const float scale = 1 / std::max(inner - outer, 1e-3f);
+      frame.key_axis = vec4(-backward, scale);
+      frame.picture.y = -outer * scale;
+    }
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::array<vec4, 9> irradiance_of(const Panorama& p) {
+  double total = 0, sphere = 0;
+  for (std::uint32_t y = 0; y < p.height; ++y)
+    for (std::uint32_t x = 0; x < p.width; ++x) {
+      total += luminance(pixel(p, x, y)) * solid_angle(p, y);
+      sphere += solid_angle(p, y);
+    }
+  const float clip = kSunClip * static_cast<float>(total / sphere);
+
+  // Projection on the real spherical harmonics of degree 0 to 2, each written without its constant.
+  std::array<dvec3, 9> sums{};
+  for (std::uint32_t y = 0; y < p.height; ++y)
+    for (std::uint32_t x = 0; x < p.width; ++x) {
+      const vec3 d = direction(p, x, y), radiance = pixel(p, x, y);
+      const float bright = luminance(radiance);
+      const dvec3 weighted = dvec3(radiance * (bright > clip ? clip / bright : 1.0f) * solid_angle(p, y));
+      const double basis[9] = {1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
+      for (int i = 0; i < 9; ++i) sums[i] += weighted * basis[i];
+    }
+  // Both factors of the harmonics' constants, times the cosine lobe's pi, 2 pi / 3, pi / 4 by degree.
+  constexpr double pi = std::numbers::pi;
+  const double a0 = pi / (4 * pi), a1 = 2 * pi / 3 * 3 / (4 * pi), a2 = pi / 4 * 15 / (4 * pi);
+  const double factors[9] = {a0, a1, a1, a1, a2, a2, a2 / 12, a2, a2 / 4};
+  std::array<vec4, 9> coefficients;
+  for (int i = 0; i < 9; ++i) coefficients[i] = vec4(vec3(sums[i] * factors[i]), 0);
+  return coefficients;
+}
+
+vec3 irradiance_on(const std::array<vec4, 9>& c, vec3 n) {
+  return vec3(c[0] + c[1] * n.y + c[2] * n.z + c[3] * n.x + c[4] * (n.x * n.y) + c[5] * (n.y * n.z) +
+              c[6] * (3 * n.z * n.z - 1) + c[7] * (n.x * n.z) + c[8] * (n.x * n.x - n.y * n.y));
+}
+
+Surroundings Surroundings::make(const World& world) {
+  const Environment& environment = world.environment;
+  const bool own = environment.panorama.width > 0 && environment.panorama.height > 0;
+  const Panorama panorama = own ? scaled_down(environment.panorama) : studio();
+  const float intensity = own ? environment.intensity : 1.0f, rotation = own ? environment.rotation : 0.0f;
+
+  Surroundings made;
+  made.panorama_ = gpu::Texture::from_panorama(panorama.rgb, static_cast<int>(panorama.width),
+                                               static_cast<int>(panorama.height));
+  FrameConstants& frame = made.constants_;
+  frame.irradiance = irradiance_of(panorama);
+  // The roughest level still has some pixels, so that a matt coat sees up from down.
+  const float levels = static_cast<float>(std::max(0, made.panorama_.levels() - 3));
+  frame.surroundings = vec4(std::cos(rotation), std::sin(rotation), intensity, levels);
+  frame.picture.w = 0.4f * levels;
+
+  // Without a light of the level's own, the surroundings' brightest side lends one: it models, the rest fills.
+  const float ambient = std::max(0.0f, intensity * luminance(frame.irradiance[0]));
+  if (!level_light(world, frame)) {
+    frame.key_place = vec4(dominant_direction(frame.irradiance, rotation), 0);
+    frame.key_color = vec4(vec3(1.0f, 0.96f, 0.9f) * std::max(1.6f * ambient, 1e-3f), 0);
+  }
+  // Exposed for a white sheet in the middle of the scene that faces the key light.
+  const Box box = drawn_box(world, false);
+  const vec3 way = vec3(frame.key_place) - (box.empty() ? vec3(0) : box.center());
+  const float key = luminance(vec3(frame.key_color)) / (frame.key_place.w > 0 ? std::max(dot(way, way), 1e-8f) : 1.0f);
+  frame.picture.x = 0.9f * kPi / std::max(key + ambient, 1e-6f);
+  return made;
+}
+
+void Surroundings::light(FrameConstants& frame) const {
+  frame.key_place = constants_.key_place;
+  frame.key_color = constants_.key_color;
+  frame.key_axis = constants_.key_axis;
+  frame.irradiance = constants_.irradiance;
+  frame.surroundings = constants_.surroundings;
+  frame.picture = constants_.picture;
+}
+
+}  // namespace pliant

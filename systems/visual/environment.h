@@ -1,0 +1,33 @@
+// Light from all around, and the one light that models: from the level's panorama and first light, or from plain defaults.
+#pragma once
+
+#include <array>
+
+#include "components/appearance.h"
+#include "components/world.h"
+#include "systems/visual/frame.h"
+#include "systems/visual/gpu/texture.h"
+
+namespace pliant {
+
+// The nine coefficients of shaders/environment.glsl's irradiance polynomial [lx], panorama frame (its middle column lies
+// towards -Z, rows go from +Y to -Y). Radiance above kSunClip times the mean is left to the key light.
+std::array<vec4, 9> irradiance_of(const Panorama& panorama);
+
+// What that polynomial gives for a unit normal in the panorama frame.
+vec3 irradiance_on(const std::array<vec4, 9>& coefficients, vec3 normal);
+
+class Surroundings {
+ public:
+  // Uploads the panorama, scaled down to what blurred pictures of it need.
+  static Surroundings make(const World& world);
+  // Writes everything about light and exposure into `frame`.
+  void light(FrameConstants& frame) const;
+  void bind() const { panorama_.bind(kPanoramaUnit); }
+
+ private:
+  gpu::Texture panorama_;
+  FrameConstants constants_;  // its part about light
+};
+
+}  // namespace pliant

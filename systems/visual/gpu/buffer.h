@@ -1,0 +1,58 @@
+// Memory on the card, and how vertices are read out of it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "systems/visual/gpu/object.h"
+
+namespace pliant::gpu {
+
+struct DestroyBuffer {
+  static void destroy(GLuint id) { glDeleteBuffers(1, &id); }
+};
+
+// A run of bytes of fixed size, for vertices, indices, constants or storage alike.
+class Buffer {
+ public:
+  Buffer() = default;
+  // Takes the bytes once; nothing may be written later.
+  static Buffer fixed(const void* data, std::size_t size);
+  // To be written as often as wanted; `data` may be null (undefined contents).
+  static Buffer writable(const void* data, std::size_t size);
+  template <class T>
+  static Buffer fixed(std::span<const T> items) {
+    return fixed(items.data(), items.size_bytes());
+  }
+
+  // Replaces bytes [offset, offset + size); returns `size`, so that callers can add up what travelled.
+  std::size_t write(std::size_t offset, const void* data, std::size_t size);
+  std::size_t size() const { return size_; }
+  GLuint id() const { return object_.id(); }
+
+ private:
+  Buffer(const void* data, std::size_t size, GLbitfield flags);
+  Object<DestroyBuffer> object_;
+  std::size_t size_ = 0;  // [bytes]
+};
+
+struct DestroyVertexArray {
+  static void destroy(GLuint id) { glDeleteVertexArrays(1, &id); }
+};
+
+// Which buffer and offset each attribute of a vertex shader comes from.
+class VertexArray {
+ public:
+  static VertexArray make();
+  // Binding slot `slot` reads `buffer` every `stride` bytes; per vertex, or (divisor 1) per instance.
+  void source(GLuint slot, const Buffer& buffer, GLsizei stride, GLuint divisor = 0) const;
+  void floats(GLuint attribute, GLuint slot, GLint count, std::size_t offset) const;
+  void integer(GLuint attribute, GLuint slot, std::size_t offset) const;
+  void indices(const Buffer& buffer) const { glVertexArrayElementBuffer(id(), buffer.id()); }
+  GLuint id() const { return object_.id(); }
+
+ private:
+  Object<DestroyVertexArray> object_;
+};
+
+}  // namespace pliant::gpu

@@ -1,0 +1,73 @@
+#include "systems/visual/gpu/context.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <vector>
+
+namespace pliant {
+namespace {
+
+// Every display that may carry a context, best first: cards, then Mesa without any surface (which finds a card's driver
+// too, or draws on the processor).
+std::vector<EGLDisplay> displays() {
+  std::vector<EGLDisplay> found;
+  if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
+      epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) {
+    EGLDeviceEXT devices[16];
+    EGLint count = 0;
+    if (!eglQueryDevicesEXT(16, devices, &count)) count = 0;
+    for (EGLint i = 0; i < count; ++i) {
+      const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
+      if (extensions && epoxy_extension_in_string(extensions, "EGL_MESA_device_software")) continue;
+      found.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
+    }
+  }
+  if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+    found.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+  return found;
+}
+
+// A current 4.5 core context on this display, or EGL_NO_CONTEXT.
+EGLContext make_current_on(EGLDisplay display) {
+  EGLint major = 0, minor = 0;
+  if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) return EGL_NO_CONTEXT;
+  if (!epoxy_has_egl_extension(display, "EGL_KHR_no_config_context")) return EGL_NO_CONTEXT;
+  if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) return EGL_NO_CONTEXT;
+  if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
+  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+  if (context == EGL_NO_CONTEXT) return EGL_NO_CONTEXT;
+  if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return context;
+  eglDestroyContext(display, context);
+  return EGL_NO_CONTEXT;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
+  const std::vector<EGLDisplay> candidates = displays();
+  if (candidates.empty())
+    return Error{"EGL", "offers neither a graphics card nor Mesa's surfaceless platform; install libegl-mesa0 and "
+                        "libgl1-mesa-dri"};
+  for (const EGLDisplay display : candidates) {
+    const EGLContext context = make_current_on(display);
+    if (context == EGL_NO_CONTEXT) continue;
+    std::unique_ptr<HeadlessContext> made(new HeadlessContext());
+    made->display_ = display;
+    made->context_ = context;
+    made->renderer_name_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    return made;
+  }
+  return Error{"EGL", "no driver gives an OpenGL 4.5 core context; install libgl1-mesa-dri (22 or later) or the "
+                      "graphics card's own driver"};
+}
+
+// The display stays initialised: EGL hands the same one to everybody in the process, who may still be using it.
+HeadlessContext::~HeadlessContext() {
+  if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(display_, context_);
+}
+
+}  // namespace pliant

@@ -1,0 +1,30 @@
+// One OpenGL name, owned: move-only, deleted with its owner. The context it was made in must be current then.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <utility>
+
+namespace pliant::gpu {
+
+// `Destroy` says how the name is given back: a struct with `static void destroy(GLuint)`.
+template <class Destroy>
+class Object {
+ public:
+  Object() = default;
+  explicit Object(GLuint id) : id_(id) {}
+  Object(Object&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Object& operator=(Object&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Object() {
+    if (id_) Destroy::destroy(id_);
+  }
+  GLuint id() const { return id_; }
+
+ private:
+  GLuint id_ = 0;
+};
+
+}  // namespace pliant::gpu

@@ -1,0 +1,152 @@
+#include "systems/visual/marker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/visual/marker_shapes.h"
+
+namespace pliant {
+namespace {
+
+// Sizes, as shares of the scene's diagonal unless said otherwise.
+constexpr float kSmallestBall = 0.012f;   // radius; smaller probes would not be seen
+constexpr float kRodLength = 0.16f;
+constexpr float kRodRadius = 0.42f;       // of the ball's radius
+constexpr float kArrowPerNewton = 0.10f;  // [1/N]
+constexpr float kLongestArrow = 0.30f;
+constexpr float kArrowRadius = 0.0055f;
+constexpr float kHeadRadius = 0.015f, kHeadLength = 0.04f;
+constexpr float kSmallestForce = 0.01f;   // [N] below: no arrow
+const vec3 kArrowColor{0.95f, 0.70f, 0.03f};
+const vec3 kRodColor{0.55f, 0.57f, 0.60f};
+
+}  // namespace
+
+Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
+  Markers made;
+  Result<gpu::Program> program = gpu::Program::load({"marker.vert", "marker.frag"});
+  if (!program) return program.error();
+  made.program_ = *std::move(program);
+  Box scene;
+  for (const Box& box : boxes)
+    if (!box.empty()) scene.add(box);
+  if (!scene.empty()) made.diagonal_ = std::max(scene.diagonal(), 1e-6f);
+  made.boxes_ = std::move(boxes);
+  for (auto [entity, probe] : world.registry.view<Probe>())
+    made.probes_.push_back({entity, static_cast<float>(probe.radius), probe.color, probe.placed, probe.position,
+                            probe.force});
+
+  MarkerMesh all;
+  const MarkerMesh meshes[kKinds] = {make_ball(), make_rod(), make_cone()};
+  for (unsigned kind = 0; kind < kKinds; ++kind) {
+    made.shapes_[kind] = {static_cast<std::uint32_t>(all.indices.size()),
+                          static_cast<std::uint32_t>(meshes[kind].indices.size())};
+    const std::uint32_t base = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), meshes[kind].vertices.begin(), meshes[kind].vertices.end());
+    for (const std::uint32_t index : meshes[kind].indices) all.indices.push_back(base + index);
+  }
+  made.vertices_ = gpu::Buffer::fixed<MarkerVertex>(all.vertices);
+  made.indices_ = gpu::Buffer::fixed<std::uint32_t>(all.indices);
+  made.instances_ = gpu::Buffer::writable(nullptr, made.probes_.size() * 4 * sizeof(Instance));  // two rods a probe
+
+  made.layout_ = gpu::VertexArray::make();
+  made.layout_.source(0, made.vertices_, sizeof(MarkerVertex));
+  made.layout_.source(1, made.instances_, sizeof(Instance), 1);
+  made.layout_.floats(0, 0, 3, offsetof(MarkerVertex, position));
+  made.layout_.floats(1, 0, 3, offsetof(MarkerVertex, normal));
+  made.layout_.floats(2, 1, 4, offsetof(Instance, row_x));
+  made.layout_.floats(3, 1, 4, offsetof(Instance, row_y));
+  made.layout_.floats(4, 1, 4, offsetof(Instance, row_z));
+  made.layout_.floats(5, 1, 4, offsetof(Instance, tint));
+  made.layout_.indices(made.indices_);
+  return made;
+}
+
+void Markers::take(const std::vector<ProbeSnapshot>& probes) {
+  for (const ProbeSnapshot& now : probes)
+    for (Known& probe : probes_)
+      if (probe.entity == now.probe) {
+        probe.placed = true;
+        probe.position = now.position;
+        probe.force = now.force;
+      }
+}
+
+// Which way is out of the body, where a probe is: along the force while it presses, else along the normal of the
+// ellipsoid in the nearest surface's box. The two are blended, so that a stylus does not jump at first touch.
+vec3 Markers::outward(const Known& probe) const {
+  const vec3 p(probe.position);
+  const Box* nearest = nullptr;
+  float least = std::numeric_limits<float>::max();
+  for (const Box& box : boxes_) {
+    const float distance = box.empty() ? least : length(p - glm::clamp(p, box.min, box.max));
+    if (distance < least) nearest = &box, least = distance;
+  }
+  vec3 out(0, 1, 0);
+  if (nearest) {
+    const vec3 half = glm::max(0.5f * nearest->size(), vec3(0.02f * diagonal_));
+    const vec3 slope = (p - nearest->center()) / (half * half);
+    if (length(slope) > 1e-6f) out = normalize(slope);
+  }
+  const float newtons = static_cast<float>(length(probe.force));
+  if (newtons > 0) out = glm::mix(out, vec3(probe.force) / newtons, glm::smoothstep(0.0f, 0.2f, newtons));
+  return length(out) > 1e-6f ? normalize(out) : vec3(0, 1, 0);
+}
+
+// A unit shape stretched from `from` to `to` along its y axis; a ball lies about `from` with to - from its radius up.
+void Markers::place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, float roughness) {
+  const vec3 along = to - from;
+  const vec3 y = normalize(along);
+  const vec3 x = normalize(cross(std::abs(y.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0), y)), z = cross(x, y);
+  const mat3 turned(radius * x, along, radius * z);
+  auto row = [&](int i) { return vec4(turned[0][i], turned[1][i], turned[2][i], from[i]); };
+  placed_[kind].push_back({row(0), row(1), row(2), vec4(color, roughness)});
+}
+
+void Markers::lay_out(const Known& probe, const Viewpoint& viewpoint) {
+  const vec3 out = outward(probe), position(probe.position);
+  const float radius = std::max(probe.radius, kSmallestBall * diagonal_);
+  // A ball drawn larger than the probe is stands on the same lowest point.
+  const vec3 ball = position + (radius - probe.radius) * out;
+  place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
+  // The stylus leans away from the arrow, so that both can be seen.
+  const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye)), up(viewpoint.up);
+  const vec3 side = cross(forward, up);
+  const vec3 lean = normalize(out + 0.5f * up + 0.45f * side * (dot(out, side) < 0 ? -1.0f : 1.0f));
+  place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
+
+  const float newtons = static_cast<float>(length(probe.force));
+  if (newtons < kSmallestForce) return;
+  const vec3 direction = vec3(probe.force) / newtons;
+  const float shaft = std::min(kArrowPerNewton * newtons, kLongestArrow) * diagonal_;
+  const vec3 tail = ball, neck = tail + (radius + shaft) * direction;
+  place(kRod, tail, neck, kArrowRadius * diagonal_, kArrowColor, 0.5f);
+  place(kHead, neck, neck + kHeadLength * diagonal_ * direction, kHeadRadius * diagonal_, kArrowColor, 0.5f);
+}
+
+std::size_t Markers::upload(const Viewpoint& viewpoint) {
+  for (std::vector<Instance>& kind : placed_) kind.clear();
+  for (const Known& probe : probes_)
+    if (probe.placed) lay_out(probe, viewpoint);
+  std::size_t travelled = 0;
+  for (const std::vector<Instance>& kind : placed_)
+    travelled += instances_.write(travelled, kind.data(), kind.size() * sizeof(Instance));
+  return travelled;
+}
+
+void Markers::draw() const {
+  program_.use();
+  glBindVertexArray(layout_.id());
+  glFrontFace(GL_CCW);
+  glEnable(GL_CULL_FACE);
+  GLuint first = 0;
+  for (unsigned kind = 0; kind < kKinds; ++kind) {
+    const GLsizei count = static_cast<GLsizei>(placed_[kind].size());
+    glDrawElementsInstancedBaseInstance(
+        GL_TRIANGLES, static_cast<GLsizei>(shapes_[kind].index_count), GL_UNSIGNED_INT,
+        reinterpret_cast<const void*>(shapes_[kind].first_index * sizeof(std::uint32_t)), count, first);
+    first += static_cast<GLuint>(count);
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,57 @@
+// Probes and what they feel: a ball on a stylus, and an arrow along the force.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "components/world.h"
+#include "runtime/result.h"
+#include "systems/visual/gpu/buffer.h"
+#include "systems/visual/gpu/program.h"
+#include "systems/visual/renderer.h"
+
+namespace pliant {
+
+class Markers {
+ public:
+  // `boxes` are the surfaces': they say how large markers are and on which side of a body a stylus stands.
+  static Result<Markers> make(const World& world, std::vector<Box> boxes);
+
+  // Takes where the probes are now. Probes that the level did not have at make() are ignored.
+  void take(const std::vector<ProbeSnapshot>& probes);
+  // Lays out and sends every marker; returns the bytes that travelled.
+  std::size_t upload(const Viewpoint& viewpoint);
+  void draw() const;
+
+ private:
+  struct Known {  // a probe of the level
+    Entity entity;
+    float radius = 0.0f;  // [m]
+    vec3 color{0};
+    bool placed = false;
+    dvec3 position{0};    // [m] world
+    dvec3 force{0};       // [N] world
+  };
+  struct Instance {  // as shaders/marker.vert reads it
+    vec4 row_x, row_y, row_z, tint;
+  };
+  struct Shape {
+    std::uint32_t first_index = 0, index_count = 0;
+  };
+  enum Kind : unsigned { kBall, kRod, kHead, kKinds };
+
+  vec3 outward(const Known& probe) const;
+  void lay_out(const Known& probe, const Viewpoint& viewpoint);
+  void place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, float roughness);
+
+  std::vector<Known> probes_;
+  std::vector<Box> boxes_;
+  float diagonal_ = 1.0f;  // [m] of the scene
+  gpu::Buffer vertices_, indices_, instances_;
+  gpu::VertexArray layout_;
+  Shape shapes_[kKinds];
+  std::vector<Instance> placed_[kKinds];
+  gpu::Program program_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,25 @@
+// The unit shapes that markers are made of: a ball about the origin, and a rod and a cone from y = 0 to y = 1, all of
+// radius 1, counter-clockwise from outside.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "components/math.h"
+
+namespace pliant {
+
+struct MarkerVertex {
+  vec3 position{0}, normal{0};
+};
+
+struct MarkerMesh {
+  std::vector<MarkerVertex> vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+MarkerMesh make_ball();
+MarkerMesh make_rod();   // with a flat cap at y = 1
+MarkerMesh make_cone();  // tip at y = 1, flat cap at y = 0
+
+}  // namespace pliant

@@ -1,0 +1,98 @@
+#include "systems/visual/material.h"
+
+#include <cstring>
+#include <map>
+#include <utility>
+
+#include "systems/visual/frame.h"
+
+namespace pliant {
+namespace {
+
+// Block MaterialOf of shaders/surface.frag.
+struct MaterialConstants {
+  vec4 base_color, emissive, numbers, modes;
+};
+
+MaterialConstants constants_of(const Material& m) {
+  const float straight_on = (m.ior - 1) / (m.ior + 1);
+  return {.base_color = m.base_color,
+          .emissive = vec4(m.emissive, m.alpha == Material::Alpha::kMask ? m.alpha_cutoff : 0.0f),
+          .numbers = {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength},
+          .modes = {m.alpha == Material::Alpha::kBlend ? 1.0f : 0.0f, straight_on * straight_on, 0, 0}};
+}
+
+// A surface that nobody painted: flesh-like, a little wet, so that dents catch the light.
+Material default_material() {
+  Material m;
+  m.base_color = {0.72f, 0.38f, 0.34f, 1.0f};
+  m.roughness = 0.42f;
+  m.double_sided = true;
+  return m;
+}
+
+}  // namespace
+
+Result<Materials> Materials::make(const World& world) {
+  Materials made;
+  made.textures_.push_back(gpu::Texture::constant(255, 255, 255));  // a factor of one
+  made.textures_.push_back(gpu::Texture::constant(128, 128, 255));  // a flat normal map
+  constexpr int kOne = 0, kFlat = 1;
+
+  // A picture may serve as colour and as data: then it is uploaded as both.
+  std::map<std::pair<std::int32_t, gpu::Meaning>, int> known;
+  Status uploaded = Done{};
+  auto texture = [&](std::int32_t image, gpu::Meaning meaning, int otherwise) {
+    if (image < 0 || static_cast<std::size_t>(image) >= world.images.size()) return otherwise;
+    const auto key = std::make_pair(image, meaning);
+    if (const auto found = known.find(key); found != known.end()) return found->second;
+    Result<gpu::Texture> made_texture = gpu::Texture::from_image(world.images[static_cast<std::size_t>(image)], meaning);
+    if (!made_texture) {
+      uploaded = made_texture.error();
+      return otherwise;
+    }
+    made.textures_.push_back(*std::move(made_texture));
+    return known[key] = static_cast<int>(made.textures_.size() - 1);
+  };
+
+  GLint alignment = 1;
+  glGetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
+  const std::size_t step = static_cast<std::size_t>(alignment);
+  made.stride_ = (sizeof(MaterialConstants) + step - 1) / step * step;
+  std::vector<std::byte> bytes((world.materials.size() + 1) * made.stride_);
+  for (std::size_t i = 0; i <= world.materials.size(); ++i) {
+    const Material m = i < world.materials.size() ? world.materials[i] : default_material();
+    const MaterialConstants constants = constants_of(m);
+    std::memcpy(&bytes[i * made.stride_], &constants, sizeof constants);
+    made.entries_.push_back({.base_color = texture(m.base_color_texture, gpu::Meaning::kColor, kOne),
+                             .roughness = texture(m.metallic_roughness_texture, gpu::Meaning::kData, kOne),
+                             .normal = texture(m.normal_texture, gpu::Meaning::kData, kFlat),
+                             .occlusion = texture(m.occlusion_texture, gpu::Meaning::kData, kOne),
+                             .emissive = texture(m.emissive_texture, gpu::Meaning::kColor, kOne),
+                             .blends = m.alpha == Material::Alpha::kBlend,
+                             .double_sided = m.double_sided});
+  }
+  if (!uploaded) return uploaded.error();
+  made.constants_ = gpu::Buffer::fixed(bytes.data(), bytes.size());
+  return made;
+}
+
+std::size_t Materials::row(std::int32_t index) const {
+  const std::size_t last = entries_.size() - 1;
+  return index < 0 ? last : std::min(static_cast<std::size_t>(index), last);
+}
+
+const Materials::Entry& Materials::entry(std::int32_t index) const { return entries_[row(index)]; }
+
+void Materials::bind(std::int32_t index) const {
+  const Entry& e = entry(index);
+  glBindBufferRange(GL_UNIFORM_BUFFER, kMaterialBinding, constants_.id(),
+                    static_cast<GLintptr>(row(index) * stride_), sizeof(MaterialConstants));
+  textures_[static_cast<std::size_t>(e.base_color)].bind(kBaseColorUnit);
+  textures_[static_cast<std::size_t>(e.roughness)].bind(kRoughnessUnit);
+  textures_[static_cast<std::size_t>(e.normal)].bind(kNormalUnit);
+  textures_[static_cast<std::size_t>(e.occlusion)].bind(kOcclusionUnit);
+  textures_[static_cast<std::size_t>(e.emissive)].bind(kEmissiveUnit);
+}
+
+}  // namespace pliant

@@ -1,0 +1,36 @@
+// Materials on the card: one block of constants each, and the pictures they share.
+#pragma once
+
+#include <vector>
+
+#include "components/world.h"
+#include "runtime/result.h"
+#include "systems/visual/gpu/buffer.h"
+#include "systems/visual/gpu/texture.h"
+
+namespace pliant {
+
+class Materials {
+ public:
+  // Uploads every picture that a material names. The error names the picture.
+  static Result<Materials> make(const World& world);
+  // Binds constants and textures of material `index` (-1 or out of range: the default material).
+  void bind(std::int32_t index) const;
+  bool blends(std::int32_t index) const { return entry(index).blends; }
+  bool double_sided(std::int32_t index) const { return entry(index).double_sided; }
+
+ private:
+  struct Entry {
+    int base_color = 0, roughness = 0, normal = 0, occlusion = 0, emissive = 0;  // into textures_
+    bool blends = false, double_sided = false;
+  };
+  const Entry& entry(std::int32_t index) const;
+  std::size_t row(std::int32_t index) const;
+
+  std::vector<gpu::Texture> textures_;
+  std::vector<Entry> entries_;  // the level's materials, then the default one
+  gpu::Buffer constants_;
+  std::size_t stride_ = 0;      // [bytes] from one material's constants to the next
+};
+
+}  // namespace pliant

@@ -1,0 +1,139 @@
+#include "systems/visual/renderer.h"
+
+#include <algorithm>
+
+#include "runtime/clock.h"
+#include "systems/visual/environment.h"
+#include "systems/visual/gpu/framebuffer.h"
+#include "systems/visual/gpu/program.h"
+#include "systems/visual/marker.h"
+#include "systems/visual/surface.h"
+#include "systems/visual/viewpoint.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kSamples = 4;  // a pixel
+
+}  // namespace
+
+struct Renderer::Parts {
+  RenderOptions options;
+  Box scene;  // [m] world, at rest
+  Surroundings surroundings;
+  Surfaces surfaces;
+  Markers markers;
+  gpu::Program background;
+  gpu::VertexArray nothing;  // the background's vertices come from their numbers
+  gpu::Buffer frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
+  gpu::Framebuffer samples, picture;
+
+  std::size_t upload(const Viewpoint& viewpoint, int width, int height);
+  void draw_scene();
+  std::size_t render(const Viewpoint& viewpoint, int width, int height);
+};
+
+// What this picture needs and the card does not have yet; returns the bytes that travelled.
+std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int height) {
+  FrameConstants constants;
+  const mat4 projection = projection_of(viewpoint, scene, static_cast<float>(width) / static_cast<float>(height));
+  constants.view_projection = projection * view_of(viewpoint);
+  constants.inverse_view_projection = glm::inverse(constants.view_projection);
+  constants.eye = vec4(vec3(viewpoint.eye), 1);
+  surroundings.light(constants);
+  constants.picture.z = options.tint_height > 0 ? 1 / options.tint_height : 0;
+  return frame.write(0, &constants, sizeof constants) + surfaces.upload() + markers.upload(viewpoint);
+}
+
+// The passes, in order.
+void Renderer::Parts::draw_scene() {
+  glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame.id());
+  surroundings.bind();
+  surfaces.draw_opaque();
+  if (options.markers) markers.draw();
+
+  glDisable(GL_CULL_FACE);
+  background.use();
+  glBindVertexArray(nothing.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  surfaces.draw_blended();
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+std::size_t Renderer::Parts::render(const Viewpoint& viewpoint, int width, int height) {
+  if (!samples.has_size(width, height)) {
+    samples = gpu::Framebuffer(width, height, kSamples);
+    picture = gpu::Framebuffer(width, height, 0);
+  }
+  const std::size_t travelled = upload(viewpoint, width, height);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, samples.id());
+  glViewport(0, 0, width, height);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);  // the background lies exactly at the far end
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  draw_scene();
+  samples.resolve_into(picture);
+  return travelled;
+}
+
+Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
+  std::unique_ptr<Renderer> renderer(new Renderer());
+  Parts& parts = *renderer->parts_;
+  Result<Surfaces> surfaces = Surfaces::make(world);
+  if (!surfaces) return surfaces.error();
+  parts.surfaces = *std::move(surfaces);
+  for (const Box& box : parts.surfaces.boxes())
+    if (!box.empty()) parts.scene.add(box);
+  if (parts.scene.empty()) parts.scene.add(Box{vec3(-0.5f), vec3(0.5f)});
+
+  Result<Markers> markers = Markers::make(world, parts.surfaces.boxes());
+  if (!markers) return markers.error();
+  parts.markers = *std::move(markers);
+  Result<gpu::Program> background = gpu::Program::load({"background.vert", "background.frag"});
+  if (!background) return background.error();
+  parts.background = *std::move(background);
+  parts.surroundings = Surroundings::make(world);
+  parts.nothing = gpu::VertexArray::make();
+  if (glGetError() == GL_OUT_OF_MEMORY)
+    return Error{"graphics card", "has no room for this level's meshes and textures; use a coarser mesh or smaller ones"};
+  return renderer;
+}
+
+void Renderer::update(const Snapshot& snapshot) {
+  for (const ObjectSnapshot& object : snapshot.objects) parts_->surfaces.take(object);
+  parts_->markers.take(snapshot.probes);
+}
+
+RenderOptions& Renderer::options() { return parts_->options; }
+
+FrameStats Renderer::draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height) {
+  const std::uint64_t start = now_ns();
+  FrameStats stats;
+  stats.upload_bytes = parts_->render(viewpoint, width, height);
+  parts_->picture.copy_into(target);
+  glFinish();
+  stats.draw_ms = static_cast<double>(now_ns() - start) * 1e-6;
+  return stats;
+}
+
+Image Renderer::picture(const Viewpoint& viewpoint, int width, int height, FrameStats* stats) {
+  const std::uint64_t start = now_ns();
+  const std::size_t travelled = parts_->render(viewpoint, width, height);
+  glFinish();
+  if (stats) *stats = {static_cast<double>(now_ns() - start) * 1e-6, travelled};
+  return {.name = "picture", .width = static_cast<std::uint32_t>(width), .height = static_cast<std::uint32_t>(height),
+          .rgba = parts_->picture.read()};
+}
+
+}  // namespace pliant

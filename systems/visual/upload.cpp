@@ -1,0 +1,44 @@
+#include "systems/visual/upload.h"
+
+#include <algorithm>
+
+#include "components/mesh.h"
+#include "runtime/assert.h"
+
+namespace pliant {
+
+StreamCopies::StreamCopies(std::span<const vec4> initial) : here_(initial.begin(), initial.end()) {
+  const std::size_t zones = std::max<std::size_t>(1, (here_.size() + kZoneSize - 1) / kZoneSize);
+  here_.resize(zones * kZoneSize, vec4(0));
+  newer_here_.assign(zones, false);
+  waiting_.reserve(zones);
+  on_card_ = gpu::Buffer::writable(here_.data(), here_.size() * sizeof(vec4));
+}
+
+void StreamCopies::take(std::span<const std::uint32_t> zones, std::span<const vec4> packed) {
+  ASSERT(packed.size() >= zones.size() * kZoneSize);
+  for (std::size_t i = 0; i < zones.size(); ++i) {
+    const std::uint32_t zone = zones[i];
+    if (zone >= newer_here_.size()) continue;
+    std::copy_n(packed.begin() + static_cast<std::ptrdiff_t>(i * kZoneSize), kZoneSize,
+                here_.begin() + static_cast<std::ptrdiff_t>(zone * kZoneSize));
+    if (!newer_here_[zone]) waiting_.push_back(zone);
+    newer_here_[zone] = true;
+  }
+}
+
+std::size_t StreamCopies::upload() {
+  std::sort(waiting_.begin(), waiting_.end());
+  std::size_t travelled = 0;
+  for (std::size_t i = 0; i < waiting_.size();) {
+    const std::size_t first = waiting_[i];
+    std::size_t count = 0;
+    for (; i < waiting_.size() && waiting_[i] == first + count; ++i, ++count) newer_here_[waiting_[i]] = false;
+    constexpr std::size_t kZoneBytes = kZoneSize * sizeof(vec4);
+    travelled += on_card_.write(first * kZoneBytes, &here_[first * kZoneSize], count * kZoneBytes);
+  }
+  waiting_.clear();
+  return travelled;
+}
+
+}  // namespace pliant

@@ -1,0 +1,36 @@
+// The stream of one object, twice: on the processor and on the card. This class alone knows which copy is newer, zone by
+// zone; nothing but changed zones travels.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "components/math.h"
+#include "systems/visual/gpu/buffer.h"
+
+namespace pliant {
+
+class StreamCopies {
+ public:
+  StreamCopies() = default;
+  // Both copies begin as `initial` (whole zones), or as one zone of zeros where it is empty: a surface at rest.
+  explicit StreamCopies(std::span<const vec4> initial);
+
+  // Takes whole zones, packed in the order of `zones`; zones that do not exist are ignored. Nothing travels yet.
+  void take(std::span<const std::uint32_t> zones, std::span<const vec4> packed);
+  // Brings the card up to date, neighbouring zones in one transfer. Returns the bytes that travelled.
+  std::size_t upload();
+
+  const gpu::Buffer& buffer() const { return on_card_; }
+  std::span<const vec4> values() const { return here_; }
+
+ private:
+  std::vector<vec4> here_;             // [1,1,1,m] never older than the card's
+  std::vector<bool> newer_here_;       // per zone
+  std::vector<std::uint32_t> waiting_; // zones with newer_here_, in the order in which they came
+  gpu::Buffer on_card_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,90 @@
+#include "systems/visual/viewpoint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace pliant {
+namespace {
+
+std::array<vec3, 8> corners(const Box& box) {
+  std::array<vec3, 8> points;
+  for (unsigned i = 0; i < 8; ++i)
+    points[i] = {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z};
+  return points;
+}
+
+// The level's camera looks along its -Z; the target is as far away as the scene's middle.
+Viewpoint from_camera(const Camera& camera, const mat4& m, const Box& scene) {
+  const dvec3 eye(m[3]), forward = -normalize(dvec3(m[2])), up = normalize(dvec3(m[1]));
+  const double away = scene.empty() ? 1.0 : std::max(dot(dvec3(scene.center()) - eye, forward), 1e-3);
+  return {.eye = eye, .target = eye + away * forward, .up = up, .yfov = camera.yfov};
+}
+
+}  // namespace
+
+mat4 placement_of(const World& world, Entity entity) {
+  if (const Pose* pose = world.registry.find<Pose>(entity)) {
+    mat4 m(glm::mat4_cast(quat(pose->rotation)));
+    m[3] = vec4(vec3(pose->position), 1.0f);
+    return m;
+  }
+  const WorldTransform* transform = world.registry.find<WorldTransform>(entity);
+  return transform ? transform->matrix : mat4(1);
+}
+
+Box drawn_box(const World& world, bool only_deformables) {
+  Box all;
+  for (auto [entity, drawable] : world.registry.view<Drawable>()) {
+    if (only_deformables && !world.registry.has<Deformable>(entity)) continue;
+    Box own;
+    for (const DrawVertex& vertex : world.draw_meshes[drawable.mesh].vertices) own.add(vertex.position);
+    if (own.empty()) continue;
+    const mat4 to_world = placement_of(world, entity);
+    for (const vec3 corner : corners(own)) all.add(vec3(to_world * vec4(corner, 1)));
+  }
+  return all;
+}
+
+Viewpoint default_viewpoint(const World& world) {
+  Box scene = drawn_box(world, true);
+  if (scene.empty()) scene = drawn_box(world, false);
+  for (auto [entity, camera] : world.registry.view<Camera>())
+    if (const WorldTransform* transform = world.registry.find<WorldTransform>(entity))
+      return from_camera(camera, transform->matrix, scene);
+  if (scene.empty()) scene.add(Box{vec3(-0.5f), vec3(0.5f)});
+
+  // Slightly above the front and a little from the right; as near as a 4:3 picture allows with a margin.
+  constexpr float kElevation = 0.55f, kAzimuth = 0.3f, kFilled = 0.86f, kAspect = 4.0f / 3.0f;  // [rad], [rad], [1], [1]
+  Viewpoint view;
+  const vec3 backward(std::cos(kElevation) * std::sin(kAzimuth), std::sin(kElevation),
+                      std::cos(kElevation) * std::cos(kAzimuth));
+  const vec3 right = normalize(cross(vec3(0, 1, 0), backward)), up = cross(backward, right);
+  const float slope = std::tan(0.5f * view.yfov) * kFilled;
+  float away = 1e-6f;
+  for (const vec3 corner : corners(scene)) {
+    const vec3 p = corner - scene.center();
+    away = std::max(away, dot(p, backward) + std::max(std::abs(dot(p, up)), std::abs(dot(p, right)) / kAspect) / slope);
+  }
+  view.target = scene.center();
+  view.eye = view.target + dvec3(away * backward);
+  return view;
+}
+
+mat4 view_of(const Viewpoint& viewpoint) {
+  // Seen straight along `up`, any other axis serves as well.
+  const dvec3 forward = viewpoint.target - viewpoint.eye;
+  const bool along = length(cross(forward, viewpoint.up)) < 1e-6 * length(forward);
+  return mat4(glm::lookAt(viewpoint.eye, viewpoint.target, along ? dvec3(0, 0, -1) : viewpoint.up));
+}
+
+mat4 projection_of(const Viewpoint& viewpoint, const Box& scene, float aspect) {
+  // Probes hover around the scene: leave as much room again as it is large.
+  const float away = static_cast<float>(length(dvec3(scene.center()) - viewpoint.eye));
+  const float far = away + 2.0f * scene.diagonal();
+  const float near = std::max(away - 2.0f * scene.diagonal(), 2e-3f * far);
+  return glm::perspective(viewpoint.yfov, aspect, near, far);
+}
+
+}  // namespace pliant
