@@ -20,6 +20,7 @@ enum class ContactState : std::uint8_t {
 struct Contact {
   Entity probe;   // has a Probe
   Entity object;  // has a Deformable
+  std::uint32_t object_slot = 0;  // its place in TouchState::objects
   ContactState state = ContactState::kFree;
 
   // The virtual vertex (P1: interpolated contact vertex), object frame. Written by collision.
@@ -31,12 +32,13 @@ struct Contact {
   double previous_height = 0.0; // [m]   t one tick ago
   bool interpolated = true;     // false: no virtual vertex exists here (crease, border); closest point instead
 
-  // Force law (methods.md 1.8). Written by friction_feedback.
+  // Force law (methods.md 1.8). Started by collision at touch, advanced by friction_feedback; rim_height by force_field.
   bool just_touched = false;       // this tick is the first of the touch
   double surface_height = 0.0;     // [m]   h*: height of the surface at the virtual vertex
   double surface_velocity = 0.0;   // [m/s] its rate
   double free_height = 0.0;        // [m]   y: what h* would be had the probe not come
   double free_velocity = 0.0;      // [m/s]
+  double rim_height = 0.0;         // [m]   >= 0: how high other probes' fields hold the surface up here
   double arm_force = 0.0;          // [N]   q of the standard linear solid
   double normal_force = 0.0;       // [N]   >= 0
   dvec3 bristle{0};                // [m]   e: tangential deflection, object frame

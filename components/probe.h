@@ -19,6 +19,7 @@ struct Probe {
   dvec3 velocity{0};            // [m/s] world
   dvec3 previous{0};            // [m] world, one tick ago: the start of the swept segment
   bool placed = false;          // false until the device has given a first pose; then `previous` means something
+  bool fresh = false;           // this tick's pose is the first one
 
   dvec3 force{0};               // [N] world, on the probe: the sum over its contacts, before the safety layer
 };

@@ -19,7 +19,7 @@ std::vector<System<World>> touch_schedule() {
       {"dynamics", dynamics},                    // awake zones: exact step, stream = targets + residual; rest sleeps
       {"friction_feedback", friction_feedback},  // local law at the virtual vertex, bristle friction -> Probe force
       {"write_devices", write_devices},          // safety: finite, clamp, slew, engage, passivity -> device
-      {"publish", publish},                      // dirty zones, probe poses and forces -> TripleBuffer
+      {"publish", publish_paced},                // dirty zones, probe poses and forces -> TripleBuffer
   };
 }
 

@@ -1,0 +1,123 @@
+#include "systems/device/orbit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "systems/touch/surface_query.h"
+
+namespace pliant {
+namespace {
+
+// One turn of the orbit, in seconds and in shares of the touched object's size.
+constexpr double kApproachTime = 0.8, kPressTime = 0.5, kSlideTime = 1.6, kLiftTime = 0.5, kReturnTime = 0.6;  // [s]
+constexpr double kPeriod = kApproachTime + kPressTime + kSlideTime + kLiftTime + kReturnTime;                // [s]
+constexpr double kStep = 0.005;          // [s] between rows
+constexpr double kClearance = 0.12;      // [1] of the diagonal: how far out the approach begins
+constexpr double kSlideLength = 0.15;    // [1] of the diagonal
+constexpr double kDepthShare = 0.2;      // [1] of the reach: how deep it presses
+constexpr int kSlidePoints = 64;
+
+struct Hit {
+  Entity object;
+  dvec3 point{0};   // [m] world
+  dvec3 normal{0};  // [1] world, interpolated
+  double distance = 0.0;
+};
+
+std::optional<Hit> cast(const World& world, dvec3 from, dvec3 to) {
+  std::optional<Hit> best;
+  for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
+    const Mesh& mesh = world.meshes[deformable.mesh];
+    const Entry entry = first_entry(mesh, pose.to_local(from), pose.to_local(to));
+    if (!entry.valid()) continue;
+    const double distance = entry.fraction * length(to - from);
+    if (best && distance >= best->distance) continue;
+    const SurfacePoint p = surface_point(corners(mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
+    best = Hit{entity, pose.to_world(p.foot), pose.rotation * p.normal, distance};
+  }
+  return best;
+}
+
+double smooth(double s) { return s * s * s * (10 + s * (6 * s - 15)); }  // minimum jerk
+
+// Points on the surface from the first hit along a tangent, as far as the surface goes on without a jump.
+std::vector<Hit> slide_line(const World& world, const Hit& first, double size) {
+  const dvec3 helper = std::abs(first.normal.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
+  const dvec3 along = normalize(cross(helper, first.normal));
+  std::vector<Hit> line{first};
+  for (int i = 1; i <= kSlidePoints; ++i) {
+    const dvec3 over = first.point + along * (kSlideLength * size * i / kSlidePoints) + first.normal * (0.1 * size);
+    const std::optional<Hit> next = cast(world, over, over - first.normal * (0.3 * size));
+    const double step = next ? length(next->point - line.back().point) : 0.0;
+    if (!next || next->object != first.object || step > 4 * kSlideLength * size / kSlidePoints ||
+        dot(next->normal, line.back().normal) < 0.8)
+      break;
+    line.push_back(*next);
+  }
+  return line;
+}
+
+}  // namespace
+
+Path make_orbit(const World& world, unsigned index, double radius) {
+  Box bounds;
+  for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
+    const Box& box = world.meshes[deformable.mesh].box;
+    bounds.add(vec3(pose.to_world(dvec3(box.min))));
+    bounds.add(vec3(pose.to_world(dvec3(box.max))));
+  }
+  Path path;
+  if (bounds.empty()) return path;
+
+  // The first direction, seen from the front and above, from which something can be entered; each probe begins its search
+  // elsewhere on the golden spiral, so that they take different places.
+  const dvec3 center(bounds.center());
+  const double out = bounds.diagonal();
+  std::optional<Hit> first;
+  for (unsigned attempt = 0; attempt < 64 && !first; ++attempt) {
+    const unsigned n = index + 7 * attempt;
+    const double turn = 2.399963 * n, tilt = 0.35 + 0.9 * std::fmod(0.618034 * n, 1.0);
+    const dvec3 direction(std::sin(tilt) * std::sin(turn), std::cos(tilt), std::sin(tilt) * std::cos(turn));
+    first = cast(world, center + out * direction, center - out * direction);
+  }
+  if (!first) return path;
+
+  const Deformable& deformable = world.registry.get<Deformable>(first->object);
+  const double size = world.meshes[deformable.mesh].box.diagonal();
+  const double depth = kDepthShare * deformable.reach;
+  const std::vector<Hit> line = slide_line(world, *first, size);
+  const auto on_line = [&](double s, double height) {  // s in [0, 1] along the line; height over the surface [m]
+    const double x = s * static_cast<double>(line.size() - 1);
+    const std::size_t i = std::min(static_cast<std::size_t>(x), line.size() - 1), j = std::min(i + 1, line.size() - 1);
+    const double share = x - static_cast<double>(i);
+    const dvec3 point = line[i].point + share * (line[j].point - line[i].point);
+    const dvec3 normal = normalize(line[i].normal + share * (line[j].normal - line[i].normal));
+    return point + (height + radius) * normal;
+  };
+  const double away = kClearance * size;
+  const dvec3 start = on_line(0, away), finish = on_line(1, away);
+  const double late = 0.37 * index;  // [s] phase, so that several orbits do not press together
+  path.repeats = true;
+  for (double t = 0; t < kPeriod; t += kStep) {
+    double s = t;
+    dvec3 position;
+    if (s < kApproachTime) {
+      position = on_line(0, away - (away - 0.02 * size) * smooth(s / kApproachTime));
+    } else if ((s -= kApproachTime) < kPressTime) {
+      position = on_line(0, 0.02 * size - (0.02 * size + depth) * smooth(s / kPressTime));
+    } else if ((s -= kPressTime) < kSlideTime) {
+      position = on_line(smooth(s / kSlideTime), -depth);
+    } else if ((s -= kSlideTime) < kLiftTime) {
+      position = on_line(1, -depth + (depth + away) * smooth(s / kLiftTime));
+    } else {
+      position = finish + (start - finish) * smooth((s - kLiftTime) / kReturnTime);
+    }
+    path.rows.push_back({late + t, position, dquat(1, 0, 0, 0)});
+  }
+  path.rows.push_back({late + kPeriod, start, dquat(1, 0, 0, 0)});
+  return path;
+}
+
+}  // namespace pliant

@@ -1,0 +1,64 @@
+#include "systems/device/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+bool finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// The norm, never each axis: the direction must stay.
+dvec3 clamp_norm(dvec3 v, double most) {
+  const double size = length(v);
+  return size > most ? v * (most / size) : v;
+}
+
+// Only what senses a person can be stale; scripted motion has no age.
+bool stale(const HapticDevice& device, double now) {
+  return (device.driver == Driver::kExternal || device.driver == Driver::kMouse) && now - device.sensed_at > kStaleAfter;
+}
+
+// Scales the force so that the work done on the hand, counted over the whole history by the trapezoidal rule, cannot
+// become positive, not even if the next step goes on like this one and the contact ends there.
+dvec3 keep_passive(SafetyState& state, dvec3 force, dvec3 dx) {
+  const double spent = state.work + 0.5 * dot(state.force, dx);
+  const double gain = dot(force, dx);
+  if (gain > 0) force *= std::clamp(-spent / ((0.5 + 0.5 * kPassivityReserve) * gain), 0.0, 1.0);
+  state.work = spent + 0.5 * dot(force, dx);
+  return force;
+}
+
+}  // namespace
+
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now, double dt) {
+  SafetyResult result;
+  if (!finite(wanted) || !finite(position)) {
+    result.event = SafetyEvent::kNonFinite;
+  } else if (device.status != DeviceStatus::kReady || stale(device, now)) {
+    result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;
+  } else {
+    const dvec3 dx = state.placed ? position - state.position : dvec3(0);
+    if (!state.engaged) state.engaged = length(wanted) < kEngageForce;
+    dvec3 force = state.engaged ? clamp_norm(wanted, device.max_force) : dvec3(0);
+    double most = device.max_slew * dt;
+    if (device.max_stiffness > 0) {
+      // The force may grow no faster with displacement than the device can render stably; it may always fall.
+      const double rise = device.max_stiffness * length(dx);
+      if (length(force) > length(state.force)) most = std::min(most, rise);
+    }
+    force = state.force + clamp_norm(force - state.force, most);
+    result.force = keep_passive(state, force, dx);
+    state.position = position;
+    state.placed = true;
+    state.force = result.force;
+    return result;
+  }
+  // Unknown: nothing leaves, at once, and the gate must be passed again. Work stays booked.
+  state.engaged = false;
+  state.placed = false;
+  state.force = dvec3(0);
+  return result;
+}
+
+}  // namespace pliant

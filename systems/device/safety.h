@@ -1,0 +1,32 @@
+// What may leave for a hand: finite, clamped, slew-limited, passive force, and nothing at all while anything is unknown
+// (devices.md 1.4). Order: finite -> status -> engage gate -> norm clamp -> stiffness limit -> slew -> passivity.
+#pragma once
+
+#include "components/haptic_device.h"
+
+namespace pliant {
+
+// Tunables of the safety layer. Unit, usual value, and what changing it does.
+inline constexpr double kEngageForce = 0.2;      // [N] the gate opens once the computed force has been below this
+inline constexpr double kStaleAfter = 0.010;     // [s] a pose older than this counts as lost
+inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
+
+struct SafetyState {
+  bool engaged = false;     // gate: closed at start and after every loss, opens on a small computed force
+  bool placed = false;      // `position` means something
+  dvec3 position{0};        // [m] last tick's
+  dvec3 force{0};           // [N] last tick's, as sent
+  double work = 0.0;        // [J] done on the hand so far: sum of (f0 + f1)/2 . dx; kept <= 0
+};
+
+enum class SafetyEvent : std::uint8_t { kNone, kNonFinite, kStale };
+
+struct SafetyResult {
+  dvec3 force{0};  // [N] to send
+  SafetyEvent event = SafetyEvent::kNone;
+};
+
+// `wanted` [N] world, `position` [m] world, now [s], dt [s].
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now, double dt);
+
+}  // namespace pliant

@@ -1,0 +1,93 @@
+// P1 eq. (1) on every awake zone, exact for a force held over the step, and the stream (nx, ny, nz, h) that is drawn.
+// A zone that no contact reaches and whose residual has come to rest goes to sleep, with a stream of exact zeros.
+#include "systems/touch/dynamics.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "systems/touch/field_kernels.h"
+#include "systems/touch/surface_distance.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+// At rest: heights below this share of the reach and normals turned by less than this angle [rad]. Nobody sees or feels it.
+constexpr float kRest = 1e-6f;
+
+void set_to_rest(HeightField& field, std::uint32_t zone) {
+  const auto clear = [&](std::vector<vec4>& values) {
+    if (!values.empty()) std::fill_n(values.begin() + zone * kZoneSize, kZoneSize, vec4(0));
+  };
+  clear(field.residual);
+  clear(field.rate);
+  clear(field.arm);
+  field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneResidual);
+}
+
+void gather_targets(const ObjectState& object, const Mesh& mesh, std::uint32_t zone, ZoneTargets& targets) {
+  targets.nx.fill(0);
+  targets.ny.fill(0);
+  targets.nz.fill(0);
+  targets.h.fill(0);
+  for (std::uint64_t bits = object.zone_sources[zone]; bits; bits &= bits - 1) {
+    const SourceState& source = object.sources[static_cast<std::size_t>(std::countr_zero(bits))];
+    if (source.offset.empty()) {
+      add_targets(mesh, zone, source.now, targets);
+    } else {
+      add_targets_at_offsets(mesh, zone, source.now, source.offset, targets);
+    }
+  }
+}
+
+}  // namespace
+
+void dynamics(World& world, Tick) {
+  for (ObjectState& object : world.touch->objects) {
+    const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+    HeightField& field = world.fields[deformable.field];
+    if (field.awake.empty()) {
+      object.peak = 0.0f;
+      field.awake_vertices = 0;
+      continue;
+    }
+    const Mesh& mesh = world.meshes[deformable.mesh];
+    const bool lag = deformable.response == Response::kLag;
+    const float rest_height = kRest * static_cast<float>(deformable.reach);
+    float peak = 0.0f;
+    std::uint32_t vertices = 0;
+    for (std::size_t i = 0; i < field.awake.size();) {
+      const std::uint32_t zone = field.awake[i];
+      vertices += mesh.zone_end(zone) - mesh.zone_begin(zone);
+      if (!(field.zone_state[zone] & kZoneDirty)) {
+        field.zone_state[zone] |= kZoneDirty;
+        object.dirty.push_back(zone);  // capacity: all zones
+      }
+      const bool reached = field.zone_state[zone] & kZoneReached;
+      ZoneTargets targets;
+      if (reached || lag) gather_targets(object, mesh, zone, targets);
+
+      // The residual moves; once at rest it is exactly zero.
+      bool moving = lag || (field.zone_state[zone] & kZoneResidual);
+      if (moving) {
+        const ZoneRest rest = lag ? step_lagging(object.motion, field, zone, targets) : step_residual(object.motion, field, zone);
+        if (rest.height < rest_height && rest.normal < kRest && !(lag && reached)) {
+          set_to_rest(field, zone);
+          moving = false;
+        }
+      }
+      peak = std::max(peak, compose_stream(field, zone, reached && !lag ? &targets : nullptr, moving));
+      if (reached || moving) {
+        ++i;
+        continue;
+      }
+      field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneListed);
+      field.awake[i] = field.awake.back();
+      field.awake.pop_back();
+    }
+    object.peak = peak;
+    field.awake_vertices = vertices;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,306 @@
+#include "systems/touch/field_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Kernels are compiled twice, for plain x86-64 and for AVX2, and the loader picks. Without contraction both give the same
+// bits. Sanitizers do not mix with this mechanism, so they get the plain version.
+#if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
+#define PLIANT_KERNEL __attribute__((target_clones("avx2", "default")))
+#else
+#define PLIANT_KERNEL
+#endif
+
+namespace pliant {
+namespace {
+
+// A radial shape is a function of u alone; target and gradient follow for every one of them the same way.
+template <class Profile>
+inline __attribute__((always_inline)) void add_radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
+                                                      ZoneTargets& out, Profile profile) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
+  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z;
+  const float inv = s.inv_reach2, alpha = s.amplitude;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+    float u = (dx * dx + dy * dy + dz * dz) * inv;
+    u = u < 1.0f ? u : 1.0f;
+    float facing = 4.0f * (nx[i] * mx + ny[i] * my + nz[i] * mz);  // shared::shape_facing
+    facing = facing < 0.0f ? 0.0f : facing;
+    facing = facing > 1.0f ? 1.0f : facing;
+    const vec2 f = profile(u);
+    const float a = alpha * facing;
+    const float g = 2.0f * inv * a * f.y;
+    const float along = dx * nx[i] + dy * ny[i] + dz * nz[i];
+    out.h[i] -= a * f.x;
+    out.nx[i] += g * (dx - along * nx[i]);
+    out.ny[i] += g * (dy - along * ny[i]);
+    out.nz[i] += g * (dz - along * nz[i]);
+  }
+}
+
+PLIANT_KERNEL void add_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+  const float c = s.parameter;
+  add_radial(mesh, begin, s, out, [c](float u) { return shared::shape_volume(u, c); });
+}
+PLIANT_KERNEL void add_wendland(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+  add_radial(mesh, begin, s, out, [](float u) { return shared::shape_wendland(u); });
+}
+
+// Regularised Kelvinlet, nu = 1/2, pushing along the contact's normal n; its height at a vertex is u(x).N:
+//   f = A (n.N) + B (d.n)(d.N), A = (e/2)(1/re + e^2/re^3), B = (e/2)/re^3, re^2 = r^2 + e^2. f(0) = 1.
+vec4 kelvinlet_at(const FieldSource& s, vec3 position, vec3 normal) {
+  const vec3 d = position - s.center;
+  const float r2 = dot(d, d), e = s.parameter;
+  const float u = std::min(r2 * s.inv_reach2, 1.0f);
+  const float re2 = r2 + e * e, inv_re = 1.0f / std::sqrt(re2), inv_re3 = inv_re / re2;
+  const float A = 0.5f * e * (inv_re + e * e * inv_re3), B = 0.5f * e * inv_re3;
+  const float dA = 0.5f * e * (-0.5f * inv_re3 - 1.5f * e * e * inv_re3 / re2), dB = -0.75f * e * inv_re3 / re2;  // by r^2
+  const float nN = dot(s.normal, normal), dn = dot(d, s.normal), dN = dot(d, normal);
+  const float f = A * nN + B * dn * dN;
+  vec3 gradient = 2.0f * (dA * nN + dB * dn * dN) * d + B * (dN * s.normal + dn * normal);
+  const vec2 window = shared::shape_window(u);
+  gradient = window.x * gradient + f * window.y * 2.0f * s.inv_reach2 * d;
+  gradient -= dot(gradient, normal) * normal;
+  return vec4(s.amplitude * gradient, -s.amplitude * f * window.x);
+}
+
+// Zones that hold half-space shapes are computed one vertex at a time: their branches and asin do not vectorise.
+vec4 radial_at(const FieldSource& s, vec3 position, vec3 normal) {
+  const vec3 d = position - s.center;
+  const float u = std::min(dot(d, d) * s.inv_reach2, 1.0f);
+  vec2 f{0};
+  switch (s.shape) {
+    case Shape::kVolume: f = shared::shape_volume(u, s.parameter); break;
+    case Shape::kWendland: f = shared::shape_wendland(u); break;
+    case Shape::kGaussian: f = shared::shape_gaussian(u); break;
+    case Shape::kPunch: f = shared::shape_punch(u, s.parameter); break;
+    case Shape::kHertz: f = shared::shape_hertz(u, s.parameter); break;
+    case Shape::kKelvinlet: break;
+  }
+  const float a = s.amplitude * shared::shape_facing(dot(normal, s.normal));
+  const float g = 2.0f * s.inv_reach2 * a * f.y;
+  return vec4(g * (d - dot(d, normal) * normal), -a * f.x);
+}
+
+constexpr std::uint32_t kLanes = 8;
+
+PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, float (&sums)[7][kLanes]) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const float* __restrict area = mesh.area.data() + begin;
+  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
+  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
+  for (std::uint32_t i = 0; i < kZoneSize; i += kLanes) {
+    for (std::uint32_t l = 0; l < kLanes; ++l) {  // fixed lanes: the order of additions is the same on every machine
+      const std::uint32_t v = i + l;
+      const float dx = px[v] - cx, dy = py[v] - cy, dz = pz[v] - cz;
+      const float r2 = dx * dx + dy * dy + dz * dz;
+      float u = r2 * inv;
+      u = u < 1.0f ? u : 1.0f;
+      float facing = 4.0f * (nx[v] * mx + ny[v] * my + nz[v] * mz);
+      facing = facing < 0.0f ? 0.0f : facing;
+      facing = facing > 1.0f ? 1.0f : facing;
+      const float q = 1.0f - u;
+      const float w = q * q * q * facing;
+      const float aw = area[v] * w, aww = aw * w;
+      sums[0][l] += aw;
+      sums[1][l] += aw * u;
+      sums[2][l] += aww;
+      sums[3][l] += aww * u;
+      sums[4][l] += aww * u * u;
+      sums[5][l] += aw * ((nx[v] - mx) * dx + (ny[v] - my) * dy + (nz[v] - mz) * dz);
+      sums[6][l] += aw * r2;
+    }
+  }
+}
+
+PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh, float vv) {
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
+    const float x = state[i], v = rate[i];
+    state[i] = hh * x + hv * v;
+    rate[i] = vh * x + vv * v;
+  }
+}
+
+PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm, const float (&m)[9]) {
+  const float m0 = m[0], m1 = m[1], m2 = m[2], m3 = m[3], m4 = m[4], m5 = m[5], m6 = m[6], m7 = m[7], m8 = m[8];
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
+    const float x = state[i], v = rate[i], q = arm[i];
+    state[i] = m0 * x + m1 * v + m2 * q;
+    rate[i] = m3 * x + m4 * v + m5 * q;
+    arm[i] = m6 * x + m7 * v + m8 * q;
+  }
+}
+
+// Non-linear laws, one vertex at a time: the height by the passive step; the normal correction is the gradient of the
+// height, so it obeys the law linearised there (implicit midpoint with the slope at the middle).
+void step_nonlinear(const Motion& motion, vec4* state, vec4* rate, const ZoneTargets* targets) {
+  const double T = motion.dt, m = motion.mass, b = motion.damping;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    vec4& s = state[i];
+    vec4& r = rate[i];
+    double f = 0.0, f_slope = 0.0;
+    vec3 target_normal(0);
+    if (targets) {
+      f = motion.law.force(targets->h[i]);  // the spring force of the target: its equilibrium is the shape itself
+      f_slope = motion.law.slope(targets->h[i]);
+      target_normal = vec3(targets->nx[i], targets->ny[i], targets->nz[i]);
+    }
+    if (s == vec4(0) && r == vec4(0) && f == 0.0) continue;
+    const HeightState next = step_restoring(motion.law, {s.w, r.w}, m, b, 1.0, f, T);
+    const double slope = motion.law.slope(0.5 * (s.w + next.height));
+    const double den = 2 * m / T + b + 0.5 * T * slope;
+    for (int c = 0; c < 3; ++c) {
+      // 2 m (vm - v0)/T + b vm + slope (n0 + T vm / 2) = f_n, with vm the mean rate of the step
+      const double vm = (2 * m / T * r[c] - slope * s[c] + f_slope * target_normal[c]) / den;
+      s[c] = static_cast<float>(s[c] + T * vm);
+      r[c] = static_cast<float>(2 * vm - r[c]);
+    }
+    s.w = static_cast<float>(next.height);
+    r.w = static_cast<float>(next.velocity);
+  }
+}
+
+PLIANT_KERNEL void largest(const float* __restrict state, const float* __restrict rate, float scale, float (&best)[kLanes]) {
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes) {
+    for (std::uint32_t l = 0; l < kLanes; ++l) {
+      const float x = std::abs(state[i + l]), v = std::abs(rate[i + l]) * scale;
+      const float m = x > v ? x : v;
+      best[l] = best[l] > m ? best[l] : m;
+    }
+  }
+}
+
+ZoneRest rest_of(const Motion& motion, const vec4* state, const vec4* rate) {
+  float best[kLanes] = {};
+  largest(&state->x, &rate->x, static_cast<float>(std::sqrt(motion.mass)), best);
+  // Lanes 3 and 7 are heights, the others normal corrections.
+  return {std::max(best[3], best[7]),
+          std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
+}
+
+void solid_matrix(const Motion& motion, float (&m)[9]) {
+  for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(motion.solid[i / 3][i % 3]);
+}
+
+PLIANT_KERNEL void interleave(const ZoneTargets& t, const float* __restrict residual, float* __restrict stream) {
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    stream[4 * i + 0] = residual[4 * i + 0] + t.nx[i];
+    stream[4 * i + 1] = residual[4 * i + 1] + t.ny[i];
+    stream[4 * i + 2] = residual[4 * i + 2] + t.nz[i];
+    stream[4 * i + 3] = residual[4 * i + 3] + t.h[i];
+  }
+}
+PLIANT_KERNEL void interleave(const ZoneTargets& t, float* __restrict stream) {
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    stream[4 * i + 0] = t.nx[i];
+    stream[4 * i + 1] = t.ny[i];
+    stream[4 * i + 2] = t.nz[i];
+    stream[4 * i + 3] = t.h[i];
+  }
+}
+
+}  // namespace
+
+vec4 target_at(const FieldSource& source, vec3 position, vec3 normal) {
+  return source.shape == Shape::kKelvinlet ? kelvinlet_at(source, position, normal) : radial_at(source, position, normal);
+}
+
+float share_at(const FieldSource& source, vec3 position, vec3 normal) {
+  FieldSource unit = source;
+  unit.amplitude = 1.0f;
+  return -target_at(unit, position, normal).w;
+}
+
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, ZoneTargets& targets) {
+  const std::uint32_t begin = mesh.zone_begin(zone);
+  if (source.shape == Shape::kVolume) return add_volume(mesh, begin, source, targets);
+  if (source.shape == Shape::kWendland) return add_wendland(mesh, begin, source, targets);
+  const std::uint32_t count = mesh.zone_end(zone) - begin;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const vec4 t = target_at(source, mesh.position(begin + i), mesh.normal(begin + i));
+    targets.nx[i] += t.x;
+    targets.ny[i] += t.y;
+    targets.nz[i] += t.z;
+    targets.h[i] += t.w;
+  }
+}
+
+void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums) {
+  alignas(32) float lanes[7][kLanes] = {};
+  sum_volume(mesh, mesh.zone_begin(zone), source, lanes);
+  double total[7] = {};
+  for (int n = 0; n < 7; ++n)
+    for (const float x : lanes[n]) total[n] += x;
+  sums.S0 += total[0];
+  sums.S1 += total[1];
+  sums.Q0 += total[2];
+  sums.Q1 += total[3];
+  sums.Q2 += total[4];
+  sums.bend += total[5];
+  sums.spread += total[6];
+}
+
+ZoneRest step_residual(const Motion& motion, HeightField& field, std::uint32_t zone) {
+  vec4* state = field.residual.data() + zone * kZoneSize;
+  vec4* rate = field.rate.data() + zone * kZoneSize;
+  if (motion.nonlinear()) {
+    step_nonlinear(motion, state, rate, nullptr);
+  } else if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
+    float m[9];
+    solid_matrix(motion, m);
+    step_solid(&state->x, &rate->x, &field.arm[zone * kZoneSize].x, m);
+  } else {
+    const StepCoefficients& c = motion.linear;
+    step_linear(&state->x, &rate->x, static_cast<float>(c.hh), static_cast<float>(c.hv), static_cast<float>(c.vh),
+                static_cast<float>(c.vv));
+  }
+  return rest_of(motion, state, rate);
+}
+
+ZoneRest step_lagging(const Motion& motion, HeightField& field, std::uint32_t zone, const ZoneTargets& targets) {
+  vec4* state = field.residual.data() + zone * kZoneSize;
+  if (motion.nonlinear()) {
+    vec4* rate = field.rate.data() + zone * kZoneSize;
+    step_nonlinear(motion, state, rate, &targets);
+    return rest_of(motion, state, rate);
+  }
+  // The law is linear, so the state measured from the target moves freely.
+  const float* const t[4] = {targets.nx.data(), targets.ny.data(), targets.nz.data(), targets.h.data()};
+  for (std::uint32_t i = 0; i < kZoneSize; ++i)
+    for (int c = 0; c < 4; ++c) state[i][c] -= t[c][i];
+  step_residual(motion, field, zone);
+  for (std::uint32_t i = 0; i < kZoneSize; ++i)
+    for (int c = 0; c < 4; ++c) state[i][c] += t[c][i];
+  return rest_of(motion, state, field.rate.data() + zone * kZoneSize);
+}
+
+float compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual) {
+  vec4* stream = field.stream.data() + zone * kZoneSize;
+  const vec4* residual = field.residual.data() + zone * kZoneSize;
+  if (targets && with_residual) {
+    interleave(*targets, &residual->x, &stream->x);
+  } else if (targets) {
+    interleave(*targets, &stream->x);
+  } else if (with_residual) {
+    std::copy(residual, residual + kZoneSize, stream);
+  } else {
+    std::fill(stream, stream + kZoneSize, vec4(0));
+  }
+  float peak = 0.0f;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) peak = std::max(peak, stream[i].w);
+  return peak;
+}
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+// The inner loops over one zone: plain loops over kZoneSize vertices that the compiler turns into SIMD.
+#pragma once
+
+#include <array>
+
+#include "components/height_field.h"
+#include "components/mesh.h"
+#include "systems/touch/local_model.h"
+#include "systems/touch/shape.h"
+
+namespace pliant {
+
+// Targets of a zone, one array per component so that eight vertices are computed at a time.
+struct alignas(32) ZoneTargets {
+  std::array<float, kZoneSize> nx, ny, nz, h;
+};
+
+// Adds the source's target on the zone's vertices.
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, ZoneTargets& targets);
+
+// Sums over a zone that fix the coefficient c of the volume-preserving shape (force_field.cpp): with w = (1-u)^3 and A
+// the vertex area, S_n = sum A w u^n, Q_n = sum A w^2 u^n, and the ratio bend/spread is the mean curvature H.
+struct VolumeSums {
+  double S0 = 0, S1 = 0, Q0 = 0, Q1 = 0, Q2 = 0, bend = 0, spread = 0;
+};
+void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums);
+
+// Advances the residual of a zone by its free motion and says how large it still is: max |h| [m] and max |n| [1], each
+// with its rate over the natural frequency. Chooses the step by the law.
+struct ZoneRest {
+  float height = 0, normal = 0;
+};
+ZoneRest step_residual(const Motion& motion, HeightField& field, std::uint32_t zone);
+
+// The same for Response::kLag: the targets act as a force on the whole state.
+ZoneRest step_lagging(const Motion& motion, HeightField& field, std::uint32_t zone, const ZoneTargets& targets);
+
+// stream = residual + targets; returns max h over the zone (how high anything stands out).
+float compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual);
+
+}  // namespace pliant

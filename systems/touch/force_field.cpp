@@ -1,0 +1,230 @@
+// Contacts -> the field around them: which zones each contact reaches, the coefficient that makes its shape keep its
+// volume on this very mesh, and the amplitudes that bring every probe's surface to its own depth. What a contact leaves
+// behind when it ends is folded into the residual. (P1 section 3; methods.md 1.3 and 1.8.)
+#include "systems/touch/force_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "systems/touch/amplitude.h"
+#include "systems/touch/field_kernels.h"
+#include "systems/touch/surface_distance.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+void wake(HeightField& field, std::uint32_t zone, std::uint8_t why) {
+  field.zone_state[zone] |= why;
+  if (field.zone_state[zone] & kZoneListed) return;
+  field.zone_state[zone] |= kZoneListed;
+  field.awake.push_back(zone);  // capacity: all zones
+}
+
+// Half-space shapes have an inner radius: the contact circle of a sphere, and at least this share of the reach.
+constexpr double kInnerShare = 0.2;
+// A reach below a few edges would fall between the vertices.
+constexpr double kLeastReach = 1.5;  // mean edges
+
+// Everything about the source but its amplitude and the volume coefficient.
+void aim(FieldSource& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, double radius) {
+  const double depth = std::max(0.0, -contact.height);
+  const double circle = radius > 0 ? std::sqrt(2 * radius * depth) : 0.0;
+  const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge) + circle;
+  const double inner = kInnerShare * reach + circle;
+  source.center = vec3(contact.foot);
+  source.normal = vec3(contact.normal);
+  source.inv_reach2 = static_cast<float>(1 / (reach * reach));
+  source.shape = deformable.shape;
+  source.parameter = deformable.shape == Shape::kKelvinlet ? static_cast<float>(inner)
+                     : deformable.shape == Shape::kVolume  ? static_cast<float>(5 * deformable.volume)
+                                                           : static_cast<float>(inner * inner / (reach * reach));
+}
+
+// Zones within reach that hang together with the contact's own, so that a neighbouring fold is not dented.
+void flood(const Mesh& mesh, const Contact& contact, double reach, ObjectState& object, std::vector<std::uint32_t>& zones) {
+  zones.clear();
+  const std::uint32_t stamp = ++object.stamp;
+  const vec3 center(contact.foot);
+  const float reach2 = static_cast<float>(reach * reach);
+  const auto offer = [&](std::uint32_t zone) {
+    if (object.visited[zone] == stamp) return;
+    object.visited[zone] = stamp;
+    const Box& box = mesh.zone_box[zone];
+    const vec3 d = glm::max(glm::max(box.min - center, center - box.max), vec3(0));
+    if (dot(d, d) < reach2) zones.push_back(zone);  // capacity: all zones
+  };
+  const uvec3 t = mesh.triangles[contact.triangle];
+  for (int i = 0; i < 3; ++i) offer(t[i] / kZoneSize);
+  for (std::size_t i = 0; i < zones.size(); ++i)
+    for (std::uint32_t n = mesh.zone_neighbour_first[zones[i]]; n < mesh.zone_neighbour_first[zones[i] + 1]; ++n)
+      offer(mesh.zone_neighbours[n]);
+}
+
+// Net volume of h = -alpha f, f = w (1 - c u), over the curved mesh to second order: sum A (h + H h^2). Solved for the c
+// that leaves 1 - chi of what w alone would displace.
+float volume_coefficient(const VolumeSums& s, double alpha, double chi) {
+  if (!(s.S1 > 0)) return static_cast<float>(5 * chi);
+  const double aH = s.spread > 0 ? alpha * s.bend / s.spread : 0.0;
+  const double wanted = (1 - chi) * (s.S0 - aH * s.Q0);
+  double c = chi * s.S0 / s.S1;
+  for (int i = 0; i < 3; ++i) {
+    const double g = s.S0 - c * s.S1 - aH * (s.Q0 - 2 * c * s.Q1 + c * c * s.Q2) - wanted;
+    const double dg = -s.S1 + aH * (2 * s.Q1 - 2 * c * s.Q2);
+    if (!(dg < 0)) break;  // bent more than the expansion can tell: keep what there is
+    c -= g / dg;
+  }
+  return static_cast<float>(std::clamp(c, 0.0, 10.0));
+}
+
+vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh, std::uint32_t v) {
+  if (!source.offset.empty()) return target_at_offset(s, source.offset[v], mesh.normal(v));
+  return target_at(s, mesh.position(v), mesh.normal(v));
+}
+
+// The contact has ended: what it held down is now on its own way back to rest.
+void fold(SourceState& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, HeightField& field,
+          double stiffness, double dt) {
+  source.active = false;
+  if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
+  const float inv_dt = static_cast<float>(1 / dt);
+  double arm = 0.0;  // how much of the arm's spring is still stretched, per unit of depth and stiffness
+  if (!field.arm.empty() && contact.height < 0)
+    arm = std::clamp(contact.arm_force / (stiffness * -contact.height), 0.0,
+                     deformable.relaxation_stiffness / deformable.stiffness);
+  for (const std::uint32_t zone : source.zones) {
+    for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
+      const vec4 now = source_at(source, source.now, mesh, v);
+      const vec4 before = source_at(source, source.before, mesh, v);
+      field.residual[v] += now;
+      field.rate[v] += (now - before) * inv_dt;
+      if (arm > 0) field.arm[v] += static_cast<float>(arm) * now;
+    }
+    wake(field, zone, kZoneResidual);
+  }
+}
+
+// Height of the residual after this tick at a vertex: what the amplitudes must start from. [m]
+double residual_after(const Motion& motion, const HeightField& field, std::uint32_t v) {
+  const double h = field.residual[v].w, r = field.rate[v].w;
+  if (h == 0.0 && r == 0.0) return 0.0;
+  if (motion.nonlinear()) return step_restoring(motion.law, {h, r}, motion.mass, motion.damping, 1.0, 0.0, motion.dt).height;
+  if (motion.law.kind == SpringLaw::kStandardLinearSolid)
+    return motion.solid[0][0] * h + motion.solid[0][1] * r + motion.solid[0][2] * field.arm[v].w;
+  return motion.linear.hh * h + motion.linear.hv * r;
+}
+
+struct Active {
+  SourceState* source;
+  Contact* contact;
+};
+
+// Amplitudes of all touching contacts of one object, and the rims they hold up under each other.
+void solve(std::span<const Active> active, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
+           const Motion& motion) {
+  const std::size_t n = active.size();
+  std::array<double, kMaxContactsPerObject * kMaxContactsPerObject> A;
+  std::array<double, kMaxContactsPerObject> d, alpha;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Contact& contact = *active[i].contact;
+    const uvec3 corner = mesh.triangles[contact.triangle];
+    double residual = 0.0;
+    for (std::size_t j = 0; j < n; ++j) A[i * n + j] = 0.0;
+    for (int b = 0; b < 3; ++b) {
+      const double weight = contact.barycentric[b];
+      if (deformable.response == Response::kFollow) residual += weight * residual_after(motion, field, corner[b]);
+      for (std::size_t j = 0; j < n; ++j) {
+        FieldSource unit = active[j].source->now;
+        unit.amplitude = 1.0f;
+        A[i * n + j] -= weight * source_at(*active[j].source, unit, mesh, corner[b]).w;
+      }
+    }
+    A[i * n + i] = std::max(A[i * n + i], 0.1);  // a reach that hardly meets a vertex must not blow the amplitude up
+    d[i] = residual - contact.height;
+    alpha[i] = active[i].source->before.amplitude;
+  }
+  if (n == 1) {
+    alpha[0] = std::max(0.0, d[0] / A[0]);
+  } else {
+    solve_amplitudes({A.data(), n * n}, {d.data(), n}, {alpha.data(), n});
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    active[i].source->now.amplitude = static_cast<float>(alpha[i]);
+    active[i].contact->amplitude = alpha[i];
+    double rim = 0.0;
+    for (std::size_t j = 0; j < n; ++j)
+      if (j != i) rim -= A[i * n + j] * alpha[j];
+    active[i].contact->rim_height = active[i].contact->height > 0 ? std::max(0.0, rim) : 0.0;
+  }
+}
+
+}  // namespace
+
+void force_field(World& world, Tick tick) {
+  for (ObjectState& object : world.touch->objects) {
+    const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+    const Mesh& mesh = world.meshes[deformable.mesh];
+    HeightField& field = world.fields[deformable.field];
+
+    // Last tick's marks go; contacts that ended leave their dent to the residual.
+    std::array<Active, kMaxContactsPerObject> active;
+    std::size_t count = 0;
+    for (SourceState& source : object.sources) {
+      for (const std::uint32_t zone : source.zones) {
+        object.zone_sources[zone] = 0;
+        field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneReached);
+      }
+      Contact& contact = world.registry.get<Contact>(source.contact);
+      const bool touching = contact.state == ContactState::kTouching;
+      if (source.active && !touching) fold(source, contact, deformable, mesh, field, deformable.stiffness, tick.dt);
+      if (!touching) {
+        if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
+        source.zones.clear();
+        contact.amplitude = 0.0;
+        continue;
+      }
+      active[count++] = {&source, &contact};
+    }
+    if (count == 0) continue;
+
+    // Where each field lies, and which zones it reaches.
+    for (std::size_t i = 0; i < count; ++i) {
+      SourceState& source = *active[i].source;
+      const Contact& contact = *active[i].contact;
+      source.before = source.now;
+      aim(source.now, contact, deformable, mesh, world.registry.get<Probe>(contact.probe).radius);
+      if (!source.active) {  // before the first tick of the touch there was the same field, of no depth
+        source.before = source.now;
+        source.before.amplitude = 0.0f;
+        source.now.amplitude = 0.0f;
+        source.active = true;
+      }
+      if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
+      flood(mesh, contact, 1 / std::sqrt(double(source.now.inv_reach2)), object, source.zones);
+      if (!source.offset.empty()) march_distance(mesh, contact, source.now, source.offset, source.heap);
+      if (source.now.shape == Shape::kVolume) {
+        VolumeSums sums;
+        for (const std::uint32_t zone : source.zones) {
+          if (source.offset.empty()) {
+            add_volume_sums(mesh, zone, source.now, sums);
+          } else {
+            add_volume_sums_at_offsets(mesh, zone, source.now, source.offset, sums);
+          }
+        }
+        source.now.parameter = volume_coefficient(sums, std::max(0.0, -contact.height), deformable.volume);
+      }
+    }
+    solve({active.data(), count}, deformable, mesh, field, object.motion);
+
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t bit = std::uint64_t{1} << (active[i].source - object.sources.data());
+      for (const std::uint32_t zone : active[i].source->zones) {
+        object.zone_sources[zone] |= bit;
+        wake(field, zone, kZoneReached);
+      }
+    }
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+#include "systems/touch/hash_state.h"
+
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+void add(Hash& hash, dvec3 v) {
+  hash.add(v.x);
+  hash.add(v.y);
+  hash.add(v.z);
+}
+
+void add(Hash& hash, const std::vector<vec4>& values) {
+  if (!values.empty()) hash.add(std::span<const float>(&values[0].x, values.size() * 4));
+}
+
+}  // namespace
+
+void hash_state(const World& world, Hash& hash) {
+  for (const ObjectState& object : world.touch->objects) {
+    const HeightField& field = world.fields[world.registry.get<Deformable>(object.entity).field];
+    add(hash, field.stream);
+    add(hash, field.residual);
+    add(hash, field.rate);
+    add(hash, field.arm);
+  }
+  for (const ProbeState& state : world.touch->probes) {
+    const Probe& probe = world.registry.get<Probe>(state.entity);
+    add(hash, probe.position);
+    add(hash, probe.velocity);
+    add(hash, probe.force);
+    for (const Entity entity : state.contacts) {
+      const Contact& contact = world.registry.get<Contact>(entity);
+      hash.add(static_cast<std::uint32_t>(contact.state));
+      hash.add(contact.triangle);
+      add(hash, contact.barycentric);
+      hash.add(contact.height);
+      hash.add(contact.free_height);
+      hash.add(contact.arm_force);
+      hash.add(contact.amplitude);
+      add(hash, contact.bristle);
+      add(hash, contact.force);
+    }
+  }
+}
+
+void hash_forces(const World& world, Hash& hash) {
+  for (const ProbeState& state : world.touch->probes)
+    add(hash, world.registry.get<HapticDevice>(world.registry.get<Probe>(state.entity).device).force_sent);
+}
+
+}  // namespace pliant

@@ -1,0 +1,204 @@
+#include "systems/touch/local_model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace pliant {
+
+StepCoefficients exact_step(double m, double b, double k, double T) {
+  if (m == 0.0) {
+    if (b == 0.0) return {0, 0, 0, 0};  // the spring alone: at equilibrium at once
+    const double E = std::exp(-k * T / b);
+    return {E, 0, -k / b * E, 0};
+  }
+  const double a = b / (2 * m), w2 = k / m, D = a * a - w2;
+  const double y = D * T * T;
+  double C, S;  // e^(-aT) cosh(sqrt(D) T) and e^(-aT) sinh(sqrt(D) T) / sqrt(D)
+  if (std::abs(y) < 1e-6) {
+    const double E = std::exp(-a * T);
+    C = E * (1 + y / 2 + y * y / 24);
+    S = E * T * (1 + y / 6 + y * y / 120);
+  } else if (D < 0) {
+    const double w = std::sqrt(-D), E = std::exp(-a * T);
+    C = E * std::cos(w * T);
+    S = E * std::sin(w * T) / w;
+  } else {
+    const double s = std::sqrt(D);
+    const double r1 = -w2 / (s + a), r2 = -(s + a);  // r1 written so that a - s does not cancel
+    const double e1 = std::exp(r1 * T), e2 = std::exp(r2 * T);
+    // C + aS = (r1 e2 - r2 e1) / 2s and C - aS = (r1 e1 - r2 e2) / 2s, again without cancellation.
+    S = (e1 - e2) / (2 * s);
+    return {(r1 * e2 - r2 * e1) / (2 * s), S, -w2 * S, (r1 * e1 - r2 * e2) / (2 * s)};
+  }
+  return {C + a * S, S, -w2 * S, C - a * S};
+}
+
+HeightState step_oscillator(HeightState state, double m, double b, double k, double f, double T) {
+  const auto [h, v] = state;
+  if (k == 0.0) {
+    if (m == 0.0) return b == 0.0 ? state : HeightState{h + f / b * T, f / b};
+    if (b == 0.0) return {h + v * T + 0.5 * f / m * T * T, v + f / m * T};
+    const double lost = -std::expm1(-b * T / m);  // 1 - E
+    return {h + lost * (m / b) * v + (T - lost * m / b) * f / b, v - lost * v + lost * f / b};
+  }
+  const StepCoefficients c = exact_step(m, b, k, T);
+  const double x = h - f / k;
+  return {f / k + c.hh * x + c.hv * v, c.vh * x + c.vv * v};
+}
+
+std::array<std::array<double, 3>, 3> solid_step(double m, double b, double k, double k1, double tau, double T) {
+  using Matrix = std::array<std::array<double, 3>, 3>;
+  const auto multiply = [](const Matrix& x, const Matrix& y) {
+    Matrix z{};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        for (int l = 0; l < 3; ++l) z[i][j] += x[i][l] * y[l][j];
+    return z;
+  };
+  const Matrix A{{{0, T, 0}, {-k / m * T, -b / m * T, -T / m}, {0, k1 * T, -T / tau}}};
+  double norm = 0.0;
+  for (const auto& row : A) norm = std::max(norm, std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]));
+  // Scaling and squaring of the Taylor series: enough terms for double precision at norm 1/2.
+  int squarings = 0;
+  double scale = 1.0;
+  for (; norm * scale > 0.5; ++squarings) scale *= 0.5;
+  Matrix term{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, sum = term, scaled = A;
+  for (auto& row : scaled)
+    for (double& value : row) value *= scale;
+  for (int n = 1; n <= 18; ++n) {
+    term = multiply(term, scaled);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) sum[i][j] += (term[i][j] /= n);
+  }
+  for (; squarings > 0; --squarings) sum = multiply(sum, sum);
+  return sum;
+}
+
+double natural_frequency(double zeta, double settling_time) {
+  if (zeta == 0.0) return 5.83 / settling_time;
+  // The slowest part of the response from rest, |x| = 0.02: closed envelope for light damping, else the last crossing,
+  // found on the exact response in units of 1/w0.
+  if (zeta < 0.1) return -std::log(0.02) / zeta / settling_time;
+  const double slowest = zeta > 1.0 ? 1.0 / (zeta + std::sqrt(zeta * zeta - 1.0)) : zeta;
+  const double horizon = 8.0 / slowest, step = horizon / 20000;
+  double last = step;
+  for (double t = step; t < horizon; t += step)
+    if (std::abs(exact_step(1.0, 2 * zeta, 1.0, t).hh) > 0.02) last = t;
+  return last / settling_time;
+}
+
+double RestoringLaw::force(double h) const {
+  if (kind == SpringLaw::kCubic) return h + cubic * h * h * h;
+  if (kind == SpringLaw::kExponential && h < 0) return -std::expm1(-stiffening * h) / stiffening;
+  return h;
+}
+
+double RestoringLaw::potential(double h) const {
+  if (kind == SpringLaw::kCubic) return h * h * (0.5 + 0.25 * cubic * h * h);
+  if (kind == SpringLaw::kExponential && h < 0) {
+    const double x = -stiffening * h;
+    // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
+    const double d = x < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
+    return d / (stiffening * stiffening);
+  }
+  return 0.5 * h * h;
+}
+
+double RestoringLaw::slope(double h) const {
+  if (kind == SpringLaw::kCubic) return 1 + 3 * cubic * h * h;
+  if (kind == SpringLaw::kExponential && h < 0) return std::exp(-stiffening * h);
+  return 1.0;
+}
+
+double RestoringLaw::discrete_gradient(double h0, double h1) const {
+  if (kind == SpringLaw::kCubic) return 0.5 * (h0 + h1) + 0.25 * cubic * (h0 + h1) * (h0 * h0 + h1 * h1);
+  if (kind == SpringLaw::kExponential && (h0 < 0 || h1 < 0)) {
+    const double d = h1 - h0;
+    if (h0 < 0 && h1 < 0) {
+      // -(1/alpha) (e^(-alpha h0) expm1(-alpha d) / (-alpha d) - 1)
+      const double x = -stiffening * d;
+      const double ratio = std::abs(x) < 1e-5 ? 1 + x / 2 + x * x / 6 : std::expm1(x) / x;
+      return -(std::exp(-stiffening * h0) * ratio - 1) / stiffening;
+    }
+    if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
+    return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
+  }
+  return 0.5 * (h0 + h1);
+}
+
+RestoringLaw restoring_law(const Deformable& deformable) {
+  return {deformable.spring, deformable.cubic / deformable.stiffness, deformable.stiffening};
+}
+
+HeightState step_restoring(const RestoringLaw& law, HeightState state, double m, double b, double k, double f, double T) {
+  const auto [h0, v0] = state;
+  const double slope = law.slope(h0);
+  const bool stiff = k * slope * T * T > 2.25 * m;
+  // Residual of the step as a function of d = h1 - h0, and its derivative; Newton with bisection as a net, because an
+  // exponential spring can throw a plain Newton step far away.
+  const auto residual = [&, h0 = h0, v0 = v0](double d, double& derivative) {
+    const double h1 = h0 + d;
+    if (stiff) {
+      derivative = m / (T * T) + b / T + k * law.slope(h1);
+      return m * (d / T - v0) / T + b * d / T + k * law.force(h1) - f;
+    }
+    // dG/dh1 is (F(h1) - G) / d, close to half the slope when d is small.
+    const double G = law.discrete_gradient(h0, h1);
+    const double dG = std::abs(d) > 1e-9 * (std::abs(h0) + std::abs(h1)) ? (law.force(h1) - G) / d : 0.5 * law.slope(h1);
+    derivative = 2 * m / (T * T) + b / T + k * dG;
+    return m * (2 * d / T - 2 * v0) / T + b * d / T + k * G - f;
+  };
+  double derivative = 0.0, d = 0.0;
+  double r = residual(d, derivative);
+  double low = -1e300, high = 1e300;  // the residual rises with d
+  for (int i = 0; i < 60 && r != 0.0; ++i) {
+    (r > 0 ? high : low) = d;
+    double next = d - r / derivative;
+    if (!(next > low && next < high)) next = 0.5 * (std::max(low, -1e3) + std::min(high, 1e3));
+    if (std::abs(next - d) <= 1e-15 * (std::abs(h0) + std::abs(next))) break;
+    d = next;
+    r = residual(d, derivative);
+  }
+  return stiff ? HeightState{h0 + d, d / T} : HeightState{h0 + d, 2 * d / T - v0};
+}
+
+Motion motion(const Deformable& deformable, double dt) {
+  Motion result;
+  result.dt = dt;
+  const double w0 = natural_frequency(deformable.damping_ratio, deformable.settling_time);
+  result.mass = 1.0 / (w0 * w0);
+  result.damping = 2 * deformable.damping_ratio / w0;
+  result.law = restoring_law(deformable);
+  result.linear = exact_step(result.mass, result.damping, 1.0, dt);
+  if (deformable.spring == SpringLaw::kStandardLinearSolid) {
+    result.arm_stiffness = deformable.relaxation_stiffness / deformable.stiffness;
+    result.arm_time = deformable.relaxation_time;
+    result.arm_decay = std::exp(-dt / deformable.relaxation_time);
+    result.solid = solid_step(result.mass, result.damping, 1.0, result.arm_stiffness, result.arm_time, dt);
+  }
+  return result;
+}
+
+Status check(const Deformable& d, const std::string& name) {
+  struct Range {
+    const char* key;
+    double value, low, high;
+  };
+  const Range ranges[] = {
+      {"stiffness", d.stiffness, 1e-6, 1e7},       {"cubic", d.cubic, 0.0, 1e15},
+      {"stiffening", d.stiffening, 1e-6, 1e5},     {"relaxation.stiffness", d.relaxation_stiffness, 0.0, 1e7},
+      {"relaxation.time", d.relaxation_time, 1e-6, 1e6}, {"damping_ratio", d.damping_ratio, 0.0, 1000.0},
+      {"settling_time", d.settling_time, 1e-6, 1e4}, {"contact_damping", d.contact_damping, 0.0, 1e6},
+      {"reach", d.reach, 1e-9, 1e6},               {"volume", d.volume, 0.0, 1.0},
+      {"friction_static", d.friction_static, 0.0, 100.0}, {"friction_sliding", d.friction_sliding, 0.0, d.friction_static},
+  };
+  for (const Range& range : ranges) {
+    if (range.value >= range.low && range.value <= range.high) continue;  // false for NaN
+    return Error{name, fmt::format("deformable.{} is {}; give a number from {} to {}", range.key, range.value, range.low,
+                                   range.high)};
+  }
+  return Done{};
+}
+
+}  // namespace pliant

@@ -1,0 +1,80 @@
+// One vertex as a mass, a damper and a spring along its normal (P1 eq. 1; methods.md 1.1, 1.2):
+//   m h'' = -b h' - F(h) + f
+// with its exact step for the linear laws, a passive step for the others, and the force laws themselves.
+//
+// Legend: m mass [kg], b damping [N s/m], k stiffness [N/m], f force [N], h height [m] (< 0: pushed in), v = h' [m/s],
+// T step [s]. Only k/m and b/m enter the motion, so fields run with k = 1 (Motion) and do not depend on the mesh.
+#pragma once
+
+#include <array>
+
+#include "components/deformable.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// The four coefficients of a step of length T: h' = hh h + hv v, v' = vh h + vv v, with h measured from f/k.
+struct StepCoefficients {
+  double hh = 1.0, hv = 0.0, vh = 0.0, vv = 1.0;
+};
+
+// Exact for any m, k > 0, b >= 0 (methods.md 1.1): under-, over- and critically damped, spectral radius <= 1.
+// m = 0 gives the first-order decay, m = b = 0 the immediate one.
+StepCoefficients exact_step(double mass, double damping, double stiffness, double dt);
+
+struct HeightState {
+  double height = 0.0;    // [m]
+  double velocity = 0.0;  // [m/s]
+};
+
+// One exact step under a force held over it. Handles every degenerate case, k = 0 among them.
+HeightState step_oscillator(HeightState state, double mass, double damping, double stiffness, double force, double dt);
+
+// The standard linear solid with mass, m h'' = -b h' - k h - q + f, q' = k1 h' - q/tau: exponential of its 3x3 matrix.
+// Rows and columns (h, v, q).
+std::array<std::array<double, 3>, 3> solid_step(double mass, double damping, double stiffness, double arm_stiffness,
+                                                double arm_time, double dt);
+
+// Natural frequency [rad/s] of a free surface that has settled to 2 % after `settling_time` at this damping ratio
+// (5.83 / settling_time at 1; an undamped one never settles and gets the frequency of the critically damped).
+double natural_frequency(double damping_ratio, double settling_time);
+
+// The restoring law per unit of small-depth stiffness: F(h) = k * restoring(h); odd, except that the exponential law
+// stiffens under compression only (a bulge is linear). [m]
+struct RestoringLaw {
+  SpringLaw kind = SpringLaw::kLinear;
+  double cubic = 0.0;       // [1/m2] k3 / k
+  double stiffening = 0.0;  // [1/m] alpha
+
+  double force(double h) const;      // [m]
+  double potential(double h) const;  // [m2] its integral from 0
+  double slope(double h) const;      // [1]
+  // (U(h1) - U(h0)) / (h1 - h0), without cancellation: what makes a step passive. And its derivative by h1.
+  double discrete_gradient(double h0, double h1) const;
+};
+RestoringLaw restoring_law(const Deformable& deformable);
+
+// One passive step of m h'' = -b h' - k F(h) + f by the discrete gradient (energy identity dE = -T b vm^2 + f dh for any
+// T); backward Euler, which does not ring, where the step is long for the spring (w T > 1.5).
+HeightState step_restoring(const RestoringLaw& law, HeightState state, double mass, double damping, double stiffness,
+                           double force, double dt);
+
+// A Deformable's parameters as a step of T needs them, k = 1.
+struct Motion {
+  double dt = 1e-3;          // [s]
+  double mass = 1.0;         // [s2]  m/k
+  double damping = 0.0;      // [s]   b/k
+  RestoringLaw law;
+  StepCoefficients linear;   // of the linear law
+  double arm_stiffness = 0;  // [1]   k1/k, standard linear solid
+  double arm_time = 0;       // [s]
+  double arm_decay = 1.0;    // e^(-T/tau)
+  std::array<std::array<double, 3>, 3> solid{};
+  bool nonlinear() const { return law.kind == SpringLaw::kCubic || law.kind == SpringLaw::kExponential; }
+};
+Motion motion(const Deformable& deformable, double dt);
+
+// Refuses what no step could survive: the sentence names the key, its value and its range.
+Status check(const Deformable& deformable, const std::string& name);
+
+}  // namespace pliant

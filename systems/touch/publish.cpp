@@ -1,0 +1,75 @@
+// Dirty zones, probe poses and forces -> TripleBuffer, for whoever draws.
+#include "systems/touch/publish.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+void mark_dirty(ObjectState& object, HeightField& field, std::uint32_t zone) {
+  if (field.zone_state[zone] & kZoneDirty) return;
+  field.zone_state[zone] |= kZoneDirty;
+  object.dirty.push_back(zone);
+}
+
+// Copies dirty zones, newest first, as many as the snapshot holds. True when none is left.
+bool copy_zones(ObjectState& object, HeightField& field, ObjectSnapshot& out) {
+  out.object = object.entity;
+  out.awake_vertices = field.awake_vertices;
+  out.zone_count = 0;
+  while (!object.dirty.empty() && out.zone_count < out.zones.size()) {
+    const std::uint32_t zone = object.dirty.back();
+    object.dirty.pop_back();
+    field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneDirty);
+    std::copy_n(field.stream.begin() + zone * kZoneSize, kZoneSize, out.stream.begin() + out.zone_count * kZoneSize);
+    out.zones[out.zone_count++] = zone;
+  }
+  return object.dirty.empty();
+}
+
+}  // namespace
+
+void publish(World& world, Tick tick) {
+  TouchState& touch = *world.touch;
+  Snapshot& snapshot = world.snapshots->write();
+  snapshot.tick = tick.index;
+  snapshot.time = tick.time;
+  snapshot.complete = true;
+  for (std::size_t i = 0; i < touch.objects.size(); ++i) {
+    ObjectState& object = touch.objects[i];
+    HeightField& field = world.fields[world.registry.get<Deformable>(object.entity).field];
+    snapshot.complete &= copy_zones(object, field, snapshot.objects[i]);
+  }
+  for (std::size_t i = 0; i < touch.probes.size(); ++i) {
+    const Probe& probe = world.registry.get<Probe>(touch.probes[i].entity);
+    ProbeSnapshot& out = snapshot.probes[i];
+    out = {touch.probes[i].entity, probe.position, probe.rotation, world.registry.get<HapticDevice>(probe.device).force_sent,
+           false, 0.0};
+    for (const Entity entity : touch.probes[i].contacts) {
+      const Contact& contact = world.registry.get<Contact>(entity);
+      if (contact.state != ContactState::kTouching) continue;
+      out.touching = true;
+      out.depth = std::max(out.depth, -contact.height);
+    }
+  }
+  const bool last_was_seen = world.snapshots->publish();
+  for (std::size_t i = 0; i < touch.objects.size(); ++i) {
+    ObjectState& object = touch.objects[i];
+    HeightField& field = world.fields[world.registry.get<Deformable>(object.entity).field];
+    // What was replaced unseen has to travel again.
+    if (!last_was_seen)
+      for (const std::uint32_t zone : object.waiting) mark_dirty(object, field, zone);
+    const ObjectSnapshot& sent = snapshot.objects[i];
+    object.waiting.assign(sent.zones.begin(), sent.zones.begin() + sent.zone_count);  // capacity: kMaxPublishedZones
+  }
+}
+
+void publish_paced(World& world, Tick tick) {
+  const std::uint64_t every = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(1 / (tick.dt * kPublishRate))));
+  if (tick.index % every == 0) publish(world, tick);
+}
+
+}  // namespace pliant

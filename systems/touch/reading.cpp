@@ -1,0 +1,46 @@
+#include "systems/touch/reading.h"
+
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+// Height of the surface at the contact's virtual vertex, as the stream has it after the tick. [m]
+double surface_height(const World& world, const Contact& contact) {
+  const Deformable& deformable = world.registry.get<Deformable>(contact.object);
+  const HeightField& field = world.fields[deformable.field];
+  const uvec3 t = world.meshes[deformable.mesh].triangles[contact.triangle];
+  const dvec3 b = contact.barycentric;
+  return b.x * field.stream[t.x].w + b.y * field.stream[t.y].w + b.z * field.stream[t.z].w;
+}
+
+}  // namespace
+
+ProbeReading reading(const World& world, Entity entity) {
+  const Probe& probe = world.registry.get<Probe>(entity);
+  ProbeReading out;
+  out.position = probe.position;
+  out.force = world.registry.get<HapticDevice>(probe.device).force_sent;
+  const Contact* main = nullptr;
+  for (const ProbeState& state : world.touch->probes) {
+    if (state.entity != entity) continue;
+    for (const Entity contact_entity : state.contacts) {
+      const Contact& contact = world.registry.get<Contact>(contact_entity);
+      if (contact.state == ContactState::kFree) continue;
+      const bool touching = contact.state == ContactState::kTouching, had = main && main->state == ContactState::kTouching;
+      if (!main || touching > had || (touching == had && contact.normal_force > main->normal_force)) main = &contact;
+    }
+  }
+  if (main) {
+    out.in_contact = main->state == ContactState::kTouching;
+    out.object = main->object;
+    out.depth = -main->height;
+    out.height = surface_height(world, *main);
+    out.normal = world.registry.get<Pose>(main->object).rotation * main->normal;
+  }
+  out.normal_force = std::abs(dot(out.force, out.normal));
+  out.tangential_force = length(out.force - dot(out.force, out.normal) * out.normal);
+  return out;
+}
+
+}  // namespace pliant

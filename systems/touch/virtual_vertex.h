@@ -1,0 +1,48 @@
+// The interpolated contact vertex (P1 section 4; methods.md 1.5): the point of a triangle whose interpolated normal passes
+// through x,   P(u,v) + t N(u,v) = x,   with P and N linear over the triangle and N not normalised.
+//
+// The three vectors [(P1-P0) + t (N1-N0), (P2-P0) + t (N2-N0), (P0-x) + t N0] are then linearly dependent: a cubic in t.
+// Solved in double; object frame throughout.
+#pragma once
+
+#include <cstdint>
+
+#include "components/math.h"
+#include "components/mesh.h"
+
+namespace pliant {
+
+struct SurfacePoint {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t triangle = kNone;
+  dvec3 barycentric{1, 0, 0};  // [1] of the three corners
+  dvec3 foot{0};               // [m] P(u,v)
+  dvec3 normal{0, 1, 0};       // [1] N(u,v), unit
+  double height = 0.0;         // [m] signed distance of x from the foot: > 0 outside
+  bool interpolated = false;   // x lies on the interpolated normal; false: closest point
+
+  bool valid() const { return triangle != kNone; }
+  double distance() const { return height < 0 ? -height : height; }
+};
+
+// A triangle's corners and normals in double.
+struct Corner3 {
+  dvec3 p[3], n[3];
+};
+Corner3 corners(const Mesh& mesh, std::uint32_t triangle);
+
+// Foot, unit normal and height at given barycentrics.
+SurfacePoint surface_point(const Corner3& c, std::uint32_t triangle, dvec3 barycentric, double height);
+
+// The virtual vertex with the smallest |height| on this triangle, or an invalid point where there is none: x projects
+// beside the triangle, or lies beyond the focal distance.
+SurfacePoint virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
+
+// Barycentrics of the virtual vertex whose height continues `height`, which may lie outside the triangle (their signs say
+// which edge to cross). False where the normals meet (focal distance) or the iteration does not settle.
+bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, double& height);
+
+// The closest point of the triangle, with the interpolated normal there; its height is signed by the side of that normal.
+SurfacePoint closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
+
+}  // namespace pliant
