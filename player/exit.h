@@ -1,0 +1,16 @@
+// How the command ends: exit status 0 done, 1 the input or the run failed, 2 the arguments are wrong.
+#pragma once
+
+#include "runtime/result.h"
+
+namespace pliant {
+
+enum ExitStatus : int { kDone = 0, kFailed = 1, kUsage = 2 };
+
+// Prints `pliant: error: WHERE: what is wrong; what to do`, always one line, to stderr and returns the status.
+int fail(ExitStatus status, const Error& error);
+
+// Prints `pliant: note: ...` to stderr: something was done differently than a user might expect.
+void note(const std::string& sentence);
+
+}  // namespace pliant

@@ -1,0 +1,116 @@
+#include "player/keeper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace pliant {
+namespace {
+
+constexpr const char* kColumns =
+    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft\n";
+
+// RFC 4180: names come from files and may hold commas, quotes and line ends.
+std::string csv_text(const std::string& name) {
+  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  std::string text = "\"";
+  for (char c : name) {
+    if (c == '"') text += '"';
+    text += c;
+  }
+  return text + '"';
+}
+
+std::string name_of(const World& world, Entity entity) {
+  const Name* name = world.registry.find<Name>(entity);
+  return name ? name->value : std::string();
+}
+
+// Nine digits: exact for a float, and 1e-9 relative for what is kept in double. Adding zero turns -0 into 0.
+void put(std::string& line, double value) { fmt::format_to(std::back_inserter(line), ",{:.9g}", value + 0.0); }
+void put(std::string& line, const dvec3& v) {
+  put(line, v.x);
+  put(line, v.y);
+  put(line, v.z);
+}
+
+}  // namespace
+
+Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& probes,
+                              const std::vector<std::string>& sources, const std::filesystem::path& csv) {
+  Keeper keeper;
+  keeper.csv_path_ = csv;
+  keeper.csv_.open(csv, std::ios::binary);
+  keeper.csv_ << kColumns;
+  if (!keeper.csv_) return Error{csv.string(), "cannot be written; check the space left"};
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    ProbeSummary summary;
+    summary.name = name_of(world, probes[i]);
+    summary.source = sources[i];
+    keeper.names_.push_back(csv_text(summary.name));
+    keeper.summaries_.push_back(summary);
+  }
+  keeper.traces_.resize(probes.size());
+  keeper.last_.resize(probes.size());
+  for (auto [object, deformable] : world.registry.view<Deformable>()) {
+    if (object.index >= keeper.objects_.size()) keeper.objects_.resize(object.index + 1);
+    keeper.objects_[object.index] = csv_text(name_of(world, object));
+  }
+  return keeper;
+}
+
+void Keeper::keep(Journal& journal) {
+  rows_.clear();
+  journal.drain(rows_);
+  for (const TickRow& row : rows_) keep(row);
+}
+
+void Keeper::keep(const TickRow& row) {
+  const ProbeReading& r = row.reading;
+  line_.clear();
+  fmt::format_to(std::back_inserter(line_), "{},{:.9g},{}", row.tick, row.time, names_[row.probe]);
+  put(line_, r.position);
+  line_ += r.in_contact ? ",1," : ",0,";
+  if (r.in_contact && r.object.index < objects_.size()) line_ += objects_[r.object.index];
+  put(line_, r.depth);
+  put(line_, r.height);
+  put(line_, r.normal);
+  put(line_, r.force);
+  put(line_, r.normal_force);
+  put(line_, r.tangential_force);
+  line_ += '\n';
+  csv_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
+
+  ProbeSummary& summary = summaries_[row.probe];
+  if (r.in_contact) ++summary.contact_ticks;
+  summary.max_depth = std::max(summary.max_depth, r.depth);
+  summary.max_force = std::max(summary.max_force, length(r.force));
+  Last& last = last_[row.probe];
+  if (last.any) summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
+  last = {true, r.position, r.force};
+
+  traces_[row.probe].add(row.tick, r);
+  if (recording_) record(row);
+}
+
+// A full ring may have lost a part of a tick; such a tick is left out.
+void Keeper::record(const TickRow& row) {
+  if (row.probe == 0) {
+    pending_.clear();
+    pending_tick_ = row.tick;
+  }
+  if (row.tick != pending_tick_ || row.probe != pending_.size()) return;
+  pending_.push_back({row.device_position, row.device_rotation, row.device_ready});
+  if (pending_.size() < names_.size()) return;
+  recording_->tick(row.tick);
+  for (const RecordedPose& pose : pending_) recording_->pose(pose);
+}
+
+Status Keeper::finish() {
+  csv_.close();
+  if (!csv_) return Error{csv_path_.string(), "cannot be written to its end; free some space"};
+  return recording_ ? recording_->finish() : Status(Done{});
+}
+
+}  // namespace pliant

@@ -1,0 +1,61 @@
+// The keeping half of the journal: takes rows off the ring and turns them into forces.csv, the plot's traces, the
+// figures of the report and, if asked, a recording.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "player/journal.h"
+#include "player/recording.h"
+#include "player/trace.h"
+
+namespace pliant {
+
+struct ProbeSummary {
+  std::string name, source;
+  std::uint64_t contact_ticks = 0;
+  double max_depth = 0.0;  // [m]
+  double max_force = 0.0;  // [N]
+  double net_work = 0.0;   // [J] done by the force on the hand: trapezoidal over the ticks
+};
+
+class Keeper {
+ public:
+  // `csv` is where the rows go. Names are taken from the world now.
+  static Result<Keeper> create(const World& world, const std::vector<Entity>& probes,
+                               const std::vector<std::string>& sources, const std::filesystem::path& csv);
+  void record_to(RecordingWriter writer) { recording_.emplace(std::move(writer)); }
+
+  void keep(Journal& journal);  // all rows that wait
+  Status finish();              // closes forces.csv and the recording
+
+  const std::vector<ProbeSummary>& summaries() const { return summaries_; }
+  const std::vector<Trace>& traces() const { return traces_; }
+
+ private:
+  Keeper() = default;
+  void keep(const TickRow& row);
+  void record(const TickRow& row);
+  struct Last {
+    bool any = false;
+    dvec3 position{0}, force{0};
+  };
+  std::filesystem::path csv_path_;
+  std::ofstream csv_;
+  std::string line_;
+  std::vector<TickRow> rows_;
+  std::vector<ProbeSummary> summaries_;
+  std::vector<Trace> traces_;
+  std::vector<Last> last_;
+  std::vector<std::string> names_;    // of the probes, quoted for CSV
+  std::vector<std::string> objects_;  // by entity index, quoted
+  std::optional<RecordingWriter> recording_;
+  std::uint64_t pending_tick_ = 0;     // whose poses are being gathered: only whole ticks are recorded
+  std::vector<RecordedPose> pending_;
+};
+
+}  // namespace pliant

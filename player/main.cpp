@@ -1,0 +1,3 @@
+#include "player/command_line.h"
+
+int main(int argc, char** argv) { return pliant::command_line(argc, argv); }

@@ -1,0 +1,208 @@
+#include "player/plot.h"
+
+#include <cairo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace pliant {
+namespace {
+
+// Okabe and Ito's colours, told apart by nearly everyone.
+struct Color {
+  double r, g, b;
+};
+constexpr Color kBlue{0.0, 0.447, 0.698}, kVermilion{0.835, 0.369, 0.0}, kGreen{0.0, 0.62, 0.451};
+constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContact{1.0, 0.965, 0.86}, kPaper{1, 1, 1};
+
+// [pixel]
+constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
+constexpr double kLeft = 84, kRight = 28, kBetween = 100, kAbove = 40, kBelow = 52;
+
+struct Panel {
+  double x, y, w, h;           // [pixel] of the plotting area
+  double seconds, high;        // ranges: [0, seconds] and [0, high]
+  double px(double t) const { return x + w * t / seconds; }
+  double py(double v) const { return y + h - h * v / high; }
+};
+
+class Pen {
+ public:
+  explicit Pen(double height)
+      : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kWidth), static_cast<int>(height))),
+        cairo_(cairo_create(surface_)) {
+    color(kPaper);
+    cairo_paint(cairo_);
+  }
+  ~Pen() {
+    cairo_destroy(cairo_);
+    cairo_surface_destroy(surface_);
+  }
+  Pen(const Pen&) = delete;
+  Pen& operator=(const Pen&) = delete;
+
+  cairo_t* get() { return cairo_; }
+  void color(Color c, double alpha = 1.0) { cairo_set_source_rgba(cairo_, c.r, c.g, c.b, alpha); }
+  void line(double x0, double y0, double x1, double y1, double width) {
+    cairo_set_line_width(cairo_, width);
+    cairo_move_to(cairo_, x0, y0);
+    cairo_line_to(cairo_, x1, y1);
+    cairo_stroke(cairo_);
+  }
+  // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width [pixel].
+  double text(double x, double y, double size, double align, const std::string& words, bool bold = false) {
+    cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo_, size);
+    cairo_text_extents_t box;
+    cairo_text_extents(cairo_, words.c_str(), &box);
+    cairo_move_to(cairo_, x - align * box.x_advance, y);
+    cairo_show_text(cairo_, words.c_str());
+    return box.x_advance;
+  }
+  void upright_text(double x, double y, double size, const std::string& words) {
+    cairo_save(cairo_);
+    cairo_translate(cairo_, x, y);
+    cairo_rotate(cairo_, -1.5707963267948966);
+    text(0, 0, size, 0.5, words);
+    cairo_restore(cairo_);
+  }
+  bool save(const std::filesystem::path& file) {
+    return cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS;
+  }
+
+ private:
+  cairo_surface_t* surface_;
+  cairo_t* cairo_;
+};
+
+std::string number(double value, double step) {
+  const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+  return fmt::format("{:.{}f}", value, std::min(digits, 9));
+}
+
+// Where the probe was in contact, then grid and axes with numbers: what lies under the curves.
+void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, const char* quantity) {
+  const double column = trace.ticks_per_column() * dt;
+  const std::vector<TraceColumn>& columns = trace.columns();
+  pen.color(kContact);
+  for (std::size_t i = 0; i < columns.size();) {
+    std::size_t end = i;
+    while (end < columns.size() && columns[end].contact) ++end;
+    if (end > i) {
+      const double x0 = panel.px(static_cast<double>(i) * column), x1 = panel.px(static_cast<double>(end) * column);
+      cairo_rectangle(pen.get(), x0, panel.y, std::min(x1, panel.x + panel.w) - x0, panel.h);
+      cairo_fill(pen.get());
+    }
+    i = std::max(end, i + 1);
+  }
+  const double time_step = tick_step(panel.seconds, 8), value_step = tick_step(panel.high, 5);
+  for (double t = 0; t <= panel.seconds * (1 + 1e-9); t += time_step) {
+    pen.color(kFaint);
+    pen.line(panel.px(t), panel.y, panel.px(t), panel.y + panel.h, 1);
+    pen.color(kInk);
+    pen.text(panel.px(t), panel.y + panel.h + 20, 14, 0.5, number(t, time_step));
+  }
+  for (double v = 0; v <= panel.high * (1 + 1e-9); v += value_step) {
+    pen.color(kFaint);
+    pen.line(panel.x, panel.py(v), panel.x + panel.w, panel.py(v), 1);
+    pen.color(kInk);
+    pen.text(panel.x - 8, panel.py(v) + 5, 14, 1.0, number(v, value_step));
+  }
+  pen.color(kInk);
+  pen.line(panel.x, panel.y, panel.x, panel.y + panel.h, 1.5);
+  pen.line(panel.x, panel.y + panel.h, panel.x + panel.w, panel.y + panel.h, 1.5);
+  pen.text(panel.x + panel.w / 2, panel.y + panel.h + 42, 15, 0.5, "time [s]");
+  pen.upright_text(panel.x - 60, panel.y + panel.h / 2, 15, quantity);
+}
+
+// Through the smallest and the largest value of every column, so that no peak is thinned away.
+void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Range TraceColumn::*quantity, double scale,
+                Color color) {
+  pen.color(color);
+  cairo_set_line_width(pen.get(), 2.2);
+  cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
+  const double column = trace.ticks_per_column() * dt;
+  const std::vector<TraceColumn>& columns = trace.columns();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].ticks == 0) continue;
+    const double x = panel.px(std::min((static_cast<double>(i) + 0.5) * column, panel.seconds));
+    const Range& range = columns[i].*quantity;
+    cairo_line_to(pen.get(), x, panel.py(static_cast<double>(range.min) * scale));
+    if (range.max > range.min) cairo_line_to(pen.get(), x, panel.py(static_cast<double>(range.max) * scale));
+  }
+  cairo_stroke(pen.get());
+}
+
+void draw_legend(Pen& pen, double right, double y, const std::vector<std::pair<Color, const char*>>& entries) {
+  double x = right;
+  for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
+    pen.color(kInk);
+    x -= pen.text(x, y, 14, 1.0, entry->second) + 8;
+    pen.color(entry->first);
+    pen.line(x - 26, y - 5, x, y - 5, 4);
+    x -= 26 + 22;
+  }
+}
+
+double largest(const Trace& trace, Range TraceColumn::*quantity) {
+  double most = 0.0;
+  for (const TraceColumn& column : trace.columns())
+    if (column.ticks) most = std::max(most, static_cast<double>((column.*quantity).max));
+  return most;
+}
+
+// Room above the highest value, up to a tick; something to look at where nothing happened.
+double axis_high(double value) {
+  if (!(value > 0.0)) return 1.0;
+  const double step = tick_step(value * 1.05, 5);
+  return step * std::ceil(value * 1.05 / step);
+}
+
+void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double dt) {
+  const double w = (kWidth - kLeft - kRight - kBetween) / 2, h = kRow - kAbove - kBelow;
+  Panel depth{kLeft, top + kAbove, w, h, seconds, axis_high(largest(*row.trace, &TraceColumn::depth) * 1e3)};
+  Panel force{kLeft + w + kBetween, top + kAbove, w, h, seconds,
+              axis_high(std::max(largest(*row.trace, &TraceColumn::normal), largest(*row.trace, &TraceColumn::tangential)))};
+  pen.color(kInk);
+  const double name = pen.text(kLeft, top + 28, 18, 0, row.name, true);
+  pen.text(kLeft + name + 14, top + 28, 14, 0, row.source);
+  draw_frame(pen, depth, *row.trace, dt, "depth [mm]");
+  draw_frame(pen, force, *row.trace, dt, "force [N]");
+  draw_curve(pen, depth, *row.trace, dt, &TraceColumn::depth, 1e3, kBlue);
+  draw_curve(pen, force, *row.trace, dt, &TraceColumn::tangential, 1.0, kGreen);
+  draw_curve(pen, force, *row.trace, dt, &TraceColumn::normal, 1.0, kVermilion);
+  draw_legend(pen, depth.x + depth.w, top + 28, {{kContact, "in contact"}, {kBlue, "depth"}});
+  draw_legend(pen, force.x + force.w, top + 28, {{kVermilion, "normal"}, {kGreen, "tangential"}});
+}
+
+}  // namespace
+
+double tick_step(double high, int most) {
+  if (!(high > 0.0) || !std::isfinite(high)) return 1.0;
+  double step = std::pow(10.0, std::floor(std::log10(high / most)));
+  for (double factor : {1.0, 2.0, 5.0, 10.0})
+    if (high / (step * factor) <= most * (1 + 1e-9)) return step * factor;
+  return step * 10.0;
+}
+
+Status plot_forces(const std::filesystem::path& file, const std::string& title, const std::vector<PlotRow>& rows,
+                   double dt, double seconds) {
+  const std::size_t shown = std::min(rows.size(), kMaxPlotRows);
+  Pen pen(kTitle + kRow * static_cast<double>(std::max<std::size_t>(shown, 1)) + kFoot);
+  pen.color(kInk);
+  const double width = pen.text(kLeft, 46, 26, 0, title, true);
+  std::string subtitle = "depth below the undeformed surface, and force on the hand";
+  if (rows.size() > shown) subtitle = fmt::format("the first {} of {} probes", shown, rows.size());
+  if (rows.empty()) subtitle = "no probes";
+  pen.text(kLeft + width + 20, 46, 16, 0, subtitle);
+
+  for (std::size_t i = 0; i < shown && seconds > 0.0; ++i)
+    draw_row(pen, rows[i], kTitle + kRow * static_cast<double>(i), seconds, dt);
+  if (!pen.save(file)) return Error{file.string(), "the plot cannot be written; check the space left"};
+  return Done{};
+}
+
+}  // namespace pliant

@@ -1,0 +1,28 @@
+// forces.png: depth and force of every probe over time, as one would show it in a talk.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "player/trace.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct PlotRow {
+  std::string name;    // of the probe
+  std::string source;  // what moved it
+  const Trace* trace = nullptr;
+};
+
+// Two panels a probe: depth [mm], and normal and tangential force [N], over time [s]; contact is shaded. More than
+// kMaxPlotRows probes: the first ones, and a line that says so. `dt` [s] is the length of a tick, `seconds` of the run.
+inline constexpr std::size_t kMaxPlotRows = 8;
+Status plot_forces(const std::filesystem::path& file, const std::string& title, const std::vector<PlotRow>& rows,
+                   double dt, double seconds);
+
+// Ticks at 1, 2 or 5 times a power of ten: at most `most` intervals over [0, high].
+double tick_step(double high, int most);
+
+}  // namespace pliant

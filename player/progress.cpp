@@ -1,0 +1,36 @@
+#include "player/progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "runtime/clock.h"
+
+namespace pliant {
+namespace {
+constexpr double kQuiet = 1.0;       // [s] before anything is said
+constexpr double kOnTerminal = 0.2;  // [s] between two updates there
+constexpr double kElsewhere = 5.0;   // [s]
+double seconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
+}  // namespace
+
+Progress::Progress(std::string what)
+    : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), begin_(now_ns()), last_(begin_) {}
+
+Progress::~Progress() {
+  if (shown_ && terminal_) std::fputs("\r\x1b[K", stderr);
+}
+
+void Progress::update(double share) {
+  const std::uint64_t now = now_ns();
+  const double elapsed = seconds(now - begin_);
+  if (elapsed < kQuiet || seconds(now - last_) < (terminal_ ? kOnTerminal : kElsewhere)) return;
+  last_ = now;
+  shown_ = true;
+  const double left = share > 0.0 ? elapsed * (1.0 - share) / share : 0.0;
+  std::fprintf(stderr, terminal_ ? "\r\x1b[K%s: %3.0f %%, %.0f s left" : "%s: %3.0f %%, %.0f s left\n", what_.c_str(),
+               share * 100.0, left);
+  std::fflush(stderr);
+}
+
+}  // namespace pliant

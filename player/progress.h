@@ -1,0 +1,25 @@
+// How far a long piece of work has come, on stderr: nothing in the first second; then a line that is redrawn on a
+// terminal, or a line every few seconds elsewhere.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace pliant {
+
+class Progress {
+ public:
+  explicit Progress(std::string what);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void update(double share);  // [1] of the whole, done
+
+ private:
+  std::string what_;
+  bool terminal_;
+  bool shown_ = false;
+  std::uint64_t begin_, last_;  // [ns]
+};
+
+}  // namespace pliant

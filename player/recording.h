@@ -1,0 +1,62 @@
+// A recording: the pose of every probe at every tick, so that a run can be repeated to the bit on the same level.
+//
+// The file, little-endian: 8 bytes "pliantrc", u32 version, u32 probes, f64 rate [Hz], level name, a name per probe (u32
+// length and bytes each); then per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the
+// device was ready); last a u64 hash of all before it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "components/math.h"
+#include "runtime/hash.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct RecordedPose {
+  dvec3 position{0};  // [m] world
+  dquat rotation{1, 0, 0, 0};
+  bool ready = true;
+};
+
+struct RecordingHeader {
+  std::string level;
+  double rate = 1000.0;  // [Hz]
+  std::vector<std::string> probes;
+};
+
+struct Recording {
+  RecordingHeader header;
+  std::vector<std::uint64_t> ticks;  // indices, ascending
+  std::vector<RecordedPose> poses;   // [tick][probe]
+};
+
+// Untrusted bytes. The error's `where` is `name`.
+Result<Recording> parse_recording(const std::string& name, const std::string& bytes);
+Result<Recording> read_recording(const std::filesystem::path& file);
+
+// Writes aside; the file appears with finish().
+class RecordingWriter {
+ public:
+  static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header);
+  RecordingWriter(RecordingWriter&&) = default;
+  ~RecordingWriter();
+  void tick(std::uint64_t index);         // then one pose for each probe, in order
+  void pose(const RecordedPose& pose);
+  Status finish();
+
+ private:
+  RecordingWriter() = default;
+  template <class T>
+  void put(T value);
+  void put_text(const std::string& text);
+  std::filesystem::path file_, aside_;
+  std::ofstream out_;
+  Hash hash_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,103 @@
+#include "player/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json percentiles(const Histogram& histogram, double scale, bool with_p999) {
+  Json json;
+  json["p50"] = histogram.percentile_us(0.5) * scale;
+  json["p99"] = histogram.percentile_us(0.99) * scale;
+  if (with_p999) json["p999"] = histogram.percentile_us(0.999) * scale;
+  json["max"] = histogram.max_us() * scale;
+  return json;
+}
+
+double mean(std::uint64_t sum, std::uint64_t count) {
+  return count ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
+}
+
+Json objects(const RunFigures& figures) {
+  Json list = Json::array();
+  for (const AwakeStats& stats : figures.journal.awake()) {
+    const World& world = figures.world;
+    const Mesh& mesh = world.meshes[world.registry.get<Deformable>(stats.object).mesh];
+    const Name* name = world.registry.find<Name>(stats.object);
+    list.push_back({{"name", name ? name->value : mesh.name},
+                    {"vertices", mesh.vertex_count},
+                    {"triangles", mesh.triangles.size()},
+                    {"zones", mesh.zone_count()},
+                    {"awake_vertices", {{"mean", mean(stats.sum, figures.journal.ticks())}, {"max", stats.max}}}});
+  }
+  return list;
+}
+
+Json probes(const RunFigures& figures) {
+  Json list = Json::array();
+  for (const ProbeSummary& probe : figures.keeper.summaries())
+    list.push_back({{"name", probe.name},
+                    {"source", probe.source},
+                    {"contact_ticks", probe.contact_ticks},
+                    {"max_depth_m", probe.max_depth},
+                    {"max_force_N", probe.max_force},
+                    {"net_work_J", probe.net_work}});
+  return list;
+}
+
+// Beyond the contract: what each system cost.
+Json systems(const Schedule<World>& schedule) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < schedule.systems().size(); ++i) {
+    Json entry = percentiles(schedule.cost(i), 1.0, true);
+    entry["name"] = schedule.systems()[i].name;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string report_json(const RunFigures& figures) {
+  static const Histogram none;
+  const Frames* frames = figures.frames;
+  Json json;
+  json["pliant"] = PLIANT_VERSION;
+  json["level"] = figures.world.name;
+  json["mode"] = figures.mode;
+  json["field"] = figures.field;
+  json["rate_hz"] = figures.rate;
+  json["ticks"] = figures.journal.ticks();
+  json["tick_us"] = percentiles(figures.schedule.total(), 1.0, true);
+  json["overruns"] = figures.overruns;
+  json["frame_ms"] = percentiles(frames ? frames->cost() : none, 1e-3, false);
+  json["upload_bytes_per_frame"] = {{"mean", frames ? mean(frames->upload_bytes(), frames->count()) : 0.0},
+                                    {"max", frames ? frames->upload_bytes_max() : 0}};
+  json["objects"] = objects(figures);
+  json["probes"] = probes(figures);
+  json["dropped"] = figures.dropped;
+  json["hash"] = figures.hash;
+  json["systems_us"] = systems(figures.schedule);
+  // Names come from files and may not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void print_summary(const RunFigures& figures, const std::filesystem::path& out) {
+  const Histogram& tick = figures.schedule.total();
+  fmt::print("{}: {} ticks at {} Hz in {}, tick {:.1f} us median, {:.1f} us p99, {} overruns, hash {}\n",
+             figures.world.name, figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5),
+             tick.percentile_us(0.99), figures.overruns, figures.hash);
+  for (const ProbeSummary& probe : figures.keeper.summaries())
+    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm deep and {:.2f} N, net work {:.3g} mJ\n", probe.name,
+               probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
+               probe.max_force, probe.net_work * 1e3);
+  fmt::print("{}: report.json, forces.csv, forces.png", out.string());
+  if (figures.frames) fmt::print(", {} pictures", figures.frames->count());
+  fmt::print("\n");
+}
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+// report.json, and the few lines a run ends with.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "player/frames.h"
+#include "player/journal.h"
+#include "player/keeper.h"
+#include "runtime/schedule.h"
+
+namespace pliant {
+
+struct RunFigures {
+  const World& world;
+  const Schedule<World>& schedule;
+  const Journal& journal;
+  const Keeper& keeper;
+  const Frames* frames = nullptr;
+  std::string mode;                  // lockstep, realtime
+  std::string field;                 // cpu
+  double rate = 1000.0;              // [Hz]
+  std::uint64_t overruns = 0;
+  std::vector<std::string> dropped;  // sentences
+  std::string hash;                  // hex
+};
+
+std::string report_json(const RunFigures& figures);
+void print_summary(const RunFigures& figures, const std::filesystem::path& out);
+
+}  // namespace pliant

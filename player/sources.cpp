@@ -1,0 +1,120 @@
+#include "player/sources.h"
+
+#include <algorithm>
+
+#include "content/script.h"
+#include "systems/device/orbit.h"
+
+namespace pliant {
+namespace {
+
+// The device that moves this probe and no other; a shared one is copied first, so that the others keep theirs.
+Entity own_device(World& world, Entity probe) {
+  const Entity current = world.registry.get<Probe>(probe).device;
+  int users = 0;
+  for (auto [entity, other] : world.registry.view<const Probe>())
+    if (other.device == current) ++users;
+  const HapticDevice* device = world.registry.find<HapticDevice>(current);
+  if (device && users == 1) return current;
+  const HapticDevice copy = device ? *device : HapticDevice{};
+  const Entity made = world.registry.create();
+  world.registry.add<HapticDevice>(made, copy);
+  world.registry.get<Probe>(probe).device = made;
+  return made;
+}
+
+// The first probe of this name.
+Entity find_probe(const World& world, const std::string& name) {
+  for (auto [entity, probe, its_name] : world.registry.view<Probe, Name>())
+    if (its_name.value == name) return entity;
+  return kNoEntity;
+}
+
+}  // namespace
+
+Result<ProbeSource> parse_source(const std::string& argument) {
+  const std::size_t equals = argument.find('=');
+  const std::string where = "--probe " + argument;
+  if (equals == std::string::npos || equals == 0)
+    return Error{where, "is not NAME=SOURCE; write, say, --probe finger=orbit"};
+  ProbeSource source{argument.substr(0, equals), Driver::kOrbit, {}};
+  const std::string what = argument.substr(equals + 1);
+  if (what == "orbit") return source;
+  if (what.starts_with("script:") && what.size() > 7) {
+    source.driver = Driver::kScript;
+    source.file = what.substr(7);
+    return source;
+  }
+  if (what == "mouse") return Error{where, "the mouse needs a window, which is not yet built; use orbit or script:FILE.csv"};
+  if (what.starts_with("device:"))
+    return Error{where, "drivers for devices are not yet built; `pliant devices` lists what is found"};
+  return Error{where, "there is no source '" + what + "'; use script:FILE.csv, orbit, mouse or device:ID"};
+}
+
+Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::string& name = sources[i].name;
+    for (std::size_t j = 0; j < i; ++j)
+      if (sources[j].name == name) return Error{"--probe " + name, "is given twice; give each probe one source"};
+    bool taken = false, is_probe = false;
+    for (const LevelNode& node : level.nodes) {
+      if (node.name != name) continue;
+      taken = true;
+      is_probe = is_probe || node.probe.has_value();
+    }
+    if (is_probe) continue;
+    if (taken) return Error{"--probe " + name, "the level has a node of that name that is no probe; choose another name"};
+    LevelNode node;
+    node.name = name;
+    node.probe.emplace();
+    node.device.emplace();
+    node.probe_device = name;
+    level.nodes.push_back(node);
+  }
+  return Done{};
+}
+
+Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
+  for (const ProbeSource& source : sources) {
+    const Entity probe = find_probe(world, source.name);
+    if (probe == kNoEntity) return Error{"--probe " + source.name, "the level has no such probe; check the name"};
+    Handle<Path> path;
+    if (source.driver == Driver::kScript) {
+      auto script = load_script(source.file);
+      if (!script) return script.error();
+      path = world.paths.add(std::move(script).value());
+    }
+    HapticDevice& device = world.registry.get<HapticDevice>(own_device(world, probe));
+    device.driver = source.driver;
+    device.file = source.file;
+    device.path = path;
+  }
+  return Done{};
+}
+
+void make_orbits(World& world) {
+  std::vector<Entity> probes;
+  for (auto [entity, probe] : world.registry.view<const Probe>()) probes.push_back(entity);
+  unsigned index = 0;
+  for (Entity entity : probes) {
+    const Probe& probe = world.registry.get<Probe>(entity);
+    HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
+    if (!device || device->driver != Driver::kOrbit) continue;
+    device->path = world.paths.add(make_orbit(world, index++, probe.radius));
+  }
+}
+
+std::string describe_source(const World& world, Entity probe) {
+  const HapticDevice* device = world.registry.find<HapticDevice>(world.registry.get<Probe>(probe).device);
+  if (!device) return "null";
+  switch (device->driver) {
+    case Driver::kScript: return "script:" + device->file;
+    case Driver::kOrbit: return "orbit";
+    case Driver::kMouse: return "mouse";
+    case Driver::kExternal: return "device:" + device->id;
+    case Driver::kNull: break;
+  }
+  return "null";
+}
+
+}  // namespace pliant

@@ -1,0 +1,42 @@
+// The verbs of the command, one file each. What they are given has been parsed by command_line.cpp; each returns the
+// exit status and has said what went wrong.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pliant {
+
+struct RunOptions {
+  std::string level;                // file, name of a shipped level, or empty: the demo level
+  std::vector<std::string> probes;  // NAME=SOURCE
+  std::vector<std::string> sets;    // KEY=VALUE
+  double seconds = 0.0;             // [s] 0: as long as the longest script
+  double rate = 0.0;                // [Hz] 0: the level's
+  bool realtime = false;
+  bool window = false;
+  std::string field = "auto";
+  std::string out;                  // folder; empty: out/<level name>
+  int frames = -1;                  // -1: not said
+  double fps = 0.0;                 // [1/s] of simulated time; 0: not said
+  int width = 960, height = 540;    // [pixel]
+  std::string record, replay;
+  unsigned threads = 0;             // 0: as many as the machine has
+};
+int run(const RunOptions& options);
+
+int inspect(const std::string& file, bool json);
+
+struct ConvertOptions {
+  std::string in, out;
+  int draco_bits = 0;  // 0: no Draco
+  bool reorder = false;
+  std::string unit = "m";
+};
+int convert(const ConvertOptions& options);
+
+int validate(const std::string& level);
+
+int devices(bool json);
+
+}  // namespace pliant

@@ -1,0 +1,105 @@
+// House rules that a compiler does not check, by reading the sources.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+namespace fs = std::filesystem;
+
+struct Source {
+  std::string path;    // relative to the repository
+  std::string folder;  // the first part of it
+  std::string text;
+};
+
+// What may be included from where. A folder may always include itself.
+const std::map<std::string, std::set<std::string>> kMayInclude{
+    {"runtime", {}},
+    {"components", {"runtime"}},
+    {"systems", {"runtime", "components", "shaders"}},
+    {"content", {"runtime", "components"}},
+    {"player", {"runtime", "components", "systems", "content"}},
+    {"editor", {"runtime", "components", "systems", "content", "player"}},
+    {"bench", {"runtime", "components", "systems", "content", "player", "tests", "shaders"}},
+    {"tests", {"runtime", "components", "systems", "content", "player", "editor", "shaders"}},
+    {"fuzz", {"runtime", "components", "systems", "content", "player"}},
+};
+
+const std::vector<Source>& sources() {
+  static const std::vector<Source> all = [] {
+    std::vector<Source> found;
+    const fs::path root = PLIANT_SOURCE_DIR;
+    for (const auto& [folder, ignored] : kMayInclude) {
+      if (!fs::exists(root / folder)) continue;
+      for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+        const std::string extension = entry.path().extension().string();
+        if (!entry.is_regular_file() || (extension != ".h" && extension != ".cpp")) continue;
+        std::ifstream in(entry.path());
+        std::stringstream text;
+        text << in.rdbuf();
+        found.push_back({fs::relative(entry.path(), root).generic_string(), folder, text.str()});
+      }
+    }
+    return found;
+  }();
+  return all;
+}
+
+TEST(House, EveryIncludePointsTowardsTheFoundation) {
+  const std::regex include("#include\\s+\"([^\"]+)\"");
+  std::size_t checked = 0;
+  for (const Source& source : sources()) {
+    for (std::sregex_iterator at(source.text.begin(), source.text.end(), include), end; at != end; ++at) {
+      const std::string target = (*at)[1];
+      const std::string folder = target.substr(0, target.find('/'));
+      EXPECT_TRUE(folder == source.folder || kMayInclude.at(source.folder).count(folder))
+          << source.path << " may not include \"" << target << '"';
+      EXPECT_TRUE(fs::exists(fs::path(PLIANT_SOURCE_DIR) / target))
+          << source.path << ": \"" << target << "\" is not a path from the repository's root";
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 50u) << "the sources were not found";
+}
+
+TEST(House, EveryHeaderIsReadOnce) {
+  for (const Source& source : sources())
+    if (source.path.ends_with(".h")) EXPECT_NE(source.text.find("#pragma once\n"), std::string::npos) << source.path;
+}
+
+TEST(House, EveryFileOpensWithWhatItIsFor) {
+  for (const Source& source : sources())
+    if (source.path.ends_with(".h")) EXPECT_TRUE(source.text.starts_with("//")) << source.path;
+}
+
+// Written apart so that this file does not hold them.
+TEST(House, NoFileSpeaksOfAMachineOrOfUnfinishedWork) {
+  const std::vector<std::string> strangers{std::string("/ho") + "me/", std::string("/wo") + "rk/", std::string("/ro") + "ot/",
+                                           std::string("/mn") + "t/",  std::string("TO") + "DO",   std::string("FIX") + "ME",
+                                           std::string("XX") + "X"};
+  for (const Source& source : sources())
+    for (const std::string& stranger : strangers)
+      EXPECT_EQ(source.text.find(stranger), std::string::npos) << source.path << " holds " << stranger;
+}
+
+TEST(House, LinesFitThePageAndEndWithoutBlanks) {
+  for (const Source& source : sources()) {
+    std::stringstream text(source.text);
+    std::string line;
+    for (int number = 1; std::getline(text, line); ++number) {
+      std::size_t length = 0;  // in characters: bytes that do not continue one
+      for (char c : line) length += (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
+      EXPECT_LE(length, 120u) << source.path << ':' << number;
+      EXPECT_FALSE(line.ends_with(' ') || line.ends_with('\t')) << source.path << ':' << number;
+    }
+  }
+}
+
+}  // namespace
