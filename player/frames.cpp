@@ -50,12 +50,11 @@ void Frames::update(World& world) {
 }
 
 void Frames::update_all(World& world, Tick tick) {
-  update(world);
   // A snapshot holds a bounded number of zones. Every turn takes as many as fit, so this ends.
-  while (!world.snapshots->read().complete) {
+  do {
     publish(world, tick);
     update(world);
-  }
+  } while (!world.snapshots->read().complete);
 }
 
 Status Frames::take(OutputFolder& out) {

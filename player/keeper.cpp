@@ -83,8 +83,10 @@ void Keeper::keep(const TickRow& row) {
   csv_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
 
   ProbeSummary& summary = summaries_[row.probe];
-  if (r.in_contact) ++summary.contact_ticks;
-  summary.max_depth = std::max(summary.max_depth, r.depth);
+  if (r.in_contact) {
+    ++summary.contact_ticks;
+    summary.max_depth = std::max(summary.max_depth, r.depth);
+  }
   summary.max_force = std::max(summary.max_force, length(r.force));
   Last& last = last_[row.probe];
   if (last.any) summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);

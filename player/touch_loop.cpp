@@ -23,6 +23,7 @@ Tick replayed_tick(TouchLoop& loop, std::uint64_t n) {
     HapticDevice* device = loop.world.registry.find<HapticDevice>(loop.world.registry.get<Probe>(probes[i]).device);
     if (!device) continue;
     device->driver = Driver::kExternal;
+    device->path = {};  // nothing but the recording moves it
     device->position = pose.position;
     device->rotation = pose.rotation;
     device->status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;

@@ -41,7 +41,7 @@ TEST(Hierarchy, KeepsParentsBeforeChildrenUnderRandomAddMoveAndRemove) {
   int refused = 0, moved = 0, removed = 0;
   for (int step = 0; step < 3000; ++step) {
     const auto pick = [&] { return std::next(parents.begin(), static_cast<std::ptrdiff_t>(random() % parents.size()))->first; };
-    const unsigned act = random() % 10;
+    const auto act = random() % 10;
     const std::uint32_t parent = parents.empty() || random() % 8 == 0 ? kRoot : pick();
     if (parents.empty() || act < 4) {
       hierarchy.add({next, 0}, parent == kRoot ? kNoEntity : Entity{parent, 0});
