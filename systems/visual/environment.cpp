@@ -34,14 +34,22 @@ float solid_angle(const Panorama& p, std::uint32_t y) {
   return (std::cos(top) - std::cos(top + step)) * 2 * kPi / static_cast<float>(p.width);
 }
 
-// A quiet studio: bright overhead, warm horizon, dark floor.
+// [1] How much of a soft, round-cornered light of angular size `size` [rad] about `center` is seen in direction d.
+float soft_box(vec3 d, vec3 center, float size) {
+  return glm::smoothstep(std::cos(1.15f * size), std::cos(0.85f * size), dot(d, normalize(center)));
+}
+
+// A quiet studio: bright overhead, dark floor, a large soft light from the left and a small one behind on the right,
+// whose reflections bend where a surface does.
 Panorama studio() {
-  Panorama p{.name = "studio", .width = 64, .height = 32, .rgb = {}};
-  const vec3 zenith(0.62f, 0.70f, 0.82f), horizon(0.52f, 0.50f, 0.48f), floor(0.10f, 0.10f, 0.115f);
+  Panorama p{.name = "studio", .width = 256, .height = 128, .rgb = {}};
+  const vec3 zenith(0.52f, 0.58f, 0.68f), horizon(0.36f, 0.37f, 0.40f), floor(0.07f, 0.072f, 0.085f);
   for (std::uint32_t y = 0; y < p.height; ++y)
     for (std::uint32_t x = 0; x < p.width; ++x) {
-      const float up = direction(p, x, y).y;
-      const vec3 c = up > 0 ? glm::mix(horizon, zenith, std::sqrt(up)) : glm::mix(horizon, floor, std::pow(-up, 0.45f));
+      const vec3 d = direction(p, x, y);
+      vec3 c = d.y > 0 ? glm::mix(horizon, zenith, std::sqrt(d.y)) : glm::mix(horizon, floor, std::sqrt(-d.y));
+      c += soft_box(d, {-0.8f, 0.62f, 0.30f}, 0.33f) * vec3(4.2f, 4.0f, 3.7f);
+      c += soft_box(d, {0.75f, 0.55f, -0.55f}, 0.17f) * vec3(2.6f, 3.0f, 3.6f);
       p.rgb.insert(p.rgb.end(), {c.r, c.g, c.b});
     }
   return p;
@@ -71,7 +79,7 @@ vec3 dominant_direction(const std::array<vec4, 9>& c, float rotation) {
   vec3 d(cosine * p.x + sine * p.z, p.y, -sine * p.x + cosine * p.z);
   const float flat = length(vec2(d.x, d.z));
   // A sky without a side to it: light from the left, as draughtsmen have it, low enough to show relief.
-  if (flat < 0.2f * std::abs(d.y) || length(d) < 1e-6f) return normalize(vec3(-0.75f, 0.75f, 0.35f));
+  if (flat < 0.2f * std::abs(d.y) || length(d) < 1e-6f) return normalize(vec3(-0.8f, 0.62f, 0.25f));
   d.y = glm::clamp(d.y, 0.6f * flat, 1.2f * flat);
   return normalize(d);
 }
@@ -145,19 +153,19 @@ Surroundings Surroundings::make(const World& world) {
   // The roughest level still has some pixels, so that a matt coat sees up from down.
   const float levels = static_cast<float>(std::max(0, made.panorama_.levels() - 3));
   frame.surroundings = vec4(std::cos(rotation), std::sin(rotation), intensity, levels);
-  frame.picture.w = 0.4f * levels;
+  frame.picture.w = std::floor(0.4f * levels);
 
   // Without a light of the level's own, the surroundings' brightest side lends one: it models, the rest fills.
   const float ambient = std::max(0.0f, intensity * luminance(frame.irradiance[0]));
   if (!level_light(world, frame)) {
     frame.key_place = vec4(dominant_direction(frame.irradiance, rotation), 0);
-    frame.key_color = vec4(vec3(1.0f, 0.96f, 0.9f) * std::max(1.6f * ambient, 1e-3f), 0);
+    frame.key_color = vec4(vec3(1.0f, 0.96f, 0.9f) * std::max(2.6f * ambient, 1e-3f), 0);
   }
   // Exposed for a white sheet in the middle of the scene that faces the key light.
   const Box box = drawn_box(world, false);
   const vec3 way = vec3(frame.key_place) - (box.empty() ? vec3(0) : box.center());
   const float key = luminance(vec3(frame.key_color)) / (frame.key_place.w > 0 ? std::max(dot(way, way), 1e-8f) : 1.0f);
-  frame.picture.x = 0.9f * kPi / std::max(key + ambient, 1e-6f);
+  frame.picture.x = 0.7f * kPi / std::max(key + ambient, 1e-6f);
   return made;
 }
 

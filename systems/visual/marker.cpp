@@ -12,6 +12,7 @@ namespace {
 constexpr float kSmallestBall = 0.012f;   // radius; smaller probes would not be seen
 constexpr float kRodLength = 0.16f;
 constexpr float kRodRadius = 0.42f;       // of the ball's radius
+constexpr float kLean = 0.7f;             // [rad] of the rod from the way out
 constexpr float kArrowPerNewton = 0.10f;  // [1/N]
 constexpr float kLongestArrow = 0.30f;
 constexpr float kArrowRadius = 0.0055f;
@@ -109,10 +110,10 @@ void Markers::lay_out(const Known& probe, const Viewpoint& viewpoint) {
   // A ball drawn larger than the probe is stands on the same lowest point.
   const vec3 ball = position + (radius - probe.radius) * out;
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
-  // The stylus leans away from the arrow, so that both can be seen.
-  const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye)), up(viewpoint.up);
-  const vec3 side = cross(forward, up);
-  const vec3 lean = normalize(out + 0.5f * up + 0.45f * side * (dot(out, side) < 0 ? -1.0f : 1.0f));
+  // The stylus leans away from the arrow, always clockwise as seen, so that both can be told apart.
+  const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye));
+  const vec3 lean = normalize(std::cos(kLean) * out + std::sin(kLean) * cross(forward, out) +
+                              0.2f * vec3(viewpoint.up));
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
 
   const float newtons = static_cast<float>(length(probe.force));

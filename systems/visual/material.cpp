@@ -25,8 +25,8 @@ MaterialConstants constants_of(const Material& m) {
 // A surface that nobody painted: flesh-like, a little wet, so that dents catch the light.
 Material default_material() {
   Material m;
-  m.base_color = {0.72f, 0.38f, 0.34f, 1.0f};
-  m.roughness = 0.42f;
+  m.base_color = {0.60f, 0.20f, 0.16f, 1.0f};
+  m.roughness = 0.38f;
   m.double_sided = true;
   return m;
 }

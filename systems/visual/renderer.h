@@ -23,7 +23,7 @@ struct Viewpoint {
   dvec3 up{0, 1, 0};
   float yfov = 0.7f;       // [rad]
 };
-// The level's first camera, else one that frames every deformable from the front, slightly above.
+// The level's first camera, else one that frames every deformable from the front, slightly above. Reads every vertex.
 Viewpoint default_viewpoint(const World& world);
 
 // How to draw, for looking closer. Defaults are what a reader of a picture expects.

@@ -87,6 +87,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
 
   Item item;
   item.entity = entity;
+  item.gives_way = touch != nullptr;
   item.vertices = gpu::Buffer::fixed<Vertex>(vertices_of(draw, touch));
   item.indices = gpu::Buffer::fixed<std::uint32_t>(draw.indices);
   item.layout = layout_of(item.vertices, item.indices);
@@ -108,7 +109,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
 
 void Surfaces::take(const ObjectSnapshot& object) {
   for (Item& item : items_)
-    if (item.entity == object.object) item.stream.take({object.zones.data(), object.zone_count}, object.stream);
+    if (item.gives_way && item.entity == object.object) item.stream.take({object.zones.data(), object.zone_count}, object.stream);
 }
 
 std::size_t Surfaces::upload() {

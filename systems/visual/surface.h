@@ -35,6 +35,7 @@ class Surfaces {
     gpu::VertexArray layout;
     std::vector<DrawPart> parts;
     StreamCopies stream;
+    bool gives_way = false;
     bool mirrored = false;  // its placement turns triangles inside out
   };
   static Item make_item(const World& world, Entity entity, const DrawMesh& draw);

@@ -1,18 +1,20 @@
 #include "systems/visual/viewpoint.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace pliant {
 namespace {
 
-std::array<vec3, 8> corners(const Box& box) {
-  std::array<vec3, 8> points;
-  for (unsigned i = 0; i < 8; ++i)
-    points[i] = {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z};
-  return points;
+// Calls visit(point) for every drawn vertex at rest, world frame.
+template <class Visit>
+void each_point(const World& world, bool only_deformables, Visit visit) {
+  for (auto [entity, drawable] : world.registry.view<Drawable>()) {
+    if (only_deformables && !world.registry.has<Deformable>(entity)) continue;
+    const mat4 to_world = placement_of(world, entity);
+    for (const DrawVertex& v : world.draw_meshes[drawable.mesh].vertices) visit(vec3(to_world * vec4(v.position, 1)));
+  }
 }
 
 // The level's camera looks along its -Z; the target is as far away as the scene's middle.
@@ -36,37 +38,33 @@ mat4 placement_of(const World& world, Entity entity) {
 
 Box drawn_box(const World& world, bool only_deformables) {
   Box all;
-  for (auto [entity, drawable] : world.registry.view<Drawable>()) {
-    if (only_deformables && !world.registry.has<Deformable>(entity)) continue;
-    Box own;
-    for (const DrawVertex& vertex : world.draw_meshes[drawable.mesh].vertices) own.add(vertex.position);
-    if (own.empty()) continue;
-    const mat4 to_world = placement_of(world, entity);
-    for (const vec3 corner : corners(own)) all.add(vec3(to_world * vec4(corner, 1)));
-  }
+  each_point(world, only_deformables, [&](vec3 point) { all.add(point); });
   return all;
 }
 
 Viewpoint default_viewpoint(const World& world) {
   Box scene = drawn_box(world, true);
-  if (scene.empty()) scene = drawn_box(world, false);
+  const bool only_deformables = !scene.empty();
+  if (!only_deformables) scene = drawn_box(world, false);
   for (auto [entity, camera] : world.registry.view<Camera>())
     if (const WorldTransform* transform = world.registry.find<WorldTransform>(entity))
       return from_camera(camera, transform->matrix, scene);
   if (scene.empty()) scene.add(Box{vec3(-0.5f), vec3(0.5f)});
 
-  // Slightly above the front and a little from the right; as near as a 4:3 picture allows with a margin.
-  constexpr float kElevation = 0.55f, kAzimuth = 0.3f, kFilled = 0.86f, kAspect = 4.0f / 3.0f;  // [rad], [rad], [1], [1]
+  // Slightly above the front and a little from the right; as near as a 4:3 picture allows with room for probes.
+  constexpr float kElevation = 0.55f, kAzimuth = 0.3f;     // [rad]
+  constexpr float kFilled = 0.70f, kAspect = 4.0f / 3.0f;  // [1]
   Viewpoint view;
   const vec3 backward(std::cos(kElevation) * std::sin(kAzimuth), std::sin(kElevation),
                       std::cos(kElevation) * std::cos(kAzimuth));
   const vec3 right = normalize(cross(vec3(0, 1, 0), backward)), up = cross(backward, right);
   const float slope = std::tan(0.5f * view.yfov) * kFilled;
   float away = 1e-6f;
-  for (const vec3 corner : corners(scene)) {
-    const vec3 p = corner - scene.center();
+  auto keep_in_sight = [&](vec3 point) {
+    const vec3 p = point - scene.center();
     away = std::max(away, dot(p, backward) + std::max(std::abs(dot(p, up)), std::abs(dot(p, right)) / kAspect) / slope);
-  }
+  };
+  each_point(world, only_deformables, keep_in_sight);
   view.target = scene.center();
   view.eye = view.target + dvec3(away * backward);
   return view;

@@ -55,7 +55,9 @@ std::vector<std::uint32_t> grid_indices(std::uint32_t columns, std::uint32_t row
 
 HeadlessContext* context() {
   static Result<std::unique_ptr<HeadlessContext>> made = HeadlessContext::create();
-  return made ? made->get() : nullptr;
+  if (!made) return nullptr;
+  (*made)->make_current();
+  return made->get();
 }
 
 World sheet(std::uint32_t n) {

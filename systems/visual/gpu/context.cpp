@@ -70,4 +70,6 @@ HeadlessContext::~HeadlessContext() {
   eglDestroyContext(display_, context_);
 }
 
+void HeadlessContext::make_current() { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_); }
+
 }  // namespace pliant

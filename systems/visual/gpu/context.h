@@ -13,6 +13,8 @@ class HeadlessContext {
   // Made current on the calling thread. The error says what is missing and which package brings it.
   static Result<std::unique_ptr<HeadlessContext>> create();
   ~HeadlessContext();
+  // For a program with several: OpenGL calls of this thread go to this one from now on.
+  void make_current();
   const std::string& renderer_name() const { return renderer_name_; }
 
  private:
