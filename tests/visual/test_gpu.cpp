@@ -108,16 +108,26 @@ TEST(Shader, AMistakeInAnIncludedFileIsReportedThere) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "inner.glsl") << "// fine\n#include \"outer.glsl\"\nfloat f() { return wrong; }\n";
   std::ofstream(folder / "outer.glsl") << "#include \"inner.glsl\"\n";  // a cycle: each is taken once
+  const char* before = std::getenv("PLIANT_SHADERS");
+  const std::string kept = before ? before : "";
   setenv("PLIANT_SHADERS", folder.c_str(), 1);
   Result<gpu::ShaderSource> source = gpu::expand_shader("x.comp", "#include \"outer.glsl\"\nvoid main() {}\n");
   Result<gpu::ShaderSource> missing = gpu::expand_shader("x.comp", "\n#include \"none.glsl\"\n");
-  unsetenv("PLIANT_SHADERS");
+  if (before) setenv("PLIANT_SHADERS", kept.c_str(), 1);
+  if (!before) unsetenv("PLIANT_SHADERS");
   ASSERT_TRUE(source) << source.error().message();
   Result<gpu::Program> program = gpu::Program::link({&*source, 1});
   ASSERT_FALSE(program);
   EXPECT_NE(program.error().message().find("inner.glsl:3: "), std::string::npos) << program.error().message();
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().where, "x.comp:2");
+}
+
+TEST(Shader, LogsOfBothKindsOfDriverAreReadable) {
+  const gpu::ShaderSource source{.name = "a.frag", .text = "", .files = {"a.frag", "light.glsl"}};
+  EXPECT_EQ(gpu::explain_log(source, "1:12(5): error: no\n"), "light.glsl:12: error: no");
+  EXPECT_EQ(gpu::explain_log(source, "0(7) : error C1: no\n\nend\n"), "a.frag:7: error C1: no\nend");
+  EXPECT_EQ(gpu::explain_log(source, "9:1(1): from nowhere"), "9:1(1): from nowhere");
 }
 
 TEST(Texture, APictureWhoseBytesDoNotMatchItsSizeIsRefusedByName) {

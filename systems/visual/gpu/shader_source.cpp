@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <regex>
+#include <string_view>
 #include <sstream>
 
 namespace pliant::gpu {
@@ -19,28 +20,36 @@ std::optional<std::string> read_text(const std::filesystem::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
+// The x.glsl of a line `#include "x.glsl"`, or nothing.
+std::optional<std::string> included_by(std::string_view line) {
+  constexpr std::string_view kInclude = "#include";
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  if (line.substr(0, kInclude.size()) != kInclude) return std::nullopt;
+  const std::size_t open = line.find('"'), close = line.rfind('"');
+  if (open == close) return std::nullopt;
+  return std::string(line.substr(open + 1, close - open - 1));
+}
+
 // Appends `text` as file number files.size(), depth first. A file that is already in is skipped, which also ends cycles.
 Status append(ShaderSource& source, const std::string& name, const std::string& text) {
-  static const std::regex include_line(R"(^\s*#\s*include\s+"([^"]+)\"\s*$)");
   const std::size_t number = source.files.size();
   source.files.push_back(name);
   source.text += fmt::format("#line 1 {}\n", number);
   std::istringstream lines(text);
   std::string line;
   for (int n = 1; std::getline(lines, line); ++n) {
-    std::smatch match;
-    if (!std::regex_match(line, match, include_line)) {
+    const std::optional<std::string> wanted = included_by(line);
+    if (!wanted) {
       source.text += line + '\n';
       continue;
     }
-    const std::string wanted = match[1];
-    if (std::find(source.files.begin(), source.files.end(), wanted) == source.files.end()) {
-      const std::optional<std::string> included = read_text(shader_folder() / wanted);
+    if (std::find(source.files.begin(), source.files.end(), *wanted) == source.files.end()) {
+      const std::optional<std::string> included = read_text(shader_folder() / *wanted);
       if (!included)
         return Error{fmt::format("{}:{}", name, n), fmt::format("there is no shader file '{}' in '{}'; correct the "
                                                                 "include, or set PLIANT_SHADERS",
-                                                                wanted, shader_folder().string())};
-      if (Status done = append(source, wanted, *included); !done) return done;
+                                                                *wanted, shader_folder().string())};
+      if (Status done = append(source, *wanted, *included); !done) return done;
     }
     source.text += fmt::format("#line {} {}\n", n + 1, number);
   }
@@ -71,17 +80,14 @@ Result<ShaderSource> expand_shader(const std::string& name, const std::string& t
 }
 
 std::string explain_log(const ShaderSource& source, const std::string& log) {
-  static const std::regex place(R"(^(\d+)(?::(\d+)\(\d+\)|\((\d+)\))\s*:?\s*)");
   std::istringstream lines(log);
   std::string line, explained;
   while (std::getline(lines, line)) {
-    std::smatch match;
-    if (std::regex_search(line, match, place)) {
-      const std::size_t number = static_cast<std::size_t>(std::atoi(match[1].str().c_str()));
-      const std::string file = number < source.files.size() ? source.files[number] : source.name;
-      const std::string at = match[2].matched ? match[2].str() : match[3].str();
-      line = fmt::format("{}:{}: {}", file, at, match.suffix().str());
-    }
+    int number = 0, at = 0, read = 0;
+    const bool mesa = std::sscanf(line.c_str(), "%d:%d(%*d): %n", &number, &at, &read) == 2 && read > 0;
+    const bool placed = mesa || (std::sscanf(line.c_str(), "%d(%d) : %n", &number, &at, &read) == 2 && read > 0);
+    if (placed && number >= 0 && static_cast<std::size_t>(number) < source.files.size())
+      line = fmt::format("{}:{}: {}", source.files[static_cast<std::size_t>(number)], at, line.substr(read));
     if (!line.empty()) explained += (explained.empty() ? "" : "\n") + line;
   }
   return explained;
