@@ -13,9 +13,10 @@ namespace {
 // Okabe and Ito's colours, told apart by nearly everyone.
 struct Color {
   double r, g, b;
+  friend bool operator==(const Color&, const Color&) = default;
 };
 constexpr Color kBlue{0.0, 0.447, 0.698}, kVermilion{0.835, 0.369, 0.0}, kGreen{0.0, 0.62, 0.451};
-constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContact{1.0, 0.965, 0.86}, kPaper{1, 1, 1};
+constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContact{1.0, 0.945, 0.79}, kPaper{1, 1, 1};
 
 // [pixel]
 constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
@@ -126,6 +127,7 @@ void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Ran
   cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
   const double column = trace.ticks_per_column() * dt;
   const std::vector<TraceColumn>& columns = trace.columns();
+  cairo_new_path(pen.get());  // text leaves its end behind as a point to go on from
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].ticks == 0) continue;
     const double x = panel.px(std::min((static_cast<double>(i) + 0.5) * column, panel.seconds));
@@ -136,13 +138,22 @@ void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Ran
   cairo_stroke(pen.get());
 }
 
+// From right to left; what is shaded shows a box, what is drawn a line.
 void draw_legend(Pen& pen, double right, double y, const std::vector<std::pair<Color, const char*>>& entries) {
   double x = right;
   for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
     pen.color(kInk);
     x -= pen.text(x, y, 14, 1.0, entry->second) + 8;
     pen.color(entry->first);
-    pen.line(x - 26, y - 5, x, y - 5, 4);
+    if (entry->first == kContact) {
+      cairo_rectangle(pen.get(), x - 26, y - 12, 26, 14);
+      cairo_fill_preserve(pen.get());
+      pen.color(kFaint);
+      cairo_set_line_width(pen.get(), 1);
+      cairo_stroke(pen.get());
+    } else {
+      pen.line(x - 26, y - 5, x, y - 5, 4);
+    }
     x -= 26 + 22;
   }
 }

@@ -1,0 +1,88 @@
+// What the command answers to arguments: exit status, one line, nothing written.
+#include "tests/player/command.h"
+
+namespace pliant::testing {
+namespace {
+
+class Arguments : public CommandTest {};
+
+TEST_F(Arguments, EveryVerbExplainsItselfWithAnExample) {
+  for (const char* verb : {"run", "inspect", "convert", "validate", "devices", "study", "edit"}) {
+    const Said said = pliant({verb, "--help"});
+    EXPECT_EQ(said.status, 0) << verb;
+    EXPECT_NE(said.out.find("Example"), std::string::npos) << verb;
+    EXPECT_NE(said.out.find(std::string("  pliant ") + verb), std::string::npos) << verb << ": no example line";
+    EXPECT_EQ(said.err, "") << verb;
+  }
+  const Said said = pliant({"--help"});
+  EXPECT_EQ(said.status, 0);
+  for (const char* verb : {"run", "inspect", "convert", "validate", "devices", "study", "edit"})
+    EXPECT_NE(said.out.find(verb), std::string::npos) << verb;
+  EXPECT_EQ(pliant({"--version"}).out.substr(0, 7), "pliant ");
+}
+
+TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
+  write_text(folder / "plate.obj", plate_obj(4));
+  expect_refused({}, 2, "--help");
+  expect_refused({"walk"}, 2, "walk");
+  expect_refused({"run", "--nonsense"}, 2, "--nonsense");
+  expect_refused({"run", "--seconds", "-1"}, 2, "--seconds");
+  expect_refused({"run", "--seconds", "nan"}, 2, "--seconds");
+  expect_refused({"run", "--seconds", "soon"}, 2, "soon");
+  expect_refused({"run", "--rate", "1e9"}, 2, "--rate");
+  expect_refused({"run", "--size", "960"}, 2, "--size");
+  expect_refused({"run", "--size", "0x10"}, 2, "--size");
+  expect_refused({"run", "--frames", "-3"}, 2, "--frames");
+  expect_refused({"run", "--frames", "3", "--fps", "10"}, 2, "--fps");
+  expect_refused({"run", "--lockstep", "--realtime"}, 2, "--lockstep");
+  expect_refused({"run", "--headless", "--window"}, 2, "--headless");
+  expect_refused({"run", "--window"}, 2, "not yet built");
+  expect_refused({"run", "--field", "gpu"}, 2, "--field");
+  expect_refused({"run", "--field", "abacus"}, 2, "abacus");
+  expect_refused({"run", "plate.obj", "--probe", "orbit"}, 2, "NAME=SOURCE");
+  expect_refused({"run", "plate.obj", "--probe", "p=magic"}, 2, "magic");
+  expect_refused({"run", "plate.obj", "--probe", "p=mouse"}, 2, "window");
+  expect_refused({"run", "plate.obj", "--probe", "p=device:7"}, 2, "pliant devices");
+  expect_refused({"run", "plate.obj", "--probe", "p=orbit", "--probe", "p=orbit"}, 2, "twice");
+  expect_refused({"run", "plate.obj", "--set", "nonsense"}, 2, "nonsense");
+  expect_refused({"run", "plate.obj", "--set", "*.deformable.stifness=3"}, 2, "stifness");
+  expect_refused({"run", "plate.obj", "--set", "*.deformable.stiffness=-3"}, 2, "stiffness");
+  expect_refused({"run", "plate.obj", "--set", "nobody.deformable.stiffness=3"}, 2, "nobody");
+  expect_refused({"run", "--replay", "x", "--realtime"}, 2, "lockstep");
+  expect_refused({"convert", "plate.obj", "plate.stl"}, 2, ".glb");
+  expect_refused({"convert", "plate.obj", "plate.glb", "--draco", "99"}, 2, "--draco");
+  expect_refused({"convert", "plate.obj", "plate.glb", "--unit", "inch"}, 2, "inch");
+  expect_refused({"convert", "plate.obj"}, 2, "out");
+  expect_refused({"inspect"}, 2, "file");
+}
+
+TEST_F(Arguments, VerbsThatAreNotThereYetSaySo) {
+  expect_refused({"study", "all", "--quick"}, 2, "not yet built");
+  expect_refused({"study", "--list"}, 2, "not yet built");
+  expect_refused({"edit", "level.gltf"}, 2, "not yet built");
+}
+
+TEST_F(Arguments, FilesThatAreNotThereExitWithOne) {
+  for (const char* verb : {"run", "inspect", "validate"}) expect_refused({verb, "nothing.glb"}, 1, "nothing.glb");
+  expect_refused({"convert", "nothing.ply", "out.glb"}, 1, "nothing.ply");
+  expect_refused({"convert", "nothing.exr", "out.png"}, 1, "nothing.exr");
+  expect_refused({"inspect", "."}, 1, "folder");
+}
+
+TEST_F(Arguments, DevicesListsTheBuiltInOnesAndHowToUseThem) {
+  const Said text = pliant({"devices"}), json = pliant({"devices", "--json"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(json.status, 0) << json.err;
+  const Json parsed = Json::parse(json.out);
+  ASSERT_TRUE(parsed["found"].is_array());
+  std::vector<std::string> names;
+  for (const Json& source : parsed["built_in"]) {
+    names.push_back(source["name"]);
+    EXPECT_FALSE(source["use"].get<std::string>().empty());
+    EXPECT_NE(text.out.find(source["name"].get<std::string>()), std::string::npos);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"script", "orbit", "mouse", "null"}));
+}
+
+}  // namespace
+}  // namespace pliant::testing

@@ -1,0 +1,98 @@
+// inspect, convert and validate on files small enough to know everything about.
+#include "tests/player/command.h"
+
+namespace pliant::testing {
+namespace {
+
+class Files : public CommandTest {
+ protected:
+  Json inspect(const std::string& file) const {
+    const Said said = pliant({"inspect", file, "--json"});
+    EXPECT_EQ(said.status, 0) << said.err;
+    return said.status == 0 ? Json::parse(said.out) : Json();
+  }
+};
+
+TEST_F(Files, InspectCountsWhatIsThereAndWhatIsWrong) {
+  // A unit square of two triangles, then one of zero area, and the first again.
+  write_text(folder / "square.obj",
+             "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nf 1 2 3\nf 1 3 4\nf 1 2 2\nf 2 3 1\n");
+  const Json json = inspect("square.obj");
+  EXPECT_EQ(json["touchable"], true);
+  EXPECT_EQ(json["bare_mesh"], true);
+  ASSERT_EQ(json["objects"].size(), 1u);
+  const Json& object = json["objects"][0];
+  EXPECT_EQ(object["vertices"], 4);
+  EXPECT_EQ(object["triangles"], 2);
+  EXPECT_EQ(object["closed"], false);
+  EXPECT_EQ(object["border_edges"], 4);
+  EXPECT_NEAR(json["bounds_m"]["max"][0], 0.1, 1e-7);
+  EXPECT_EQ(json["unit_hint"], "");
+  const Said text = pliant({"inspect", "square.obj"});
+  EXPECT_NE(text.out.find("4 border edges"), std::string::npos) << text.out;
+}
+
+TEST_F(Files, InspectHintsAtAWrongUnitAndConvertMendsIt) {
+  std::string millimetres = "v 0 0 0\nv 100000 0 0\nv 0 100000 0\nf 1 2 3\n";
+  write_text(folder / "big.obj", millimetres);
+  EXPECT_NE(inspect("big.obj")["unit_hint"].get<std::string>(), "");
+  const Said said = pliant({"convert", "big.obj", "metres.glb", "--unit", "mm"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NEAR(inspect("metres.glb")["bounds_m"]["max"][0], 100.0, 1e-3);
+  ASSERT_EQ(pliant({"convert", "big.obj", "centi.glb", "--unit", "cm"}).status, 0);
+  EXPECT_NEAR(inspect("centi.glb")["bounds_m"]["max"][1], 1000.0, 1e-2);
+}
+
+TEST_F(Files, ConvertWritesWhatTheLoaderReadsBack) {
+  write_text(folder / "plate.obj", plate_obj(20));
+  const std::vector<std::vector<std::string>> ways{{"a.glb"}, {"b.gltf"}, {"c.glb", "--draco", "14"}, {"d.glb", "--reorder"}};
+  for (const std::vector<std::string>& way : ways) {
+    std::vector<std::string> arguments{"convert", "plate.obj"};
+    arguments.insert(arguments.end(), way.begin(), way.end());
+    const Said said = pliant(arguments);
+    ASSERT_EQ(said.status, 0) << way[0] << said.err;
+    const Json json = inspect(way[0]);
+    EXPECT_EQ(json["triangles"], 800) << way[0];
+    EXPECT_EQ(json["objects"][0]["vertices"], 441) << way[0];
+    EXPECT_NEAR(json["bounds_m"]["max"][0], 0.05, 1e-5) << way[0];
+    EXPECT_EQ(pliant({"validate", way[0]}).status, 0) << way[0];
+  }
+  EXPECT_LT(fs::file_size(folder / "c.glb"), fs::file_size(folder / "a.glb") / 2) << "Draco compresses";
+  EXPECT_FALSE(fs::exists(folder / "a.bin"));
+}
+
+TEST_F(Files, ValidateNamesEveryErrorWithItsPointer) {
+  write_text(folder / "bad.gltf",
+             R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,7]}],"nodes":[{"mesh":3}]})");
+  const Said said = pliant({"validate", "bad.gltf"});
+  EXPECT_EQ(said.status, 1);
+  EXPECT_NE(said.out.find("/scenes/0/nodes"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("/nodes/0/mesh"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find(": error: "), std::string::npos) << said.out;
+  write_text(folder / "good.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"n"}]})");
+  EXPECT_EQ(pliant({"validate", "good.gltf"}).status, 0);
+}
+
+TEST_F(Files, UnknownPliantKeysAreRefusedByName) {
+  write_text(folder / "level.gltf",
+             R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"extensionsUsed":["PLIANT_probe"],)"
+             R"("nodes":[{"name":"p","extensions":{"PLIANT_probe":{"radios":0.1}}}]})");
+  const Said said = pliant({"validate", "level.gltf"});
+  EXPECT_EQ(said.status, 1);
+  EXPECT_NE(said.out.find("radios"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("/nodes/0/extensions/PLIANT_probe"), std::string::npos) << said.out;
+  expect_refused({"run", "level.gltf"}, 1, "radios");
+}
+
+TEST_F(Files, DamagedFilesExitWithOneSentence) {
+  const fs::path corpus = fs::path(PLIANT_CORPUS_DIR) / "gltf-invalid";
+  if (!fs::exists(corpus)) GTEST_SKIP() << "the corpus is not beside the repository";
+  write_text(folder / "empty.glb", "");
+  expect_refused({"inspect", "empty.glb"}, 1, "empty.glb");
+  const fs::path glb = corpus / "khronos-validator" / "test" / "base" / "data" / "glb";
+  for (const char* name : {"only_header.glb", "unaligned_chunk.glb", "bom.glb"})
+    if (fs::exists(glb / name)) expect_refused({"run", (glb / name).string()}, 1, name);
+}
+
+}  // namespace
+}  // namespace pliant::testing

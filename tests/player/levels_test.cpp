@@ -1,0 +1,97 @@
+// Every level that ships, and organs of the corpus, from the command line.
+#include "tests/player/command.h"
+
+namespace pliant::testing {
+namespace {
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code absent;
+  for (const auto& entry : fs::directory_iterator(folder, absent))
+    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<fs::path> or_placeholder(std::vector<fs::path> files) {
+  if (files.empty()) files.push_back("absent.glb");
+  return files;
+}
+
+std::string test_name(const ::testing::TestParamInfo<fs::path>& info) {
+  std::string name = info.param.stem().string();
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+class ShippedLevel : public CommandTest, public ::testing::WithParamInterface<fs::path> {};
+
+TEST_P(ShippedLevel, RunsAndEveryProbeTouchesWithoutGettingEnergy) {
+  const Said said = pliant({"run", GetParam().string(), "--frames", "0", "--out", "out"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = report("out");
+  EXPECT_EQ(json["level"], GetParam().stem().string());
+  EXPECT_EQ(json["overruns"], 0);
+  EXPECT_EQ(json["dropped"], Json::array()) << "a level that ships has nothing to explain";
+  ASSERT_FALSE(json["probes"].empty());
+  for (const Json& probe : json["probes"]) {
+    EXPECT_GT(probe["contact_ticks"], 0) << probe;
+    EXPECT_GT(probe["max_force_N"], 0.0) << probe;
+    EXPECT_LE(probe["net_work_J"], 1e-9) << probe;
+  }
+  const Said again = pliant({"run", GetParam().string(), "--frames", "0", "--out", "again", "--threads", "1"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(report("again")["hash"], json["hash"]);
+}
+
+TEST_P(ShippedLevel, IsValidAndCanBeTouched) {
+  const Said valid = pliant({"validate", GetParam().string()});
+  EXPECT_EQ(valid.status, 0) << valid.out << valid.err;
+  const Said inspected = pliant({"inspect", GetParam().string(), "--json"});
+  ASSERT_EQ(inspected.status, 0) << inspected.err;
+  const Json json = Json::parse(inspected.out);
+  EXPECT_EQ(json["touchable"], true);
+  EXPECT_EQ(json["bare_mesh"], false);
+  EXPECT_EQ(json["unit_hint"], "");
+  EXPECT_FALSE(json["probes"].empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, ShippedLevel,
+                         ::testing::ValuesIn(or_placeholder(files_in(fs::path(PLIANT_SOURCE_DIR) / "content" / "levels"))),
+                         test_name);
+
+class Organ : public CommandTest, public ::testing::WithParamInterface<fs::path> {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    if (!fs::exists(GetParam())) GTEST_SKIP() << "the corpus is not beside the repository";
+  }
+};
+
+TEST_P(Organ, IsTouchedByAnOrbitingProbe) {
+  const Said said = pliant({"run", GetParam().string(), "--probe", "p=orbit", "--frames", "0", "--seconds", "4", "--out", "out"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = report("out");
+  EXPECT_EQ(json["ticks"], 4000);
+  ASSERT_EQ(json["probes"].size(), 1u);
+  EXPECT_GT(json["probes"][0]["contact_ticks"], 500);
+  EXPECT_GT(json["probes"][0]["max_force_N"], 0.05);
+  EXPECT_LE(json["probes"][0]["net_work_J"], 1e-9);
+}
+
+TEST_P(Organ, IsInspected) {
+  const Said said = pliant({"inspect", GetParam().string(), "--json"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = Json::parse(said.out);
+  EXPECT_EQ(json["touchable"], true);
+  EXPECT_EQ(json["bare_mesh"], true);
+  EXPECT_GT(json["triangles"], 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Corpus, Organ,
+                         ::testing::ValuesIn(or_placeholder(files_in(fs::path(PLIANT_CORPUS_DIR) / "meshes-valid" / "hra"))),
+                         test_name);
+
+}  // namespace
+}  // namespace pliant::testing

@@ -1,0 +1,164 @@
+// The player's pieces by themselves: recordings, traces, plots' ticks, frames, panoramas.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "player/frames.h"
+#include "player/panorama_preview.h"
+#include "player/plot.h"
+#include "player/recording.h"
+#include "player/sources.h"
+#include "player/trace.h"
+
+namespace pliant {
+namespace {
+namespace fs = std::filesystem;
+
+std::string recorded_bytes(const RecordingHeader& header, std::size_t ticks) {
+  const fs::path file = fs::temp_directory_path() / ("pliant-recording-" + std::to_string(::getpid()));
+  auto writer = RecordingWriter::create(file, header);
+  EXPECT_TRUE(writer);
+  for (std::size_t t = 0; t < ticks; ++t) {
+    writer->tick(3 * t);
+    for (std::size_t i = 0; i < header.probes.size(); ++i) {
+      const double angle = 0.1 * static_cast<double>(t + i);
+      writer->pose({{angle, 1.0 / (1.0 + angle), -angle}, {std::cos(angle), std::sin(angle), 0, 0}, t % 3 != 1});
+    }
+  }
+  EXPECT_FALSE(fs::exists(file)) << "it appears only when it is whole";
+  EXPECT_TRUE(writer->finish());
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  fs::remove(file);
+  return bytes;
+}
+
+TEST(Recording, ReadsBackToTheBitWhatWasWritten) {
+  const RecordingHeader header{"level, one", 2000.0, {"finger", "", "thumb"}};
+  const auto read = parse_recording("r", recorded_bytes(header, 50));
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->header.level, header.level);
+  EXPECT_EQ(read->header.rate, header.rate);
+  EXPECT_EQ(read->header.probes, header.probes);
+  ASSERT_EQ(read->ticks.size(), 50u);
+  ASSERT_EQ(read->poses.size(), 150u);
+  EXPECT_EQ(read->ticks[7], 21u);
+  const double angle = 0.1 * (7 + 2);
+  EXPECT_EQ(read->poses[7 * 3 + 2].position.x, angle);
+  EXPECT_EQ(read->poses[7 * 3 + 2].rotation.x, std::sin(angle));
+  EXPECT_FALSE(read->poses[7 * 3 + 2].ready);
+}
+
+TEST(Recording, EveryCutAndEveryFlippedBitIsNoticed) {
+  const std::string bytes = recorded_bytes({"level", 1000.0, {"p"}}, 4);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(parse_recording("r", bytes.substr(0, size))) << "cut to " << size;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string damaged = bytes;
+      damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+      const auto read = parse_recording("r", damaged);
+      // A pose's last byte is a yes or no: bits above the first that leave it a `no` are covered by the hash as well.
+      EXPECT_FALSE(read) << "bit " << bit << " of byte " << i;
+    }
+  }
+}
+
+ProbeReading reading_at(double depth) {
+  ProbeReading r;
+  r.depth = depth;
+  r.normal_force = 2 * depth;
+  r.in_contact = depth > 0.9;
+  return r;
+}
+
+TEST(Trace, KeepsEveryPeakHoweverLongTheRun) {
+  std::mt19937 random(5);
+  Trace trace;
+  constexpr std::uint64_t kTicks = 100000;
+  std::vector<float> samples;
+  for (std::uint64_t t = 0; t < kTicks; ++t) {
+    samples.push_back(static_cast<float>(random()) / 4294967296.0f);
+    trace.add(t, reading_at(samples.back()));
+  }
+  EXPECT_LE(trace.columns().size(), Trace::kColumns);
+  const auto width = static_cast<std::size_t>(trace.ticks_per_column());
+  std::uint64_t ticks = 0;
+  for (std::size_t c = 0; c < trace.columns().size(); ++c) {
+    const auto begin = samples.begin() + static_cast<std::ptrdiff_t>(c * width);
+    const auto end = samples.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(kTicks, (c + 1) * width));
+    const TraceColumn& column = trace.columns()[c];
+    EXPECT_EQ(column.depth.min, *std::min_element(begin, end));
+    EXPECT_EQ(column.depth.max, *std::max_element(begin, end));
+    EXPECT_EQ(column.contact, std::any_of(begin, end, [](float depth) { return static_cast<double>(depth) > 0.9; }));
+    ticks += column.ticks;
+  }
+  EXPECT_EQ(ticks, kTicks);
+}
+
+TEST(Plot, TicksAreRoundAndNeverTooMany) {
+  for (double high = 1e-9; high < 1e9; high *= 1.37) {
+    const double step = tick_step(high, 5);
+    EXPECT_LE(high / step, 5.0 + 1e-6) << high;
+    EXPECT_GE(high / step, 1.0) << high << ": too few to read";
+    const double mantissa = step / std::pow(10.0, std::floor(std::log10(step) + 1e-9));
+    EXPECT_TRUE(std::abs(mantissa - 1) < 1e-6 || std::abs(mantissa - 2) < 1e-6 || std::abs(mantissa - 5) < 1e-6) << step;
+  }
+}
+
+TEST(Frames, AreSpreadEvenlyAndStayInsideTheRun) {
+  EXPECT_EQ(spread_frames(100, 1), (std::vector<std::uint64_t>{50}));
+  EXPECT_EQ(spread_frames(100, 4), (std::vector<std::uint64_t>{12, 37, 62, 87}));
+  EXPECT_TRUE(spread_frames(100, 0).empty());
+  EXPECT_EQ(spread_frames(2, 3).size(), 3u);
+  EXPECT_LT(spread_frames(2, 3).back(), 2u);
+  EXPECT_EQ(regular_frames(1000, 1000.0, 4.0), (std::vector<std::uint64_t>{0, 250, 500, 750}));
+}
+
+TEST(Sources, AreANameAndWhatMovesIt) {
+  const auto orbit = parse_source("finger=orbit"), script = parse_source("a=script:dir/x=1.csv");
+  ASSERT_TRUE(orbit && script);
+  EXPECT_EQ(orbit->name, "finger");
+  EXPECT_EQ(orbit->driver, Driver::kOrbit);
+  EXPECT_EQ(script->driver, Driver::kScript);
+  EXPECT_EQ(script->file, "dir/x=1.csv");
+  for (const char* wrong : {"", "orbit", "=orbit", "p=", "p=script:", "p=orbits", "p=mouse", "p=device:1"})
+    EXPECT_FALSE(parse_source(wrong)) << wrong;
+}
+
+// A panorama whose color is its direction: each face of the cross must show its own axis in the middle.
+TEST(PanoramaPreview, PutsEveryDirectionOnItsFace) {
+  Panorama panorama{"p", 256, 128, {}};
+  for (std::uint32_t y = 0; y < panorama.height; ++y) {
+    for (std::uint32_t x = 0; x < panorama.width; ++x) {
+      const double theta = M_PI * (y + 0.5) / panorama.height, phi = 2 * M_PI * ((x + 0.5) / panorama.width - 0.5);
+      const dvec3 d{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+      for (int i = 0; i < 3; ++i) panorama.rgb.push_back(static_cast<float>(1.0 + d[i]));
+    }
+  }
+  constexpr std::uint32_t kFace = 33;
+  const Image image = cube_cross(panorama, kFace);
+  ASSERT_EQ(image.width, 4 * kFace);
+  ASSERT_EQ(image.height, 3 * kFace);
+  const auto middle = [&](std::uint32_t column, std::uint32_t row) {
+    return &image.rgba[4 * ((row * kFace + kFace / 2) * std::size_t{image.width} + column * kFace + kFace / 2)];
+  };
+  const struct {
+    std::uint32_t column, row;
+    int axis, sign;
+  } faces[] = {{1, 0, 1, 1}, {0, 1, 0, -1}, {1, 1, 2, 1}, {2, 1, 0, 1}, {3, 1, 2, -1}, {1, 2, 1, -1}};
+  for (const auto& face : faces) {
+    const std::uint8_t* rgba = middle(face.column, face.row);
+    const int other = rgba[(face.axis + 1) % 3];
+    EXPECT_NEAR(rgba[(face.axis + 2) % 3], other, 3);
+    EXPECT_GT(face.sign * (rgba[face.axis] - other), 20) << face.column << ',' << face.row;
+    EXPECT_EQ(rgba[3], 255);
+  }
+  EXPECT_EQ(image.rgba[3], 0) << "the cross has empty corners";
+}
+
+}  // namespace
+}  // namespace pliant

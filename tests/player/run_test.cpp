@@ -1,0 +1,236 @@
+// pliant run from the command line, on meshes small enough to know the answer.
+#include "tests/player/command.h"
+
+#include <cmath>
+
+namespace pliant::testing {
+namespace {
+
+class Run : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write_text(folder / "plate.obj", plate_obj());
+    write_text(folder / "press.csv", press_csv(0.002));
+  }
+  // Presses the plate by script, without pictures.
+  Said press(const std::string& out, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", out, "--frames", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return pliant(arguments);
+  }
+};
+
+TEST_F(Run, WritesReportForcesAndPlotAsPromised) {
+  const Said said = press("out");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = report("out");
+  EXPECT_EQ(json["level"], "plate");
+  EXPECT_EQ(json["mode"], "lockstep");
+  EXPECT_EQ(json["field"], "cpu");
+  EXPECT_EQ(json["rate_hz"], 1000.0);
+  EXPECT_EQ(json["ticks"], 1500) << "as long as the script";
+  EXPECT_EQ(json["overruns"], 0);
+  for (const char* key : {"p50", "p99", "p999", "max"}) EXPECT_GT(json["tick_us"][key].get<double>(), 0.0) << key;
+  for (const char* key : {"p50", "p99", "max"}) EXPECT_EQ(json["frame_ms"][key], 0.0) << key;
+  EXPECT_TRUE(json["upload_bytes_per_frame"].contains("mean") && json["upload_bytes_per_frame"].contains("max"));
+  EXPECT_EQ(json["hash"].get<std::string>().find_first_not_of("0123456789abcdef"), std::string::npos);
+  ASSERT_EQ(json["objects"].size(), 1u);
+  EXPECT_EQ(json["objects"][0]["vertices"], 41 * 41);
+  EXPECT_EQ(json["objects"][0]["triangles"], 2 * 40 * 40);
+  EXPECT_GT(json["objects"][0]["zones"], 0);
+  EXPECT_GT(json["objects"][0]["awake_vertices"]["max"], 0);
+  ASSERT_EQ(json["probes"].size(), 1u);
+  EXPECT_EQ(json["probes"][0]["name"], "tip");
+  EXPECT_EQ(json["probes"][0]["source"], "script:press.csv");
+  EXPECT_TRUE(json["dropped"].is_array());
+
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  EXPECT_EQ(forces.columns, (std::vector<std::string>{"tick", "time_s", "probe", "x", "y", "z", "in_contact", "object", "depth_m",
+                                                      "height_m", "nx", "ny", "nz", "fx", "fy", "fz", "fn", "ft"}));
+  EXPECT_EQ(forces.rows.size(), 1500u) << "one row per probe and tick";
+  EXPECT_EQ(read_text(folder / "out" / "forces.png").substr(1, 3), "PNG");
+}
+
+TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {
+  ASSERT_EQ(press("out").status, 0);
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  const Json probe = report("out")["probes"][0];
+  int contact = 0, held = 0;
+  double work = 0.0, deepest = 0.0, strongest = 0.0;
+  for (std::size_t i = 0; i < forces.rows.size(); ++i) {
+    const double depth = forces.number(i, "depth_m"), fn = forces.number(i, "fn"), time = forces.number(i, "time_s");
+    const double f[3] = {forces.number(i, "fx"), forces.number(i, "fy"), forces.number(i, "fz")};
+    const double ft = forces.number(i, "ft"), norm = std::hypot(f[0], f[1], f[2]);
+    EXPECT_NEAR(std::hypot(fn, ft), norm, 1e-6 * (1 + norm));
+    if (forces.rows[i].at("in_contact") == "1") {
+      ++contact;
+      EXPECT_EQ(forces.rows[i].at("object"), "plate") << i;
+      deepest = std::max(deepest, depth);
+      EXPECT_NEAR(depth, -forces.number(i, "y"), 1e-7) << "the plate is flat";
+      EXPECT_NEAR(forces.number(i, "ny"), 1.0, 1e-6);
+    } else {
+      EXPECT_EQ(norm, 0.0) << "nothing is felt in the air";
+    }
+    if (time > 0.55 && time < 0.69) {  // held still: 300 N/m times 2 mm
+      EXPECT_NEAR(fn, 0.6, 0.6e-3) << time;
+      ++held;
+    }
+    strongest = std::max(strongest, norm);
+    if (i + 1 < forces.rows.size()) {
+      const char* axes[3][2] = {{"x", "fx"}, {"y", "fy"}, {"z", "fz"}};
+      for (const auto& axis : axes)
+        work += 0.5 * (forces.number(i, axis[1]) + forces.number(i + 1, axis[1])) *
+                (forces.number(i + 1, axis[0]) - forces.number(i, axis[0]));
+    }
+  }
+  EXPECT_GT(held, 100);
+  EXPECT_EQ(probe["contact_ticks"], contact);
+  EXPECT_NEAR(probe["max_depth_m"], deepest, 1e-9);
+  EXPECT_NEAR(probe["max_force_N"], strongest, 1e-7);
+  EXPECT_NEAR(probe["net_work_J"], work, 1e-8);
+  EXPECT_LE(work, 0.0) << "the plate gave out energy";
+  EXPECT_NEAR(deepest, 0.002, 1e-6);
+}
+
+TEST_F(Run, SetChangesTheFieldItNames) {
+  ASSERT_EQ(press("soft").status, 0);
+  ASSERT_EQ(press("hard", {"--set", "*.deformable.stiffness=900", "--set", "*.deformable.friction=0"}).status, 0);
+  const double soft = report("soft")["probes"][0]["max_force_N"], hard = report("hard")["probes"][0]["max_force_N"];
+  EXPECT_NEAR(hard, 1.8, 0.01);
+  EXPECT_GT(soft, 0.6) << "friction adds to the normal force while it slides";
+  EXPECT_LT(soft, 0.7);
+  for (std::size_t i = 0; const auto& row : read_forces(folder / "hard" / "forces.csv").rows)
+    ASSERT_LT(std::stod(row.at("ft")), 1e-6) << i++;
+}
+
+TEST_F(Run, GivesTheSameHashEveryTimeAndForEveryThreadCount) {
+  ASSERT_EQ(press("first").status, 0);
+  const Json hash = report("first")["hash"];
+  for (const char* threads : {"1", "2", "4"}) {
+    ASSERT_EQ(press(threads, {"--threads", threads}).status, 0);
+    EXPECT_EQ(report(threads)["hash"], hash) << threads << " threads";
+    EXPECT_EQ(read_text(folder / threads / "forces.csv"), read_text(folder / "first" / "forces.csv"));
+  }
+  ASSERT_EQ(press("softer", {"--set", "*.deformable.stiffness=299"}).status, 0);
+  EXPECT_NE(report("softer")["hash"], hash) << "a hash that never changes proves nothing";
+}
+
+TEST_F(Run, AReplayRepeatsTheRecordingToTheBit) {
+  ASSERT_EQ(press("first", {"--record", "press.rec"}).status, 0);
+  const Said again = pliant({"run", "plate.obj", "--replay", "press.rec", "--out", "again", "--frames", "0"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(report("again")["hash"], report("first")["hash"]);
+  EXPECT_EQ(report("again")["ticks"], report("first")["ticks"]);
+  EXPECT_EQ(read_text(folder / "again" / "forces.csv"), read_text(folder / "first" / "forces.csv"));
+  EXPECT_EQ(report("again")["probes"][0]["source"], "replay:press.rec");
+}
+
+TEST_F(Run, ARecordingOfAnotherLevelOrADamagedOneIsRefused) {
+  ASSERT_EQ(press("first", {"--record", "press.rec"}).status, 0);
+  fs::copy_file(folder / "plate.obj", folder / "other.obj");
+  expect_refused({"run", "other.obj", "--replay", "press.rec"}, 1, "plate");
+  expect_refused({"run", "plate.obj", "--replay", "missing.rec"}, 1, "missing.rec");
+  std::string bytes = read_text(folder / "press.rec");
+  bytes[bytes.size() / 2] ^= 1;
+  write_text(folder / "damaged.rec", bytes);
+  expect_refused({"run", "plate.obj", "--replay", "damaged.rec"}, 1, "damaged.rec");
+  write_text(folder / "short.rec", bytes.substr(0, 100));
+  expect_refused({"run", "plate.obj", "--replay", "short.rec"}, 1, "short.rec");
+}
+
+TEST_F(Run, BadScriptsAreRefusedWithTheirLine) {
+  const std::map<std::string, std::string> bad{
+      {"header.csv", "t,x,y,z\n0,0,0,0\n"},      {"words.csv", "time_s,x,y,z\n0,zero,0,0\n"},
+      {"nan.csv", "time_s,x,y,z\n0,nan,0,0\n"},  {"back.csv", "time_s,x,y,z\n1,0,0,0\n0,0,0,0\n"},
+      {"short.csv", "time_s,x,y,z\n0,0,0\n"},    {"empty.csv", ""},
+      {"only_header.csv", "time_s,x,y,z\n"},     {"quaternion.csv", "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n"},
+      {"binary.csv", std::string("\0\xff\x80\n", 4)}};
+  for (const auto& [name, text] : bad) {
+    write_text(folder / name, text);
+    expect_refused({"run", "plate.obj", "--probe", "p=script:" + name, "--out", "out"}, 1, name);
+  }
+  expect_refused({"run", "plate.obj", "--probe", "p=script:missing.csv", "--out", "out"}, 1, "missing.csv");
+}
+
+TEST_F(Run, NothingRemainsWhereTheOutputCannotBeWritten) {
+  write_text(folder / "file", "in the way");
+  expect_refused({"run", "plate.obj", "--out", "file/out", "--frames", "0"}, 1, "file/out");
+  expect_refused({"run", "plate.obj", "--out", "a/b/c", "--frames", "0", "--record", "no/such/folder.rec"}, 1, "no/such");
+}
+
+TEST_F(Run, ABareMeshWithoutAProbeIsTouchedByOneAndSaysSo) {
+  const Said said = pliant({"run", "plate.obj", "--frames", "0", "--seconds", "4"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("--probe"), std::string::npos);
+  const Json json = report("out/plate");  // the default folder
+  ASSERT_EQ(json["probes"].size(), 1u);
+  EXPECT_EQ(json["probes"][0]["source"], "orbit");
+  EXPECT_GT(json["probes"][0]["contact_ticks"], 100);
+}
+
+TEST_F(Run, ManyProbesEachGetTheirRowsAndALongNameIsQuoted) {
+  std::vector<std::string> arguments{"run", "plate.obj", "--out", "out", "--frames", "0", "--seconds", "0.2"};
+  for (int i = 0; i < 10; ++i) {
+    arguments.push_back("--probe");
+    arguments.push_back("p, \"" + std::to_string(i) + "\"=orbit");
+  }
+  const Said said = pliant(arguments);
+  ASSERT_EQ(said.status, 0) << said.err;
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  EXPECT_EQ(forces.rows.size(), 10u * 200u);
+  EXPECT_EQ(report("out")["probes"].size(), 10u);
+  EXPECT_EQ(report("out")["probes"][3]["name"], "p, \"3\"");
+}
+
+TEST_F(Run, AnotherRateKeepsTheDurationAndTheForce) {
+  ASSERT_EQ(press("out", {"--rate", "4000"}).status, 0);
+  EXPECT_EQ(report("out")["ticks"], 6000);
+  EXPECT_EQ(report("out")["rate_hz"], 4000.0);
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  EXPECT_NEAR(forces.number(4 * 600, "fn"), 0.6, 0.6e-3);
+}
+
+TEST_F(Run, RealTimeAccountsForEveryTickAndItsRecordingReplaysToTheSameHash) {
+  const Said said = press("live", {"--realtime", "--seconds", "0.5", "--record", "live.rec"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = report("live");
+  EXPECT_EQ(json["mode"], "realtime");
+  const std::uint64_t ticks = json["ticks"], overruns = json["overruns"];
+  EXPECT_LE(ticks, 500u);
+  EXPECT_GE(ticks + overruns, 500u) << "a tick was neither run nor counted as an overrun";
+  ASSERT_EQ(pliant({"run", "plate.obj", "--replay", "live.rec", "--out", "again", "--frames", "0"}).status, 0);
+  EXPECT_EQ(report("again")["hash"], json["hash"]);
+}
+
+TEST_F(Run, CtrlCEndsARealTimeRunCleanlyWithAReport) {
+  const Said said = pliant({"run", "plate.obj", "--probe", "p=orbit", "--realtime", "--seconds", "600", "--out", "out",
+                            "--frames", "0"},
+                           "timeout --preserve-status -s INT 2");
+  EXPECT_EQ(said.status, 0) << said.err;
+  const Json json = report("out");
+  EXPECT_GT(json["ticks"], 0);
+  EXPECT_LT(json["ticks"], 600000);
+}
+
+TEST_F(Run, PicturesAreSpreadOverTheRunAndDoNotChangeIt) {
+  ASSERT_EQ(press("without").status, 0);
+  const Said said = pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "3", "--size",
+                            "160x90"});
+  if (said.status != 0) GTEST_SKIP() << "no graphics here: " << said.err;
+  EXPECT_EQ(report("with")["hash"], report("without")["hash"]);
+  EXPECT_GT(report("with")["frame_ms"]["p50"], 0.0);
+  EXPECT_GT(report("with")["upload_bytes_per_frame"]["max"], 0);
+  for (const char* name : {"frame-0000.png", "frame-0001.png", "frame-0002.png"})
+    EXPECT_EQ(read_text(folder / "with" / name).substr(1, 3), "PNG") << name;
+  EXPECT_FALSE(fs::exists(folder / "with" / "frame-0003.png"));
+  // A shorter run into the same folder leaves no picture of the longer one behind.
+  ASSERT_EQ(pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1", "--size", "160x90"})
+                .status,
+            0);
+  EXPECT_TRUE(fs::exists(folder / "with" / "frame-0000.png"));
+  EXPECT_FALSE(fs::exists(folder / "with" / "frame-0001.png"));
+}
+
+}  // namespace
+}  // namespace pliant::testing
