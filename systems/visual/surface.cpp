@@ -49,6 +49,14 @@ gpu::VertexArray layout_of(const gpu::Buffer& vertices, const gpu::Buffer& indic
   return layout;
 }
 
+// Closed, and not inside out (by the volume that its triangles sweep from the origin).
+bool encloses_volume(const Mesh& mesh) {
+  double volume = 0;
+  for (const uvec3 t : mesh.triangles)
+    volume += dot(dvec3(mesh.position(t.x)), cross(dvec3(mesh.position(t.y)), dvec3(mesh.position(t.z))));
+  return mesh.closed && volume > 0;
+}
+
 Box world_box(const std::vector<Vertex>& vertices, const mat4& to_world) {
   Box box;
   for (const Vertex& v : vertices) box.add(vec3(to_world * vec4(v.position, 1)));
@@ -88,6 +96,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   Item item;
   item.entity = entity;
   item.gives_way = touch != nullptr;
+  item.encloses = touch && encloses_volume(*touch);
   item.vertices = gpu::Buffer::fixed<Vertex>(vertices_of(draw, touch));
   item.indices = gpu::Buffer::fixed<std::uint32_t>(draw.indices);
   item.layout = layout_of(item.vertices, item.indices);
@@ -128,7 +137,8 @@ void Surfaces::draw(bool blended) const {
     for (const DrawPart& part : item.parts) {
       if (materials_.blends(part.material) != blended) continue;
       materials_.bind(part.material);
-      (materials_.double_sided(part.material) ? glDisable : glEnable)(GL_CULL_FACE);
+      const bool back_is_seen = materials_.double_sided(part.material) && (blended || !item.encloses);
+      (back_is_seen ? glDisable : glEnable)(GL_CULL_FACE);
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.index_count), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(std::size_t{part.first_index} * sizeof(std::uint32_t)));
     }

@@ -36,6 +36,7 @@ class Surfaces {
     std::vector<DrawPart> parts;
     StreamCopies stream;
     bool gives_way = false;
+    bool encloses = false;  // its back is never seen from outside, whatever its materials say
     bool mirrored = false;  // its placement turns triangles inside out
   };
   static Item make_item(const World& world, Entity entity, const DrawMesh& draw);

@@ -254,6 +254,17 @@ TEST(Picture, MaterialsColourTheirPartOfTheMesh) {
   EXPECT_GT(near[2], near[1] + 20);
 }
 
+TEST(Picture, LeavingOutTheBackOfAClosedBodyChangesNothing) {
+  NEEDS_A_CONTEXT();
+  World world = test::sphere(32);
+  const Image both = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  Mesh& mesh = world.meshes[world.registry.get<Deformable>(test::object_of(world)).mesh];
+  mesh.closed = true;
+  EXPECT_LE(changed_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 4);
+  for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);  // inside out: its back is all there is to see
+  EXPECT_EQ(changed_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 0);
+}
+
 TEST(Picture, AMaterialsBrokenPictureStopsTheRendererWithItsName) {
   NEEDS_A_CONTEXT();
   World world = test::sheet(4);
