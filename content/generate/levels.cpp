@@ -1,0 +1,170 @@
+#include "content/generate/levels.h"
+
+#include <cmath>
+
+#include "content/generate/lattice_sphere.h"
+#include "content/generate/minimal.h"
+#include "content/generate/sky.h"
+#include "content/generate/strokes.h"
+#include "content/generate/textures.h"
+
+namespace pliant::generate {
+namespace {
+
+constexpr vec3 kCoral{0.95f, 0.30f, 0.12f}, kTeal{0.05f, 0.55f, 0.60f}, kGold{0.95f, 0.70f, 0.10f};  // linear RGB
+
+LevelNode& add_node(Level& level, const std::string& name) {
+  level.nodes.emplace_back();
+  level.nodes.back().name = name;
+  return level.nodes.back();
+}
+
+// A frame at `eye` whose -Z looks at `target`, as cameras and lights want it.
+LocalTransform looking(dvec3 eye, dvec3 target) {
+  const dvec3 z = normalize(eye - target), x = normalize(cross(dvec3(0, 1, 0), z));
+  return {vec3(eye), quat(glm::normalize(glm::quat_cast(dmat3(x, cross(z, x), z)))), vec3(1)};
+}
+
+void add_view(Level& level, dvec3 eye, dvec3 target) {
+  LevelNode& camera = add_node(level, "camera");
+  camera.camera = Camera{0.55f, 0.01f, 10.0f};
+  camera.local = looking(eye, target);
+  LevelNode& key = add_node(level, "key_light");
+  key.light = Light{};
+  key.light->color = {1.0f, 0.95f, 0.88f};
+  key.light->intensity = 2.5f;
+  key.local = looking(target + dvec3(0.55, 0.62, 0.56), target);  // from the sky's sun
+  level.environment = LevelEnvironment{"../environments/sky.exr", 0.8, 0.0};
+}
+
+void add_probe(Level& level, const std::string& name, double radius, vec3 color) {
+  LevelNode& node = add_node(level, name);
+  node.probe = Probe{};
+  node.probe->radius = radius;
+  node.probe->color = color;
+  node.probe_device = name;
+  node.device = HapticDevice{};
+  node.device->driver = Driver::kScript;
+  node.device->file = level.name + name.substr(name.rfind('_')) + ".csv";
+}
+
+struct NamedStroke {
+  const char* letter;
+  const char* comment;
+  Stroke stroke;
+};
+
+// The right lobe from the left, the lobe below it, and the far lobe across the groove's side. From 3.8 s to 5 s all three
+// are down; a and b then slide side by side, within each other's reach.
+std::vector<NamedStroke> organ_strokes() {
+  //             radius clearance depth  press     lift
+  const Stroke a{8.0, 0.004, 0.030, 0.008, 0.4, 2.0, 5.2, 6.8, {{-0.075, 0.020, 0.04}, {-0.026, 0.026, 0.06}}, {2.0, 5.2}};
+  const Stroke b{8.0, 0.003, 0.030, 0.007, 1.2, 2.8, 5.4, 7.0, {{-0.066, -0.030, 0.05}, {-0.022, 0.006, 0.06}}, {2.8, 5.2}};
+  const Stroke c{8.0, 0.000, 0.030, 0.006, 2.2, 3.6, 6.2, 7.6, {{0.088, 0.016, 0.02}, {0.050, 0.008, 0.05}}, {3.6, 6.2}};
+  return {{"a", "presses 8 mm deep on the large lobe and slides towards the groove", a},
+          {"b", "presses 7 mm deep on the lower lobe and slides up beside the first", b},
+          {"c", "presses 6 mm deep on the far lobe and slides inward", c}};
+}
+
+// Two fingers: one sweeps three lines over the half with the hard spot, one a line over the other half.
+std::vector<NamedStroke> pad_strokes() {
+  Stroke a{10.0, 0.005, 0.025, 0.004, 0.3, 1.3, 8.3, 9.3, {}, {}};
+  a.through = {{0.005, 0.02, -0.016}, {0.065, 0.02, -0.016}, {0.065, 0.02, 0.002},
+               {0.005, 0.02, 0.002},  {0.005, 0.02, 0.020},  {0.065, 0.02, 0.020}};
+  a.at = {1.3, 3.3, 3.8, 5.8, 6.3, 8.3};
+  const Stroke b{10.0, 0.005, 0.025, 0.004, 1.0, 2.0, 6.0, 7.0, {{-0.060, 0.02, 0.012}, {-0.015, 0.02, 0.012}}, {2.0, 6.0}};
+  return {{"a", "sweeps three lines 4 mm deep over the half that hides the hard spot", a},
+          {"b", "sweeps one line 4 mm deep over the soft half", b}};
+}
+
+Status save_strokes(const Level& level, const Solid& solid, const std::vector<NamedStroke>& strokes,
+                    const std::filesystem::path& folder) {
+  for (const NamedStroke& s : strokes) {
+    Status saved = save_script(trace(solid, s.stroke), s.comment, folder / (level.name + "_" + s.letter + ".csv"));
+    if (!saved) return saved;
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Level three_probes(const Detail& detail) {
+  const Solid solid = organ();
+  const LatticeSphere surface = cover(solid, detail.organ_coarse, detail.organ_doublings);
+  Level level;
+  level.name = "three_probes";
+  level.images = {organ_color(surface, detail.color_size), organ_normals(surface, solid, detail.normal_size)};
+  Material flesh;
+  flesh.name = "wet flesh";
+  flesh.base_color = vec4(1);
+  flesh.roughness = 0.35f;
+  flesh.base_color_texture = 0;
+  flesh.normal_texture = 1;
+  level.materials.push_back(flesh);
+  Primitive primitive = to_primitive(surface, solid);
+  primitive.material = 0;
+  level.meshes.push_back({"organ", {std::move(primitive)}});
+
+  LevelNode& node = add_node(level, "organ");
+  node.mesh = 0;
+  node.deformable = Deformable{};
+  node.deformable->stiffness = 300.0;
+  node.deformable->reach = 0.022;
+  node.deformable->shape = Shape::kVolume;
+  add_probe(level, "probe_a", 0.004, kCoral);
+  add_probe(level, "probe_b", 0.003, kTeal);
+  add_probe(level, "probe_c", 0.0, kGold);
+  add_view(level, {0.02, 0.09, 0.36}, {0.002, -0.006, 0.0});
+  return level;
+}
+
+Level inclusion(const Detail& detail) {
+  const Solid solid = pad();
+  Level level;
+  level.name = "inclusion";
+  Material skin;
+  skin.name = "skin";
+  skin.base_color = vec4(0.60f, 0.33f, 0.25f, 1.0f);
+  skin.roughness = 0.5f;
+  level.materials.push_back(skin);
+  Primitive primitive = to_primitive(cover(solid, detail.pad_coarse, detail.pad_doublings), solid);
+  primitive.material = 0;
+  primitive.uv.clear();  // nothing is painted on it: the hard spot can only be felt
+  for (const vec3& p : primitive.position) {
+    const double r2 = (std::pow(p.x - 0.038, 2.0) + std::pow(p.z - 0.004, 2.0)) / (0.013 * 0.013);
+    primitive.stiffness.push_back(static_cast<float>(1.0 + (p.y > 0.0f ? 5.0 * std::exp(-r2) : 0.0)));
+  }
+  level.meshes.push_back({"pad", {std::move(primitive)}});
+
+  LevelNode& node = add_node(level, "pad");
+  node.mesh = 0;
+  node.deformable = Deformable{};
+  node.deformable->spring = SpringLaw::kExponential;
+  node.deformable->stiffness = 80.0;
+  node.deformable->stiffening = 120.0;
+  node.deformable->reach = 0.018;
+  node.deformable->volume = 0.8;
+  add_probe(level, "finger_a", 0.005, kCoral);
+  add_probe(level, "finger_b", 0.005, kTeal);
+  add_view(level, {0.0, 0.17, 0.26}, {0.0, 0.0, 0.005});
+  return level;
+}
+
+Status generate(const std::filesystem::path& folder, const Detail& detail) {
+  const std::filesystem::path levels = folder / "levels", environments = folder / "environments";
+  std::error_code code;
+  std::filesystem::create_directories(levels, code);
+  std::filesystem::create_directories(environments, code);
+  if (code) return Error{folder.string(), "cannot make the folders levels/ and environments/; check its permissions"};
+
+  if (Status s = save_panorama(sky(detail.sky_width), environments / "sky.exr"); !s) return s;
+  const SaveOptions draco{16};
+  const Level organ_level = three_probes(detail), pad_level = inclusion(detail);
+  if (Status s = save_level(organ_level, levels / "three_probes.glb", draco); !s) return s;
+  if (Status s = save_strokes(organ_level, organ(), organ_strokes(), levels); !s) return s;
+  if (Status s = save_level(pad_level, levels / "inclusion.glb", draco); !s) return s;
+  if (Status s = save_strokes(pad_level, pad(), pad_strokes(), levels); !s) return s;
+  return write_minimal(levels);
+}
+
+}  // namespace pliant::generate

@@ -1,0 +1,16 @@
+// The environment that ships: a soft sky.
+#pragma once
+
+#include <filesystem>
+
+#include "components/appearance.h"
+#include "runtime/result.h"
+
+namespace pliant::generate {
+
+// A latitude-longitude sky: pale horizon, blue zenith, a warm sun in a wide glow, soft ground. Linear RGB.
+Panorama sky(std::uint32_t width);
+// As OpenEXR, half floats, ZIP.
+Status save_panorama(const Panorama& panorama, const std::filesystem::path& path);
+
+}  // namespace pliant::generate

@@ -1,0 +1,77 @@
+#include "content/generate/solid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant::generate {
+namespace {
+
+constexpr double kDifference = 1e-6;  // [m] for gradients; the shapes vary over millimetres
+
+dvec3 gradient(const Solid& solid, dvec3 p) {
+  dvec3 g;
+  for (int i = 0; i < 3; ++i) {
+    dvec3 step(0);
+    step[i] = kDifference;
+    g[i] = (solid(p + step) - solid(p - step)) / (2.0 * kDifference);
+  }
+  return g;
+}
+
+// About the distance to an ellipsoid: exact to first order at its surface.
+double ellipsoid(dvec3 p, dvec3 center, dvec3 radii) {
+  const dvec3 q = (p - center) / radii;
+  const double k = length(q);
+  return k < 1e-9 ? -std::min({radii.x, radii.y, radii.z}) : k * (k - 1.0) / length(q / radii);
+}
+
+}  // namespace
+
+dvec3 normal_at(const Solid& solid, dvec3 p) { return normalize(gradient(solid, p)); }
+
+dvec3 project(const Solid& solid, dvec3 p) {
+  for (int i = 0; i < 12; ++i) {
+    const dvec3 g = gradient(solid, p);
+    dvec3 step = g * (-solid(p) / dot(g, g));
+    const double l = length(step);
+    if (l > 0.01) step *= 0.01 / l;  // far from the surface the slope is only a hint
+    p += step;
+    if (l < 1e-10) break;
+  }
+  return p;
+}
+
+double groove(dvec3 p) {
+  const double middle = 0.024 + 0.12 * p.y + 1.5 * p.y * p.y;  // [m] the line it follows down the front
+  const double across = (p.x - middle) / 0.0085;
+  const double front = 1.0 / (1.0 + std::exp(-(p.z - 0.004) / 0.006));
+  return std::exp(-across * across) * front;
+}
+
+Solid organ() {
+  return [](dvec3 p) {
+    constexpr double kBlend = 0.011;    // [m] over which lobes flow into one another
+    constexpr double kGroove = 0.0085;  // [m] depth
+    const double lobes[] = {ellipsoid(p, {-0.036, 0.004, 0.0}, {0.070, 0.050, 0.046}),
+                            ellipsoid(p, {0.056, 0.012, 0.004}, {0.054, 0.033, 0.032}),
+                            ellipsoid(p, {-0.052, -0.040, 0.006}, {0.038, 0.032, 0.034}),
+                            ellipsoid(p, {0.010, -0.030, 0.018}, {0.030, 0.022, 0.022})};
+    double sum = 0.0;
+    for (const double d : lobes) sum += std::exp(-d / kBlend);
+    return -kBlend * std::log(sum) + kGroove * groove(p);
+  };
+}
+
+Solid pad() {
+  return [](dvec3 p) {
+    const dvec3 half(0.080, 0.020, 0.050);
+    const double top = glm::smoothstep(-half.y, half.y, p.y);
+    const double sinks = 0.006 * top * (p.x * p.x / (half.x * half.x) + p.z * p.z / (half.z * half.z));  // [m] outward
+    const dvec3 q = dvec3(p.x, p.y + sinks, p.z) / half;
+    const dvec3 q2 = q * q;
+    const double k = std::sqrt(std::sqrt(dot(q2 * q2, q2 * q2)));  // |q|_8^2, a box with rounded edges
+    return 0.5 * (k - 1.0) * half.y;
+  };
+}
+
+}  // namespace pliant::generate

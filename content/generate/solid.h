@@ -1,0 +1,24 @@
+// Solids as functions: negative inside, positive outside, about a distance near the surface. All in metres.
+#pragma once
+
+#include <functional>
+
+#include "components/math.h"
+
+namespace pliant::generate {
+
+using Solid = std::function<double(dvec3)>;
+
+// Outward unit normal of the level set through p.
+dvec3 normal_at(const Solid& solid, dvec3 p);
+// The nearby surface point that p reaches by Newton steps along the gradient.
+dvec3 project(const Solid& solid, dvec3 p);
+
+// A smooth organ about 0.2 m wide: four lobes that flow into one another, and a groove down its front (+Z).
+Solid organ();
+// How deep in the groove p is, 1 at its bottom line, 0 well beside it.
+double groove(dvec3 p);
+// A pad 0.16 m x 0.04 m x 0.10 m with rounded sides and a gently curved top (+Y).
+Solid pad();
+
+}  // namespace pliant::generate

@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "content/exr.h"
+#include "content/generate/lattice_sphere.h"
+#include "content/generate/levels.h"
+#include "content/generate/sky.h"
+#include "content/generate/strokes.h"
+#include "content/generate/textures.h"
+#include "content/mesh_build.h"
+#include "content/script.h"
+
+namespace pliant::generate {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kShipped = fs::path(PLIANT_SOURCE_DIR) / "content";
+
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / ("pliant_generate_test_" + std::to_string(::getpid()));
+  TemporaryFolder() { fs::create_directories(path); }
+  ~TemporaryFolder() { fs::remove_all(path); }
+};
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Generate, SurfaceIsClosedLiesOnItsSolidAndIsMadeOfEvenNearEquilateralTriangles) {
+  const Solid solid = organ();
+  const LatticeSphere sphere = cover(solid, 10, 1);
+  EXPECT_EQ(sphere.triangles.size(), 8u * 20u * 20u);
+  for (const dvec3& p : sphere.position) EXPECT_LT(std::abs(solid(p)), 1e-8);
+  const Primitive primitive = to_primitive(sphere, solid);
+  const Result<BuiltMesh> built = build_mesh("organ", {&primitive, 1}, mat4(1.0f));
+  ASSERT_TRUE(built.ok());
+  EXPECT_TRUE(built->mesh.closed);
+  EXPECT_EQ(built->mesh.triangles.size(), sphere.triangles.size());
+  std::vector<double> quality, area;
+  for (const uvec3& t : built->mesh.triangles) {
+    const dvec3 a(built->mesh.position(t.x)), b(built->mesh.position(t.y)), c(built->mesh.position(t.z));
+    area.push_back(0.5 * length(cross(b - a, c - a)));
+    quality.push_back(4.0 * std::sqrt(3.0) * area.back() / (dot(b - a, b - a) + dot(c - b, c - b) + dot(a - c, a - c)));
+  }
+  std::sort(quality.begin(), quality.end());
+  std::sort(area.begin(), area.end());
+  EXPECT_GT(quality[quality.size() / 100], 0.6);  // 1 is equilateral
+  EXPECT_GT(quality[quality.size() / 2], 0.9);
+  EXPECT_LT(area[area.size() * 99 / 100], 4.0 * area[area.size() / 2]);
+}
+
+TEST(Generate, UnfoldedSquareAndSurfaceAreInversesOfEachOther) {
+  const LatticeSphere sphere = cover(pad(), 6, 0);
+  for (const auto& t : sphere.triangles) {
+    dvec2 uv(0);
+    dvec3 middle(0);
+    for (const auto& corner : t) {
+      uv += dvec2(corner.uv) / 3.0;
+      middle += sphere.position[corner.vertex] / 3.0;
+    }
+    const LatticePlace place = place_at(sphere.n, uv);
+    dvec3 found(0);
+    for (std::size_t i = 0; i < 3; ++i)
+      found += place.weight[static_cast<int>(i)] * sphere.position[sphere.vertex.at(place.corner[i])];
+    EXPECT_LT(length(found - middle), 1e-7);
+  }
+}
+
+TEST(Generate, StrokeKeepsItsDepthAlongTheNormalWhileSlidingAndStaysClearBeforeAndAfter) {
+  const Solid solid = [](dvec3 p) { return length(p) - 0.05; };
+  const Stroke stroke{4.0, 0.003, 0.02, 0.006, 0.5, 1.0, 3.0, 3.5, {{0, 0.05, 0.01}, {0.03, 0.05, 0}}, {1.0, 3.0}};
+  const Path path = trace(solid, stroke);
+  ASSERT_EQ(path.rows.size(), 401u);
+  for (const PathRow& row : path.rows) {
+    const double tip = solid(row.position) - stroke.radius;
+    if (row.time <= 0.5 || row.time >= 3.5) {
+      EXPECT_NEAR(tip, 0.02, 1e-9);
+    }
+    if (row.time >= 1.0 && row.time <= 3.0) {
+      EXPECT_NEAR(tip, -0.006, 1e-9);
+    }
+  }
+}
+
+TEST(Generate, SkyIsReadBackAsItWasWrittenToHalfPrecision) {
+  const TemporaryFolder folder;
+  const Panorama made = sky(64);
+  ASSERT_TRUE(save_panorama(made, folder.path / "sky.exr").ok());
+  const Result<Panorama> read = load_panorama(folder.path / "sky.exr");
+  ASSERT_TRUE(read.ok()) << read.error().message();
+  ASSERT_EQ(read->rgb.size(), made.rgb.size());
+  for (std::size_t i = 0; i < made.rgb.size(); ++i) EXPECT_NEAR(read->rgb[i], made.rgb[i], 0.001f * made.rgb[i]);
+}
+
+TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
+  const TemporaryFolder folder;
+  const Status done = generate(folder.path);
+  ASSERT_TRUE(done.ok()) << done.error().message();
+  // Text and plain binaries to the byte; compressed files (whose libraries may differ) by what they hold.
+  for (const char* name : {"minimal.gltf", "minimal.bin", "minimal.csv", "three_probes_a.csv", "three_probes_b.csv",
+                           "three_probes_c.csv", "inclusion_a.csv", "inclusion_b.csv"})
+    EXPECT_EQ(bytes_of(folder.path / "levels" / name), bytes_of(kShipped / "levels" / name)) << name;
+  for (const char* name : {"three_probes.glb", "inclusion.glb"}) {
+    const Result<Level> made = load_level(folder.path / "levels" / name), shipped = load_level(kShipped / "levels" / name);
+    ASSERT_TRUE(made.ok()) << made.error().message();
+    ASSERT_TRUE(shipped.ok()) << shipped.error().message();
+    ASSERT_EQ(made->meshes.size(), shipped->meshes.size());
+    for (std::size_t m = 0; m < made->meshes.size(); ++m) {
+      const Primitive &a = made->meshes[m].primitives.at(0), &b = shipped->meshes[m].primitives.at(0);
+      EXPECT_EQ(a.position, b.position) << name;
+      EXPECT_EQ(a.uv, b.uv) << name;
+      EXPECT_EQ(a.stiffness, b.stiffness) << name;
+      EXPECT_EQ(a.index, b.index) << name;
+    }
+    ASSERT_EQ(made->images.size(), shipped->images.size());
+    for (std::size_t i = 0; i < made->images.size(); ++i) EXPECT_EQ(made->images[i].rgba, shipped->images[i].rgba) << name;
+    ASSERT_EQ(made->nodes.size(), shipped->nodes.size());
+    for (std::size_t n = 0; n < made->nodes.size(); ++n) EXPECT_EQ(made->nodes[n].name, shipped->nodes[n].name);
+  }
+  const Result<Panorama> made = load_panorama(folder.path / "environments/sky.exr");
+  const Result<Panorama> shipped = load_panorama(kShipped / "environments/sky.exr");
+  ASSERT_TRUE(made.ok() && shipped.ok());
+  EXPECT_EQ(made->rgb, shipped->rgb);
+}
+
+TEST(Generate, EveryShippedLevelSpawnsWithItsProbesAndEveryStrokeReachesTheSurface) {
+  const std::pair<const char*, std::size_t> levels[] = {{"three_probes.glb", 3}, {"inclusion.glb", 2}, {"minimal.gltf", 1}};
+  for (const auto& [name, probes] : levels) {
+    const Result<Level> level = load_level(kShipped / "levels" / name);
+    ASSERT_TRUE(level.ok()) << level.error().message();
+    Result<World> world = spawn(*level);
+    ASSERT_TRUE(world.ok()) << world.error().message();
+    std::size_t count = 0;
+    for (auto [entity, probe] : world->registry.view<Probe>()) {
+      ++count;
+      ASSERT_NE(probe.device, kNoEntity) << name;
+      const Path& path = world->paths[world->registry.get<HapticDevice>(probe.device).path];
+      // Nearest touch vertex over the script: about the depth below the surface, by brute force.
+      double nearest = 1.0;
+      for (auto [object, deformable] : world->registry.view<Deformable>()) {
+        const Mesh& mesh = world->meshes[deformable.mesh];
+        for (const PathRow& row : path.rows)
+          if (std::lround(row.time * 100.0) % 50 == 0)
+            for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+              nearest = std::min(nearest, dot(row.position - dvec3(mesh.position(v)), dvec3(mesh.normal(v))) - probe.radius +
+                                              10.0 * std::max(0.0, length(row.position - dvec3(mesh.position(v))) - 0.012));
+      }
+      EXPECT_LT(nearest, -0.003) << name;
+      EXPECT_GT(nearest, -0.012) << name;
+    }
+    EXPECT_EQ(count, probes) << name;
+  }
+}
+
+}  // namespace
+}  // namespace pliant::generate
