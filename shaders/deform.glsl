@@ -3,8 +3,8 @@
 //   position = P0 + h N0
 //   normal   = N0 + (nx, ny, nz)
 //
-// P0 and N0 never change and lie in vertex buffers; (nx, ny, nz, h) comes from the stream of the touch vertex. The height
-// acts along the touch normal; the correction is a gradient, in the object frame, and serves any unit shading normal.
+// P0 and N0 never change and lie in vertex buffers; (nx, ny, nz, h) comes from the stream of the touch vertex. The
+// height acts along the touch normal; the correction is a gradient, in the object frame, for any unit shading normal.
 
 layout(std430, binding = 0) readonly buffer Stream { vec4 stream[]; };  // [1,1,1,m] by touch vertex
 

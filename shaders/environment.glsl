@@ -18,8 +18,8 @@ vec2 panorama_place(vec3 d) {
 // Radiance from world direction `d`, blurred: lod 0 is sharpest.
 vec3 radiance_from(vec3 d, float lod) { return surroundings.z * textureLod(panorama, panorama_place(d), lod).rgb; }
 
-// The same from one level, through a cubic B-spline instead of bilinear squares: four taps placed so that the card's own
-// filter does the inner sums (Sigg and Hadwiger, GPU Gems 2, chapter 20).
+// The same from one level, through a cubic B-spline instead of bilinear squares: four taps placed so that the card's
+// own filter does the inner sums (Sigg and Hadwiger, GPU Gems 2, chapter 20).
 vec3 smooth_radiance_from(vec3 d, int level) {
   vec2 size = vec2(textureSize(panorama, level));
   vec2 place = panorama_place(d) * size - 0.5, t = fract(place), cell = floor(place);

@@ -14,7 +14,9 @@ constexpr std::uint32_t kWidest = 256;  // [pixels] of the panorama on the card:
 constexpr float kSunClip = 20.0f;       // [1] a sun above this share of the mean would make nine coefficients ring
 constexpr float kPi = std::numbers::pi_v<float>;
 
-float luminance(vec3 c) { return dot(c, vec3(0.2126f, 0.7152f, 0.0722f)); }
+float luminance(vec3 c) {
+  return dot(c, vec3(0.2126f, 0.7152f, 0.0722f));
+}
 
 vec3 pixel(const Panorama& p, std::uint32_t x, std::uint32_t y) {
   const float* rgb = &p.rgb[3 * (std::size_t{y} * p.width + x)];
@@ -122,7 +124,8 @@ std::array<vec4, 9> irradiance_of(const Panorama& p) {
       const vec3 d = direction(p, x, y), radiance = pixel(p, x, y);
       const float bright = luminance(radiance);
       const dvec3 weighted = dvec3(radiance * (bright > clip ? clip / bright : 1.0f) * solid_angle(p, y));
-      const double basis[9] = {1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
+      const double basis[9] = {
+          1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
       for (int i = 0; i < 9; ++i) sums[i] += weighted * basis[i];
     }
   // Both factors of the harmonics' constants, times the cosine lobe's pi, 2 pi / 3, pi / 4 by degree.
@@ -146,8 +149,8 @@ Surroundings Surroundings::make(const World& world) {
   const float intensity = own ? environment.intensity : 1.0f, rotation = own ? environment.rotation : 0.0f;
 
   Surroundings made;
-  made.panorama_ = gpu::Texture::from_panorama(panorama.rgb, static_cast<int>(panorama.width),
-                                               static_cast<int>(panorama.height));
+  made.panorama_ =
+      gpu::Texture::from_panorama(panorama.rgb, static_cast<int>(panorama.width), static_cast<int>(panorama.height));
   FrameConstants& frame = made.constants_;
   frame.irradiance = irradiance_of(panorama);
   // The roughest level still has some pixels, so that a matt coat sees up from down.

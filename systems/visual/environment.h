@@ -1,4 +1,5 @@
-// Light from all around, and the one light that models: from the level's panorama and first light, or from plain defaults.
+// Light from all around, and the one light that models: from the level's panorama and first light, or from a studio of
+// our own.
 #pragma once
 
 #include <array>
@@ -10,8 +11,8 @@
 
 namespace pliant {
 
-// The nine coefficients of shaders/environment.glsl's irradiance polynomial [lx], panorama frame (its middle column lies
-// towards -Z, rows go from +Y to -Y). Radiance above kSunClip times the mean is left to the key light.
+// The nine coefficients of shaders/environment.glsl's irradiance polynomial [lx], panorama frame (its middle column
+// lies towards -Z, rows go from +Y to -Y). Radiance above kSunClip times the mean is left to the key light.
 std::array<vec4, 9> irradiance_of(const Panorama& panorama);
 
 // What that polynomial gives for a unit normal in the panorama frame.

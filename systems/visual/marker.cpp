@@ -9,7 +9,7 @@ namespace pliant {
 namespace {
 
 // Sizes, as shares of the scene's diagonal unless said otherwise.
-constexpr float kSmallestBall = 0.012f;   // radius; smaller probes would not be seen
+constexpr float kSmallestBall = 0.012f;  // radius; smaller probes would not be seen
 constexpr float kRodLength = 0.16f;
 constexpr float kRodRadius = 0.42f;       // of the ball's radius
 constexpr float kLean = 0.7f;             // [rad] of the rod from the way out
@@ -17,7 +17,7 @@ constexpr float kArrowPerNewton = 0.10f;  // [1/N]
 constexpr float kLongestArrow = 0.30f;
 constexpr float kArrowRadius = 0.0055f;
 constexpr float kHeadRadius = 0.015f, kHeadLength = 0.04f;
-constexpr float kSmallestForce = 0.01f;   // [N] below: no arrow
+constexpr float kSmallestForce = 0.01f;  // [N] below: no arrow
 const vec3 kArrowColor{0.95f, 0.70f, 0.03f};
 const vec3 kRodColor{0.55f, 0.57f, 0.60f};
 
@@ -34,8 +34,8 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   if (!scene.empty()) made.diagonal_ = std::max(scene.diagonal(), 1e-6f);
   made.boxes_ = std::move(boxes);
   for (auto [entity, probe] : world.registry.view<Probe>())
-    made.probes_.push_back({entity, static_cast<float>(probe.radius), probe.color, probe.placed, probe.position,
-                            probe.force});
+    made.probes_.push_back(
+        {entity, static_cast<float>(probe.radius), probe.color, probe.placed, probe.position, probe.force});
 
   MarkerMesh all;
   const MarkerMesh meshes[kKinds] = {make_ball(), make_rod(), make_cone()};
@@ -112,8 +112,8 @@ void Markers::lay_out(const Known& probe, const Viewpoint& viewpoint) {
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
   // The stylus leans away from the arrow, always clockwise as seen, so that both can be told apart.
   const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye));
-  const vec3 lean = normalize(std::cos(kLean) * out + std::sin(kLean) * cross(forward, out) +
-                              0.2f * vec3(viewpoint.up));
+  const vec3 lean =
+      normalize(std::cos(kLean) * out + std::sin(kLean) * cross(forward, out) + 0.2f * vec3(viewpoint.up));
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
 
   const float newtons = static_cast<float>(length(probe.force));

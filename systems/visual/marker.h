@@ -29,8 +29,8 @@ class Markers {
     float radius = 0.0f;  // [m]
     vec3 color{0};
     bool placed = false;
-    dvec3 position{0};    // [m] world
-    dvec3 force{0};       // [N] world
+    dvec3 position{0};  // [m] world
+    dvec3 force{0};     // [N] world
   };
   struct Instance {  // as shaders/marker.vert reads it
     vec4 row_x, row_y, row_z, tint;

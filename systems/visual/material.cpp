@@ -46,7 +46,8 @@ Result<Materials> Materials::make(const World& world) {
     if (image < 0 || static_cast<std::size_t>(image) >= world.images.size()) return otherwise;
     const auto key = std::make_pair(image, meaning);
     if (const auto found = known.find(key); found != known.end()) return found->second;
-    Result<gpu::Texture> made_texture = gpu::Texture::from_image(world.images[static_cast<std::size_t>(image)], meaning);
+    Result<gpu::Texture> made_texture =
+        gpu::Texture::from_image(world.images[static_cast<std::size_t>(image)], meaning);
     if (!made_texture) {
       uploaded = made_texture.error();
       return otherwise;
@@ -82,12 +83,14 @@ std::size_t Materials::row(std::int32_t index) const {
   return index < 0 ? last : std::min(static_cast<std::size_t>(index), last);
 }
 
-const Materials::Entry& Materials::entry(std::int32_t index) const { return entries_[row(index)]; }
+const Materials::Entry& Materials::entry(std::int32_t index) const {
+  return entries_[row(index)];
+}
 
 void Materials::bind(std::int32_t index) const {
   const Entry& e = entry(index);
-  glBindBufferRange(GL_UNIFORM_BUFFER, kMaterialBinding, constants_.id(),
-                    static_cast<GLintptr>(row(index) * stride_), sizeof(MaterialConstants));
+  glBindBufferRange(GL_UNIFORM_BUFFER, kMaterialBinding, constants_.id(), static_cast<GLintptr>(row(index) * stride_),
+                    sizeof(MaterialConstants));
   textures_[static_cast<std::size_t>(e.base_color)].bind(kBaseColorUnit);
   textures_[static_cast<std::size_t>(e.roughness)].bind(kRoughnessUnit);
   textures_[static_cast<std::size_t>(e.normal)].bind(kNormalUnit);

@@ -30,7 +30,7 @@ class Materials {
   std::vector<gpu::Texture> textures_;
   std::vector<Entry> entries_;  // the level's materials, then the default one
   gpu::Buffer constants_;
-  std::size_t stride_ = 0;      // [bytes] from one material's constants to the next
+  std::size_t stride_ = 0;  // [bytes] from one material's constants to the next
 };
 
 }  // namespace pliant

@@ -106,7 +106,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   parts.surroundings = Surroundings::make(world);
   parts.nothing = gpu::VertexArray::make();
   if (glGetError() == GL_OUT_OF_MEMORY)
-    return Error{"graphics card", "has no room for this level's meshes and textures; use a coarser mesh or smaller ones"};
+    return Error{"graphics card",
+                 "has no room for this level's meshes and textures; use a coarser mesh or smaller ones"};
   return renderer;
 }
 
@@ -115,7 +116,9 @@ void Renderer::update(const Snapshot& snapshot) {
   parts_->markers.take(snapshot.probes);
 }
 
-RenderOptions& Renderer::options() { return parts_->options; }
+RenderOptions& Renderer::options() {
+  return parts_->options;
+}
 
 FrameStats Renderer::draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height) {
   const std::uint64_t start = now_ns();
@@ -132,7 +135,9 @@ Image Renderer::picture(const Viewpoint& viewpoint, int width, int height, Frame
   const std::size_t travelled = parts_->render(viewpoint, width, height);
   glFinish();
   if (stats) *stats = {static_cast<double>(now_ns() - start) * 1e-6, travelled};
-  return {.name = "picture", .width = static_cast<std::uint32_t>(width), .height = static_cast<std::uint32_t>(height),
+  return {.name = "picture",
+          .width = static_cast<std::uint32_t>(width),
+          .height = static_cast<std::uint32_t>(height),
           .rgba = parts_->picture.read()};
 }
 

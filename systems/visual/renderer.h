@@ -12,16 +12,16 @@
 namespace pliant {
 
 struct FrameStats {
-  double draw_ms = 0.0;              // upload and draw until the picture is complete
-  std::uint64_t upload_bytes = 0;    // that travelled for this frame (awake zones, probes, constants)
+  double draw_ms = 0.0;            // upload and draw until the picture is complete
+  std::uint64_t upload_bytes = 0;  // that travelled for this frame (awake zones, probes, constants)
 };
 
 // Where the picture is taken from. Chosen from the level's camera or its bounds.
 struct Viewpoint {
-  dvec3 eye{0, 0, 1};      // [m] world
-  dvec3 target{0};         // [m]
+  dvec3 eye{0, 0, 1};  // [m] world
+  dvec3 target{0};     // [m]
   dvec3 up{0, 1, 0};
-  float yfov = 0.7f;       // [rad]
+  float yfov = 0.7f;  // [rad]
 };
 // The level's first camera, else one that frames every deformable from the front, slightly above. Reads every vertex.
 Viewpoint default_viewpoint(const World& world);

@@ -79,11 +79,12 @@ Result<Surfaces> Surfaces::make(const World& world) {
   for (auto [entity, drawable] : world.registry.view<Drawable>()) {
     Item item = make_item(world, entity, world.draw_meshes[drawable.mesh]);
     if (item.stream.buffer().size() > static_cast<std::size_t>(largest))
-      return Error{"graphics card", fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}; "
-                                                "use a card, or a coarser mesh",
-                                                item.stream.values().size(), item.stream.buffer().size() >> 20,
-                                                largest >> 20)};
-    made.boxes_.push_back(world_box(vertices_of(world.draw_meshes[drawable.mesh], nullptr), placement_of(world, entity)));
+      return Error{"graphics card",
+                   fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}; "
+                               "use a card, or a coarser mesh",
+                               item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20)};
+    made.boxes_.push_back(
+        world_box(vertices_of(world.draw_meshes[drawable.mesh], nullptr), placement_of(world, entity)));
     made.items_.push_back(std::move(item));
   }
   return made;
@@ -118,7 +119,8 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
 
 void Surfaces::take(const ObjectSnapshot& object) {
   for (Item& item : items_)
-    if (item.gives_way && item.entity == object.object) item.stream.take({object.zones.data(), object.zone_count}, object.stream);
+    if (item.gives_way && item.entity == object.object)
+      item.stream.take({object.zones.data(), object.zone_count}, object.stream);
 }
 
 std::size_t Surfaces::upload() {

@@ -1,5 +1,5 @@
-// The stream of one object, twice: on the processor and on the card. This class alone knows which copy is newer, zone by
-// zone; nothing but changed zones travels.
+// The stream of one object, twice: on the processor and on the card. This class alone knows which copy is newer, zone
+// by zone; nothing but changed zones travels.
 #pragma once
 
 #include <cstddef>
@@ -27,9 +27,9 @@ class StreamCopies {
   std::span<const vec4> values() const { return here_; }
 
  private:
-  std::vector<vec4> here_;             // [1,1,1,m] never older than the card's
-  std::vector<bool> newer_here_;       // per zone
-  std::vector<std::uint32_t> waiting_; // zones with newer_here_, in the order in which they came
+  std::vector<vec4> here_;              // [1,1,1,m] never older than the card's
+  std::vector<bool> newer_here_;        // per zone
+  std::vector<std::uint32_t> waiting_;  // zones with newer_here_, in the order in which they came
   gpu::Buffer on_card_;
 };
 

@@ -35,8 +35,8 @@ World world_of(const std::string& name, std::vector<DrawVertex> vertices, std::v
   world.registry.add<Name>(entity, {name});
   world.registry.add<Pose>(entity);
   world.registry.add<Deformable>(entity, deformable);
-  world.registry.add<Drawable>(entity, {world.draw_meshes.add({std::move(vertices), std::move(indices),
-                                                               {{0, index_count, -1}}})});
+  world.registry.add<Drawable>(
+      entity, {world.draw_meshes.add({std::move(vertices), std::move(indices), {{0, index_count, -1}}})});
   return world;
 }
 
@@ -75,7 +75,8 @@ World sphere(std::uint32_t rows) {
   std::vector<DrawVertex> vertices;
   for (std::uint32_t j = 0; j <= rows; ++j)
     for (std::uint32_t i = 0; i <= 2 * rows; ++i) {
-      const vec2 uv(static_cast<float>(i) / static_cast<float>(2 * rows), static_cast<float>(j) / static_cast<float>(rows));
+      const vec2 uv(static_cast<float>(i) / static_cast<float>(2 * rows),
+                    static_cast<float>(j) / static_cast<float>(rows));
       const float polar = kPi * uv.y, turn = 2 * kPi * uv.x;
       const vec3 p(std::sin(polar) * std::sin(turn), std::cos(polar), std::sin(polar) * std::cos(turn));
       vertices.push_back({.position = p, .normal = p, .tangent = {std::cos(turn), 0, -std::sin(turn), 1}, .uv = uv});

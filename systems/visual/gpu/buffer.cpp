@@ -13,9 +13,13 @@ Buffer::Buffer(const void* data, std::size_t size, GLbitfield flags) : size_(siz
   glNamedBufferStorage(id, static_cast<GLsizeiptr>(at_least_some), size ? data : nullptr, flags);
 }
 
-Buffer Buffer::fixed(const void* data, std::size_t size) { return {data, size, 0}; }
+Buffer Buffer::fixed(const void* data, std::size_t size) {
+  return {data, size, 0};
+}
 
-Buffer Buffer::writable(const void* data, std::size_t size) { return {data, size, GL_DYNAMIC_STORAGE_BIT}; }
+Buffer Buffer::writable(const void* data, std::size_t size) {
+  return {data, size, GL_DYNAMIC_STORAGE_BIT};
+}
 
 std::size_t Buffer::write(std::size_t offset, const void* data, std::size_t size) {
   ASSERT(offset + size <= size_);

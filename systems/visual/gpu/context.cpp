@@ -35,8 +35,9 @@ EGLContext make_current_on(EGLDisplay display) {
   if (!epoxy_has_egl_extension(display, "EGL_KHR_no_config_context")) return EGL_NO_CONTEXT;
   if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) return EGL_NO_CONTEXT;
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
-  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  const EGLint wanted[] = {
+      EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
   const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
   if (context == EGL_NO_CONTEXT) return EGL_NO_CONTEXT;
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return context;
@@ -49,8 +50,9 @@ EGLContext make_current_on(EGLDisplay display) {
 Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
   const std::vector<EGLDisplay> candidates = displays();
   if (candidates.empty())
-    return Error{"EGL", "offers neither a graphics card nor Mesa's surfaceless platform; install libegl-mesa0 and "
-                        "libgl1-mesa-dri"};
+    return Error{"EGL",
+                 "offers neither a graphics card nor Mesa's surfaceless platform; install libegl-mesa0 and "
+                 "libgl1-mesa-dri"};
   for (const EGLDisplay display : candidates) {
     const EGLContext context = make_current_on(display);
     if (context == EGL_NO_CONTEXT) continue;
@@ -60,8 +62,9 @@ Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
     made->renderer_name_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     return made;
   }
-  return Error{"EGL", "no driver gives an OpenGL 4.5 core context; install libgl1-mesa-dri (22 or later) or the "
-                      "graphics card's own driver"};
+  return Error{"EGL",
+               "no driver gives an OpenGL 4.5 core context; install libgl1-mesa-dri (22 or later) or the "
+               "graphics card's own driver"};
 }
 
 // The display stays initialised: EGL hands the same one to everybody in the process, who may still be using it.
@@ -70,6 +73,8 @@ HeadlessContext::~HeadlessContext() {
   eglDestroyContext(display_, context_);
 }
 
-void HeadlessContext::make_current() { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_); }
+void HeadlessContext::make_current() {
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+}
 
 }  // namespace pliant

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <string_view>
 #include <sstream>
+#include <string_view>
 
 namespace pliant::gpu {
 namespace {
@@ -30,7 +30,7 @@ std::optional<std::string> included_by(std::string_view line) {
   return std::string(line.substr(open + 1, close - open - 1));
 }
 
-// Appends `text` as file number files.size(), depth first. A file that is already in is skipped, which also ends cycles.
+// Appends `text` as file number files.size(), depth first. A file already in is skipped, which also ends cycles.
 Status append(ShaderSource& source, const std::string& name, const std::string& text) {
   const std::size_t number = source.files.size();
   source.files.push_back(name);

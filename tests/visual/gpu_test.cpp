@@ -16,9 +16,6 @@
 namespace pliant {
 namespace {
 
-#define NEEDS_A_CONTEXT() \
-  if (!test::context()) GTEST_SKIP() << "this machine gives no OpenGL 4.5 context; install libegl-mesa0 and libgl1-mesa-dri"
-
 template <class T>
 std::vector<T> read_back(const gpu::Buffer& buffer, std::size_t count) {
   std::vector<T> values(count);

@@ -18,9 +18,6 @@ using test::snapshot_of;
 
 constexpr int kWidth = 160, kHeight = 120;
 
-#define NEEDS_A_CONTEXT() \
-  if (!test::context()) GTEST_SKIP() << "this machine gives no OpenGL 4.5 context; install libegl-mesa0 and libgl1-mesa-dri"
-
 std::unique_ptr<Renderer> renderer_for(const World& world) {
   Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
   if (!made) ADD_FAILURE() << made.error().message();

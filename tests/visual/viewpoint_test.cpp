@@ -59,14 +59,16 @@ Panorama panorama_of(std::uint32_t width, vec3 (*radiance)(vec3)) {
   for (std::uint32_t y = 0; y < p.height; ++y)
     for (std::uint32_t x = 0; x < p.width; ++x) {
       const double azimuth = 2 * kPi * ((x + 0.5) / p.width - 0.5), polar = kPi * (y + 0.5) / p.height;
-      const vec3 c = radiance(vec3(std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)));
+      const vec3 c =
+          radiance(vec3(std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)));
       p.rgb.insert(p.rgb.end(), {c.r, c.g, c.b});
     }
   return p;
 }
 
 TEST(Environment, IrradianceHasItsClosedFormForEveryDegreeOfTheHarmonics) {
-  // Radiance 1, d.x, d.y^2 give irradiance pi, 2 pi/3 n.x, pi/4 (1 + n.y^2): the cosine lobe's factors pi, 2 pi/3, pi/4.
+  // Radiance 1, d.x, d.y^2 give irradiance pi, 2 pi/3 n.x, pi/4 (1 + n.y^2): the cosine lobe's factors pi, 2 pi/3,
+  // pi/4.
   const std::array<vec4, 9> c =
       irradiance_of(panorama_of(256, [](vec3 d) { return vec3(1, 1 + 0.5f * d.x, d.y * d.y); }));
   for (const vec3 n : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), normalize(vec3(1, -2, 3))}) {
