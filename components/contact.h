@@ -29,7 +29,8 @@ struct Contact {
   dvec3 foot{0};                // [m]   its rest position P(u,v), object frame
   dvec3 normal{0, 1, 0};        // [1]   interpolated, unit, outward, object frame
   double height = 0.0;          // [m]   t: of the probe's lowest point along the normal; < 0: below the rest surface
-  double previous_height = 0.0; // [m]   t one tick ago
+  double previous_height = 0.0; // [m]   t one tick ago, and two: what the surface would do if the probe let go now
+  double older_height = 0.0;    // [m]
   bool interpolated = true;     // false: no virtual vertex exists here (crease, border); closest point instead
 
   // Force law (methods.md 1.8). Started by collision at touch, advanced by friction_feedback; rim_height by force_field.

@@ -56,7 +56,7 @@ void settle(Contact& contact, const Surface& surface, const SurfacePoint& p) {
     contact.just_touched = true;
     contact.free_height = now.height;
     contact.free_velocity = now.velocity;
-    contact.previous_height = now.height;
+    contact.previous_height = contact.older_height = now.height;
     contact.arm_force = 0.0;
     contact.bristle = dvec3(0);
     contact.sliding = false;
@@ -67,6 +67,7 @@ void settle(Contact& contact, const Surface& surface, const SurfacePoint& p) {
 
 void follow(Contact& contact, const Surface& surface, dvec3 x, double radius) {
   const Tracked tracked = track(surface.mesh, last_place(contact, radius), x);
+  contact.older_height = contact.previous_height;
   contact.previous_height = contact.height;
   if (tracked.left_border) {
     contact.state = ContactState::kFree;

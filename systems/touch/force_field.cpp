@@ -83,7 +83,7 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
   return target_at(s, mesh.position(v), mesh.normal(v));
 }
 
-// The contact has ended: what it held down is now on its own way back to rest.
+// The contact has ended, or the surface is left behind: what was held down is now on its own way back to rest.
 void fold(SourceState& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, HeightField& field,
           double stiffness, double dt) {
   source.active = false;
@@ -103,6 +103,17 @@ void fold(SourceState& source, const Contact& contact, const Deformable& deforma
     }
     wake(field, zone, kZoneResidual);
   }
+}
+
+// A probe can press the surface down but not pull it up: when it lifts faster than the surface would rise by itself, the
+// surface is left behind, while the force goes on by the law of the depth until the probe is out.
+bool leaves_behind(const Contact& contact, const Motion& motion) {
+  const double h = contact.previous_height, v = (contact.previous_height - contact.older_height) / motion.dt;
+  if (contact.height <= h) return false;
+  const double free = motion.nonlinear()
+                          ? step_restoring(motion.law, {h, v}, motion.mass, motion.damping, 1.0, 0.0, motion.dt).height
+                          : motion.linear.hh * h + motion.linear.hv * v;
+  return contact.height > free;
 }
 
 // Height of the residual after this tick at a vertex: what the amplitudes must start from. [m]
@@ -177,7 +188,8 @@ void force_field(World& world, Tick tick) {
       }
       Contact& contact = world.registry.get<Contact>(source.contact);
       const bool touching = contact.state == ContactState::kTouching;
-      if (source.active && !touching) fold(source, contact, deformable, mesh, field, deformable.stiffness, tick.dt);
+      const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, object.motion);
+      if (source.active && (!touching || left_behind)) fold(source, contact, deformable, mesh, field, deformable.stiffness, tick.dt);
       if (!touching) {
         if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
         source.zones.clear();

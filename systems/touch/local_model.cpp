@@ -149,16 +149,18 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
     derivative = 2 * m / (T * T) + b / T + k * dG;
     return m * (2 * d / T - 2 * v0) / T + b * d / T + k * G - f;
   };
+  // The spring only ever shortens the step that mass and damping alone would make: that brackets d between 0 and it.
   double derivative = 0.0, d = 0.0;
   double r = residual(d, derivative);
-  double low = -1e300, high = 1e300;  // the residual rises with d
-  for (int i = 0; i < 60 && r != 0.0; ++i) {
-    (r > 0 ? high : low) = d;
+  const double farthest = -r / ((stiff ? 1 : 2) * m / (T * T) + b / T);
+  double low = std::min(0.0, farthest), high = std::max(0.0, farthest);
+  for (int i = 0; i < 100 && r != 0.0; ++i) {
     double next = d - r / derivative;
-    if (!(next > low && next < high)) next = 0.5 * (std::max(low, -1e3) + std::min(high, 1e3));
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
     if (std::abs(next - d) <= 1e-15 * (std::abs(h0) + std::abs(next))) break;
     d = next;
     r = residual(d, derivative);
+    (r > 0 ? high : low) = d;  // the residual rises with d
   }
   return stiff ? HeightState{h0 + d, d / T} : HeightState{h0 + d, 2 * d / T - v0};
 }

@@ -71,8 +71,10 @@ void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource&
   const float reach = 1 / std::sqrt(source.inv_reach2);
   const auto distance = [&](std::uint32_t v) { return length(offset[v]); };
   heap.clear();
+  // Shorter by more than rounding, or two corners would go on improving each other for ever.
+  constexpr float kShorter = 1 - 1e-5f;
   const auto reached = [&](std::uint32_t v, std::uint32_t triangle, float r, vec3 o) {
-    if (!(r < reach) || r >= distance(v) || heap.size() == heap.capacity()) return;
+    if (!(r < reach) || !(r < kShorter * distance(v)) || heap.size() == heap.capacity()) return;
     offset[v] = o;
     heap.push_back({r, v, triangle});
     std::push_heap(heap.begin(), heap.end(), later);
@@ -86,7 +88,7 @@ void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource&
     std::pop_heap(heap.begin(), heap.end(), later);
     const MarchItem item = heap.back();
     heap.pop_back();
-    if (item.distance > distance(item.vertex)) continue;  // a shorter way was found meanwhile
+    if (kShorter * item.distance > distance(item.vertex)) continue;  // a shorter way was found meanwhile
     around_vertex(mesh, item.vertex, item.triangle, [&](std::uint32_t t) {
       const uvec3 c = mesh.triangles[t];
       for (int i = 0; i < 3; ++i) {

@@ -87,8 +87,8 @@ SurfacePoint virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
     if (!(size > 0)) continue;
     const double u = dot(cross(q, b), A) / size, v = dot(cross(a, q), A) / size, w = 1 - u - v;
     if (!(u >= kInside && v >= kInside && w >= kInside)) continue;
-    // Beyond the focal distance the offset triangle is turned over: the normals have crossed on the way.
-    if (dot(A, w * c.n[0] + u * c.n[1] + v * c.n[2]) <= 0) continue;
+    // Beyond a focal distance the normals have crossed on the way: the offset triangle or its edges are turned over.
+    if (dot(A, w * c.n[0] + u * c.n[1] + v * c.n[2]) <= 0 || dot(a, e1) <= 0 || dot(b, e2) <= 0) continue;
     const dvec3 n = n0 + u * m1 + v * m2;
     const double height = t * length(n);
     if (best.valid() && std::abs(height) >= best.distance()) continue;
