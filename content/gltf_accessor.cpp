@@ -100,6 +100,7 @@ AccessorLayout layout_of(const Json& accessor) {
   layout.column_size = layout.rows * layout.component_size;
   if (layout.columns > 1) layout.column_size = (layout.column_size + 3) / 4 * 4;
   layout.element_size = layout.columns * layout.column_size;
+  layout.last_size = layout.element_size == 0 ? 0 : (layout.columns - 1) * layout.column_size + layout.rows * layout.component_size;
   layout.count = accessor["count"].get<std::uint64_t>();
   layout.normalized = value_of(accessor, "normalized", false);
   layout.known = layout.element_size > 0;

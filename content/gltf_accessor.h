@@ -18,7 +18,8 @@ struct AccessorLayout {
   std::size_t component_size = 0;     // [byte]
   std::size_t rows = 0, columns = 0;  // a vector is one column
   std::size_t column_size = 0;        // [byte] columns of matrices start at multiples of four
-  std::size_t element_size = 0;       // [byte]
+  std::size_t element_size = 0;       // [byte] from one element to the next, if there is no stride
+  std::size_t last_size = 0;          // [byte] of an element without the padding behind its last column
   std::uint64_t count = 0;
   bool normalized = false;
   bool known = false;                 // false: a type or component type that glTF 2.0 does not have

@@ -39,8 +39,10 @@ class DataCheck {
   }
 
  private:
-  void error(const std::string& pointer, std::string message) {
-    if (findings_.size() < 1000) findings_.push_back({Severity::kError, pointer, std::move(message)});
+  void error(const std::string& pointer, std::string message) { add(Severity::kError, pointer, std::move(message)); }
+  void warn(const std::string& pointer, std::string message) { add(Severity::kWarning, pointer, std::move(message)); }
+  void add(Severity severity, const std::string& pointer, std::string message) {
+    if (findings_.size() < 1000) findings_.push_back({severity, pointer, std::move(message)});
   }
   static std::string pointer_of(std::size_t accessor) { return fmt::format("/accessors/{}", accessor); }
   const Json& accessor(std::size_t i) const { return json_["accessors"][i]; }
@@ -93,6 +95,8 @@ class DataCheck {
     const std::vector<float> values = read_floats(document_, i);
     for (std::size_t e = 0; e + width <= values.size(); e += width) {
       const float norm = length(vec3(values[e], values[e + 1], values[e + 2]));
+      // Exporters write zeros where triangles are degenerate: such normals and tangents are made anew.
+      if (norm == 0.0f) return warn(pointer_of(i), fmt::format("holds a vector of length 0 in element {}; made anew", e / width));
       if (std::abs(norm - 1.0f) > kUnitTolerance)
         return error(pointer_of(i), fmt::format("holds a vector of length {:.3g} instead of 1 in element {}", norm, e / width));
       if (sign && std::abs(values[e + 3]) != 1.0f)
@@ -139,7 +143,7 @@ class DataCheck {
     }
     for (std::size_t v = 0; v < sums.size(); ++v)
       if (std::abs(sums[v] - 1.0f) > kWeightTolerance)
-        return error(pointer + "/attributes", fmt::format("have weights that sum to {:.3g} instead of 1 in element {}", sums[v], v));
+        return warn(pointer + "/attributes", fmt::format("have weights that sum to {:.3g} instead of 1 in element {}; scaled", sums[v], v));
   }
 
   void skinned(const Json& node) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -160,8 +161,13 @@ std::optional<DataUri> parse_data_uri(const std::string& uri) {
   if (comma == std::string::npos) return std::nullopt;
   const std::string head = uri.substr(5, comma - 5);
   if (head.size() < 7 || head.substr(head.size() - 7) != ";base64") return std::nullopt;
+  // What stands between the type and ";base64" are parameters NAME=VALUE.
+  std::istringstream parts(head.substr(0, head.size() - 7));
   DataUri data;
-  data.mime = head.substr(0, std::min(head.find(';'), head.size()));
+  std::getline(parts, data.mime, ';');
+  for (std::string parameter; std::getline(parts, parameter, ';');)
+    if (parameter.find('=') == std::string::npos || parameter[0] == '=') return std::nullopt;
+  if (head.find(";;") != std::string::npos) return std::nullopt;
   if (!decode_base64(std::string_view(uri).substr(comma + 1), data.bytes)) return std::nullopt;
   return data;
 }
@@ -226,7 +232,7 @@ void resolve_images(SourceDocument& document, Findings& findings) {
   for (std::size_t i = 0; i < images.size(); ++i) {
     const Json& image = images[i];
     const std::string pointer = fmt::format("/images/{}", i);
-    std::string claimed = value_of<std::string>(image, "mimeType", "");
+    std::string claimed = value_of<std::string>(image, "mimeType", ""), embedded;
     Bytes bytes;
     bool foreign = false;
     if (image.contains("uri")) {
@@ -237,7 +243,7 @@ void resolve_images(SourceDocument& document, Findings& findings) {
       if (!foreign) {
         std::optional<DataUri> data = fetch(uri, document.folder, pointer + "/uri", findings);
         if (!data) return;
-        if (!data->mime.empty()) claimed = data->mime;
+        embedded = data->mime;
         bytes = std::move(data->bytes);
       }
       if (extension == ".webp") claimed = "image/webp";
@@ -250,13 +256,15 @@ void resolve_images(SourceDocument& document, Findings& findings) {
       }
     }
     const ImageFormat format = image_format(bytes);
-    const bool webp = claimed == "image/webp" ||
+    const bool webp = claimed == "image/webp" || embedded == "image/webp" ||
                       (bytes.size() >= 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 && std::memcmp(&bytes[8], "WEBP", 4) == 0);
     if (webp && !extension_is_used(document.json, "EXT_texture_webp"))
       error(findings, pointer, "is WebP, which needs EXT_texture_webp in extensionsUsed; use PNG or JPEG");
     const bool is_png = format == ImageFormat::kPng, is_jpeg = format == ImageFormat::kJpeg;
-    if ((is_png && claimed == "image/jpeg") || (is_jpeg && claimed == "image/png"))
-      error(findings, pointer, fmt::format("claims to be {} but is not; correct mimeType", claimed));
+    // Both the member and a data URI may say what the picture is.
+    for (const std::string& mime : {claimed, embedded})
+      if (!mime.empty() && ((is_png && mime != "image/png") || (is_jpeg && mime != "image/jpeg")))
+        error(findings, pointer, fmt::format("claims to be {} but is not; correct its type", mime.substr(0, 60)));
     if (!is_png && !is_jpeg) {
       if (is_data_uri(value_of<std::string>(image, "uri", "")) && bytes.empty())
         error(findings, pointer + "/uri", "holds no picture");

@@ -70,17 +70,14 @@ std::uint64_t claimed_elements(std::span<const std::uint8_t> blob) {
     }
     skip_metadata(in, 0);
   }
-  const auto count = [&] { return version < 0x0202 ? in.fixed(4) : in.varint(); };
   if (is_mesh == 0) return in.fixed(4);
-  if (method == 0) {
-    const std::uint64_t faces = count();
-    return std::max(faces, count());
-  }
-  const std::uint64_t traversal = version >= 0x0100 ? in.byte() : 0;  // 0.9 has none here
-  (void)traversal;
-  if (version < 0x0202) in.fixed(4);  // new vertices, dropped in 2.2
-  const std::uint64_t vertices = count();
-  return std::max(vertices, count());
+  const bool sequential = method == 0;
+  // Counts became variable in length with 2.2 for sequential streams and with 2.0 for edgebreaker's.
+  const auto count = [&] { return version < (sequential ? 0x0202 : 0x0200) ? in.fixed(4) : in.varint(); };
+  if (!sequential) in.byte();                  // how edgebreaker walks
+  if (!sequential && version < 0x0202) count();  // vertices that splits add
+  const std::uint64_t first = count();
+  return std::max(first, count());
 }
 
 Error refuse(const std::string& what) { return Error{"Draco data", what + "; compress the mesh again"}; }

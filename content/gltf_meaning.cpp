@@ -64,9 +64,11 @@ void check_buffer_views(const Json& json, Meaning& check) {
   }
 }
 
-// That `count` elements of `element` bytes, `stride` apart, lie inside their bufferView, aligned.
+// That `count` elements of `element` bytes, `stride` apart, lie inside their bufferView, aligned: their components in
+// the buffer, and matrices to four bytes in the bufferView.
 void check_placement(const Json& json, const Json& holder, const std::string& pointer, std::uint64_t count,
-                     std::uint64_t element, std::uint64_t stride, std::uint64_t alignment, Meaning& check) {
+                     std::uint64_t element, std::uint64_t stride, std::uint64_t component, std::uint64_t alignment,
+                     Meaning& check) {
   const Json& view = json["bufferViews"][holder["bufferView"].get<std::size_t>()];
   const std::uint64_t offset = value_of<std::uint64_t>(holder, "byteOffset", 0);
   const std::uint64_t length = view["byteLength"].get<std::uint64_t>();
@@ -75,8 +77,8 @@ void check_placement(const Json& json, const Json& holder, const std::string& po
                                      offset, length));
   if (offset % alignment != 0)
     check.error(pointer + "/byteOffset", fmt::format("is {}, no multiple of {}", offset, alignment));
-  else if ((offset + value_of<std::uint64_t>(view, "byteOffset", 0)) % alignment != 0)
-    check.error(pointer, fmt::format("does not begin at a multiple of {} bytes in its buffer", alignment));
+  else if ((offset + value_of<std::uint64_t>(view, "byteOffset", 0)) % component != 0)
+    check.error(pointer, fmt::format("does not begin at a multiple of {} bytes in its buffer", component));
 }
 
 void check_sparse(const Json& json, const Json& accessor, const AccessorLayout& layout, const std::string& pointer,
@@ -89,9 +91,9 @@ void check_sparse(const Json& json, const Json& accessor, const AccessorLayout& 
   if (!index.known || index.component_type == kFloat)
     return check.error(pointer + "/sparse/indices/componentType", "is not an unsigned integer type");
   check_placement(json, sparse["indices"], pointer + "/sparse/indices", count, index.element_size, index.element_size,
-                  index.component_size, check);
-  check_placement(json, sparse["values"], pointer + "/sparse/values", count, layout.element_size, layout.element_size,
-                  layout.component_size, check);
+                  index.component_size, index.component_size, check);
+  check_placement(json, sparse["values"], pointer + "/sparse/values", count, layout.last_size, layout.element_size,
+                  layout.component_size, layout.component_size, check);
   for (const char* part : {"indices", "values"}) {
     const Json& view = json["bufferViews"][sparse[part]["bufferView"].get<std::size_t>()];
     const std::string where = pointer + "/sparse/" + part + "/bufferView";
@@ -120,8 +122,8 @@ void check_accessors(const Json& json, Meaning& check) {
       const Json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
       const std::uint64_t stride = value_of<std::uint64_t>(view, "byteStride", layout.element_size);
       if (stride < layout.element_size) check.error(pointer, "has elements longer than its bufferView's byteStride");
-      check_placement(json, accessor, pointer, layout.count, layout.element_size, stride,
-                      layout.columns > 1 ? 4 : layout.component_size, check);
+      check_placement(json, accessor, pointer, layout.count, layout.last_size, stride,
+                      layout.component_size, layout.columns > 1 ? 4 : layout.component_size, check);
     }
     if (accessor.contains("sparse")) check_sparse(json, accessor, layout, pointer, check);
     // Every accessor is read once to be checked: many of them over the same bytes, or sparse ones over nothing, would

@@ -31,6 +31,12 @@ bool all_finite(const std::vector<float>& values) {
   return true;
 }
 
+bool all_directions(const std::vector<float>& values, std::size_t width) {
+  for (std::size_t i = 0; i + width <= values.size(); i += width)
+    if (values[i] == 0.0f && values[i + 1] == 0.0f && values[i + 2] == 0.0f) return false;
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> corner) {
@@ -165,8 +171,9 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
         if (value < 0.0f) return Error{pointer, fmt::format("has a negative factor {} in {}; use 0 or more", value, name)};
     }
     if (which == "POSITION") out.position = as_vectors<vec3>(values);
-    if (which == "NORMAL") out.normal = as_vectors<vec3>(values);
-    if (which == "TANGENT") out.tangent = as_vectors<vec4>(values);
+    // Directions of length zero are none: all of the primitive's are made anew at spawn.
+    if (which == "NORMAL" && all_directions(values, 3)) out.normal = as_vectors<vec3>(values);
+    if (which == "TANGENT" && all_directions(values, 4)) out.tangent = as_vectors<vec4>(values);
     if (which == "TEXCOORD_0") out.uv = as_vectors<vec2>(values);
     if (which == "_STIFFNESS") out.stiffness = values;
     if (which == "_FRICTION") out.friction = values;

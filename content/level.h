@@ -73,6 +73,8 @@ struct Level {
   std::optional<LevelEnvironment> environment;
   Simulation simulation;                 // PLIANT_simulation
   std::vector<std::string> notes;        // what was read differently than a user might expect (skins, skipped points...)
+  // The glTF it came from: while it is there, save_level keeps meshes, materials and pictures from it. Whoever changes
+  // one of those resets it, and everything is then written from the Level alone.
   std::shared_ptr<SourceDocument> source;
 
   bool has_pliant() const;               // any PLIANT_* extension; false: a bare mesh

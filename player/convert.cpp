@@ -65,6 +65,7 @@ LevelMesh from_built(const BuiltMesh& built, const LevelMesh& source) {
 }
 
 Status reorder(Level& level) {
+  level.source.reset();  // the document it came from holds the meshes in their old order
   for (LevelMesh& mesh : level.meshes) {
     if (mesh.primitives.empty()) continue;
     auto built = build_mesh(mesh.name, mesh.primitives, mat4(1));

@@ -1,0 +1,95 @@
+#include "content/validate.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "content/exr.h"
+#include "content/extensions.h"
+#include "content/gltf_document.h"
+#include "content/level.h"
+#include "content/mesh_build.h"
+
+namespace pliant {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void find_in_extensions(const Json& json, Findings& findings) {
+  const Json& nodes = array_of(json, "nodes");
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < nodes.size(); ++i) names.push_back(value_of<std::string>(nodes[i], "name", fmt::format("node_{}", i)));
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].contains("extensions"))
+      find_in_node_extensions(nodes[i]["extensions"], fmt::format("/nodes/{}/extensions", i), names, findings);
+  const Json& scenes = array_of(json, "scenes");
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    if (scenes[i].contains("extensions"))
+      find_in_scene_extensions(scenes[i]["extensions"], fmt::format("/scenes/{}/extensions", i), findings);
+}
+
+// How a deformable will feel where its mesh does not suit it.
+void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::string& pointer, Findings& findings) {
+  const Result<BuiltMesh> built = build_mesh(node.name, mesh.primitives, mat4(1));
+  if (!built) return findings.push_back({Severity::kError, pointer, built.error().what});
+  const auto warn = [&](std::string message) { findings.push_back({Severity::kWarning, pointer, std::move(message)}); };
+  const MeshReport& report = built->report;
+  if (report.degenerate_triangles + report.duplicate_triangles > 0)
+    warn(fmt::format("has {} degenerate and {} duplicate triangles, which are dropped", report.degenerate_triangles, report.duplicate_triangles));
+  if (report.border_edges > 0) warn(fmt::format("is open along {} edges: volume is not conserved there", report.border_edges));
+  if (report.non_manifold_edges > 0)
+    warn(fmt::format("has {} edges where more than two triangles, or two of opposite orientation, meet", report.non_manifold_edges));
+  if (node.deformable && node.deformable->reach > 0.0 && node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
+    warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices", node.deformable->reach,
+                     built->mesh.mean_edge));
+}
+
+}  // namespace
+
+Findings validate_level(const fs::path& path) {
+  Findings findings;
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".gltf" || extension == ".glb") {
+    const std::optional<SourceDocument> document = open_gltf(path, findings);
+    if (!document) return findings;
+    find_in_extensions(document->json, findings);
+    if (any_error(findings)) return findings;
+  }
+  const Result<Level> level = load_level(path);
+  if (!level) {
+    // load_level puts the file before the pointer.
+    std::string where = level.error().where;
+    if (where.rfind(path.string(), 0) == 0) where.erase(0, std::min(where.size(), path.string().size() + 1));
+    findings.push_back({Severity::kError, where, level.error().what});
+    return findings;
+  }
+  for (const std::string& note : level->notes)
+    if (note.empty() || note[0] != '/') findings.push_back({Severity::kNote, "", note});
+  if (!level->has_pliant())
+    findings.push_back({Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
+  for (std::size_t i = 0; i < level->nodes.size(); ++i) {
+    const LevelNode& node = level->nodes[i];
+    if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable)) continue;
+    const std::string pointer = level->source ? fmt::format("/nodes/{}", level->source->json_node[i]) : node.name;
+    find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer, findings);
+  }
+  // Files that the level names.
+  const fs::path folder = path.parent_path();
+  for (const LevelNode& node : level->nodes)
+    if (node.device && !node.device->file.empty() && !fs::is_regular_file(folder / node.device->file))
+      findings.push_back({Severity::kError, node.name, "names the script " + node.device->file + ", which does not exist"});
+  if (level->environment && !level->environment->panorama.empty()) {
+    std::vector<std::string> notes;
+    const Result<Panorama> panorama = load_panorama(folder / level->environment->panorama, &notes);
+    if (!panorama) findings.push_back({Severity::kError, "PLIANT_environment", panorama.error().message()});
+    for (const std::string& note : notes) findings.push_back({Severity::kNote, "PLIANT_environment", note});
+  }
+  if (any_error(findings)) return findings;
+  if (const Result<World> world = spawn(*level); !world)
+    findings.push_back({Severity::kError, world.error().where, world.error().what});
+  return findings;
+}
+
+}  // namespace pliant
