@@ -1,6 +1,7 @@
 #include "player/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -131,6 +132,10 @@ int parse_and_run(int argc, const char* const* argv) {
   add_not_yet(app, "study", "speed against error (not yet built)", "Example:\n  pliant study all --quick");
   add_not_yet(app, "edit", "the editor (not yet built)", "Example:\n  pliant edit level.gltf");
 
+  const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+  const auto is_asked = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && std::none_of(verbs.begin(), verbs.end(), is_asked))
+    return fail(kUsage, {"arguments", std::string("there is no verb '") + argv[1] + "'; see `pliant --help`"});
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

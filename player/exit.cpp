@@ -16,7 +16,10 @@ std::string one_line(std::string text) {
 }  // namespace
 
 int fail(ExitStatus status, const Error& error) {
-  std::fprintf(stderr, "pliant: error: %s\n", one_line(error.message()).c_str());
+  std::string sentence = one_line(error.message());
+  if (sentence.find("; ") == std::string::npos)  // a finding that is its own cure, to a reader who knows the format
+    sentence += status == kUsage ? "; see `pliant --help`" : "; mend the input: `pliant validate` lists every finding";
+  std::fprintf(stderr, "pliant: error: %s\n", sentence.c_str());
   return status;
 }
 

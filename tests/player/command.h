@@ -98,6 +98,7 @@ class CommandTest : public ::testing::Test {
 // A flat square of side 0.1 m in y = 0, n x n quads, counter-clockwise seen from above.
 inline std::string plate_obj(int n = 40) {
   std::ostringstream obj;
+  obj << "o plate\n";
   for (int z = 0; z <= n; ++z)
     for (int x = 0; x <= n; ++x) obj << "v " << 0.1 * x / n - 0.05 << " 0 " << 0.1 * z / n - 0.05 << '\n';
   for (int z = 0; z < n; ++z)
