@@ -1,5 +1,5 @@
-// The order in which a mesh lies in memory: along a three-dimensional Hilbert curve, so that what is near in space is near
-// in memory and every run of vertices is a compact patch.
+// The order in which a mesh lies in memory: along a three-dimensional Hilbert curve, so that what is near in space is
+// near in memory and every run of vertices is a compact patch.
 //
 // J. Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707 (2004): axes to transposed index, here without
 // branches. 16 bits an axis: a cell is 1/65536 of the longest side, far below any edge that can be touched.

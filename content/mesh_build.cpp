@@ -31,7 +31,8 @@ void lay_out(const Welded& welded, Mesh& mesh) {
   mesh.triangles = welded.triangle;
 }
 
-// The mean of a painted factor over the painted copies of each vertex; 1 where no copy is painted. Empty: painted nowhere.
+// The mean of a painted factor over the painted copies of each vertex; 1 where no copy is painted. Empty: painted
+// nowhere.
 Result<std::vector<float>> paint(const std::string& name, const char* attribute, std::span<const Primitive> primitives,
                                  std::vector<float> Primitive::*factor, const Gathered& gathered, const Welded& welded,
                                  std::size_t padded) {
@@ -44,8 +45,9 @@ Result<std::vector<float>> paint(const std::string& name, const char* attribute,
     count.resize(padded, 0);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]) || values[i] < 0.0f)
-        return Error{"mesh `" + name + "`",
-                     std::string(attribute) + " holds a factor that is negative or not a number; paint it again, from 0 up"};
+        return Error{
+            "mesh `" + name + "`",
+            std::string(attribute) + " holds a factor that is negative or not a number; paint it again, from 0 up"};
       const std::uint32_t v = welded.touch_vertex[gathered.first_vertex[n] + i];
       if (v == kNoVertex) continue;
       sum[v] += static_cast<double>(values[i]);
@@ -76,7 +78,8 @@ Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive>
 
   const Welded welded = weld(*gathered, built.report);
   if (welded.triangle.empty())
-    return Error{"mesh `" + name + "`", "no triangle with an area is left; give it a surface, or remove the mesh from its node"};
+    return Error{"mesh `" + name + "`",
+                 "no triangle with an area is left; give it a surface, or remove the mesh from its node"};
   lay_out(welded, mesh);
   {
     const Corners corners = corners_of(mesh);

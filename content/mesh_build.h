@@ -17,10 +17,11 @@ namespace pliant {
 struct MeshReport {
   std::uint32_t welded_vertices = 0;       // positions that coincided and became one
   std::uint32_t degenerate_triangles = 0;  // zero area or a repeated corner: dropped
-  std::uint32_t duplicate_triangles = 0;   // the same three corners again, in any order: not touched (a reversed one is drawn)
-  std::uint32_t border_edges = 0;          // edges with one triangle
-  std::uint32_t non_manifold_edges = 0;    // edges with three or more, or two that disagree on orientation
-  std::uint32_t cancelled_normals = 0;     // vertices whose faces cancel: they take the largest face's normal
+  std::uint32_t duplicate_triangles =
+      0;                           // the same three corners again, in any order: not touched (a reversed one is drawn)
+  std::uint32_t border_edges = 0;  // edges with one triangle
+  std::uint32_t non_manifold_edges = 0;  // edges with three or more, or two that disagree on orientation
+  std::uint32_t cancelled_normals = 0;   // vertices whose faces cancel: they take the largest face's normal
   bool made_normals = false, made_tangents = false;
 };
 

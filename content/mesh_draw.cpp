@@ -15,9 +15,9 @@ vec3 unit_or(dvec3 v, vec3 otherwise) {
 
 // How directions of the file's mesh frame arrive in the object frame.
 struct Directions {
-  dmat3 tangent;   // the linear part itself
-  dmat3 normal;    // its cofactors, which point outward under a mirroring too
-  float hand;      // -1: mirrors
+  dmat3 tangent;  // the linear part itself
+  dmat3 normal;   // its cofactors, which point outward under a mirroring too
+  float hand;     // -1: mirrors
   explicit Directions(const mat4& to_object) : tangent(dmat4(to_object)) {
     const double determinant = glm::determinant(tangent);
     hand = determinant < 0.0 ? -1.0f : 1.0f;
@@ -32,7 +32,8 @@ auto looks(const DrawVertex& v) {
 }
 
 // What the file says of source vertex `v` of `p`. tangent.w 0: still to be made.
-DrawVertex drawn(const Primitive& p, std::size_t v, std::uint32_t touch_vertex, const Mesh& mesh, const Directions& to) {
+DrawVertex drawn(const Primitive& p, std::size_t v, std::uint32_t touch_vertex, const Mesh& mesh,
+                 const Directions& to) {
   DrawVertex d;
   d.position = mesh.position(touch_vertex);
   d.touch_vertex = touch_vertex;
@@ -97,7 +98,8 @@ DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_o
       if (!shown[source]) continue;
       const auto after = std::upper_bound(gathered.first_vertex.begin(), gathered.first_vertex.end(), source);
       const auto n = static_cast<std::size_t>(after - gathered.first_vertex.begin()) - 1;
-      copies.emplace_back(drawn(primitives[n], source - gathered.first_vertex[n], touch_vertex, mesh, directions), source);
+      copies.emplace_back(drawn(primitives[n], source - gathered.first_vertex[n], touch_vertex, mesh, directions),
+                          source);
     }
     if (copies.size() > 1)
       std::sort(copies.begin(), copies.end(), [](const auto& a, const auto& b) {
@@ -135,7 +137,7 @@ DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_o
 void make_tangents(DrawMesh& draw) {
   const std::size_t original = draw.vertices.size();
   std::vector<dvec3> sum(original, dvec3(0));
-  std::vector<float> hand(original, 0.0f);             // of the triangles that first asked for this vertex
+  std::vector<float> hand(original, 0.0f);               // of the triangles that first asked for this vertex
   std::vector<std::uint32_t> twin(original, kNoVertex);  // the copy of other handedness
   for (std::size_t i = 0; i + 2 < draw.indices.size(); i += 3) {
     std::uint32_t* index = &draw.indices[i];
@@ -145,7 +147,8 @@ void make_tangents(DrawMesh& draw) {
     if (uv_area == 0.0) continue;  // no direction here; the vertex's other triangles decide
     const float side = uv_area < 0.0 ? -1.0f : 1.0f;
     const dvec3 grows_u =
-        ((dvec3(b.position) - dvec3(a.position)) * uc.y - (dvec3(c.position) - dvec3(a.position)) * ub.y) * double(side);
+        ((dvec3(b.position) - dvec3(a.position)) * uc.y - (dvec3(c.position) - dvec3(a.position)) * ub.y) *
+        double(side);
 
     for (int corner = 0; corner < 3; ++corner) {
       std::uint32_t v = index[corner];

@@ -9,8 +9,9 @@ namespace pliant {
 DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
                          const Welded& welded, const Mesh& mesh, MeshReport& report);
 
-// Per-vertex tangents from texture coordinates for the vertices whose tangent.w is 0: the surface's direction of growing
-// u, averaged by corner angle over triangles of one handedness (as MikkTSpace does); a vertex that sees both is split.
+// Per-vertex tangents from texture coordinates for the vertices whose tangent.w is 0: the surface's direction of
+// growing u, averaged by corner angle over triangles of one handedness (as MikkTSpace does); a vertex that sees both is
+// split.
 void make_tangents(DrawMesh& draw);
 
 }  // namespace pliant

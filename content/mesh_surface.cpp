@@ -12,9 +12,9 @@ constexpr std::size_t kGrain = 1 << 12;  // vertices
 
 // A triangle's side as seen from its lower end.
 struct Side {
-  std::uint32_t far;     // the higher vertex
-  std::uint32_t edge;    // 3 * triangle + i, the side from corner i to corner i+1
-  bool outgoing;         // runs from the lower to the higher vertex
+  std::uint32_t far;   // the higher vertex
+  std::uint32_t edge;  // 3 * triangle + i, the side from corner i to corner i+1
+  bool outgoing;       // runs from the lower to the higher vertex
 };
 
 std::uint32_t& across_of(Mesh& mesh, std::uint32_t edge) {

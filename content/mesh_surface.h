@@ -7,7 +7,7 @@ namespace pliant {
 
 // Which triangles stand around a vertex: corner 3*t + i is corner i of triangle t; ascending within a vertex.
 struct Corners {
-  std::vector<std::uint32_t> first;   // vertices + 1
+  std::vector<std::uint32_t> first;  // vertices + 1
   std::vector<std::uint32_t> corner;
 };
 Corners corners_of(const Mesh& mesh);

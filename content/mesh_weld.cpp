@@ -15,7 +15,9 @@ constexpr std::size_t kMostVertices = std::size_t{1} << 28, kMostTriangles = std
 constexpr float kFarthest = 1e9f;  // [m] beyond it, products of lengths leave single precision
 
 // False for NaN too.
-bool reasonable(vec3 p) { return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest; }
+bool reasonable(vec3 p) {
+  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
 
 bool before(vec3 a, vec3 b) {
   if (a.x != b.x) return a.x < b.x;
@@ -50,7 +52,9 @@ uvec3 sorted(uvec3 t) {
 }
 
 // Whether the corners of t stand in the cyclic order of their ascending sort: rotations agree, a reversal differs.
-bool even(uvec3 t) { return (t.x < t.y) + (t.y < t.z) + (t.z < t.x) == 2; }
+bool even(uvec3 t) {
+  return (t.x < t.y) + (t.y < t.z) + (t.z < t.x) == 2;
+}
 
 // Flat: its height over the longest side is below what single precision resolves at the object's scale.
 bool flat(dvec3 a, dvec3 b, dvec3 c, double resolution) {
@@ -161,7 +165,8 @@ void drop_unused(Welded& welded) {
 }  // namespace
 
 Result<Gathered> gather(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object) {
-  const Error malformed{"mesh `" + name + "`", "a triangle names a vertex that does not exist; repair or re-export the file"};
+  const Error malformed{"mesh `" + name + "`",
+                        "a triangle names a vertex that does not exist; repair or re-export the file"};
   std::size_t vertices = 0, triangles = 0;
   for (const Primitive& p : primitives) {
     vertices += p.position.size();

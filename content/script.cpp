@@ -2,18 +2,20 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
+
+#include "content/file_io.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 64u << 20;
+constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
 constexpr std::size_t kMostRows = 4'000'000;
 constexpr std::string_view kPositions = "time_s,x,y,z", kPoses = "time_s,x,y,z,qw,qx,qy,qz";
 
 std::string_view trim(std::string_view s) {
   const std::size_t begin = s.find_first_not_of(" \t\r");
-  return begin == std::string_view::npos ? std::string_view{} : s.substr(begin, s.find_last_not_of(" \t\r") - begin + 1);
+  return begin == std::string_view::npos ? std::string_view{}
+                                         : s.substr(begin, s.find_last_not_of(" \t\r") - begin + 1);
 }
 
 // The next line of `text`, which is shortened by it.
@@ -48,36 +50,34 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
     if (line.empty() || line.front() == '#') continue;
     if (columns == 0) {
       columns = line == kPositions ? 4 : line == kPoses ? 8 : 0;
-      if (columns == 0) return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`; begin the script with one");
+      if (columns == 0)
+        return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`; begin the script with one");
       continue;
     }
     double v[8] = {0, 0, 0, 0, 1, 0, 0, 0};
     if (!parse_row(line, v, columns))
-      return error(columns == 4 ? "this row is not four finite numbers between commas; write time_s,x,y,z"
-                                : "this row is not eight finite numbers between commas; write time_s,x,y,z,qw,qx,qy,qz");
+      return error(columns == 4
+                       ? "this row is not four finite numbers between commas; write time_s,x,y,z"
+                       : "this row is not eight finite numbers between commas; write time_s,x,y,z,qw,qx,qy,qz");
     if (!path.rows.empty() && !(v[0] > path.rows.back().time))
       return error("time does not grow from the row before; sort the rows and remove doubles");
     const dquat rotation(v[4], v[5], v[6], v[7]);
     const double norm = std::hypot(std::hypot(v[4], v[5]), std::hypot(v[6], v[7]));
-    if (!(norm > 1e-6) || !std::isfinite(norm)) return error("the quaternion has no length; write 1,0,0,0 for no rotation");
-    if (path.rows.size() == kMostRows) return error("more than 4,000,000 rows; split the script or sample it more coarsely");
+    if (!(norm > 1e-6) || !std::isfinite(norm))
+      return error("the quaternion has no length; write 1,0,0,0 for no rotation");
+    if (path.rows.size() == kMostRows)
+      return error("more than 4,000,000 rows; split the script or sample it more coarsely");
     path.rows.push_back({v[0], {v[1], v[2], v[3]}, rotation * (1.0 / norm)});
   }
-  if (path.rows.empty()) return Error{where, "holds no rows; write a header `time_s,x,y,z` and at least one row below it"};
+  if (path.rows.empty())
+    return Error{where, "holds no rows; write a header `time_s,x,y,z` and at least one row below it"};
   return path;
 }
 
 Result<Path> load_script(const std::filesystem::path& path) {
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code))
-    return Error{path.string(), "no such script file; check the path, which is relative to the level's folder"};
-  const std::uintmax_t size = std::filesystem::file_size(path, code);
-  if (code || size > kMostBytes) return Error{path.string(), "is larger than 64 MiB; split the script or sample it more coarsely"};
-  std::ifstream file(path, std::ios::binary);
-  std::string text(static_cast<std::size_t>(size), '\0');
-  file.read(text.data(), static_cast<std::streamsize>(size));
-  if (!file) return Error{path.string(), "cannot be read; check its permissions"};
-  return parse_script(text, path.string());
+  const Result<Bytes> bytes = read_file(path, kMostBytes);
+  if (!bytes) return bytes.error();
+  return parse_script({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string());
 }
 
 }  // namespace pliant

@@ -30,8 +30,8 @@ dvec3 direction(dvec3 v, dvec3 avoid) {
   return normalize(axis - avoid * dot(axis, avoid));
 }
 
-// The rigid part of a node's frame, by Gram-Schmidt on its columns: exact where there is only rotation and scale; shear,
-// mirroring and a scale of zero stay in what is left, Pose^-1 * world.
+// The rigid part of a node's frame, by Gram-Schmidt on its columns: exact where there is only rotation and scale;
+// shear, mirroring and a scale of zero stay in what is left, Pose^-1 * world.
 Pose rigid_part(const dmat4& world) {
   const dvec3 x = direction(dvec3(world[0]), dvec3(0));
   const dvec3 along_y(world[1]);
@@ -138,7 +138,8 @@ class Spawner {
   Status surface(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     if (node.mesh < 0) {
-      if (node.deformable) return at(n, "has PLIANT_deformable but no mesh; give the node a mesh, or remove the extension");
+      if (node.deformable)
+        return at(n, "has PLIANT_deformable but no mesh; give the node a mesh, or remove the extension");
       return Done{};
     }
     if (!node.deformable && level_.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty()) return Done{};
@@ -168,7 +169,8 @@ class Spawner {
     progress_.mesh(mesh.name.empty() ? node.name : mesh.name);
     for (const Primitive& p : mesh.primitives) triangles_ += p.index.size() / 3;
     if (triangles_ > kMostTriangles)
-      return at(n, "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
+      return at(
+          n, "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
     Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, to_object);
     if (!built) return at(n, built.error().message());
     if (wanted.touchable)
@@ -184,7 +186,8 @@ class Spawner {
     if (!level_.nodes[n].device) return Done{};
     HapticDevice device = *level_.nodes[n].device;
     if (device.driver == Driver::kScript) {
-      if (device.file.empty()) return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
+      if (device.file.empty())
+        return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
       Result<Path> path = load_script(folder_ / device.file);
       if (!path) return path.error();
       device.path = world_.paths.add(std::move(*path));
@@ -205,8 +208,9 @@ class Spawner {
     }
     const auto found = by_name_.find(node.probe_device);
     if (found == by_name_.end() || !level_.nodes[found->second].device)
-      return at(n, "PLIANT_probe/device names `" + node.probe_device +
-                       "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
+      return at(n,
+                "PLIANT_probe/device names `" + node.probe_device +
+                    "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
     probe.device = entities_[found->second];
     return Done{};
   }
@@ -214,11 +218,11 @@ class Spawner {
   const Level& level_;
   const std::filesystem::path folder_;
   World world_;
-  std::vector<Entity> entities_;                           // of each node; kNoEntity: not in the scene
-  std::vector<dmat4> matrices_;                            // node to world
-  std::unordered_map<std::string, std::size_t> by_name_;   // first node in the scene with this name
-  std::vector<std::vector<Baked>> baked_;                  // of each mesh of the level
-  std::size_t triangles_ = 0;                              // built so far
+  std::vector<Entity> entities_;                          // of each node; kNoEntity: not in the scene
+  std::vector<dmat4> matrices_;                           // node to world
+  std::unordered_map<std::string, std::size_t> by_name_;  // first node in the scene with this name
+  std::vector<std::vector<Baked>> baked_;                 // of each mesh of the level
+  std::size_t triangles_ = 0;                             // built so far
   Progress progress_;
 };
 

@@ -1,4 +1,5 @@
-// Zones: runs of kZoneSize vertices. Along the Hilbert curve they are compact patches; here they get boxes and neighbours.
+// Zones: runs of kZoneSize vertices. Along the Hilbert curve they are compact patches; here they get boxes and
+// neighbours.
 #pragma once
 
 #include "components/mesh.h"

@@ -10,11 +10,16 @@ namespace {
 constexpr double kMargin = 6.0 / 512.0;  // [1] of the square, free around the unfolded lattice
 
 // Sweeps of a level: many where they are cheap and reach far; at the finest only what splitting left uneven remains.
-int sweeps(int n) { return n < 30 ? 60 : 16; }
+int sweeps(int n) {
+  return n < 30 ? 60 : 16;
+}
 
-int sign(int x) { return x < 0 ? -1 : 1; }
+int sign(int x) {
+  return x < 0 ? -1 : 1;
+}
 
-// Where a lattice point lies in the square, as seen from the octant (sx, sy, .): only on the seams does the octant matter.
+// Where a lattice point lies in the square, as seen from the octant (sx, sy, .): only on the seams does the octant
+// matter.
 vec2 unfold(LatticePoint p, int sx, int sy, int n) {
   dvec2 q(p[0], p[1]);
   if (p[2] < 0) q = dvec2(sx * (n - std::abs(p[1])), sy * (n - std::abs(p[0])));
@@ -54,8 +59,8 @@ LatticeSphere lattice(int n) {
   return sphere;
 }
 
-// Tangential smoothing that evens out areas: each vertex moves towards the area-weighted middle of its triangles and back
-// onto the surface.
+// Tangential smoothing that evens out areas: each vertex moves towards the area-weighted middle of its triangles and
+// back onto the surface.
 void relax(LatticeSphere& sphere, const Solid& solid) {
   std::vector<dvec3> sum(sphere.position.size());
   std::vector<double> area(sphere.position.size());
@@ -88,7 +93,8 @@ LatticeSphere refined(const LatticeSphere& coarse, const Solid& solid) {
       (a_rounds_up ? a : b)[i] += sign(p[i]);
       a_rounds_up = false;
     }
-    fine.position[v] = project(solid, 0.5 * (coarse.position[coarse.vertex.at(a)] + coarse.position[coarse.vertex.at(b)]));
+    fine.position[v] =
+        project(solid, 0.5 * (coarse.position[coarse.vertex.at(a)] + coarse.position[coarse.vertex.at(b)]));
   }
   return fine;
 }
@@ -140,7 +146,8 @@ Primitive to_primitive(const LatticeSphere& sphere, const Solid& solid) {
   for (const auto& t : sphere.triangles)
     for (const auto& corner : t) {
       const auto next = static_cast<std::uint32_t>(primitive.position.size());
-      const auto [place, fresh] = known.try_emplace({static_cast<float>(corner.vertex), corner.uv.x, corner.uv.y}, next);
+      const auto [place, fresh] =
+          known.try_emplace({static_cast<float>(corner.vertex), corner.uv.x, corner.uv.y}, next);
       if (fresh) {
         const dvec3 p = sphere.position[corner.vertex];
         primitive.position.emplace_back(p);

@@ -54,13 +54,16 @@ struct NamedStroke {
   Stroke stroke;
 };
 
-// The right lobe from the left, the lobe below it, and the far lobe across the groove's side. From 3.8 s to 5 s all three
-// are down; a and b then slide side by side, within each other's reach.
+// The right lobe from the left, the lobe below it, and the far lobe across the groove's side. From 3.8 s to 5 s all
+// three are down; a and b then slide side by side, within each other's reach.
 std::vector<NamedStroke> organ_strokes() {
   //             radius clearance depth  press     lift
-  const Stroke a{8.0, 0.004, 0.030, 0.008, 0.4, 2.0, 5.2, 6.8, {{-0.075, 0.020, 0.04}, {-0.026, 0.026, 0.06}}, {2.0, 5.2}};
-  const Stroke b{8.0, 0.003, 0.030, 0.007, 1.2, 2.8, 5.4, 7.0, {{-0.066, -0.030, 0.05}, {-0.022, 0.006, 0.06}}, {2.8, 5.2}};
-  const Stroke c{8.0, 0.000, 0.030, 0.006, 2.2, 3.6, 6.2, 7.6, {{0.088, 0.016, 0.02}, {0.050, 0.008, 0.05}}, {3.6, 6.2}};
+  const Stroke a{8.0,       0.004, 0.030, 0.008, 0.4, 2.0, 5.2, 6.8, {{-0.075, 0.020, 0.04}, {-0.026, 0.026, 0.06}},
+                 {2.0, 5.2}};
+  const Stroke b{8.0,       0.003, 0.030, 0.007, 1.2, 2.8, 5.4, 7.0, {{-0.066, -0.030, 0.05}, {-0.022, 0.006, 0.06}},
+                 {2.8, 5.2}};
+  const Stroke c{8.0,       0.000, 0.030, 0.006, 2.2, 3.6, 6.2, 7.6, {{0.088, 0.016, 0.02}, {0.050, 0.008, 0.05}},
+                 {3.6, 6.2}};
   return {{"a", "presses 8 mm deep on the large lobe and slides towards the groove", a},
           {"b", "presses 7 mm deep on the lower lobe and slides up beside the first", b},
           {"c", "presses 6 mm deep on the far lobe and slides inward", c}};
@@ -72,7 +75,8 @@ std::vector<NamedStroke> pad_strokes() {
   a.through = {{0.005, 0.02, -0.016}, {0.065, 0.02, -0.016}, {0.065, 0.02, 0.002},
                {0.005, 0.02, 0.002},  {0.005, 0.02, 0.020},  {0.065, 0.02, 0.020}};
   a.at = {1.3, 3.3, 3.8, 5.8, 6.3, 8.3};
-  const Stroke b{10.0, 0.005, 0.025, 0.004, 1.0, 2.0, 6.0, 7.0, {{-0.060, 0.02, 0.012}, {-0.015, 0.02, 0.012}}, {2.0, 6.0}};
+  const Stroke b{10.0,      0.005, 0.025, 0.004, 1.0, 2.0, 6.0, 7.0, {{-0.060, 0.02, 0.012}, {-0.015, 0.02, 0.012}},
+                 {2.0, 6.0}};
   return {{"a", "sweeps three lines 4 mm deep over the half that hides the hard spot", a},
           {"b", "sweeps one line 4 mm deep over the soft half", b}};
 }

@@ -9,8 +9,8 @@ namespace pliant::generate {
 
 // How finely; the shipped files use the defaults, tests may ask for less.
 struct Detail {
-  int organ_coarse = 10, organ_doublings = 3;  // 8 (10 * 2^3)^2 = 51,200 triangles
-  int pad_coarse = 25, pad_doublings = 1;      // 20,000 triangles
+  int organ_coarse = 10, organ_doublings = 3;                          // 8 (10 * 2^3)^2 = 51,200 triangles
+  int pad_coarse = 25, pad_doublings = 1;                              // 20,000 triangles
   std::uint32_t color_size = 256, normal_size = 512, sky_width = 512;  // [px]
 };
 

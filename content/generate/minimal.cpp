@@ -12,9 +12,9 @@
 namespace pliant::generate {
 namespace {
 
-constexpr std::uint16_t kSquares = 32;                                        // along a side
+constexpr std::uint16_t kSquares = 32;  // along a side
 constexpr std::uint32_t kVertices = (kSquares + 1) * (kSquares + 1), kIndices = 6 * kSquares * kSquares;
-constexpr float kSide = 0.1f;                                                 // [m]
+constexpr float kSide = 0.1f;  // [m]
 
 // {0} vertices, {1} indices, {2} bytes of indices, {3} bytes of positions, {4} all bytes, {5} half a side.
 constexpr const char* kLevel = R"({{
@@ -66,7 +66,9 @@ void append(Bytes& bytes, T value) {
 
 Bytes geometry() {
   Bytes bytes;
-  const auto index = [](std::uint16_t i, std::uint16_t j) { return static_cast<std::uint16_t>(j * (kSquares + 1) + i); };
+  const auto index = [](std::uint16_t i, std::uint16_t j) {
+    return static_cast<std::uint16_t>(j * (kSquares + 1) + i);
+  };
   for (std::uint16_t j = 0; j < kSquares; ++j)
     for (std::uint16_t i = 0; i < kSquares; ++i) {
       const auto i1 = static_cast<std::uint16_t>(i + 1), j1 = static_cast<std::uint16_t>(j + 1);
@@ -90,8 +92,9 @@ Status write_minimal(const std::filesystem::path& folder) {
       fmt::format(kLevel, kVertices, kIndices, index_bytes, position_bytes, index_bytes + position_bytes, kSide / 2);
   const Bytes bytes = geometry();
   const Stroke stroke{4.0, 0.0, 0.02, 0.005, 0.2, 1.2, 2.8, 3.8, {{-0.02, 0, 0.01}, {0.02, 0, -0.01}}, {1.2, 2.8}};
-  Status saved = write_files({{folder / "minimal.bin", bytes},
-                              {folder / "minimal.gltf", {reinterpret_cast<const std::uint8_t*>(json.data()), json.size()}}});
+  Status saved =
+      write_files({{folder / "minimal.bin", bytes},
+                   {folder / "minimal.gltf", {reinterpret_cast<const std::uint8_t*>(json.data()), json.size()}}});
   if (!saved) return saved;
   return save_script(trace([](dvec3 p) { return p.y; }, stroke), "presses 5 mm deep, slides 45 mm and lifts",
                      folder / "minimal.csv");

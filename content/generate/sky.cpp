@@ -16,7 +16,7 @@ dvec3 radiance(dvec3 d) {
   const dvec3 below = glm::mix(ground, horizon * 0.7, std::exp(-7.0 * down));
   const dvec3 backdrop = glm::mix(below, above, glm::smoothstep(-0.03, 0.03, d.y));
   const double c = dot(d, to_sun), away = std::acos(glm::clamp(c, -1.0, 1.0));
-  const double disc = 60.0 * (1.0 - glm::smoothstep(0.05, 0.09, away));           // [rad] soft rim: few texels wide
+  const double disc = 60.0 * (1.0 - glm::smoothstep(0.05, 0.09, away));  // [rad] soft rim: few texels wide
   const double glow = 1.6 * std::exp(-away / 0.22) + 0.35 * std::exp(-away / 0.8);
   return backdrop + dvec3(1.0, 0.93, 0.80) * (disc + glow * glm::smoothstep(-0.2, 0.1, d.y));
 }
@@ -40,12 +40,13 @@ Status save_panorama(const Panorama& panorama, const std::filesystem::path& path
   for (std::size_t i = 0; i < panorama.rgb.size(); i += 3)
     pixels.emplace_back(panorama.rgb[i], panorama.rgb[i + 1], panorama.rgb[i + 2], 1.0f);
   try {
-    Imf::RgbaOutputFile file(path.c_str(), static_cast<int>(panorama.width), static_cast<int>(panorama.height), Imf::WRITE_RGB,
-                             1.0f, Imath::V2f(0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    Imf::RgbaOutputFile file(path.c_str(), static_cast<int>(panorama.width), static_cast<int>(panorama.height),
+                             Imf::WRITE_RGB, 1.0f, Imath::V2f(0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
     file.setFrameBuffer(pixels.data(), 1, panorama.width);
     file.writePixels(static_cast<int>(panorama.height));
   } catch (const std::exception& e) {  // the library's only way to fail
-    return Error{path.string(), std::string("cannot be written (") + e.what() + "); check the folder and its permissions"};
+    return Error{path.string(),
+                 std::string("cannot be written (") + e.what() + "); check the folder and its permissions"};
   }
   return Done{};
 }

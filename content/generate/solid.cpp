@@ -27,7 +27,9 @@ double ellipsoid(dvec3 p, dvec3 center, dvec3 radii) {
 
 }  // namespace
 
-dvec3 normal_at(const Solid& solid, dvec3 p) { return normalize(gradient(solid, p)); }
+dvec3 normal_at(const Solid& solid, dvec3 p) {
+  return normalize(gradient(solid, p));
+}
 
 dvec3 project(const Solid& solid, dvec3 p) {
   for (int i = 0; i < 12; ++i) {

@@ -32,7 +32,8 @@ Path trace(const Solid& solid, const Stroke& stroke) {
   const int rows = static_cast<int>(std::lround(stroke.duration * kRate));
   for (int row = 0; row <= rows; ++row) {
     const double t = row / kRate;
-    const double pressed = smooth_step(stroke.press_from, stroke.press_to, t) - smooth_step(stroke.lift_from, stroke.lift_to, t);
+    const double pressed =
+        smooth_step(stroke.press_from, stroke.press_to, t) - smooth_step(stroke.lift_from, stroke.lift_to, t);
     const dvec3 foot = along(solid, stroke, t);
     const double above = stroke.clearance - (stroke.clearance + stroke.depth) * pressed;
     path.rows.push_back({t, foot + normal_at(solid, foot) * (above + stroke.radius), dquat(1, 0, 0, 0)});

@@ -34,7 +34,9 @@ double octaves(dvec3 p, int count) {
 }
 
 // [m] The bumps, as a height over the surface.
-double bumps(dvec3 p) { return 0.00007 * noise(p / 0.0022) + 0.00016 * noise(p / 0.0050 + 5.0); }
+double bumps(dvec3 p) {
+  return 0.00007 * noise(p / 0.0022) + 0.00016 * noise(p / 0.0050 + 5.0);
+}
 
 // The point of the surface at these texture coordinates.
 dvec3 point_at(const LatticeSphere& sphere, dvec2 uv) {

@@ -108,7 +108,8 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
                            "three_probes_c.csv", "inclusion_a.csv", "inclusion_b.csv"})
     EXPECT_EQ(bytes_of(folder.path / "levels" / name), bytes_of(kShipped / "levels" / name)) << name;
   for (const char* name : {"three_probes.glb", "inclusion.glb"}) {
-    const Result<Level> made = load_level(folder.path / "levels" / name), shipped = load_level(kShipped / "levels" / name);
+    const Result<Level> made = load_level(folder.path / "levels" / name),
+                        shipped = load_level(kShipped / "levels" / name);
     ASSERT_TRUE(made.ok()) << made.error().message();
     ASSERT_TRUE(shipped.ok()) << shipped.error().message();
     ASSERT_EQ(made->meshes.size(), shipped->meshes.size());
@@ -120,7 +121,8 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
       EXPECT_EQ(a.index, b.index) << name;
     }
     ASSERT_EQ(made->images.size(), shipped->images.size());
-    for (std::size_t i = 0; i < made->images.size(); ++i) EXPECT_EQ(made->images[i].rgba, shipped->images[i].rgba) << name;
+    for (std::size_t i = 0; i < made->images.size(); ++i)
+      EXPECT_EQ(made->images[i].rgba, shipped->images[i].rgba) << name;
     ASSERT_EQ(made->nodes.size(), shipped->nodes.size());
     for (std::size_t n = 0; n < made->nodes.size(); ++n) EXPECT_EQ(made->nodes[n].name, shipped->nodes[n].name);
   }
@@ -131,7 +133,8 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
 }
 
 TEST(Generate, EveryShippedLevelSpawnsWithItsProbesAndEveryStrokeReachesTheSurface) {
-  const std::pair<const char*, std::size_t> levels[] = {{"three_probes.glb", 3}, {"inclusion.glb", 2}, {"minimal.gltf", 1}};
+  const std::pair<const char*, std::size_t> levels[] = {
+      {"three_probes.glb", 3}, {"inclusion.glb", 2}, {"minimal.gltf", 1}};
   for (const auto& [name, probes] : levels) {
     const Result<Level> level = load_level(kShipped / "levels" / name);
     ASSERT_TRUE(level.ok()) << level.error().message();
@@ -149,8 +152,9 @@ TEST(Generate, EveryShippedLevelSpawnsWithItsProbesAndEveryStrokeReachesTheSurfa
         for (const PathRow& row : path.rows)
           if (std::lround(row.time * 100.0) % 50 == 0)
             for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
-              nearest = std::min(nearest, dot(row.position - dvec3(mesh.position(v)), dvec3(mesh.normal(v))) - probe.radius +
-                                              10.0 * std::max(0.0, length(row.position - dvec3(mesh.position(v))) - 0.012));
+              nearest =
+                  std::min(nearest, dot(row.position - dvec3(mesh.position(v)), dvec3(mesh.normal(v))) - probe.radius +
+                                        10.0 * std::max(0.0, length(row.position - dvec3(mesh.position(v))) - 0.012));
       }
       EXPECT_LT(nearest, -0.003) << name;
       EXPECT_GT(nearest, -0.012) << name;

@@ -10,9 +10,9 @@
 #include <set>
 
 #include "content/hilbert.h"
-#include "tests/content/mesh_shapes.h"
 #include "runtime/hash.h"
 #include "runtime/parallel.h"
+#include "tests/content/mesh_shapes.h"
 
 namespace pliant {
 namespace {
@@ -51,7 +51,8 @@ void add(Hash& hash, const std::vector<T>& values) {
 std::uint64_t hash_of(const BuiltMesh& built) {
   const Mesh& m = built.mesh;
   Hash hash;
-  for (const auto* v : {&m.px, &m.py, &m.pz, &m.nx, &m.ny, &m.nz, &m.area, &m.stiffness_factor, &m.friction_factor}) add(hash, *v);
+  for (const auto* v : {&m.px, &m.py, &m.pz, &m.nx, &m.ny, &m.nz, &m.area, &m.stiffness_factor, &m.friction_factor})
+    add(hash, *v);
   add(hash, m.triangles);
   add(hash, m.across);
   for (const auto& level : m.tree.levels) add(hash, level);
@@ -170,7 +171,8 @@ TEST(MeshBuild, MinusZeroAndZeroAreOnePosition) {
 }
 
 TEST(MeshBuild, AdjacencyEqualsANaiveMapOnClosedOpenAndBrokenSurfaces) {
-  Primitive fan = sheet(6);  // a third triangle on an inner edge, one with its orientation turned, one hanging on a corner
+  Primitive fan =
+      sheet(6);  // a third triangle on an inner edge, one with its orientation turned, one hanging on a corner
   fan.position.insert(fan.position.end(), {{0.5f, 0.5f, 1.0f}, {2, 2, 2}, {3, 2, 2}});
   fan.uv.resize(fan.position.size());
   for (const std::uint32_t v : {10u, 11u, 49u, 0u, 50u, 51u}) fan.index.push_back(v);
@@ -205,7 +207,8 @@ TEST(MeshBuild, AMirroringFrameKeepsTheSurfaceOutward) {
     p.normal = p.position;
     const BuiltMesh built = build(p, frame);
     EXPECT_GT(signed_volume(built.mesh), 0.0);
-    for (std::uint32_t v = 0; v < built.mesh.vertex_count; ++v) EXPECT_GT(dot(built.mesh.normal(v), built.mesh.position(v)), 0.0f);
+    for (std::uint32_t v = 0; v < built.mesh.vertex_count; ++v)
+      EXPECT_GT(dot(built.mesh.normal(v), built.mesh.position(v)), 0.0f);
     for (const DrawVertex& v : built.draw.vertices) {
       const vec3 exact = normalize(v.position / (scale * scale));  // gradient of the ellipsoid
       EXPECT_LT(length(v.normal - exact), 1e-5f);

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "content/level.h"
-#include "tests/content/mesh_shapes.h"
 #include "content/script.h"
+#include "tests/content/mesh_shapes.h"
 
 namespace pliant {
 namespace {

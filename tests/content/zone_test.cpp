@@ -54,7 +54,8 @@ TEST(Zones, NeighboursAreThoseThatShareATriangleByBruteForce) {
     for (std::uint32_t z = 0; z < mesh.zone_count(); ++z) {
       const auto begin = mesh.zone_neighbours.begin() + mesh.zone_neighbour_first[z];
       const auto end = mesh.zone_neighbours.begin() + mesh.zone_neighbour_first[z + 1];
-      EXPECT_EQ(std::vector<std::uint32_t>(begin, end), std::vector<std::uint32_t>(expected[z].begin(), expected[z].end()));
+      EXPECT_EQ(std::vector<std::uint32_t>(begin, end),
+                std::vector<std::uint32_t>(expected[z].begin(), expected[z].end()));
     }
   }
 }
@@ -79,7 +80,8 @@ TEST(Tree, BoxesHoldAllBelowThemUpToOneRoot) {
     }
     for (std::size_t n = 1; n < levels.size(); ++n) {
       ASSERT_EQ(levels[n].size(), (levels[n - 1].size() + kTreeWidth - 1) / kTreeWidth);
-      for (std::size_t i = 0; i < levels[n - 1].size(); ++i) EXPECT_TRUE(holds(levels[n][i / kTreeWidth], levels[n - 1][i]));
+      for (std::size_t i = 0; i < levels[n - 1].size(); ++i)
+        EXPECT_TRUE(holds(levels[n][i / kTreeWidth], levels[n - 1][i]));
     }
     ASSERT_EQ(levels.back().size(), 1u);
     EXPECT_EQ(levels.back()[0].min, mesh.box.min);
