@@ -1,14 +1,10 @@
 #include "systems/device/devices.h"
 
-#include <cmath>
-
 #include "systems/device/path.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
 namespace {
-
-bool finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // Drivers whose motion is known beforehand are sampled here; the others have written position and sensed_at themselves.
 void sense(const World& world, HapticDevice& device, double time) {
@@ -25,7 +21,7 @@ void read_devices(World& world, Tick tick) {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) sense(world, device, tick.time);
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     const HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-    if (!finite(device.position)) {
+    if (!plausible_position(device.position)) {
       world.dropped |= kDroppedNonFinite;  // the probe stays where it was; safety sends nothing
       probe.velocity = dvec3(0);
       continue;

@@ -31,9 +31,11 @@ dvec3 keep_passive(SafetyState& state, dvec3 force, dvec3 dx) {
 
 }  // namespace
 
+bool plausible_position(dvec3 position) { return finite(position) && length(position) < kFarthest; }
+
 SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now, double dt) {
   SafetyResult result;
-  if (!finite(wanted) || !finite(position)) {
+  if (!finite(wanted) || !plausible_position(position)) {
     result.event = SafetyEvent::kNonFinite;
   } else if (device.status != DeviceStatus::kReady || stale(device, now)) {
     result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;

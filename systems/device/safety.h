@@ -11,6 +11,11 @@ inline constexpr double kEngageForce = 0.2;      // [N] the gate opens once the 
 inline constexpr double kStaleAfter = 0.010;     // [s] a pose older than this counts as lost
 inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
 
+inline constexpr double kFarthest = 1e6;         // [m] a pose farther from the origin is a device's error
+
+// Finite and not absurdly far away: a position that means something.
+bool plausible_position(dvec3 position);
+
 struct SafetyState {
   bool engaged = false;     // gate: closed at start and after every loss, opens on a small computed force
   bool placed = false;      // `position` means something

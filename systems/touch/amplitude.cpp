@@ -1,39 +1,90 @@
 #include "systems/touch/amplitude.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
 namespace pliant {
+namespace {
+
+constexpr int kMaxSweeps = 100;
+constexpr double kTolerance = 1e-7;   // [1] of the largest depth: far below what a float field can show
+constexpr std::size_t kMost = 64;     // contacts: the working memory is on the stack
+
+// One row of a solve: how far the field at contact i falls short of its depth. [m]
+double shortfall(std::span<const double> A, std::span<const double> d, std::span<const double> alpha, std::size_t i) {
+  double r = d[i];
+  for (std::size_t j = 0; j < d.size(); ++j) r -= A[i * d.size() + j] * alpha[j];
+  return r;
+}
+
+double worst_violation(std::span<const double> A, std::span<const double> d, std::span<const double> alpha) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    const double r = shortfall(A, d, alpha, i);
+    worst = std::max({worst, alpha[i] > 0 ? std::abs(r) : r, -alpha[i]});
+  }
+  return worst;
+}
+
+// Sweeps converge slowly where probes almost coincide: solve for the pressing ones directly (Gauss with partial pivoting)
+// and keep the answer if it is the better one.
+void polish(std::span<const double> A, std::span<const double> d, std::span<double> alpha) {
+  const std::size_t n = d.size();
+  std::array<std::size_t, kMost> pressing;
+  std::size_t m = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (alpha[i] > 0) pressing[m++] = i;
+  std::array<double, kMost * kMost> M;
+  std::array<double, kMost> x;
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t j = 0; j < m; ++j) M[i * m + j] = A[pressing[i] * n + pressing[j]];
+    x[i] = d[pressing[i]];
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < m; ++i)
+      if (std::abs(M[i * m + k]) > std::abs(M[pivot * m + k])) pivot = i;
+    if (std::abs(M[pivot * m + k]) < 1e-9) return;  // coincident probes: any split of the amplitude will do
+    for (std::size_t j = 0; j < m; ++j) std::swap(M[k * m + j], M[pivot * m + j]);
+    std::swap(x[k], x[pivot]);
+    for (std::size_t i = k + 1; i < m; ++i) {
+      const double f = M[i * m + k] / M[k * m + k];
+      for (std::size_t j = k; j < m; ++j) M[i * m + j] -= f * M[k * m + j];
+      x[i] -= f * x[k];
+    }
+  }
+  for (std::size_t k = m; k-- > 0;) {
+    for (std::size_t j = k + 1; j < m; ++j) x[k] -= M[k * m + j] * x[j];
+    x[k] /= M[k * m + k];
+  }
+  std::array<double, kMost> candidate{};
+  for (std::size_t i = 0; i < m; ++i) candidate[pressing[i]] = x[i];
+  const std::span<const double> better(candidate.data(), n);
+  if (worst_violation(A, d, better) < worst_violation(A, d, alpha)) std::copy(better.begin(), better.end(), alpha.begin());
+}
+
+}  // namespace
 
 double solve_amplitudes(std::span<const double> A, std::span<const double> d, std::span<double> alpha) {
-  constexpr int kMaxSweeps = 200;
-  constexpr double kTolerance = 1e-7;  // [1] of the largest depth: far below what a float field can show
   const std::size_t n = d.size();
   double size = 0.0;
   for (const double depth : d) size = std::max(size, std::abs(depth));
-  const auto violation = [&](std::size_t i) {  // d_i - (A alpha)_i
-    double r = d[i];
-    for (std::size_t j = 0; j < n; ++j) r -= A[i * n + j] * alpha[j];
-    return r;
-  };
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+  bool converged = false;
+  for (int sweep = 0; sweep < kMaxSweeps && !converged; ++sweep) {
     double change = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double next = std::max(0.0, alpha[i] + violation(i) / A[i * n + i]);
+      const double next = std::max(0.0, alpha[i] + shortfall(A, d, alpha, i) / A[i * n + i]);
       change = std::max(change, std::abs(next - alpha[i]));
       alpha[i] = next;
     }
-    if (change <= kTolerance * size) break;
+    converged = change <= kTolerance * size;
   }
-  double worst = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    // An indefinite A (rims that add up) could let amplitudes run away: never more than ten times the deepest probe.
-    alpha[i] = std::min(alpha[i], 10 * size);
-    const double r = violation(i);
-    worst = std::max(worst, alpha[i] > 0 ? std::abs(r) : std::max(0.0, r));
-  }
-  return worst;
+  if (!converged) polish(A, d, alpha);
+  // An indefinite A (rims that add up) could let amplitudes run away: never more than ten times the deepest probe.
+  for (double& a : alpha) a = std::min(a, 10 * size);
+  return worst_violation(A, d, alpha);
 }
 
 }  // namespace pliant

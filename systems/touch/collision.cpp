@@ -69,7 +69,8 @@ void follow(Contact& contact, const Surface& surface, dvec3 x, double radius) {
   const Tracked tracked = track(surface.mesh, last_place(contact, radius), x);
   contact.older_height = contact.previous_height;
   contact.previous_height = contact.height;
-  if (tracked.left_border) {
+  // Past the rim of an open surface, or so far away that no place on it means anything any more.
+  if (tracked.left_border || tracked.point.distance() > surface.mesh.box.diagonal() + radius) {
     contact.state = ContactState::kFree;
     return;
   }

@@ -1,0 +1,171 @@
+#include "systems/device/safety.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "systems/schedule.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant {
+namespace {
+
+using scenes::Stage;
+
+HapticDevice plain() {
+  HapticDevice d;
+  d.driver = Driver::kExternal;
+  return d;
+}
+
+TEST(Safety, OnlyFiniteClampedSlewLimitedForceLeavesWhateverIsAsked) {
+  SafetyState state;
+  HapticDevice device = plain();
+  std::mt19937 random(2);
+  std::normal_distribution<double> g;
+  const double evil[] = {NAN, INFINITY, -INFINITY, 1e300, -1e30, 0.0, 5e-324};
+  dvec3 last(0), x(0);
+  for (int n = 0; n < 20000; ++n) {
+    dvec3 wanted = 5.0 * dvec3(g(random), g(random), g(random));
+    dvec3 position = x += 1e-4 * dvec3(g(random), g(random), g(random));
+    if (n % 17 == 0) wanted[n % 3] = evil[random() % 7];
+    if (n % 23 == 0) position[n % 3] = evil[random() % 7];
+    device.sensed_at = n * 1e-3;
+    const SafetyResult r = make_safe(state, device, wanted, position, n * 1e-3, 1e-3);
+    ASSERT_TRUE(std::isfinite(length(r.force)));
+    ASSERT_LE(length(r.force), device.max_force * (1 + 1e-12));
+    // A fall to zero on unknown input may be abrupt; a rise never is.
+    if (length(r.force) > length(last)) ASSERT_LE(length(r.force - last), device.max_slew * 1e-3 + device.max_force * 1e-12);
+    last = r.force;
+  }
+}
+
+TEST(Safety, ClampKeepsTheDirection) {
+  SafetyState state;
+  HapticDevice device = plain();
+  device.max_slew = 1e9;
+  make_safe(state, device, dvec3(0), dvec3(0), 0, 1e-3);
+  const dvec3 wanted(3, 40, -5);
+  const SafetyResult r = make_safe(state, device, wanted, {0, -1e-3, 0}, 0, 1e-3);
+  EXPECT_NEAR(length(r.force), device.max_force, 1e-12);
+  EXPECT_NEAR(dot(r.force, wanted) / length(r.force) / length(wanted), 1, 1e-12);
+}
+
+TEST(Safety, NothingLeavesUntilTheComputedForceHasBeenSmall) {
+  SafetyState state;
+  const HapticDevice device = plain();
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(make_safe(state, device, {0, 2, 0}, {0, -0.01, 0}, 0, 1e-3).force, dvec3(0));
+  EXPECT_EQ(make_safe(state, device, {0, 0.1, 0}, {0, -0.01, 0}, 0, 1e-3).force.y, 0.1);
+  EXPECT_GT(make_safe(state, device, {0, 0.5, 0}, {0, -0.011, 0}, 0, 1e-3).force.y, 0.1);
+}
+
+TEST(Safety, LostOrStaleDeviceGetsZeroWithinOneTickAndMustEngageAgain) {
+  for (const bool stale : {false, true}) {
+    Stage stage;
+    Deformable d;
+    d.reach = 0.03;
+    stage.add(scenes::sheet(20, 0.2), d);
+    const Entity probe = stage.add_probe({0, 0.001, 0});
+    stage.prepare();
+    stage.move(probe, {0, -0.005, 0}, 0.1);
+    ASSERT_NEAR(stage.read(probe).normal_force, 1.5, 1e-6);
+    Schedule<World> alone(touch_schedule());
+    Tick tick{1000, 1e-3, stage.time()};
+    if (stale) {
+      tick.time += 0.0101;
+    } else {
+      stage.device(probe).status = DeviceStatus::kLost;
+    }
+    alone.run(stage.world, tick);
+    EXPECT_EQ(stage.read(probe).force, dvec3(0));
+    EXPECT_EQ((stage.world.dropped & kDroppedStale) != 0, stale);
+    stage.device(probe).status = DeviceStatus::kReady;
+    for (int i = 0; i < 10; ++i) {
+      stage.tick();
+      EXPECT_EQ(stage.read(probe).force, dvec3(0)) << "the gate is shut while the computed force is large";
+    }
+    stage.move(probe, {0, 0.001, 0}, 0.1);
+    stage.move(probe, {0, -0.005, 0}, 0.1);
+    EXPECT_NEAR(stage.read(probe).normal_force, 1.5, 1e-6);
+  }
+}
+
+TEST(Safety, PassivityHoldsForAnActiveForceToo) {
+  // A force that always pushes along the motion: an engine, if nothing stopped it.
+  SafetyState state;
+  HapticDevice device = plain();
+  dvec3 x(0), v(0), last(0), last_x(0);
+  double work = 0;
+  std::mt19937 random(4);
+  std::normal_distribution<double> g;
+  for (int n = 0; n < 5000; ++n) {
+    v = 0.95 * v + 0.002 * dvec3(g(random), g(random), g(random));
+    x += 1e-3 * v;
+    device.sensed_at = n * 1e-3;
+    const dvec3 f = make_safe(state, device, 40.0 * v, x, n * 1e-3, 1e-3).force;
+    if (n) work += 0.5 * dot(f + last, x - last_x);
+    last = f, last_x = x;
+    ASSERT_LT(work, 2e-6) << n;  // at most what one unforeseen step can carry
+  }
+}
+
+TEST(Safety, StiffnessLimitBoundsHowFastForceGrowsWithDisplacement) {
+  SafetyState state;
+  HapticDevice device = plain();
+  device.max_stiffness = 400;
+  device.max_slew = 1e9;
+  make_safe(state, device, dvec3(0), dvec3(0), 0, 1e-3);
+  dvec3 last(0);
+  for (int n = 1; n < 100; ++n) {
+    const dvec3 f = make_safe(state, device, {0, 5000 * 1e-5 * n, 0}, {0, -1e-5 * n, 0}, 0, 1e-3).force;
+    ASSERT_LE(f.y - last.y, 400 * 1e-5 * (1 + 1e-9));
+    last = f;
+  }
+  EXPECT_GT(last.y, 0.3);
+}
+
+TEST(Safety, NonFiniteParameterOrPoseNeverReachesTheFieldOrTheHand) {
+  Stage stage;
+  Deformable d;
+  d.reach = 0.03;
+  const Entity sheet = stage.add(scenes::sheet(20, 0.2), d);
+  const Entity probe = stage.add_probe({0, 0.001, 0});
+  stage.prepare();
+  stage.move(probe, {0, -0.004, 0}, 0.1);
+  for (const dvec3 bad : {dvec3(NAN, 0, 0), dvec3(0, INFINITY, 0), dvec3(1e300, -1e300, 1e300)}) {
+    stage.place(probe, bad);
+    stage.wait(0.01);
+    ASSERT_EQ(stage.read(probe).force, dvec3(0));
+    for (const vec4& s : stage.field(sheet).stream) ASSERT_TRUE(std::isfinite(s.x + s.y + s.z + s.w));
+    stage.place(probe, {0, 0.01, 0});
+    stage.wait(0.3);
+  }
+  EXPECT_NE(stage.world.dropped & kDroppedNonFinite, 0u);
+  stage.place(probe, {10, 0.01, 0});
+  stage.tick();
+  stage.place(probe, {0, 0.01, 0});
+  stage.wait(0.1);
+  EXPECT_NE(stage.world.dropped & kDroppedTravel, 0u);
+  stage.move(probe, {0, -0.004, 0}, 0.1);
+  EXPECT_NEAR(stage.read(probe).normal_force, 1.2, 1e-6);
+}
+
+TEST(Safety, AFiftyMillisecondStallIsSurvived) {
+  Stage stage;
+  Deformable d;
+  d.reach = 0.03;
+  stage.add(scenes::sheet(20, 0.2), d);
+  const Entity probe = stage.add_probe({-0.02, 0.001, 0});
+  stage.prepare();
+  stage.move(probe, {-0.02, -0.004, 0}, 0.1);
+  // The hand moved on for 50 ms while nobody looked.
+  stage.place(probe, {0.0, -0.006, 0.01});
+  stage.tick();
+  EXPECT_TRUE(stage.read(probe).in_contact);
+  EXPECT_NEAR(stage.read(probe).depth, 0.006, 1e-9);
+  EXPECT_TRUE(std::isfinite(length(stage.read(probe).force)));
+}
+
+}  // namespace
+}  // namespace pliant
