@@ -1,0 +1,19 @@
+// Recordings: whatever the bytes, whole ticks of sound poses, or one sentence.
+#include "player/recording.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "runtime/assert.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  // The hash is checked last, so that damage elsewhere is met by the checks before it.
+  const auto recording = pliant::parse_recording("recording", std::string(reinterpret_cast<const char*>(data), size));
+  if (!recording) {
+    ASSERT(!recording.error().message().empty());
+    return 0;
+  }
+  ASSERT(recording->poses.size() == recording->ticks.size() * recording->header.probes.size());
+  return 0;
+}
