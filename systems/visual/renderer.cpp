@@ -58,9 +58,7 @@ void Renderer::Parts::draw_scene() {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 
   glEnable(GL_BLEND);
-  glDepthMask(GL_FALSE);
   surfaces.draw_blended();
-  glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
 }
 

@@ -57,6 +57,11 @@ bool encloses_volume(const Mesh& mesh) {
   return mesh.closed && volume > 0;
 }
 
+void draw_part(const DrawPart& part) {
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.index_count), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::size_t{part.first_index} * sizeof(std::uint32_t)));
+}
+
 Box world_box(const std::vector<Vertex>& vertices, const mat4& to_world) {
   Box box;
   for (const Vertex& v : vertices) box.add(vec3(to_world * vec4(v.position, 1)));
@@ -140,9 +145,14 @@ void Surfaces::draw(bool blended) const {
       if (materials_.blends(part.material) != blended) continue;
       materials_.bind(part.material);
       const bool back_is_seen = materials_.double_sided(part.material) && (blended || !item.encloses);
-      (back_is_seen ? glDisable : glEnable)(GL_CULL_FACE);
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.index_count), GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(std::size_t{part.first_index} * sizeof(std::uint32_t)));
+      (back_is_seen && !blended ? glDisable : glEnable)(GL_CULL_FACE);
+      // What blends shows its far side through its near side: back first, and depth keeps the front in order.
+      if (blended && back_is_seen) {
+        glCullFace(GL_FRONT);
+        draw_part(part);
+        glCullFace(GL_BACK);
+      }
+      draw_part(part);
     }
   }
 }

@@ -1,6 +1,7 @@
 // Whole pictures, against what geometry says must be where.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -260,6 +261,33 @@ TEST(Picture, LeavingOutTheBackOfAClosedBodyChangesNothing) {
   EXPECT_LE(changed_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 4);
   for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);  // inside out: its back is all there is to see
   EXPECT_EQ(changed_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 0);
+}
+
+TEST(Picture, ABlendedBodyWithoutTransparencyLooksLikeAnOpaqueOneAndAClearOneLikeNone) {
+  NEEDS_A_CONTEXT();
+  World world = test::sphere(32);
+  DrawMesh& draw = world.draw_meshes[world.registry.get<Drawable>(test::object_of(world)).mesh];
+  // Halves in reverse order, so that the near side is drawn before and after the far one.
+  std::rotate(draw.indices.begin(), draw.indices.begin() + static_cast<std::ptrdiff_t>(draw.indices.size() / 6 * 3),
+              draw.indices.end());
+  draw.parts[0].material = 0;
+  Material& material = world.materials.emplace_back();
+  material.double_sided = true;
+  const Image opaque = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  material.alpha = Material::Alpha::kBlend;
+  const Image blended = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  material.base_color.a = 0.0f;
+  const Image clear = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  world.registry.remove<Drawable>(test::object_of(world));
+  const Image nothing = renderer_for(world)->picture(kFront, kWidth, kHeight);
+
+  // The edge's samples may lie over the far side instead of the background.
+  EXPECT_LT(changed_pixels(opaque, blended), 150);
+  EXPECT_GT(changed_pixels(opaque, nothing), 3000);
+  int seen = 0;  // the light's exposure knows the scene's size, the background's rays the clip planes: to a step of 255
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) seen += difference(clear, nothing, x, y) > 2;
+  EXPECT_EQ(seen, 0);
 }
 
 TEST(Picture, AMaterialsBrokenPictureStopsTheRendererWithItsName) {

@@ -1,4 +1,6 @@
 // Where pictures are taken from, what lights them, and where they go: all without a card.
+#include "systems/visual/viewpoint.h"
+
 #include <gtest/gtest.h>
 #include <stb_image.h>
 
@@ -10,7 +12,6 @@
 #include "systems/visual/environment.h"
 #include "systems/visual/marker_shapes.h"
 #include "systems/visual/png.h"
-#include "systems/visual/viewpoint.h"
 #include "tests/visual/scene.h"
 
 namespace pliant {
