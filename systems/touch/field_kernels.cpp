@@ -91,7 +91,17 @@ vec4 radial_at(const FieldSource& s, vec3 position, vec3 normal) {
 
 constexpr std::uint32_t kLanes = 8;
 
-PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, float (&sums)[7][kLanes]) {
+// Sums of a whole zone in fixed lanes, so that the order of additions is the same on every machine.
+inline __attribute__((always_inline)) double sum_lanes(const float (&values)[kZoneSize]) {
+  float lanes[kLanes] = {};
+  for (std::uint32_t i = 0; i < kZoneSize; i += kLanes)
+    for (std::uint32_t l = 0; l < kLanes; ++l) lanes[l] += values[i + l];
+  double total = 0;
+  for (const float lane : lanes) total += lane;
+  return total;
+}
+
+PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, VolumeSums& sums) {
   const float* __restrict px = mesh.px.data() + begin;
   const float* __restrict py = mesh.py.data() + begin;
   const float* __restrict pz = mesh.pz.data() + begin;
@@ -101,28 +111,33 @@ PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const Field
   const float* __restrict area = mesh.area.data() + begin;
   const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
   const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
-  for (std::uint32_t i = 0; i < kZoneSize; i += kLanes) {
-    for (std::uint32_t l = 0; l < kLanes; ++l) {  // fixed lanes: the order of additions is the same on every machine
-      const std::uint32_t v = i + l;
-      const float dx = px[v] - cx, dy = py[v] - cy, dz = pz[v] - cz;
-      const float r2 = dx * dx + dy * dy + dz * dz;
-      float u = r2 * inv;
-      u = u < 1.0f ? u : 1.0f;
-      float facing = 4.0f * (nx[v] * mx + ny[v] * my + nz[v] * mz);
-      facing = facing < 0.0f ? 0.0f : facing;
-      facing = facing > 1.0f ? 1.0f : facing;
-      const float q = 1.0f - u;
-      const float w = q * q * q * facing;
-      const float aw = area[v] * w, aww = aw * w;
-      sums[0][l] += aw;
-      sums[1][l] += aw * u;
-      sums[2][l] += aww;
-      sums[3][l] += aww * u;
-      sums[4][l] += aww * u * u;
-      sums[5][l] += aw * ((nx[v] - mx) * dx + (ny[v] - my) * dy + (nz[v] - mz) * dz);
-      sums[6][l] += aw * r2;
-    }
+  alignas(32) float S0[kZoneSize], S1[kZoneSize], Q0[kZoneSize], Q1[kZoneSize], Q2[kZoneSize], bend[kZoneSize], spread[kZoneSize];
+  for (std::uint32_t v = 0; v < kZoneSize; ++v) {
+    const float dx = px[v] - cx, dy = py[v] - cy, dz = pz[v] - cz;
+    const float r2 = dx * dx + dy * dy + dz * dz;
+    float u = r2 * inv;
+    u = u < 1.0f ? u : 1.0f;
+    float facing = 4.0f * (nx[v] * mx + ny[v] * my + nz[v] * mz);
+    facing = facing < 0.0f ? 0.0f : facing;
+    facing = facing > 1.0f ? 1.0f : facing;
+    const float q = 1.0f - u;
+    const float w = q * q * q * facing;
+    const float aw = area[v] * w, aww = aw * w;
+    S0[v] = aw;
+    S1[v] = aw * u;
+    Q0[v] = aww;
+    Q1[v] = aww * u;
+    Q2[v] = aww * u * u;
+    bend[v] = aw * ((nx[v] - mx) * dx + (ny[v] - my) * dy + (nz[v] - mz) * dz);
+    spread[v] = aw * r2;
   }
+  sums.S0 += sum_lanes(S0);
+  sums.S1 += sum_lanes(S1);
+  sums.Q0 += sum_lanes(Q0);
+  sums.Q1 += sum_lanes(Q1);
+  sums.Q2 += sum_lanes(Q2);
+  sums.bend += sum_lanes(bend);
+  sums.spread += sum_lanes(spread);
 }
 
 PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh, float vv) {
@@ -182,6 +197,14 @@ PLIANT_KERNEL void largest(const float* __restrict state, const float* __restric
   }
 }
 
+// The largest height of a zone, 0 at least. Lanes 3 and 7 of eight floats are heights.
+PLIANT_KERNEL float highest(const float* __restrict stream) {
+  float best[kLanes] = {};
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes)
+    for (std::uint32_t l = 0; l < kLanes; ++l) best[l] = best[l] > stream[i + l] ? best[l] : stream[i + l];
+  return best[3] > best[7] ? best[3] : best[7];
+}
+
 ZoneRest rest_of(const Motion& motion, const vec4* state, const vec4* rate) {
   float best[kLanes] = {};
   largest(&state->x, &rate->x, static_cast<float>(std::sqrt(motion.mass)), best);
@@ -238,18 +261,7 @@ void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
 }
 
 void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums) {
-  alignas(32) float lanes[7][kLanes] = {};
-  sum_volume(mesh, mesh.zone_begin(zone), source, lanes);
-  double total[7] = {};
-  for (int n = 0; n < 7; ++n)
-    for (const float x : lanes[n]) total[n] += x;
-  sums.S0 += total[0];
-  sums.S1 += total[1];
-  sums.Q0 += total[2];
-  sums.Q1 += total[3];
-  sums.Q2 += total[4];
-  sums.bend += total[5];
-  sums.spread += total[6];
+  sum_volume(mesh, mesh.zone_begin(zone), source, sums);
 }
 
 ZoneRest step_residual(const Motion& motion, HeightField& field, std::uint32_t zone) {
@@ -298,9 +310,7 @@ float compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* 
   } else {
     std::fill(stream, stream + kZoneSize, vec4(0));
   }
-  float peak = 0.0f;
-  for (std::uint32_t i = 0; i < kZoneSize; ++i) peak = std::max(peak, stream[i].w);
-  return peak;
+  return highest(&stream->x);
 }
 
 }  // namespace pliant

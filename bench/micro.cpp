@@ -1,0 +1,158 @@
+// The pieces of a touch tick, and of loading, one by one. Where a piece is an approximation, its error stands beside its
+// time as a counter.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+#include "content/level.h"
+#include "content/mesh_build.h"
+#include "systems/touch/amplitude.h"
+#include "systems/touch/field_kernels.h"
+#include "systems/touch/prepare.h"
+#include "systems/touch/surface_query.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant {
+namespace {
+
+using scenes::Stage;
+
+// The free motion of one zone (128 vertices) under each law.
+void step_zone(benchmark::State& state) {
+  Stage stage;
+  Deformable d;
+  d.reach = 0.03;
+  d.spring = static_cast<SpringLaw>(state.range(0));
+  const Entity surface = stage.add(scenes::sheet(40, 0.2), d);
+  stage.prepare();
+  HeightField& field = stage.field(surface);
+  const Motion m = motion(d, 1e-3);
+  std::vector<vec4> start(kZoneSize, vec4(0.1f, 0.1f, 0.1f, -0.004f));
+  HeightState truth{-0.004, 0};
+  double error = 0;
+  int n = 0;
+  for (auto _ : state) {
+    if (n++ % 50 == 0) {  // begin again before it has died away
+      std::copy(start.begin(), start.end(), field.residual.begin());
+      std::fill_n(field.rate.begin(), kZoneSize, vec4(0));
+      if (!field.arm.empty()) std::fill_n(field.arm.begin(), kZoneSize, vec4(0));
+      truth = {-0.004, 0};
+    }
+    benchmark::DoNotOptimize(step_residual(m, field, 0));
+    truth = m.nonlinear() ? step_restoring(m.law, truth, m.mass, m.damping, 1, 0, m.dt) : step_oscillator(truth, m.mass, m.damping, 1, 0, m.dt);
+    if (d.spring != SpringLaw::kStandardLinearSolid) error = std::max(error, std::abs(field.residual[5].w - truth.height) / 0.004);
+  }
+  state.counters["error"] = error;
+  state.counters["ns_per_vertex"] = benchmark::Counter(kZoneSize * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(step_zone)->Arg(0)->Arg(1)->Arg(2)->Arg(3)->ArgName("law");
+
+// The targets of one zone under each shape.
+void targets(benchmark::State& state) {
+  Stage stage;
+  const Entity surface = stage.add(scenes::sphere(40, 0.1), {});
+  const Mesh& mesh = stage.mesh(surface);
+  FieldSource source;
+  source.center = mesh.position(0);
+  source.normal = mesh.normal(0);
+  source.amplitude = 0.004f;
+  source.inv_reach2 = 1 / (0.05f * 0.05f);
+  source.shape = static_cast<Shape>(state.range(0));
+  source.parameter = source.shape == Shape::kVolume ? 5.0f : source.shape == Shape::kKelvinlet ? 0.01f : 0.04f;
+  ZoneTargets out{};
+  for (auto _ : state) {
+    add_targets(mesh, 0, source, out);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(targets)->DenseRange(0, 5)->ArgName("shape");
+
+void nearest_query(benchmark::State& state) {
+  Stage stage;
+  const Entity surface = stage.add(scenes::sphere(static_cast<int>(state.range(0)), 0.1), {});
+  const Mesh& mesh = stage.mesh(surface);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<dvec3> points;
+  for (int i = 0; i < 1000; ++i) points.push_back((0.1 + 0.004 * unit(random)) * normalize(dvec3(unit(random), unit(random), unit(random))));
+  std::size_t i = 0;
+  double error = 0;
+  for (auto _ : state) {
+    const dvec3 x = points[i++ % points.size()];
+    const SurfacePoint p = nearest(mesh, x, 1);
+    error = std::max(error, std::abs(p.height - (length(x) - 0.1)));  // the sphere itself: what the triangles leave out
+  }
+  state.counters["error_m"] = error;
+}
+BENCHMARK(nearest_query)->Arg(41)->Arg(130)->Arg(409)->ArgName("n");
+
+void track_along(benchmark::State& state) {
+  Stage stage;
+  const Entity surface = stage.add(scenes::sphere(static_cast<int>(state.range(0)), 0.1), {});
+  const Mesh& mesh = stage.mesh(surface);
+  SurfacePoint p = nearest(mesh, {0, 0.098, 0}, 1);
+  double a = 0, error = 0;
+  for (auto _ : state) {
+    a += 0.3 * mesh.mean_edge / 0.1;
+    const dvec3 x = 0.098 * normalize(dvec3(std::sin(a), std::cos(a), 0.3 * std::sin(0.31 * a)));
+    p = track(mesh, p, x).point;
+    error = std::max(error, std::abs(p.height + 0.002));
+  }
+  state.counters["error_m"] = error;
+}
+BENCHMARK(track_along)->Arg(41)->Arg(409)->ArgName("n");
+
+void amplitudes(benchmark::State& state) {
+  const std::size_t n = static_cast<std::size_t>(state.range(0));
+  std::vector<double> A(n * n), d(n), alpha(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    d[i] = 0.004 + 0.0003 * static_cast<double>(i % 5);
+    for (std::size_t j = 0; j < n; ++j) A[i * n + j] = i == j ? 1.0 : 0.3 * std::exp(-0.5 * std::abs(double(i) - double(j)));
+  }
+  double violation = 0;
+  for (auto _ : state) {
+    std::fill(alpha.begin(), alpha.end(), 0.0);
+    violation = solve_amplitudes(A, d, alpha);
+  }
+  state.counters["violation_m"] = violation;
+}
+BENCHMARK(amplitudes)->Arg(2)->Arg(4)->Arg(16)->ArgName("contacts");
+
+// A GLB of about a million triangles from the file to ready for touch: load, spawn, prepare.
+void load_million(benchmark::State& state) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "pliant_bench_million.glb";
+  Level level;
+  level.name = "million";
+  level.meshes.push_back({"ball", {scenes::sphere(289, 0.1)}});
+  LevelNode node;
+  node.name = "ball";
+  node.mesh = 0;
+  node.deformable = Deformable{};
+  level.nodes.push_back(node);
+  if (Status saved = save_level(level, file); !saved) {
+    state.SkipWithError(saved.error().message().c_str());
+    return;
+  }
+  double bytes = 0, triangles = 0;
+  for (auto _ : state) {
+    Result<Level> loaded = load_level(file);
+    Result<World> world = spawn(*loaded);
+    if (!prepare_touch(*world)) state.SkipWithError("not touchable");
+    for (auto [entity, d] : world->registry.view<Deformable>()) {
+      const Mesh& mesh = world->meshes[d.mesh];
+      triangles = static_cast<double>(mesh.triangles.size());
+      bytes = static_cast<double>(touch_bytes(mesh, world->fields[d.field])) / mesh.vertex_count;
+    }
+  }
+  state.counters["triangles"] = triangles;
+  state.counters["touch_bytes_per_vertex"] = bytes;
+  std::filesystem::remove(file);
+}
+BENCHMARK(load_million)->Unit(benchmark::kMillisecond)->Iterations(3);
+
+}  // namespace
+}  // namespace pliant
+
+BENCHMARK_MAIN();

@@ -1,0 +1,185 @@
+// What one touch tick costs on meshes of different sizes with the same number of awake vertices, the step with everything
+// awake, and how far the single-precision field is from a double-precision reference: time and error, side by side.
+//   bench_touch_tick [--large] [--out FILE.json]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "content/mesh_build.h"
+#include "runtime/clock.h"
+#include "systems/touch/field_kernels.h"
+#include "systems/touch/prepare.h"
+#include "systems/touch/touch_state.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant {
+namespace {
+
+using scenes::Stage;
+
+struct Row {
+  std::uint32_t vertices = 0, awake = 0;
+  double p50 = 0, p99 = 0, max = 0;  // [us]
+  double bytes = 0;                  // touch state per vertex
+  double prepare_s = 0;              // weld, order, zones, tree, fields
+  double error = 0;                  // [1] of the amplitude, largest over awake vertices
+};
+
+double percentile(std::vector<double>& sorted, double q) {
+  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(q * static_cast<double>(sorted.size())))];
+}
+
+// The target of the volume-preserving shape in double precision, with its own sum for c.
+double field_error(Stage& stage, Entity surface, Entity probe) {
+  const Mesh& mesh = stage.mesh(surface);
+  const Contact& contact = stage.contact(probe);
+  const Deformable& d = stage.world.registry.get<Deformable>(surface);
+  const auto facing = [&](std::uint32_t v) { return std::clamp(4 * dot(dvec3(mesh.normal(v)), contact.normal), 0.0, 1.0); };
+  double S0 = 0, S1 = 0, Q0 = 0, Q1 = 0, Q2 = 0, bend = 0, spread = 0;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
+    const double u = dot(x, x) / (d.reach * d.reach);
+    if (u >= 1) continue;
+    const double w = std::pow(1 - u, 3) * facing(v), A = mesh.area[v];
+    S0 += A * w, S1 += A * w * u, Q0 += A * w * w, Q1 += A * w * w * u, Q2 += A * w * w * u * u;
+    bend += A * w * dot(dvec3(mesh.normal(v)) - contact.normal, x), spread += A * w * dot(x, x);
+  }
+  const double aH = -contact.height * bend / spread;
+  double c = S0 / S1;
+  for (int i = 0; i < 20; ++i) c -= (S0 - c * S1 - aH * (Q0 - 2 * c * Q1 + c * c * Q2)) / (-S1 + aH * (2 * Q1 - 2 * c * Q2));
+  const auto f = [&](std::uint32_t v) {
+    const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
+    const double u = std::min(1.0, dot(x, x) / (d.reach * d.reach));
+    return std::pow(1 - u, 3) * (1 - c * u) * facing(v);
+  };
+  const uvec3 t = mesh.triangles[contact.triangle];
+  const double amplitude = -contact.height / (contact.barycentric.x * f(t.x) + contact.barycentric.y * f(t.y) + contact.barycentric.z * f(t.z));
+  double worst = 0;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+    worst = std::max(worst, std::abs(stage.field(surface).stream[v].w - stage.field(surface).residual[v].w + amplitude * f(v)));
+  return worst / amplitude;
+}
+
+Row measure(int n, std::uint32_t wanted_awake) {
+  Row row;
+  Stage stage;
+  Deformable d;
+  const double radius = 0.1;
+  const std::uint32_t vertices = 6u * static_cast<std::uint32_t>(n) * static_cast<std::uint32_t>(n) + 2;
+  // Zones overhang the disc, so the disc itself holds fewer than the awake vertices wanted.
+  d.reach = 2 * radius * std::sqrt(0.36 * wanted_awake / vertices);
+  const auto begin = std::chrono::steady_clock::now();
+  const Entity surface = stage.add(scenes::sphere(n, radius), d);
+  const Entity probe = stage.add_probe({0, radius + 0.001, 0});
+  stage.prepare();
+  row.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double depth = 0.1 * d.reach, edge = stage.mesh(surface).mean_edge;
+  stage.tick();
+  std::vector<double> times;
+  double awake = 0;
+  constexpr int kTicks = 20000;
+  for (int i = 0; i < kTicks; ++i) {
+    // About a third of an edge a tick, along a curve that visits fresh places.
+    const double a = 0.33 * edge / radius * i, b = 0.3 * std::sin(0.37 * a);
+    const dvec3 direction = normalize(dvec3(std::sin(a), std::cos(a), b));
+    stage.place(probe, direction * (radius - depth));
+    for (auto [entity, device] : stage.world.registry.view<HapticDevice>()) device.sensed_at = stage.time();
+    const std::uint64_t t0 = now_ns();
+    stage.tick();
+    times.push_back(static_cast<double>(now_ns() - t0) * 1e-3);
+    awake += stage.field(surface).awake_vertices;
+  }
+  row.error = field_error(stage, surface, probe);
+  times.erase(times.begin(), times.begin() + kTicks / 20);
+  std::sort(times.begin(), times.end());
+  row.vertices = stage.mesh(surface).vertex_count;
+  row.awake = static_cast<std::uint32_t>(awake / kTicks);
+  row.p50 = percentile(times, 0.5);
+  row.p99 = percentile(times, 0.99);
+  row.max = times.back();
+  row.bytes = static_cast<double>(touch_bytes(stage.mesh(surface), stage.field(surface))) / row.vertices;
+  return row;
+}
+
+struct AllAwake {
+  std::uint32_t vertices = 0;
+  double step_ms = 0, copy_ms = 0;  // median; the copy moves as many bytes as the step reads and writes
+};
+
+AllAwake measure_all_awake(int n) {
+  Stage stage;
+  Deformable d;
+  d.reach = 0.01;
+  const Entity surface = stage.add(scenes::sphere(n, 0.1), d);
+  stage.prepare();
+  HeightField& field = stage.field(surface);
+  const Motion m = motion(d, 1e-3);
+  const std::uint32_t zones = stage.mesh(surface).zone_count();
+  for (vec4& r : field.residual) r = vec4(1e-3f);
+  // A step reads residual and rate and writes residual, rate and stream: 5 x 16 bytes a vertex. A plain copy of the same
+  // bytes reads 2.5 x 16 and writes 2.5 x 16.
+  std::vector<char> from(field.residual.size() * 40, 1), to(from.size());
+  AllAwake out;
+  out.vertices = stage.mesh(surface).vertex_count;
+  std::vector<double> step, copy;
+  for (int i = 0; i < 60; ++i) {
+    std::uint64_t t0 = now_ns();
+    for (std::uint32_t zone = 0; zone < zones; ++zone) {
+      const ZoneRest rest = step_residual(m, field, zone);
+      if (rest.height >= 0) compose_stream(field, zone, nullptr, true);
+    }
+    step.push_back(static_cast<double>(now_ns() - t0) * 1e-6);
+    t0 = now_ns();
+    std::memcpy(to.data(), from.data(), from.size());
+    copy.push_back(static_cast<double>(now_ns() - t0) * 1e-6);
+    from[static_cast<std::size_t>(i)] = to[static_cast<std::size_t>(i) + 1];
+  }
+  std::sort(step.begin(), step.end());
+  std::sort(copy.begin(), copy.end());
+  out.step_ms = step[step.size() / 2];
+  out.copy_ms = copy[copy.size() / 2];
+  return out;
+}
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  using namespace pliant;
+  bool large = false;
+  std::string out;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]) == "--large") large = true;
+    if (std::string(argv[i]) == "--out" && i + 1 < argc) out = argv[++i];
+  }
+  fmt::print("One touch tick, probe sliding, ~2,000 awake vertices\n");
+  fmt::print("{:>10} {:>7} {:>9} {:>9} {:>9} {:>10} {:>10} {:>12}\n", "vertices", "awake", "p50 us", "p99 us", "max us", "bytes/vtx", "ready s",
+             "error/ampl.");
+  std::vector<int> sizes{41, 130, 409};
+  if (large) sizes.push_back(1291);
+  std::string json = "{\n  \"tick\": [";
+  double first = 0, at_1e6 = 0;
+  for (const int n : sizes) {
+    const Row r = measure(n, 2000);
+    if (first == 0) first = r.p50;
+    if (n == 409) at_1e6 = r.p50;
+    fmt::print("{:>10} {:>7} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.0f} {:>10.2f} {:>12.1e}\n", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes,
+               r.prepare_s, r.error);
+    json += fmt::format("{}\n    {{\"vertices\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, \"max_us\": {:.1f}, "
+                        "\"bytes_per_vertex\": {:.1f}, \"ready_s\": {:.3f}, \"error_of_amplitude\": {:.3e}}}",
+                        n == 41 ? "" : ",", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes, r.prepare_s, r.error);
+  }
+  const AllAwake all = measure_all_awake(409);
+  fmt::print("\ntick at 1e6 / tick at 1e4: {:.2f}\nall awake, {} vertices: {:.2f} ms a step, {:.2f} ms a copy of the same bytes, ratio {:.2f}\n",
+             at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
+  json += fmt::format("\n  ],\n  \"ratio_1e6_to_1e4\": {:.3f},\n  \"all_awake\": {{\"vertices\": {}, \"step_ms\": {:.3f}, \"copy_ms\": {:.3f}, "
+                      "\"ratio\": {:.3f}}}\n}}\n",
+                      at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
+  if (!out.empty()) std::ofstream(out) << json;
+}
