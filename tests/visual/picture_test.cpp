@@ -267,16 +267,20 @@ TEST(Picture, ABlendedBodyWithoutTransparencyLooksLikeAnOpaqueOneAndAClearOneLik
   NEEDS_A_CONTEXT();
   World world = test::sphere(32);
   DrawMesh& draw = world.draw_meshes[world.registry.get<Drawable>(test::object_of(world)).mesh];
-  // Halves in reverse order, so that the near side is drawn before and after the far one.
-  std::rotate(draw.indices.begin(), draw.indices.begin() + static_cast<std::ptrdiff_t>(draw.indices.size() / 6 * 3),
-              draw.indices.end());
-  draw.parts[0].material = 0;
-  Material& material = world.materials.emplace_back();
-  material.double_sided = true;
+  // A glowing core, drawn after the shell that hides it.
+  const std::uint32_t count = static_cast<std::uint32_t>(draw.vertices.size());
+  const std::uint32_t shell = static_cast<std::uint32_t>(draw.indices.size());
+  for (std::uint32_t i = 0; i < count; ++i) draw.vertices.push_back(draw.vertices[i]);
+  for (std::uint32_t i = count; i < 2 * count; ++i) draw.vertices[i].position *= 0.5f;
+  for (std::uint32_t i = 0; i < shell; ++i) draw.indices.push_back(count + draw.indices[i]);
+  draw.parts = {{0, shell, 0}, {shell, shell, 1}};
+  world.materials.resize(2);
+  for (Material& m : world.materials) m.double_sided = true;
+  world.materials[1].emissive = {1, 0, 0};
   const Image opaque = renderer_for(world)->picture(kFront, kWidth, kHeight);
-  material.alpha = Material::Alpha::kBlend;
+  for (Material& m : world.materials) m.alpha = Material::Alpha::kBlend;
   const Image blended = renderer_for(world)->picture(kFront, kWidth, kHeight);
-  material.base_color.a = 0.0f;
+  for (Material& m : world.materials) m.base_color.a = 0.0f;
   const Image clear = renderer_for(world)->picture(kFront, kWidth, kHeight);
   world.registry.remove<Drawable>(test::object_of(world));
   const Image nothing = renderer_for(world)->picture(kFront, kWidth, kHeight);
