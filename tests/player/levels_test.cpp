@@ -4,34 +4,37 @@
 namespace pliant::testing {
 namespace {
 
-std::vector<fs::path> files_in(const fs::path& folder) {
-  std::vector<fs::path> found;
+const fs::path kLevels = fs::path(PLIANT_SOURCE_DIR) / "content" / "levels";
+const fs::path kOrgans = fs::path(PLIANT_CORPUS_DIR) / "meshes-valid" / "hra";
+
+// Names of the glTF files in a folder, in order; one that is absent where there are none.
+std::vector<std::string> files_in(const fs::path& folder) {
+  std::vector<std::string> found;
   std::error_code absent;
   for (const auto& entry : fs::directory_iterator(folder, absent))
-    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") found.push_back(entry.path());
+    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") found.push_back(entry.path().filename().string());
   std::sort(found.begin(), found.end());
+  if (found.empty()) found.push_back("absent.glb");
   return found;
 }
 
-std::vector<fs::path> or_placeholder(std::vector<fs::path> files) {
-  if (files.empty()) files.push_back("absent.glb");
-  return files;
-}
-
-std::string test_name(const ::testing::TestParamInfo<fs::path>& info) {
-  std::string name = info.param.stem().string();
+std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = fs::path(info.param).stem().string();
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return name;
 }
 
-class ShippedLevel : public CommandTest, public ::testing::WithParamInterface<fs::path> {};
+class ShippedLevel : public CommandTest, public ::testing::WithParamInterface<std::string> {
+ protected:
+  const std::string file = (kLevels / GetParam()).string();
+};
 
 TEST_P(ShippedLevel, RunsAndEveryProbeTouchesWithoutGettingEnergy) {
-  const Said said = pliant({"run", GetParam().string(), "--frames", "0", "--out", "out"});
+  const Said said = pliant({"run", file, "--frames", "0", "--out", "out"});
   ASSERT_EQ(said.status, 0) << said.err;
   const Json json = report("out");
-  EXPECT_EQ(json["level"], GetParam().stem().string());
+  EXPECT_EQ(json["level"], fs::path(file).stem().string());
   EXPECT_EQ(json["overruns"], 0);
   EXPECT_EQ(json["dropped"], Json::array()) << "a level that ships has nothing to explain";
   ASSERT_FALSE(json["probes"].empty());
@@ -40,15 +43,15 @@ TEST_P(ShippedLevel, RunsAndEveryProbeTouchesWithoutGettingEnergy) {
     EXPECT_GT(probe["max_force_N"], 0.0) << probe;
     EXPECT_LE(probe["net_work_J"], 1e-9) << probe;
   }
-  const Said again = pliant({"run", GetParam().string(), "--frames", "0", "--out", "again", "--threads", "1"});
+  const Said again = pliant({"run", file, "--frames", "0", "--out", "again", "--threads", "1"});
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(report("again")["hash"], json["hash"]);
 }
 
 TEST_P(ShippedLevel, IsValidAndCanBeTouched) {
-  const Said valid = pliant({"validate", GetParam().string()});
+  const Said valid = pliant({"validate", file});
   EXPECT_EQ(valid.status, 0) << valid.out << valid.err;
-  const Said inspected = pliant({"inspect", GetParam().string(), "--json"});
+  const Said inspected = pliant({"inspect", file, "--json"});
   ASSERT_EQ(inspected.status, 0) << inspected.err;
   const Json json = Json::parse(inspected.out);
   EXPECT_EQ(json["touchable"], true);
@@ -58,19 +61,19 @@ TEST_P(ShippedLevel, IsValidAndCanBeTouched) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, ShippedLevel,
-                         ::testing::ValuesIn(or_placeholder(files_in(fs::path(PLIANT_SOURCE_DIR) / "content" / "levels"))),
-                         test_name);
+                         ::testing::ValuesIn(files_in(kLevels)), test_name);
 
-class Organ : public CommandTest, public ::testing::WithParamInterface<fs::path> {
+class Organ : public CommandTest, public ::testing::WithParamInterface<std::string> {
  protected:
+  const std::string file = (kOrgans / GetParam()).string();
   void SetUp() override {
     CommandTest::SetUp();
-    if (!fs::exists(GetParam())) GTEST_SKIP() << "the corpus is not beside the repository";
+    if (!fs::exists(file)) GTEST_SKIP() << "the corpus is not beside the repository";
   }
 };
 
 TEST_P(Organ, IsTouchedByAnOrbitingProbe) {
-  const Said said = pliant({"run", GetParam().string(), "--probe", "p=orbit", "--frames", "0", "--seconds", "4", "--out", "out"});
+  const Said said = pliant({"run", file, "--probe", "p=orbit", "--frames", "0", "--seconds", "4", "--out", "out"});
   ASSERT_EQ(said.status, 0) << said.err;
   const Json json = report("out");
   EXPECT_EQ(json["ticks"], 4000);
@@ -81,7 +84,7 @@ TEST_P(Organ, IsTouchedByAnOrbitingProbe) {
 }
 
 TEST_P(Organ, IsInspected) {
-  const Said said = pliant({"inspect", GetParam().string(), "--json"});
+  const Said said = pliant({"inspect", file, "--json"});
   ASSERT_EQ(said.status, 0) << said.err;
   const Json json = Json::parse(said.out);
   EXPECT_EQ(json["touchable"], true);
@@ -90,8 +93,7 @@ TEST_P(Organ, IsInspected) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Corpus, Organ,
-                         ::testing::ValuesIn(or_placeholder(files_in(fs::path(PLIANT_CORPUS_DIR) / "meshes-valid" / "hra"))),
-                         test_name);
+                         ::testing::ValuesIn(files_in(kOrgans)), test_name);
 
 }  // namespace
 }  // namespace pliant::testing
