@@ -172,6 +172,7 @@ std::optional<DataUri> parse_data_uri(const std::string& uri) {
   return data;
 }
 bool is_data_uri(const std::string& uri) { return uri.rfind("data:", 0) == 0; }
+bool is_remote(const std::string& uri) { return uri.rfind("http://", 0) == 0 || uri.rfind("https://", 0) == 0; }
 
 // The bytes that a buffer's or picture's URI stands for.
 std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, const std::string& pointer,
@@ -201,6 +202,11 @@ void resolve_buffers(SourceDocument& document, const Container& container, Findi
     const std::string pointer = fmt::format("/buffers/{}", i);
     const std::uint64_t length = buffers[i]["byteLength"].get<std::uint64_t>();
     Bytes bytes;
+    if (is_remote(value_of<std::string>(buffers[i], "uri", ""))) {
+      warning(findings, pointer, "lies on another machine and is not fetched; download it beside the level");
+      document.buffers.emplace_back();
+      continue;
+    }
     if (buffers[i].contains("uri")) {
       std::optional<DataUri> data =
           fetch(buffers[i]["uri"].get_ref<const std::string&>(), document.folder, pointer + "/uri", findings);
@@ -239,7 +245,17 @@ void resolve_images(SourceDocument& document, Findings& findings) {
       const std::string& uri = image["uri"].get_ref<const std::string&>();
       std::string extension = fs::path(uri.substr(0, 4096)).extension().string();
       std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-      foreign = !is_data_uri(uri) && (extension == ".webp" || extension == ".ktx2" || extension == ".dds");
+      foreign = is_remote(uri) || (!is_data_uri(uri) && (extension == ".webp" || extension == ".ktx2" || extension == ".dds"));
+      // A surface can be touched without its picture: a missing one is only told of.
+      if (!foreign && !is_data_uri(uri)) {
+        const Result<fs::path> path = confined_path(document.folder, uri);
+        std::error_code ignored;
+        if (path && !fs::exists(*path, ignored)) {
+          warning(findings, pointer + "/uri", "names " + uri.substr(0, 100) + ", which does not exist; shown as plain white");
+          document.images.emplace_back();
+          continue;
+        }
+      }
       if (!foreign) {
         std::optional<DataUri> data = fetch(uri, document.folder, pointer + "/uri", findings);
         if (!data) return;

@@ -139,6 +139,10 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     const std::size_t position = attributes["POSITION"].get<std::size_t>();
     source.vertices = document_.json["accessors"][position]["count"].get<std::size_t>();
     if (document_.json["accessors"][position].contains("bufferView") && !has_data(document_, position)) {
+      const std::size_t view = document_.json["accessors"][position]["bufferView"].get<std::size_t>();
+      const std::size_t buffer = document_.json["bufferViews"][view]["buffer"].get<std::size_t>();
+      if (document_.json["buffers"][buffer].contains("uri"))
+        return Error{fmt::format("/buffers/{}/uri", buffer), "lies on another machine and is not fetched; download it beside the level"};
       notes_.insert("primitives whose buffer has no data are left out");
       return out;
     }

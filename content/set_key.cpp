@@ -64,7 +64,8 @@ Status set_key(Level& level, const std::string& assignment) {
   for (const Key& each : extension->keys) keys.push_back(each.name);
   const Key* key = find_key(*extension, it.key);
   if (!key) return Error{where, "names '" + it.key + "', which is no key of PLIANT_" + it.extension + suggestion(it.key, keys)};
-  if (key->type == KeyType::kText || key->type == KeyType::kNode) it.value = assignment.substr(equals + 1);
+  if (key->type == KeyType::kText || key->type == KeyType::kNode || key->type == KeyType::kChoice)
+    it.value = assignment.substr(equals + 1);
   const std::string wrong = check_value(*key, it.value);
   if (!wrong.empty()) return Error{where, it.key + " " + wrong};
 

@@ -1,0 +1,167 @@
+// The PLIANT_* extensions: reading, refusing, --set, and the files in docs/ that are made from the same table.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "content/extensions.h"
+#include "tests/content/gltf_builder.h"
+
+namespace pliant::test {
+namespace {
+
+const std::string kDocs = PLIANT_SOURCE_DIR "/docs/";
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+// A square with these PLIANT extensions on its node.
+Gltf with(const Json& extensions) {
+  Gltf gltf;
+  gltf.primitive({{"POSITION", gltf.positions(kSquare)}})["mode"] = 5;
+  gltf.json["nodes"][0]["extensions"] = extensions;
+  for (const auto& [name, value] : extensions.items()) gltf.json["extensionsUsed"].push_back(name);
+  return gltf;
+}
+Gltf deformable(const Json& keys) { return with({{"PLIANT_deformable", keys}}); }
+std::string set(Level& level, const char* assignment) {
+  const Status status = set_key(level, assignment);
+  return status ? "" : status.error().message();
+}
+
+TEST(Extension, EveryKeyOfADeformableIsRead) {
+  const Result<Level> level = deformable({{"spring", "sls"}, {"stiffness", 120}, {"cubic", 5e6}, {"stiffening", 80.5},
+                                          {"relaxation", {{"stiffness", 90}, {"time", 0.25}}}, {"damping_ratio", 0.7},
+                                          {"settling_time", 0.04}, {"contact_damping", "material"}, {"response", "lag"},
+                                          {"shape", "kelvinlet"}, {"reach", 0.03}, {"volume", 0.5}, {"distance", "surface"},
+                                          {"friction_static", 0.6}, {"friction_sliding", 0.2}}).load();
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  const Deformable& it = *level->nodes[0].deformable;
+  EXPECT_EQ(it.spring, SpringLaw::kStandardLinearSolid);
+  EXPECT_EQ(it.stiffness, 120.0);
+  EXPECT_EQ(it.cubic, 5e6);
+  EXPECT_EQ(it.stiffening, 80.5);
+  EXPECT_EQ(it.relaxation_stiffness, 90.0);
+  EXPECT_EQ(it.relaxation_time, 0.25);
+  EXPECT_EQ(it.damping_ratio, 0.7);
+  EXPECT_EQ(it.settling_time, 0.04);
+  EXPECT_TRUE(it.contact_damping_material);
+  EXPECT_EQ(it.response, Response::kLag);
+  EXPECT_EQ(it.shape, Shape::kKelvinlet);
+  EXPECT_EQ(it.distance, Distance::kSurface);
+  EXPECT_EQ(it.reach, 0.03);
+  EXPECT_EQ(it.volume, 0.5);
+  EXPECT_EQ(it.friction_static, 0.6);
+  EXPECT_EQ(it.friction_sliding, 0.2);
+}
+
+TEST(Extension, YoungsModulusBecomesTheStiffnessOfAPointContact) {
+  // methods.md, section 4: liver of 5.4 kPa, a = 4 mm, nu = 0.5: k = 2 E/(1-nu^2) a = 57.6 N/m.
+  const Result<Level> liver = deformable({{"young", 5400}, {"poisson", 0.5}}).load();
+  ASSERT_TRUE(liver.ok());
+  EXPECT_DOUBLE_EQ(liver->nodes[0].deformable->stiffness, 57.6);
+  EXPECT_DOUBLE_EQ(calibrated_stiffness(5400, 0.5, 0.002), 28.8);  // a layer of 2 mm lends its thickness
+  EXPECT_DOUBLE_EQ(calibrated_stiffness(5400, 0.5, 0.100), 57.6);
+  EXPECT_NE(deformable({{"young", 5400}, {"stiffness", 300}}).refusal().find("both young and stiffness"), std::string::npos);
+}
+
+TEST(Extension, WhatIsWrongIsNamedWithWhatWouldBeRight) {
+  const auto expect = [](const Json& keys, std::vector<const char*> parts) {
+    const std::string refusal = deformable(keys).refusal();
+    for (const char* part : parts) EXPECT_NE(refusal.find(part), std::string::npos) << part << " in: " << refusal;
+  };
+  expect({{"stifness", 3}}, {"/nodes/0/extensions/PLIANT_deformable/stifness", "did you mean stiffness?"});
+  expect({{"stiffness", -3}}, {"/stiffness", "-3", "[0, 10000000]", "N/m"});
+  expect({{"stiffness", "soft"}}, {"\"soft\"", "not a number"});
+  expect({{"shape", "round"}}, {"\"round\"", "kelvinlet"});
+  expect({{"relaxation", {{"tiem", 3}}}}, {"relaxation/tiem", "relaxation.time"});
+  expect({{"relaxation", 3}}, {"relaxation", "not an object"});
+  expect({{"friction_static", 0.1}, {"friction_sliding", 0.2}}, {"friction_sliding (0.2) is above friction_static (0.1)"});
+  expect({{"contact_damping", "much"}}, {"material"});
+  EXPECT_NE(with({{"PLIANT_deformabel", Json::object()}}).refusal().find("did you mean PLIANT_deformable?"), std::string::npos);
+  EXPECT_NE(with({{"PLIANT_environment", Json::object()}}).refusal(), "");
+  EXPECT_NE(with({{"PLIANT_haptic_device", {{"driver", "script"}}}}).refusal().find("file"), std::string::npos);
+}
+
+TEST(Extension, AProbeNamesItsDeviceByNameOrNumber) {
+  for (const Json& device : {Json("hand"), Json(1)}) {
+    Gltf gltf = with({{"PLIANT_probe", {{"radius", 0.002}, {"device", device}}}, {"PLIANT_haptic_device", Json::object()}});
+    gltf.json["nodes"][0]["extensions"].erase("PLIANT_haptic_device");
+    gltf.json["nodes"].push_back({{"name", "hand"}, {"extensions", {{"PLIANT_haptic_device", {{"driver", "orbit"}}}}}});
+    const Result<Level> level = gltf.load();
+    ASSERT_TRUE(level.ok()) << level.error().message();
+    EXPECT_EQ(level->nodes[0].probe_device, "hand");
+    EXPECT_EQ(level->nodes[1].device->driver, Driver::kOrbit);
+  }
+  EXPECT_NE(with({{"PLIANT_probe", {{"device", "nobody"}}}}).refusal().find("nobody"), std::string::npos);
+  EXPECT_NE(with({{"PLIANT_probe", {{"device", 9}}}}).refusal(), "");
+}
+
+TEST(Extension, SetReachesEveryKeyAndSaysWhatItDidNotUnderstand) {
+  Level level;
+  level.nodes.resize(4);
+  level.nodes[0].name = "belly";
+  level.nodes[1].name = "part.deformable.x";  // a name that looks like a path
+  level.nodes[0].deformable = level.nodes[1].deformable = Deformable{};
+  level.nodes[2].name = "tip";
+  level.nodes[2].probe = Probe{};
+  level.nodes[3].name = "hand";
+  level.nodes[3].device = HapticDevice{};
+  EXPECT_EQ(set(level, "belly.deformable.stiffness=300.5"), "");
+  EXPECT_EQ(level.nodes[0].deformable->stiffness, 300.5);
+  EXPECT_EQ(set(level, "*.deformable.friction=0"), "");
+  EXPECT_EQ(level.nodes[1].deformable->friction_static + level.nodes[1].deformable->friction_sliding, 0.0);
+  EXPECT_EQ(set(level, "part.deformable.x.deformable.relaxation.time=2"), "");
+  EXPECT_EQ(level.nodes[1].deformable->relaxation_time, 2.0);
+  EXPECT_EQ(set(level, "belly.deformable.contact_damping=material"), "");
+  EXPECT_TRUE(level.nodes[0].deformable->contact_damping_material);
+  EXPECT_EQ(set(level, "tip.probe.color=[1, 0.5, 0]"), "");
+  EXPECT_EQ(level.nodes[2].probe->color, vec3(1, 0.5f, 0));
+  EXPECT_EQ(set(level, "tip.probe.device=hand"), "");
+  EXPECT_EQ(set(level, "hand.haptic_device.driver=null"), "") << "a word that is also JSON";
+  EXPECT_EQ(set(level, "*.simulation.touch_rate=4000"), "");
+  EXPECT_EQ(level.simulation.touch_rate, 4000.0);
+  EXPECT_EQ(set(level, "belly.deformable.young=5400"), "");
+  EXPECT_EQ(set(level, "belly.deformable.stiffness=10"), "");
+  EXPECT_EQ(level.nodes[0].deformable->stiffness, 10.0);
+  EXPECT_EQ(level.nodes[0].deformable->young, 0.0);
+
+  const auto says = [&](const char* assignment, const char* part) {
+    const double before = level.nodes[0].deformable->stiffness;
+    EXPECT_NE(set(level, assignment).find(part), std::string::npos) << assignment << ": " << set(level, assignment);
+    EXPECT_EQ(level.nodes[0].deformable->stiffness, before);
+  };
+  says("bely.deformable.stiffness=3", "did you mean belly?");
+  says("belly.deformabel.stiffness=3", "did you mean deformable?");
+  says("belly.deformable.stifness=3", "did you mean stiffness?");
+  says("belly.deformable.stiffness=-3", "range");
+  says("belly.deformable.stiffness", "NODE.EXTENSION.KEY=VALUE");
+  says("tip.deformable.stiffness=3", "nodes that have one: belly");
+  says("tip.probe.device=nobody", "nobody");
+  says("*.deformable.friction_static=-0.1", "range");
+}
+
+TEST(Extension, TheSchemasInDocsAreThoseOfTheTable) {
+  for (const SchemaFile& schema : extension_schemas()) {
+    const std::string path = kDocs + "schemas/" + schema.name;
+    if (std::getenv("PLIANT_WRITE_DOCS")) std::ofstream(path) << schema.text;
+    EXPECT_EQ(text_of(path), schema.text) << path << ": run this test with PLIANT_WRITE_DOCS=1 to write it anew";
+  }
+}
+
+TEST(Extension, TheTablesOfTheLevelFormatAreThoseOfTheTable) {
+  const std::string path = kDocs + "level-format.md", begin = "<!-- keys: begin -->\n", end = "<!-- keys: end -->";
+  std::string text = text_of(path);
+  const std::size_t from = text.find(begin), to = text.find(end);
+  ASSERT_TRUE(from != std::string::npos && to != std::string::npos && from < to) << path;
+  const std::string wanted = text.substr(0, from + begin.size()) + "\n" + extension_tables() + text.substr(to);
+  if (std::getenv("PLIANT_WRITE_DOCS")) std::ofstream(path) << (text = wanted);
+  EXPECT_EQ(text, wanted) << path << ": run this test with PLIANT_WRITE_DOCS=1 to write it anew";
+}
+
+}  // namespace
+}  // namespace pliant::test
