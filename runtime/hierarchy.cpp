@@ -1,13 +1,20 @@
 #include "runtime/hierarchy.h"
 
+#include <utility>
+
 #include "runtime/assert.h"
 
 namespace pliant {
 
 std::int32_t Hierarchy::find(Entity entity) const {
-  for (std::size_t i = 0; i < links_.size(); ++i)
-    if (links_[i].entity == entity) return static_cast<std::int32_t>(i);
-  return -1;
+  const std::int32_t row = entity.index < row_.size() ? row_[entity.index] : -1;
+  return row >= 0 && links_[static_cast<std::size_t>(row)].entity == entity ? row : -1;
+}
+
+void Hierarchy::replace(std::vector<Link> links) {
+  for (const Link& link : links_) row_[link.entity.index] = -1;
+  links_ = std::move(links);
+  for (std::size_t i = 0; i < links_.size(); ++i) row_[links_[i].entity.index] = static_cast<std::int32_t>(i);
 }
 
 Entity Hierarchy::parent(Entity entity) const {
@@ -20,6 +27,8 @@ Entity Hierarchy::parent(Entity entity) const {
 void Hierarchy::add(Entity entity, Entity parent) {
   const std::int32_t parent_index = parent == kNoEntity ? -1 : find(parent);
   ASSERT(parent == kNoEntity || parent_index >= 0);
+  if (entity.index >= row_.size()) row_.resize(entity.index + 1, -1);
+  row_[entity.index] = static_cast<std::int32_t>(links_.size());
   links_.push_back({entity, parent_index});
 }
 
@@ -48,7 +57,7 @@ std::vector<Entity> Hierarchy::remove(Entity entity) {
     const std::int32_t parent = links_[i].parent;
     kept.push_back({links_[i].entity, parent < 0 ? -1 : moved_to[static_cast<std::size_t>(parent)]});
   }
-  links_ = std::move(kept);
+  replace(std::move(kept));
   return removed;
 }
 
@@ -71,7 +80,7 @@ bool Hierarchy::move(Entity entity, Entity parent) {
       ordered.push_back({links_[i].entity, old < 0 ? -1 : moved_to[static_cast<std::size_t>(old)]});
     }
   }
-  links_ = std::move(ordered);
+  replace(std::move(ordered));
   return true;
 }
 

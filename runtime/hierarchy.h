@@ -29,7 +29,9 @@ class Hierarchy {
  private:
   std::int32_t find(Entity entity) const;
   std::vector<bool> below(std::int32_t root) const;
+  void replace(std::vector<Link> links);
   std::vector<Link> links_;
+  std::vector<std::int32_t> row_;  // entity index -> place in links_, -1: not there
 };
 
 }  // namespace pliant

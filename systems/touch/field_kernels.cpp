@@ -53,42 +53,6 @@ PLIANT_KERNEL void add_wendland(const Mesh& mesh, std::uint32_t begin, const Fie
   add_radial(mesh, begin, s, out, [](float u) { return shared::shape_wendland(u); });
 }
 
-// Regularised Kelvinlet, nu = 1/2, pushing along the contact's normal n; its height at a vertex is u(x).N:
-//   f = A (n.N) + B (d.n)(d.N), A = (e/2)(1/re + e^2/re^3), B = (e/2)/re^3, re^2 = r^2 + e^2. f(0) = 1.
-vec4 kelvinlet_at(const FieldSource& s, vec3 position, vec3 normal) {
-  const vec3 d = position - s.center;
-  const float r2 = dot(d, d), e = s.parameter;
-  const float u = std::min(r2 * s.inv_reach2, 1.0f);
-  const float re2 = r2 + e * e, inv_re = 1.0f / std::sqrt(re2), inv_re3 = inv_re / re2;
-  const float A = 0.5f * e * (inv_re + e * e * inv_re3), B = 0.5f * e * inv_re3;
-  const float dA = 0.5f * e * (-0.5f * inv_re3 - 1.5f * e * e * inv_re3 / re2), dB = -0.75f * e * inv_re3 / re2;  // by r^2
-  const float nN = dot(s.normal, normal), dn = dot(d, s.normal), dN = dot(d, normal);
-  const float f = A * nN + B * dn * dN;
-  vec3 gradient = 2.0f * (dA * nN + dB * dn * dN) * d + B * (dN * s.normal + dn * normal);
-  const vec2 window = shared::shape_window(u);
-  gradient = window.x * gradient + f * window.y * 2.0f * s.inv_reach2 * d;
-  gradient -= dot(gradient, normal) * normal;
-  return vec4(s.amplitude * gradient, -s.amplitude * f * window.x);
-}
-
-// Zones that hold half-space shapes are computed one vertex at a time: their branches and asin do not vectorise.
-vec4 radial_at(const FieldSource& s, vec3 position, vec3 normal) {
-  const vec3 d = position - s.center;
-  const float u = std::min(dot(d, d) * s.inv_reach2, 1.0f);
-  vec2 f{0};
-  switch (s.shape) {
-    case Shape::kVolume: f = shared::shape_volume(u, s.parameter); break;
-    case Shape::kWendland: f = shared::shape_wendland(u); break;
-    case Shape::kGaussian: f = shared::shape_gaussian(u); break;
-    case Shape::kPunch: f = shared::shape_punch(u, s.parameter); break;
-    case Shape::kHertz: f = shared::shape_hertz(u, s.parameter); break;
-    case Shape::kKelvinlet: break;
-  }
-  const float a = s.amplitude * shared::shape_facing(dot(normal, s.normal));
-  const float g = 2.0f * s.inv_reach2 * a * f.y;
-  return vec4(g * (d - dot(d, normal) * normal), -a * f.x);
-}
-
 constexpr std::uint32_t kLanes = 8;
 
 // Sums of a whole zone in fixed lanes, so that the order of additions is the same on every machine.
@@ -237,7 +201,8 @@ PLIANT_KERNEL void interleave(const ZoneTargets& t, float* __restrict stream) {
 }  // namespace
 
 vec4 target_at(const FieldSource& source, vec3 position, vec3 normal) {
-  return source.shape == Shape::kKelvinlet ? kelvinlet_at(source, position, normal) : radial_at(source, position, normal);
+  const vec4 place(source.center, source.inv_reach2), push(source.normal, source.amplitude);
+  return shared::field_target(place, push, vec4(source.parameter, float(source.shape), 0, 0), position, normal);
 }
 
 float share_at(const FieldSource& source, vec3 position, vec3 normal) {

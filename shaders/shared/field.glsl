@@ -1,0 +1,51 @@
+// The force field's target at one vertex: arithmetic that is at once GLSL and C++ (systems/touch/shape.h), so that the
+// field on the card and the field on the processor agree to rounding. Needs shape.glsl before it. methods.md 1.3, 1.4.
+//
+// A source is three vec4: place = (center [m], 1/R^2), push = (unit normal, amplitude [m]), kind = (parameter, shape, 0, 0),
+// with shapes numbered as in components/deformable.h. Returned: (nx, ny, nz, h), added to N0 and along N0.
+
+SHARED vec2 field_profile(int shape, float u, float parameter) {
+  if (shape == 4) return shape_volume(u, parameter);
+  if (shape == 3) return shape_wendland(u);
+  if (shape == 2) return shape_gaussian(u);
+  if (shape == 1) return shape_hertz(u, parameter);
+  return shape_punch(u, parameter);
+}
+
+// A radial shape: d from the contact to the vertex [m], N the vertex's normal, M the contact's.
+SHARED vec4 field_radial(vec3 d, vec3 N, vec3 M, float inv_reach2, float amplitude, vec2 f) {
+  float a = amplitude * shape_facing(dot(N, M));
+  float g = 2.0f * inv_reach2 * a * f.y;
+  return vec4(g * (d - dot(d, N) * N), -a * f.x);
+}
+
+// Regularised Kelvinlet, nu = 1/2, pushing along M; its height at a vertex is u(x).N:
+//   f = A (M.N) + B (d.M)(d.N), A = (e/2)(1/re + e^2/re^3), B = (e/2)/re^3, re^2 = r^2 + e^2. f(0) = 1. Windowed.
+SHARED vec4 field_kelvinlet(vec3 d, vec3 N, vec3 M, float inv_reach2, float amplitude, float e) {
+  float r2 = dot(d, d);
+  float u = min(r2 * inv_reach2, 1.0f);
+  float re2 = r2 + e * e;
+  float inv_re = 1.0f / sqrt(re2);
+  float inv_re3 = inv_re / re2;
+  float A = 0.5f * e * (inv_re + e * e * inv_re3);
+  float B = 0.5f * e * inv_re3;
+  float dA = 0.5f * e * (-0.5f * inv_re3 - 1.5f * e * e * inv_re3 / re2);  // by r^2
+  float dB = -0.75f * e * inv_re3 / re2;
+  float mn = dot(M, N);
+  float dm = dot(d, M);
+  float dn = dot(d, N);
+  float f = A * mn + B * dm * dn;
+  vec3 gradient = 2.0f * (dA * mn + dB * dm * dn) * d + B * (dn * M + dm * N);
+  vec2 w = shape_window(u);
+  gradient = w.x * gradient + f * w.y * 2.0f * inv_reach2 * d;
+  gradient = gradient - dot(gradient, N) * N;
+  return vec4(amplitude * gradient, -amplitude * f * w.x);
+}
+
+SHARED vec4 field_target(vec4 place, vec4 push, vec4 kind, vec3 P, vec3 N) {
+  vec3 d = P - vec3(place);
+  int shape = int(kind.y);
+  if (shape == 5) return field_kelvinlet(d, N, vec3(push), place.w, push.w, kind.x);
+  float u = min(dot(d, d) * place.w, 1.0f);
+  return field_radial(d, N, vec3(push), place.w, push.w, field_profile(shape, u, kind.x));
+}
