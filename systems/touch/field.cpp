@@ -1,0 +1,110 @@
+#include "systems/touch/field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+// What has become of a release after `age` seconds: its height is now.x of `now` plus before of `before`, and the same
+// for the rate.
+struct Factors {
+  double now = 0, before = 0;            // [1]
+  double rate_now = 0, rate_before = 0;  // [1/s]
+};
+
+Factors factors_at(const Motion& motion, const Release& release, double age) {
+  double hh, hv, vh, vv, arm = 0, arm_rate = 0;
+  if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
+    const auto M = solid_step(motion.mass, motion.damping, 1.0, motion.arm_stiffness, motion.arm_time, age);
+    hh = M[0][0], hv = M[0][1], vh = M[1][0], vv = M[1][1];
+    arm = M[0][2] * release.arm, arm_rate = M[1][2] * release.arm;
+  } else {
+    const StepCoefficients c = exact_step(motion.mass, motion.damping, 1.0, age);
+    hh = c.hh, hv = c.hv, vh = c.vh, vv = c.vv;
+  }
+  // It began as height `now` with rate (now - before) / dt.
+  const double r = 1 / motion.dt;
+  return {hh + hv * r + arm, -hv * r, vh + vv * r + arm_rate, -vv * r};
+}
+
+HeightState released_at(const ObjectState& object, const Mesh& mesh, std::uint32_t vertex, double time) {
+  HeightState state;
+  for (const Release& release : object.releases) {
+    const Factors f = factors_at(object.motion, release, time - release.time);
+    const double now = target_at(release.now, mesh.position(vertex), mesh.normal(vertex)).w;
+    const double before = target_at(release.before, mesh.position(vertex), mesh.normal(vertex)).w;
+    state.height += f.now * now + f.before * before;
+    state.velocity += f.rate_now * now + f.rate_before * before;
+  }
+  return state;
+}
+
+}  // namespace
+
+std::string card_obstacle(const Deformable& d) {
+  if (d.spring == SpringLaw::kCubic || d.spring == SpringLaw::kExponential)
+    return "its spring law is not linear, so what a probe leaves behind has no closed form";
+  if (d.response == Response::kLag) return "response `lag` needs every step of the field";
+  if (d.distance == Distance::kSurface) return "distance `surface` is marched on the processor";
+  return {};
+}
+
+HeightState surface_at(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex) {
+  if (!object.on_card) return {field.stream[vertex].w, field.rate[vertex].w};
+  HeightState state = released_at(object, mesh, vertex, object.time);
+  for (const SourceState& source : object.sources)
+    if (source.active) state.height += target_at(source.now, mesh.position(vertex), mesh.normal(vertex)).w;
+  return state;
+}
+
+double residual_after(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex, Tick tick) {
+  if (object.on_card) return released_at(object, mesh, vertex, tick.time + tick.dt).height;
+  const Motion& motion = object.motion;
+  const double h = field.residual[vertex].w, r = field.rate[vertex].w;
+  if (h == 0.0 && r == 0.0) return 0.0;
+  if (motion.nonlinear())
+    return step_restoring(motion.law, {h, r}, motion.mass, motion.damping, 1.0, 0.0, motion.dt).height;
+  if (motion.law.kind == SpringLaw::kStandardLinearSolid)
+    return motion.solid[0][0] * h + motion.solid[0][1] * r + motion.solid[0][2] * field.arm[vertex].w;
+  return motion.linear.hh * h + motion.linear.hv * r;
+}
+
+void remember_release(ObjectState& object, const Release& release, std::uint32_t& dropped) {
+  if (object.releases.size() == kMaxReleases) {  // the oldest has the least left of it
+    object.releases.erase(object.releases.begin());
+    dropped |= kDroppedReleases;
+  }
+  object.releases.push_back(release);
+}
+
+void list_terms(ObjectState& object, const Deformable& deformable, Tick tick) {
+  object.time = tick.time + tick.dt;
+  object.terms.clear();
+  const double rest = kRest * deformable.reach;
+  float peak = 0.0f;
+  const auto add = [&](FieldSource term, double factor) {
+    term.amplitude *= static_cast<float>(factor);
+    object.terms.push_back(term);  // capacity: every release and source
+    peak += std::abs(term.amplitude);
+  };
+  for (std::size_t i = 0; i < object.releases.size();) {
+    const Release& release = object.releases[i];
+    const Factors f = factors_at(object.motion, release, object.time - release.time);
+    const double w = 1 / std::sqrt(object.motion.mass);
+    const double left = std::abs(f.now * release.now.amplitude + f.before * release.before.amplitude) +
+                        std::abs(f.rate_now * release.now.amplitude + f.rate_before * release.before.amplitude) / w;
+    if (left < rest) {
+      object.releases.erase(object.releases.begin() + static_cast<std::ptrdiff_t>(i));
+      continue;
+    }
+    add(release.now, f.now);
+    if (release.before.amplitude > 0) add(release.before, f.before);
+    ++i;
+  }
+  for (const SourceState& source : object.sources)
+    if (source.active) add(source.now, 1.0);
+  object.peak = object.terms.empty() ? 0.0f : 0.5f * peak;  // a bound: rims are lower than half of the dent
+}
+
+}  // namespace pliant

@@ -1,0 +1,117 @@
+// The field as a list of sources, which the card evaluates, against the field that the processor steps zone by zone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "systems/touch/field.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant {
+namespace {
+
+using scenes::Stage;
+
+// Two probes press, slide, one leaves fast and one slowly, and one comes back.
+void play(Stage& stage, Entity a, Entity b, int ticks) {
+  for (int i = 0; i < ticks; ++i) {
+    const double s = 0.004 * i;
+    const double lift_a = i > 300 ? 0.0002 * (i - 300) : 0.0, lift_b = i > 350 && i < 420 ? 0.02 : 0.0;
+    stage.place(a, (0.1 - 0.005 * std::min(1.0, i / 60.0) + lift_a) * normalize(dvec3(std::sin(s), 1, 0.1)));
+    stage.place(b, (0.1 - 0.004 * std::min(1.0, i / 90.0) + lift_b) * normalize(dvec3(std::sin(s) + 0.25, 1, -0.1)));
+    stage.tick();
+  }
+}
+
+struct Scene {
+  Stage stage;
+  Entity surface, a, b;
+  Scene(const Deformable& d, FieldPlace place) {
+    surface = stage.add(scenes::sphere(32, 0.1), d);
+    a = stage.add_probe({0, 0.11, 0.01});
+    b = stage.add_probe({0.03, 0.11, -0.01});
+    stage.world.field_place = place;
+    stage.prepare();
+  }
+};
+
+TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSupports) {
+  for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
+    for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
+      for (const int ticks : {200, 330, 360, 440}) {
+        Deformable d;
+        d.reach = 0.03;
+        d.spring = law;
+        d.shape = shape;
+        Scene cpu(d, FieldPlace::kProcessor), card(d, FieldPlace::kCard);
+        play(cpu.stage, cpu.a, cpu.b, ticks);
+        play(card.stage, card.a, card.b, ticks);
+        const ObjectState& object = card.stage.world.touch->objects[0];
+        ASSERT_TRUE(object.on_card);
+        ASSERT_FALSE(object.terms.empty());
+        const Mesh& mesh = card.stage.mesh(card.surface);
+        double largest = 0, height = 0, angle = 0;
+        for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+          vec4 sum(0);
+          for (const FieldSource& term : object.terms) sum += target_at(term, mesh.position(v), mesh.normal(v));
+          const vec4 want = cpu.stage.field(cpu.surface).stream[v];
+          largest = std::max<double>(largest, std::abs(want.w));
+          height = std::max<double>(height, std::abs(sum.w - want.w));
+          const dvec3 n = normalize(dvec3(mesh.normal(v) + vec3(sum))), m = normalize(dvec3(mesh.normal(v) + vec3(want)));
+          angle = std::max(angle, length(cross(n, m)) * 180 / M_PI);
+        }
+        EXPECT_LT(height, 1e-5 * largest) << int(law) << ' ' << int(shape) << ' ' << ticks;
+        EXPECT_LT(angle, 0.1) << int(law) << ' ' << int(shape) << ' ' << ticks;
+        for (auto [p, q] : {std::pair{cpu.a, card.a}, {cpu.b, card.b}}) {
+          EXPECT_LT(length(cpu.stage.read(p).force - card.stage.read(q).force), 1e-5) << int(law) << ' ' << int(shape) << ' ' << ticks;
+          EXPECT_NEAR(cpu.stage.read(p).height, card.stage.read(q).height, 1e-7);
+        }
+      }
+    }
+  }
+}
+
+TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
+  Deformable d;
+  d.reach = 0.03;
+  Scene card(d, FieldPlace::kCard);
+  play(card.stage, card.a, card.b, 200);
+  card.stage.place(card.a, {0, 0.2, 0});
+  card.stage.place(card.b, {0, 0.2, 0});
+  card.stage.wait(0.02);
+  EXPECT_FALSE(card.stage.world.touch->objects[0].terms.empty());
+  card.stage.wait(1.0);
+  EXPECT_TRUE(card.stage.world.touch->objects[0].terms.empty());
+  EXPECT_TRUE(card.stage.world.touch->objects[0].releases.empty());
+}
+
+TEST(FieldTwins, WhatTheCardCannotDoFallsBackAndSaysWhy) {
+  for (auto change : {+[](Deformable& d) { d.spring = SpringLaw::kCubic; }, +[](Deformable& d) { d.response = Response::kLag; },
+                      +[](Deformable& d) { d.distance = Distance::kSurface; }}) {
+    Deformable d;
+    d.reach = 0.03;
+    EXPECT_TRUE(card_obstacle(d).empty());
+    change(d);
+    EXPECT_FALSE(card_obstacle(d).empty());
+    Scene card(d, FieldPlace::kCard);
+    EXPECT_FALSE(card.stage.world.touch->objects[0].on_card);
+    play(card.stage, card.a, card.b, 100);
+    EXPECT_GT(card.stage.field(card.surface).awake_vertices, 0u);
+  }
+}
+
+TEST(FieldTwins, MoreReleasesThanTheListHoldsAreCountedAndSurvived) {
+  Deformable d;
+  d.reach = 0.03;
+  d.settling_time = 5.0;
+  Scene card(d, FieldPlace::kCard);
+  for (int i = 0; i < 400; ++i) {
+    card.stage.place(card.a, (i % 4 < 2 ? 0.104 : 0.097) * normalize(dvec3(0.02 * std::sin(0.1 * i), 1, 0.02 * std::cos(0.1 * i))));
+    card.stage.tick();
+    ASSERT_LE(card.stage.world.touch->objects[0].releases.size(), kMaxReleases);
+    ASSERT_TRUE(std::isfinite(length(card.stage.read(card.a).force)));
+  }
+  EXPECT_NE(card.stage.world.dropped & kDroppedReleases, 0u);
+}
+
+}  // namespace
+}  // namespace pliant
