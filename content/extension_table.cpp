@@ -84,7 +84,6 @@ Key box(std::string name, Access access, std::string doc) {
              });
 }
 
-constexpr KeyRange kPositive{0.0, std::numeric_limits<double>::infinity(), true};
 constexpr KeyRange kFriction{0.0, 10.0};
 
 std::vector<Key> deformable_keys() {
