@@ -39,19 +39,29 @@ SHARED vec2 shape_gaussian(float u) {
   return shape_windowed(vec2(e, -9.0f * e), u);
 }
 
+// asin on [0, 1] to float precision (the polynomial of Cephes' asinf): GLSL promises far less for its own.
+SHARED float shape_asin(float x) {
+  bool upper = x > 0.5f;
+  float z = upper ? 0.5f * (1.0f - x) : x * x;
+  float s = upper ? sqrt(z) : x;
+  float p = (((4.2163199048e-2f * z + 2.4181311049e-2f) * z + 4.5470025998e-2f) * z + 7.4953002686e-2f) * z + 1.6666752422e-1f;
+  float a = s + s * z * p;
+  return upper ? 1.57079633f - 2.0f * a : a;
+}
+
 // Rigid flat punch of radius a on a half-space, inner = (a/R)^2: 1 inside, (2/pi) asin(a/r) outside; windowed.
 SHARED vec2 shape_punch(float u, float inner) {
   if (u <= inner) return shape_windowed(vec2(1.0f, 0.0f), u);
   float q = inner / u;
   float slope = -0.31830989f * sqrt(q / max(1.0f - q, 1e-6f)) / u;
-  return shape_windowed(vec2(0.63661977f * asin(sqrt(q)), slope), u);
+  return shape_windowed(vec2(0.63661977f * shape_asin(sqrt(q)), slope), u);
 }
 
 // Hertz: sphere on a half-space, contact radius a, inner = (a/R)^2; windowed.
 SHARED vec2 shape_hertz(float u, float inner) {
   if (u <= inner) return shape_windowed(vec2(1.0f - 0.5f * u / inner, -0.5f / inner), u);
   float q = u / inner;
-  float s = asin(sqrt(inner / u));
+  float s = shape_asin(sqrt(inner / u));
   float root = sqrt(q - 1.0f);
   return shape_windowed(vec2(0.31830989f * ((2.0f - q) * s + root), 0.31830989f * (root / q - s) / inner), u);
 }

@@ -26,6 +26,8 @@ void wake(HeightField& field, std::uint32_t zone, std::uint8_t why) {
 constexpr double kInnerShare = 0.2;
 // A reach below a few edges would fall between the vertices.
 constexpr double kLeastReach = 1.5;  // mean edges
+// How much of the reach a bulge may count for under a probe.
+constexpr double kMostBulge = 0.25;
 
 // Everything about the source but its amplitude and the volume coefficient.
 void aim(FieldSource& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, double radius) {
@@ -87,6 +89,7 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
 void fold(SourceState& source, ObjectState& object, const Contact& contact, const Deformable& deformable, const Mesh& mesh,
           HeightField& field, Tick tick, std::uint32_t& dropped) {
   source.active = false;
+  if (source.now.amplitude == 0.0f && source.before.amplitude == 0.0f) return;
   if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
   double arm = 0.0;  // how much of the arm's spring is still stretched, per unit of depth and stiffness
   if (deformable.spring == SpringLaw::kStandardLinearSolid && contact.height < 0)
@@ -142,7 +145,10 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
       }
     }
     A[i * n + i] = std::max(A[i * n + i], 0.1);  // a reach that hardly meets a vertex must not blow the amplitude up
-    d[i] = residual - contact.height;
+    // A bulge that earlier presses raised adds to what must be pressed down, but not without bound: else rims on a slowly
+    // recovering surface would drive each other up.
+    const double reach = 1 / std::sqrt(double(active[i].source->now.inv_reach2));
+    d[i] = std::min(residual, kMostBulge * reach) - contact.height;
     alpha[i] = active[i].source->before.amplitude;
   }
   if (n == 1) {

@@ -50,10 +50,12 @@ void publish(World& world, Tick tick) {
     const Probe& probe = world.registry.get<Probe>(touch.probes[i].entity);
     ProbeSnapshot& out = snapshot.probes[i];
     out = {touch.probes[i].entity, probe.position, probe.rotation, world.registry.get<HapticDevice>(probe.device).force_sent,
-           false, 0.0};
+           false, 0.0, dvec3(0)};
     for (const Entity entity : touch.probes[i].contacts) {
       const Contact& contact = world.registry.get<Contact>(entity);
       if (contact.state != ContactState::kTouching) continue;
+      if (!out.touching || -contact.height > out.depth)
+        out.normal = world.registry.get<Pose>(contact.object).rotation * contact.normal;
       out.touching = true;
       out.depth = std::max(out.depth, -contact.height);
     }

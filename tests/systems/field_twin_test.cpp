@@ -101,16 +101,32 @@ TEST(FieldTwins, WhatTheCardCannotDoFallsBackAndSaysWhy) {
 
 TEST(FieldTwins, MoreReleasesThanTheListHoldsAreCountedAndSurvived) {
   Deformable d;
-  d.reach = 0.03;
+  d.reach = 0.008;  // dents apart from each other
   d.settling_time = 5.0;
+  d.shape = Shape::kWendland;
   Scene card(d, FieldPlace::kCard);
   for (int i = 0; i < 400; ++i) {
-    card.stage.place(card.a, (i % 4 < 2 ? 0.104 : 0.097) * normalize(dvec3(0.02 * std::sin(0.1 * i), 1, 0.02 * std::cos(0.1 * i))));
+    card.stage.place(card.a, (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
     card.stage.tick();
     ASSERT_LE(card.stage.world.touch->objects[0].releases.size(), kMaxReleases);
     ASSERT_TRUE(std::isfinite(length(card.stage.read(card.a).force)));
   }
   EXPECT_NE(card.stage.world.dropped & kDroppedReleases, 0u);
+}
+
+TEST(FieldTwins, PressesThatOverlapOnASlowSurfaceDoNotDriveEachOthersRimsUp) {
+  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kCard}) {
+    Deformable d;
+    d.reach = 0.03;
+    d.settling_time = 5.0;
+    Scene scene(d, place);
+    for (int i = 0; i < 400; ++i) {
+      scene.stage.place(scene.a, (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
+      scene.stage.tick();
+      ASSERT_LT(scene.stage.contact(scene.a).amplitude, 10 * (0.03 + 0.015)) << i;
+      ASSERT_LE(scene.stage.read(scene.a).normal_force, 300 * 0.15) << i;
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// The field on the card: shaders/field.comp writes an object's stream from the list of sources that the touch clock
+// publishes (systems/touch/field.h). Rest positions and normals travel once; per frame, 48 bytes a source.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/field_source.h"
+#include "components/mesh.h"
+#include "runtime/result.h"
+#include "systems/visual/gpu/buffer.h"
+#include "systems/visual/gpu/program.h"
+
+namespace pliant {
+
+// One source as the shader reads it.
+struct CardSource {
+  vec4 place, push, kind;
+};
+CardSource card_source(const FieldSource& source);
+
+// Compiles the shader; shared by all objects.
+class FieldProgram {
+ public:
+  static Result<FieldProgram> make();
+
+ private:
+  friend class FieldOnCard;
+  gpu::Program program_;
+  GLint source_count_ = -1, vertex_count_ = -1;
+};
+
+// One object's field.
+class FieldOnCard {
+ public:
+  FieldOnCard() = default;
+  explicit FieldOnCard(const Mesh& mesh);
+
+  // Writes the whole stream of whole zones into `stream` (kZoneSize x zones vec4). Returns the bytes that travelled; when
+  // there was and is nothing to draw, nothing happens.
+  std::size_t evaluate(const FieldProgram& program, std::span<const FieldSource> sources, const gpu::Buffer& stream);
+
+ private:
+  std::uint32_t vertices_ = 0;
+  bool at_rest_ = true;  // the stream is all zeros
+  gpu::Buffer rest_, rest_yz_, sources_;
+  std::size_t capacity_ = 0;  // sources
+};
+
+}  // namespace pliant
