@@ -39,6 +39,8 @@ struct Material {
   std::int32_t normal_texture = -1;
   std::int32_t occlusion_texture = -1;
   std::int32_t emissive_texture = -1;
+  std::int32_t height_texture = -1;  // extras.height_texture: relief finer than the mesh, in its red channel
+  float height_scale = 0.0f;         // [m] extras.height_scale: white above black
   float ior = 1.5f;              // KHR_materials_ior
   float transmission = 0.0f;     // KHR_materials_transmission
   float thickness = 0.0f;        // [m] KHR_materials_volume

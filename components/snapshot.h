@@ -32,6 +32,7 @@ struct ProbeSnapshot {
   dvec3 force{0};     // [N] world, as sent to the hand
   bool touching = false;
   double depth = 0.0;  // [m] below the undeformed surface, of the deepest contact
+  dvec3 normal{0};     // [1] of the surface at the deepest contact, world; 0: it touches nothing
 };
 
 struct Snapshot {

@@ -69,6 +69,8 @@ class Builder {
     set_texture(json, "normalTexture", m.normal_texture);
     set_texture(json, "occlusionTexture", m.occlusion_texture);
     set_texture(json, "emissiveTexture", m.emissive_texture);
+    if (m.height_texture >= 0)
+      json["extras"] = {{"height_texture", {{"index", m.height_texture}}}, {"height_scale", m.height_scale}};
     if (m.normal_texture >= 0) json["normalTexture"]["scale"] = m.normal_scale;
     if (m.occlusion_texture >= 0) json["occlusionTexture"]["strength"] = m.occlusion_strength;
     // glTF's factor ends at 1; what is brighter is scaled by a power of two, which loses no bit.
@@ -113,7 +115,7 @@ class Builder {
   bool has_textures(std::int32_t material) const {
     if (material < 0 || material >= static_cast<std::int32_t>(level_.materials.size())) return false;
     const Material& m = level_.materials[static_cast<std::size_t>(material)];
-    return std::max({m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture}) >= 0;
+    return std::max({m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.height_texture}) >= 0;
   }
 
   Status add_mesh(const LevelMesh& mesh) {

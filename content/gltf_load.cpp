@@ -67,6 +67,22 @@ std::int32_t texture_of(const SourceDocument& document, const Json& object, cons
   return value_of(document.json["textures"][info["index"].get<std::size_t>()], "source", -1);
 }
 
+// Relief that glTF has no place for, in the material's extras: {"height_texture": {"index": n}, "height_scale": metres}.
+// Extras are anybody's: what does not have this form is not ours, and is left alone.
+void read_relief(const SourceDocument& document, const Json& json, Material& out) {
+  if (!json.contains("extras") || !json["extras"].is_object()) return;
+  const Json& extras = json["extras"];
+  if (!extras.contains("height_texture") || !extras["height_texture"].is_object()) return;
+  if (!extras.contains("height_scale") || !extras["height_scale"].is_number()) return;
+  const Json& texture = extras["height_texture"];
+  const float scale = extras["height_scale"].get<float>();
+  if (!texture.contains("index") || !texture["index"].is_number_unsigned() || !document.json.contains("textures")) return;
+  const std::size_t index = texture["index"].get<std::size_t>();
+  if (index >= document.json["textures"].size() || !(scale > 0.0f && scale < 1e3f)) return;
+  out.height_texture = value_of(document.json["textures"][index], "source", -1);
+  out.height_scale = scale;
+}
+
 Material material_of(const SourceDocument& document, const Json& json, Level& level) {
   static const Json kEmpty = Json::object();
   const auto part = [&](const Json* found) -> const Json& { return found ? *found : kEmpty; };
@@ -83,6 +99,7 @@ Material material_of(const SourceDocument& document, const Json& json, Level& le
   out.normal_texture = texture_of(document, json, "normalTexture", level);
   out.occlusion_texture = texture_of(document, json, "occlusionTexture", level);
   out.emissive_texture = texture_of(document, json, "emissiveTexture", level);
+  read_relief(document, json, out);
   if (json.contains("normalTexture")) out.normal_scale = value_of(json["normalTexture"], "scale", 1.0f);
   if (json.contains("occlusionTexture")) out.occlusion_strength = value_of(json["occlusionTexture"], "strength", 1.0f);
   out.ior = value_of(part(extension_of(json, "KHR_materials_ior")), "ior", 1.5f);

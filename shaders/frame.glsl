@@ -1,13 +1,25 @@
 // What is the same for everything in one picture. Mirrors systems/visual/frame.h.
 
+struct Lamp {  // a punctual light
+  vec4 place;  // xyz: [1] direction to the light (w = 0), or [m] its position (w = 1)
+  vec4 color;  // [lx] (place.w = 0) or [cd] (place.w = 1); w: [m] how far it reaches, 0: any distance
+  vec4 axis;   // xyz: [1] where a spot points; w: scale of the cone's falloff, 0: not a spot
+  vec4 more;   // x: offset of the cone's falloff
+};
+
 layout(std140, binding = 0) uniform Frame {
   mat4 view_projection;
   mat4 inverse_view_projection;
-  vec4 eye;             // [m] world
-  vec4 key_place;       // xyz: [1] direction to the light (w = 0), or [m] its position (w = 1)
-  vec4 key_color;       // [lx] (w = 0) or [cd] (w = 1); w: how much more than the range [m] it may reach, 0: any
-  vec4 key_axis;        // xyz: [1] where a spot points; w: scale of the cone's falloff, 0: not a spot
-  vec4 irradiance[9];   // [lx] polynomial of the normal's components, panorama frame
-  vec4 surroundings;    // cosine and sine of the rotation about +Y, intensity, sharpest-to-roughest mip levels
-  vec4 picture;         // exposure, offset of the spot's falloff, [1/m] height as colour (0: off), background's blur
+  mat4 shadow_from_world;  // to the shadow map's texture coordinates and depth, [0, 1]
+  vec4 eye;                // [m] world
+  vec4 irradiance[9];      // [lx] polynomial of the normal's components, panorama frame
+  vec4 surroundings;       // cosine and sine of the rotation about +Y, intensity, the roughest level
+  vec4 picture;            // exposure, brightness of the background, [1/m] height as colour (0: off), background's blur
+  vec4 shadow;             // [m] width of a shadow map's texel in the scene, [1] its share of the map
+  Lamp lamps[4];           // the first casts the shadow
+  uvec4 modes;             // number of lamps, what is switched on
 };
+
+const uint kReflection = 1u, kRefraction = 2u, kBump = 4u, kShadows = 8u, kZones = 16u;
+
+bool on(uint mode) { return (modes.y & mode) != 0u; }

@@ -21,5 +21,5 @@ void main() {
   s.reflectance = vec3(0.04);
   s.roughness = from.tint.w;
   s.occlusion = 1.0;
-  color = vec4(tone_mapped(lit_by_key(s) + lit_by_surroundings(s)), 1.0);
+  color = vec4(tone_mapped(lit_by_lamps(s, 1.0) + lit_by_surroundings(s)), 1.0);
 }

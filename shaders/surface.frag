@@ -1,19 +1,14 @@
-// A glTF metallic-roughness surface under the key light and its surroundings.
+// A glTF metallic-roughness surface under the lamps and its surroundings.
 #include "frame.glsl"
 #include "environment.glsl"
 #include "light.glsl"
+#include "refraction.glsl"
+#include "shadow.glsl"
+#include "material.glsl"
+#include "bump.glsl"
 #include "tone.glsl"
 
-layout(std140, binding = 2) uniform MaterialOf {
-  vec4 base_color;
-  vec4 emissive;   // w: alpha below which nothing is drawn
-  vec4 numbers;    // metallic, roughness, scale of the normal map, strength of the occlusion map
-  vec4 modes;      // x: 1 if alpha blends; y: reflectance of the coat of a dielectric
-};
-
-layout(binding = 1) uniform sampler2D base_color_map;
 layout(binding = 2) uniform sampler2D roughness_map;  // g: roughness, b: metallic
-layout(binding = 3) uniform sampler2D normal_map;
 layout(binding = 4) uniform sampler2D occlusion_map;  // r
 layout(binding = 5) uniform sampler2D emissive_map;
 
@@ -23,17 +18,15 @@ in Varying {
   vec4 tangent;
   vec2 uv;
   float height;
+  flat uint zone;
 } from;
 
 layout(location = 0) out vec4 color;
 
-vec3 shading_normal() {
-  vec3 n = normalize(gl_FrontFacing ? from.normal : -from.normal);
-  vec3 t = from.tangent.xyz - n * dot(n, from.tangent.xyz);
-  if (dot(t, t) < 1e-12) return n;
-  t = normalize(t);
-  vec3 m = texture(normal_map, from.uv).xyz * 2.0 - 1.0;
-  return normalize(numbers.z * (m.x * t + m.y * from.tangent.w * cross(n, t)) + m.z * n);
+vec3 with_relief(vec3 n) {
+  if (!on(kBump)) return n;
+  n = normal_mapped(n, from.tangent, from.uv, numbers.z);
+  return coat.z > 0.0 ? height_mapped(n, from.position, from.uv, coat.z) : n;
 }
 
 // Height as colour: blue is pushed in, red stands out.
@@ -42,22 +35,36 @@ vec3 tinted(vec3 albedo) {
   return mix(albedo, x < 0.0 ? vec3(0.05, 0.2, 0.9) : vec3(0.9, 0.15, 0.05), sqrt(abs(x)));
 }
 
+// A colour for a zone, far from those of its neighbours: steps of the golden ratio around the colour circle.
+vec3 zone_color(uint zone) {
+  vec3 hue = fract(float(zone) * 0.61803399 + vec3(0.0, 1.0 / 3.0, 2.0 / 3.0));
+  return 0.1 + 0.7 * smoothstep(0.15, 0.85, abs(2.0 * hue - 1.0));
+}
+
 void main() {
-  vec4 base = base_color * texture(base_color_map, from.uv);
+  vec4 base = base_color_at(from.uv);
   if (base.a < emissive.w) discard;
+  float through = on(kRefraction) ? volume.x : 0.0;
+  if (on(kZones)) base.rgb = zone_color(from.zone), through = 0.0;
   if (picture.z > 0.0) base.rgb = tinted(base.rgb);
   vec4 map = texture(roughness_map, from.uv);
   float metallic = numbers.x * map.b;
+  vec3 normal = normalize(gl_FrontFacing ? from.normal : -from.normal);
 
   Surface s;
   s.position = from.position;
-  s.normal = shading_normal();
+  s.normal = with_relief(normal);
   s.to_eye = normalize(eye.xyz - from.position);
-  s.diffuse = base.rgb * (1.0 - metallic);
-  s.reflectance = mix(vec3(modes.y), base.rgb, metallic);
+  s.diffuse = base.rgb * (1.0 - metallic) * (1.0 - through);
+  s.reflectance = mix(vec3(coat.y), base.rgb, metallic);
   s.roughness = clamp(numbers.y * map.g, 0.045, 1.0);
   s.occlusion = mix(1.0, texture(occlusion_map, from.uv).r, numbers.w);
 
-  vec3 glow = emissive.rgb * texture(emissive_map, from.uv).rgb;
-  color = vec4(tone_mapped(lit_by_key(s) + lit_by_surroundings(s) + glow), modes.x > 0.0 ? base.a : 1.0);
+  vec3 light = lit_by_lamps(s, open_to_lamp(from.position, normal)) + lit_by_surroundings(s);
+  if (through > 0.0) {
+    vec3 entering = base.rgb * (1.0 - metallic) * through * (1.0 - coat_of_surroundings(s));
+    light += entering * seen_through(s, Through(volume.y, volume.z, absorption.rgb));
+  }
+  light += emissive.rgb * texture(emissive_map, from.uv).rgb;
+  color = vec4(tone_mapped(light), coat.x > 0.0 ? base.a : 1.0);
 }

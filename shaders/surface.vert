@@ -1,11 +1,7 @@
 // A surface, given way.
 #include "frame.glsl"
 #include "deform.glsl"
-
-layout(std140, binding = 1) uniform Placement {
-  mat4 to_world;
-  mat4 normal_to_world;  // inverse transpose
-};
+#include "placement.glsl"
 
 layout(location = 0) in vec3 position;      // [m] P0, object frame
 layout(location = 1) in vec3 touch_normal;  // [1] N0
@@ -20,7 +16,10 @@ out Varying {
   vec4 tangent;
   vec2 uv;
   float height;   // [m]
+  flat uint zone;
 } to;
+
+const uint kZoneSize = 128u;
 
 void main() {
   vec4 s = stream[touch_vertex];
@@ -30,5 +29,6 @@ void main() {
   to.tangent = vec4(mat3(to_world) * tangent.xyz, tangent.w);
   to.uv = uv;
   to.height = s.w;
+  to.zone = touch_vertex / kZoneSize;
   gl_Position = view_projection * world;
 }

@@ -1,0 +1,26 @@
+// Relief finer than the mesh: a tangent-space normal map, or the slope of a height map (Mikkelsen, Bump Mapping
+// Unparametrized Surfaces on the GPU, 2010: screen derivatives stand in for tangents).
+
+layout(binding = 3) uniform sampler2D normal_map;
+layout(binding = 6) uniform sampler2D height_map;  // r
+
+vec3 normal_mapped(vec3 n, vec4 tangent, vec2 uv, float scale) {
+  vec3 t = tangent.xyz - n * dot(n, tangent.xyz);
+  if (dot(t, t) < 1e-12) return n;
+  t = normalize(t);
+  vec3 m = texture(normal_map, uv).xyz * 2.0 - 1.0;
+  return normalize(scale * (m.x * t + m.y * tangent.w * cross(n, t)) + m.z * n);
+}
+
+// `height` [m] is that of white above black.
+vec3 height_mapped(vec3 n, vec3 position, vec2 uv, float height) {
+  vec3 along_x = dFdx(position), along_y = dFdy(position);
+  vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);
+  float h = texture(height_map, uv).r;
+  float rise_x = height * (texture(height_map, uv + uv_x).r - h);
+  float rise_y = height * (texture(height_map, uv + uv_y).r - h);
+  vec3 across_x = cross(along_y, n), across_y = cross(n, along_x);
+  float area = dot(along_x, across_x);
+  vec3 slope = sign(area) * (rise_x * across_x + rise_y * across_y);
+  return normalize(abs(area) * n - slope);
+}
