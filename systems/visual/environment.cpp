@@ -5,12 +5,14 @@
 #include <numbers>
 #include <vector>
 
+#include "systems/visual/cube.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kWidest = 256;  // [pixels] of the panorama on the card: only blurred views of it are shown
+constexpr std::uint32_t kWidest = 1024;             // [pixels] of the panorama: as sharp as the cube's faces
+constexpr std::uint32_t kWidestForIrradiance = 256;  // [pixels]
 constexpr float kSunClip = 20.0f;       // [1] a sun above this share of the mean would make nine coefficients ring
 constexpr float kPi = std::numbers::pi_v<float>;
 
@@ -57,23 +59,6 @@ Panorama studio() {
   return p;
 }
 
-// Averages whole blocks of pixels, so that the picture is at most kWidest wide.
-Panorama scaled_down(const Panorama& p) {
-  const std::uint32_t block = (p.width + kWidest - 1) / kWidest;
-  if (block <= 1) return p;
-  Panorama small{.name = p.name, .width = p.width / block, .height = std::max(1u, p.height / block), .rgb = {}};
-  small.rgb.reserve(std::size_t{3} * small.width * small.height);
-  for (std::uint32_t y = 0; y < small.height; ++y)
-    for (std::uint32_t x = 0; x < small.width; ++x) {
-      vec3 sum(0);
-      for (std::uint32_t j = 0; j < block; ++j)
-        for (std::uint32_t i = 0; i < block; ++i) sum += pixel(p, x * block + i, std::min(y * block + j, p.height - 1));
-      sum /= static_cast<float>(block * block);
-      small.rgb.insert(small.rgb.end(), {sum.r, sum.g, sum.b});
-    }
-  return small;
-}
-
 // Where most of the light comes from: the polynomial's linear part. Never from below, so that shapes read.
 vec3 dominant_direction(const std::array<vec4, 9>& c, float rotation) {
   const vec3 p(luminance(c[3]), luminance(c[1]), luminance(c[2]));
@@ -86,24 +71,34 @@ vec3 dominant_direction(const std::array<vec4, 9>& c, float rotation) {
   return normalize(d);
 }
 
-// The level's first light, placed and scaled; false where there is none.
-bool level_light(const World& world, FrameConstants& frame) {
+LampConstants lamp_of(const Light& light, const mat4& m) {
+  const vec3 backward = normalize(vec3(m[2]));
+  const bool placed = light.kind != Light::Kind::kDirectional;
+  LampConstants lamp;
+  lamp.place = placed ? vec4(vec3(m[3]), 1) : vec4(backward, 0);
+  lamp.color = vec4(light.color * light.intensity, placed ? light.range : 0.0f);
+  if (light.kind == Light::Kind::kSpot) {
+    const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+    const float scale = 1 / std::max(inner - outer, 1e-3f);
+    lamp.axis = vec4(-backward, scale);
+    lamp.more.x = -outer * scale;
+  }
+  return lamp;
+}
+
+// The level's lights, as many as the card takes; one that can cast a shadow first.
+std::vector<LampConstants> level_lamps(const World& world) {
+  std::vector<LampConstants> lamps;
+  bool casts = false;
   for (auto [entity, light] : world.registry.view<Light>()) {
     const WorldTransform* transform = world.registry.find<WorldTransform>(entity);
-    const mat4 m = transform ? transform->matrix : mat4(1);
-    const vec3 backward = normalize(vec3(m[2]));
-    const bool placed = light.kind != Light::Kind::kDirectional;
-    frame.key_place = placed ? vec4(vec3(m[3]), 1) : vec4(backward, 0);
-    frame.key_color = vec4(light.color * light.intensity, placed ? light.range : 0.0f);
-    if (light.kind == Light::Kind::kSpot) {
-      const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
-      const float scale = 1 / std::max(inner - outer, 1e-3f);
-      frame.key_axis = vec4(-backward, scale);
-      frame.picture.y = -outer * scale;
-    }
-    return true;
+    const LampConstants lamp = lamp_of(light, transform ? transform->matrix : mat4(1));
+    const bool first = !casts && light.kind != Light::Kind::kPoint;
+    casts = casts || first;
+    lamps.insert(first ? lamps.begin() : lamps.end(), lamp);
   }
-  return false;
+  if (lamps.size() > kMaxLamps) lamps.resize(kMaxLamps);
+  return lamps;
 }
 
 }  // namespace
@@ -145,40 +140,45 @@ vec3 irradiance_on(const std::array<vec4, 9>& c, vec3 n) {
 Surroundings Surroundings::make(const World& world) {
   const Environment& environment = world.environment;
   const bool own = environment.panorama.width > 0 && environment.panorama.height > 0;
-  const Panorama panorama = own ? scaled_down(environment.panorama) : studio();
+  const Panorama panorama = own ? scaled_down(environment.panorama, kWidest) : studio();
   const float intensity = own ? environment.intensity : 1.0f, rotation = own ? environment.rotation : 0.0f;
 
   Surroundings made;
-  made.panorama_ =
-      gpu::Texture::from_panorama(panorama.rgb, static_cast<int>(panorama.width), static_cast<int>(panorama.height));
+  const Cube cube = cached_cube(panorama);
+  made.cube_ = gpu::Texture::from_cube(cube.rgb, static_cast<int>(cube.face), static_cast<int>(kCubeLevels));
   FrameConstants& frame = made.constants_;
-  frame.irradiance = irradiance_of(panorama);
-  // The roughest level still has some pixels, so that a matt coat sees up from down.
-  const float levels = static_cast<float>(std::max(0, made.panorama_.levels() - 3));
-  frame.surroundings = vec4(std::cos(rotation), std::sin(rotation), intensity, levels);
-  frame.picture.w = std::floor(0.4f * levels);
+  frame.irradiance = irradiance_of(scaled_down(panorama, kWidestForIrradiance));
+  frame.surroundings = vec4(std::cos(rotation), std::sin(rotation), intensity, kCubeLevels - 1);
+  // A studio is dimmed and out of focus, so that the scene stands out; a level's own surroundings are shown as they are.
+  frame.picture.y = own ? 1.0f : 0.6f;
+  frame.picture.w = own ? 0.0f : 0.3f;
 
   // Without a light of the level's own, the surroundings' brightest side lends one: it models, the rest fills.
   const float ambient = std::max(0.0f, intensity * luminance(frame.irradiance[0]));
-  if (!level_light(world, frame)) {
-    frame.key_place = vec4(dominant_direction(frame.irradiance, rotation), 0);
-    frame.key_color = vec4(vec3(1.0f, 0.96f, 0.9f) * std::max(2.6f * ambient, 1e-3f), 0);
+  std::vector<LampConstants> lamps = level_lamps(world);
+  if (lamps.empty()) {
+    lamps.emplace_back();
+    lamps[0].place = vec4(dominant_direction(frame.irradiance, rotation), 0);
+    lamps[0].color = vec4(vec3(1.0f, 0.96f, 0.9f) * std::max(2.6f * ambient, 1e-3f), 0);
   }
+  std::copy(lamps.begin(), lamps.end(), frame.lamps.begin());
+  frame.modes.x = static_cast<std::uint32_t>(lamps.size());
+
   // Exposed for a white sheet in the middle of the scene that faces the key light.
   const Box box = drawn_box(world, false);
-  const vec3 way = vec3(frame.key_place) - (box.empty() ? vec3(0) : box.center());
-  const float key = luminance(vec3(frame.key_color)) / (frame.key_place.w > 0 ? std::max(dot(way, way), 1e-8f) : 1.0f);
-  frame.picture.x = 0.7f * kPi / std::max(key + ambient, 1e-6f);
+  const LampConstants& key = frame.lamps[0];
+  const vec3 way = vec3(key.place) - (box.empty() ? vec3(0) : box.center());
+  const float lux = luminance(vec3(key.color)) / (key.place.w > 0 ? std::max(dot(way, way), 1e-8f) : 1.0f);
+  frame.picture.x = 0.7f * kPi / std::max(lux + ambient, 1e-6f);
   return made;
 }
 
 void Surroundings::light(FrameConstants& frame) const {
-  frame.key_place = constants_.key_place;
-  frame.key_color = constants_.key_color;
-  frame.key_axis = constants_.key_axis;
+  frame.lamps = constants_.lamps;
   frame.irradiance = constants_.irradiance;
   frame.surroundings = constants_.surroundings;
   frame.picture = constants_.picture;
+  frame.modes.x = constants_.modes.x;
 }
 
 }  // namespace pliant

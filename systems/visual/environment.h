@@ -1,5 +1,4 @@
-// Light from all around, and the one light that models: from the level's panorama and first light, or from a studio of
-// our own.
+// Light from all around, and the lamps that model: from the level's panorama and lights, or from a studio of our own.
 #pragma once
 
 #include <array>
@@ -20,14 +19,14 @@ vec3 irradiance_on(const std::array<vec4, 9>& coefficients, vec3 normal);
 
 class Surroundings {
  public:
-  // Uploads the panorama, scaled down to what blurred pictures of it need.
+  // Filters and uploads the panorama, or takes it from the cache of an earlier run.
   static Surroundings make(const World& world);
   // Writes everything about light and exposure into `frame`.
   void light(FrameConstants& frame) const;
-  void bind() const { panorama_.bind(kPanoramaUnit); }
+  void bind() const { cube_.bind(kSurroundingsUnit); }
 
  private:
-  gpu::Texture panorama_;
+  gpu::Texture cube_;
   FrameConstants constants_;  // its part about light
 };
 

@@ -2,34 +2,55 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "components/math.h"
 
 namespace pliant {
 
+inline constexpr unsigned kMaxLamps = 4;
+
+struct LampConstants {
+  vec4 place{0, 1, 0, 0};
+  vec4 color{0};
+  vec4 axis{0};
+  vec4 more{0};
+};
+
+enum ModeBit : std::uint32_t {
+  kReflectionMode = 1,
+  kRefractionMode = 2,
+  kBumpMode = 4,
+  kShadowMode = 8,
+  kZoneMode = 16
+};
+
 struct FrameConstants {
   mat4 view_projection{1};
   mat4 inverse_view_projection{1};
+  mat4 shadow_from_world{1};
   vec4 eye{0};
-  vec4 key_place{0, 1, 0, 0};
-  vec4 key_color{0};
-  vec4 key_axis{0};
   std::array<vec4, 9> irradiance{};
   vec4 surroundings{1, 0, 1, 0};
-  vec4 picture{1, 0, 0, 0};
+  vec4 picture{1, 1, 0, 0};
+  vec4 shadow{0};
+  std::array<LampConstants, kMaxLamps> lamps{};
+  glm::uvec4 modes{0};
 };
-static_assert(sizeof(FrameConstants) == 2 * 64 + 4 * 16 + 9 * 16 + 2 * 16);
+static_assert(sizeof(FrameConstants) == 3 * 64 + 16 + 9 * 16 + 3 * 16 + kMaxLamps * 64 + 16);
 
 // Binding points, as written in the shaders.
 enum UniformBinding : unsigned { kFrameBinding = 0, kPlacementBinding = 1, kMaterialBinding = 2 };
 enum StorageBinding : unsigned { kStreamBinding = 0 };
 enum TextureUnit : unsigned {
-  kPanoramaUnit = 0,
+  kSurroundingsUnit = 0,
   kBaseColorUnit = 1,
   kRoughnessUnit = 2,
   kNormalUnit = 3,
   kOcclusionUnit = 4,
-  kEmissiveUnit = 5
+  kEmissiveUnit = 5,
+  kHeightUnit = 6,
+  kShadowUnit = 7
 };
 
 }  // namespace pliant

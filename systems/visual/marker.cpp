@@ -18,6 +18,9 @@ constexpr float kLongestArrow = 0.30f;
 constexpr float kArrowRadius = 0.0055f;
 constexpr float kHeadRadius = 0.015f, kHeadLength = 0.04f;
 constexpr float kSmallestForce = 0.01f;  // [N] below: no arrow
+constexpr float kFrameLength = 0.09f, kFrameRadius = 0.004f;
+constexpr std::size_t kMostInstances = 7;  // of a probe: ball, stylus, arrow of two, frame of three
+const vec3 kFrameColors[3] = {{0.85f, 0.06f, 0.04f}, {0.08f, 0.75f, 0.06f}, {0.05f, 0.15f, 0.90f}};
 const vec3 kArrowColor{0.95f, 0.70f, 0.03f};
 const vec3 kRodColor{0.55f, 0.57f, 0.60f};
 
@@ -35,7 +38,7 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   made.boxes_ = std::move(boxes);
   for (auto [entity, probe] : world.registry.view<Probe>())
     made.probes_.push_back(
-        {entity, static_cast<float>(probe.radius), probe.color, probe.placed, probe.position, probe.force});
+        {entity, static_cast<float>(probe.radius), probe.color, probe.placed, probe.position, probe.force, dvec3(0)});
 
   MarkerMesh all;
   const MarkerMesh meshes[kKinds] = {make_ball(), make_rod(), make_cone()};
@@ -48,7 +51,7 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   }
   made.vertices_ = gpu::Buffer::fixed<MarkerVertex>(all.vertices);
   made.indices_ = gpu::Buffer::fixed<std::uint32_t>(all.indices);
-  made.instances_ = gpu::Buffer::writable(nullptr, made.probes_.size() * 4 * sizeof(Instance));  // two rods a probe
+  made.instances_ = gpu::Buffer::writable(nullptr, made.probes_.size() * kMostInstances * sizeof(Instance));
 
   made.layout_ = gpu::VertexArray::make();
   made.layout_.source(0, made.vertices_, sizeof(MarkerVertex));
@@ -70,6 +73,7 @@ void Markers::take(const std::vector<ProbeSnapshot>& probes) {
         probe.placed = true;
         probe.position = now.position;
         probe.force = now.force;
+        probe.normal = now.normal;
       }
 }
 
@@ -104,31 +108,47 @@ void Markers::place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, flo
   placed_[kind].push_back({row(0), row(1), row(2), vec4(color, roughness)});
 }
 
-void Markers::lay_out(const Known& probe, const Viewpoint& viewpoint) {
-  const vec3 out = outward(probe), position(probe.position);
-  const float radius = std::max(probe.radius, kSmallestBall * diagonal_);
-  // A ball drawn larger than the probe is stands on the same lowest point.
-  const vec3 ball = position + (radius - probe.radius) * out;
+void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint) {
+  const vec3 out = outward(probe);
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
   // The stylus leans away from the arrow, always clockwise as seen, so that both can be told apart.
   const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye));
   const vec3 lean =
       normalize(std::cos(kLean) * out + std::sin(kLean) * cross(forward, out) + 0.2f * vec3(viewpoint.up));
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
+}
 
+void Markers::lay_out_force(const Known& probe, vec3 ball, float radius) {
   const float newtons = static_cast<float>(length(probe.force));
   if (newtons < kSmallestForce) return;
   const vec3 direction = vec3(probe.force) / newtons;
   const float shaft = std::min(kArrowPerNewton * newtons, kLongestArrow) * diagonal_;
-  const vec3 tail = ball, neck = tail + (radius + shaft) * direction;
-  place(kRod, tail, neck, kArrowRadius * diagonal_, kArrowColor, 0.5f);
+  const vec3 neck = ball + (radius + shaft) * direction;
+  place(kRod, ball, neck, kArrowRadius * diagonal_, kArrowColor, 0.5f);
   place(kHead, neck, neck + kHeadLength * diagonal_ * direction, kHeadRadius * diagonal_, kArrowColor, 0.5f);
 }
 
-std::size_t Markers::upload(const Viewpoint& viewpoint) {
+// At the probe's lowest point: tangents in red and blue, the normal in green.
+void Markers::lay_out_frame(const Known& probe) {
+  if (length(probe.normal) < 0.5) return;
+  const vec3 y(normalize(probe.normal));
+  const vec3 x = normalize(cross(std::abs(y.z) < 0.9f ? vec3(0, 0, 1) : vec3(1, 0, 0), y));
+  const vec3 axes[3] = {x, y, cross(x, y)}, foot = vec3(probe.position) - probe.radius * y;
+  for (int i = 0; i < 3; ++i)
+    place(kRod, foot, foot + kFrameLength * diagonal_ * axes[i], kFrameRadius * diagonal_, kFrameColors[i], 0.6f);
+}
+
+std::size_t Markers::upload(const Viewpoint& viewpoint, const RenderOptions& options) {
   for (std::vector<Instance>& kind : placed_) kind.clear();
-  for (const Known& probe : probes_)
-    if (probe.placed) lay_out(probe, viewpoint);
+  for (const Known& probe : probes_) {
+    if (!probe.placed) continue;
+    // A ball drawn larger than the probe is stands on the same lowest point.
+    const float radius = std::max(probe.radius, kSmallestBall * diagonal_);
+    const vec3 ball = vec3(probe.position) + (radius - probe.radius) * outward(probe);
+    if (options.markers) lay_out_probe(probe, ball, radius, viewpoint);
+    if (options.markers && options.forces) lay_out_force(probe, ball, radius);
+    if (options.contact_frames) lay_out_frame(probe);
+  }
   std::size_t travelled = 0;
   for (const std::vector<Instance>& kind : placed_)
     travelled += instances_.write(travelled, kind.data(), kind.size() * sizeof(Instance));

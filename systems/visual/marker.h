@@ -20,7 +20,7 @@ class Markers {
   // Takes where the probes are now. Probes that the level did not have at make() are ignored.
   void take(const std::vector<ProbeSnapshot>& probes);
   // Lays out and sends every marker; returns the bytes that travelled.
-  std::size_t upload(const Viewpoint& viewpoint);
+  std::size_t upload(const Viewpoint& viewpoint, const RenderOptions& options);
   void draw() const;
 
  private:
@@ -31,6 +31,7 @@ class Markers {
     bool placed = false;
     dvec3 position{0};  // [m] world
     dvec3 force{0};     // [N] world
+    dvec3 normal{0};    // [1] of the surface it touches, world; 0: none
   };
   struct Instance {  // as shaders/marker.vert reads it
     vec4 row_x, row_y, row_z, tint;
@@ -41,7 +42,9 @@ class Markers {
   enum Kind : unsigned { kBall, kRod, kHead, kKinds };
 
   vec3 outward(const Known& probe) const;
-  void lay_out(const Known& probe, const Viewpoint& viewpoint);
+  void lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint);
+  void lay_out_force(const Known& probe, vec3 ball, float radius);
+  void lay_out_frame(const Known& probe);
   void place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, float roughness);
 
   std::vector<Known> probes_;

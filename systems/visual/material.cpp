@@ -1,5 +1,6 @@
 #include "systems/visual/material.h"
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <utility>
@@ -9,17 +10,28 @@
 namespace pliant {
 namespace {
 
-// Block MaterialOf of shaders/surface.frag.
+// Block MaterialOf of shaders/material.glsl.
 struct MaterialConstants {
-  vec4 base_color, emissive, numbers, modes;
+  vec4 base_color, emissive, numbers, coat, volume, absorption;
 };
 
 MaterialConstants constants_of(const Material& m) {
   const float straight_on = (m.ior - 1) / (m.ior + 1);
+  const bool absorbs = m.attenuation_distance > 0;
+  const vec3 absorption = absorbs ? -glm::log(glm::max(m.attenuation_color, vec3(1e-4f))) / m.attenuation_distance : vec3(0);
+  const bool relief = m.height_texture >= 0;
   return {.base_color = m.base_color,
           .emissive = vec4(m.emissive, m.alpha == Material::Alpha::kMask ? m.alpha_cutoff : 0.0f),
           .numbers = {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength},
-          .modes = {m.alpha == Material::Alpha::kBlend ? 1.0f : 0.0f, straight_on * straight_on, 0, 0}};
+          .coat = {m.alpha == Material::Alpha::kBlend ? 1.0f : 0.0f, straight_on * straight_on,
+                   relief ? m.height_scale : 0.0f, 0},
+          .volume = {m.transmission, std::max(m.ior, 1.0f), m.thickness, 0},
+          .absorption = vec4(absorption, 0)};
+}
+
+// What lets most light pass leaves no shadow worth drawing.
+bool leaves_shadow(const Material& m) {
+  return m.transmission < 0.5f && (m.alpha != Material::Alpha::kBlend || m.base_color.a >= 0.5f);
 }
 
 // A surface that nobody painted: flesh-like, a little wet, so that dents catch the light.
@@ -70,6 +82,8 @@ Result<Materials> Materials::make(const World& world) {
                              .normal = texture(m.normal_texture, gpu::Meaning::kData, kFlat),
                              .occlusion = texture(m.occlusion_texture, gpu::Meaning::kData, kOne),
                              .emissive = texture(m.emissive_texture, gpu::Meaning::kColor, kOne),
+                             .height = texture(m.height_texture, gpu::Meaning::kData, kOne),
+                             .casts = leaves_shadow(m),
                              .blends = m.alpha == Material::Alpha::kBlend,
                              .double_sided = m.double_sided});
   }
@@ -96,6 +110,7 @@ void Materials::bind(std::int32_t index) const {
   textures_[static_cast<std::size_t>(e.normal)].bind(kNormalUnit);
   textures_[static_cast<std::size_t>(e.occlusion)].bind(kOcclusionUnit);
   textures_[static_cast<std::size_t>(e.emissive)].bind(kEmissiveUnit);
+  textures_[static_cast<std::size_t>(e.height)].bind(kHeightUnit);
 }
 
 }  // namespace pliant

@@ -7,13 +7,20 @@
 #include "systems/visual/gpu/framebuffer.h"
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/marker.h"
+#include "systems/visual/shadow.h"
 #include "systems/visual/surface.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {
 namespace {
 
-constexpr int kSamples = 4;  // a pixel
+constexpr int kSamples = 4;      // a pixel
+constexpr float kPlain = 0.08f;  // [1] linear grey, where the surroundings are not shown
+
+std::uint32_t modes_of(const RenderOptions& options) {
+  return (options.reflection ? kReflectionMode : 0u) | (options.refraction ? kRefractionMode : 0u) |
+         (options.bump ? kBumpMode : 0u) | (options.zones ? kZoneMode : 0u);
+}
 
 }  // namespace
 
@@ -27,8 +34,11 @@ struct Renderer::Parts {
   gpu::VertexArray nothing;  // the background's vertices come from their numbers
   gpu::Buffer frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
   gpu::Framebuffer samples, picture;
+  Shadow shadow;
+  bool shaded = false;  // this picture has a shadow
 
   std::size_t upload(const Viewpoint& viewpoint, int width, int height);
+  void draw_shadow();
   void draw_scene();
   std::size_t render(const Viewpoint& viewpoint, int width, int height);
 };
@@ -42,23 +52,38 @@ std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int h
   constants.eye = vec4(vec3(viewpoint.eye), 1);
   surroundings.light(constants);
   constants.picture.z = options.tint_height > 0 ? 1 / options.tint_height : 0;
-  return frame.write(0, &constants, sizeof constants) + surfaces.upload() + markers.upload(viewpoint);
+  constants.modes.y = modes_of(options);
+  if (shadow.place(constants.lamps[0], scene, constants) && options.shadows) constants.modes.y |= kShadowMode;
+  shaded = constants.modes.y & kShadowMode;
+  return frame.write(0, &constants, sizeof constants) + surfaces.upload() + markers.upload(viewpoint, options);
 }
 
-// The passes, in order.
-void Renderer::Parts::draw_scene() {
-  glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame.id());
-  surroundings.bind();
-  surfaces.draw_opaque();
-  if (options.markers) markers.draw();
+// What the first lamp sees. Drawn for every picture: a dent moves its shadow.
+void Renderer::Parts::draw_shadow() {
+  shadow.bind(kShadowUnit);
+  if (!shaded) return;
+  shadow.begin();
+  surfaces.draw_shadow();
+}
 
-  glDisable(GL_CULL_FACE);
-  background.use();
-  glBindVertexArray(nothing.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+// What the eye sees, in order.
+void Renderer::Parts::draw_scene() {
+  glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
+  surfaces.draw_opaque();
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  markers.draw();
+
+  if (options.background) {
+    glDisable(GL_CULL_FACE);
+    background.use();
+    glBindVertexArray(nothing.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
 
   glEnable(GL_BLEND);
+  glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
   surfaces.draw_blended();
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glDisable(GL_BLEND);
 }
 
@@ -68,14 +93,19 @@ std::size_t Renderer::Parts::render(const Viewpoint& viewpoint, int width, int h
     picture = gpu::Framebuffer(width, height, 0);
   }
   const std::size_t travelled = upload(viewpoint, width, height);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, samples.id());
-  glViewport(0, 0, width, height);
   glEnable(GL_FRAMEBUFFER_SRGB);
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);  // the background lies exactly at the far end
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame.id());
+  surroundings.bind();
+  draw_shadow();
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, samples.id());
+  glViewport(0, 0, width, height);
+  glClearColor(kPlain, kPlain, kPlain, 1.0f);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   draw_scene();
   samples.resolve_into(picture);
@@ -102,6 +132,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   if (!background) return background.error();
   parts.background = *std::move(background);
   parts.surroundings = Surroundings::make(world);
+  parts.shadow = Shadow::make();
   parts.nothing = gpu::VertexArray::make();
   if (glGetError() == GL_OUT_OF_MEMORY)
     return Error{"graphics card",

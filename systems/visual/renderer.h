@@ -26,10 +26,19 @@ struct Viewpoint {
 // The level's first camera, else one that frames every deformable from the front, slightly above. Reads every vertex.
 Viewpoint default_viewpoint(const World& world);
 
-// How to draw, for looking closer. Defaults are what a reader of a picture expects.
+// How to draw, for looking closer; may change between any two pictures. Defaults are what a reader of a picture expects.
 struct RenderOptions {
-  float tint_height = 0.0f;  // [m] height that is drawn fully blue (in) or red (out); 0: surfaces keep their colours
-  bool markers = true;       // probes and their forces
+  float tint_height = 0.0f;     // [m] height that is drawn fully blue (in) or red (out); 0: surfaces keep their colours
+  bool markers = true;          // probes
+  bool forces = true;           // and an arrow along each force
+  bool contact_frames = false;  // normal and tangents where a probe touches
+  bool background = true;       // the surroundings behind everything; else a plain grey
+  bool reflection = true;       // of the surroundings, in every coat
+  bool refraction = true;       // of the surroundings, through what transmits; else it is opaque
+  bool bump = true;             // normal maps and height textures
+  bool shadows = true;          // of the key light
+  bool wireframe = false;       // surfaces as lines
+  bool zones = false;           // each zone in a colour of its own
 };
 
 class Renderer {

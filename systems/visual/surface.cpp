@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #include "runtime/assert.h"
+#include "systems/touch/field.h"
 #include "systems/visual/frame.h"
 #include "systems/visual/viewpoint.h"
 
@@ -19,7 +21,7 @@ struct Vertex {
   std::uint32_t touch_vertex;
 };
 
-// Block Placement of shaders/surface.vert.
+// Block Placement of shaders/placement.glsl.
 struct Placement {
   mat4 to_world, normal_to_world;
 };
@@ -78,6 +80,9 @@ Result<Surfaces> Surfaces::make(const World& world) {
   Result<gpu::Program> program = gpu::Program::load({"surface.vert", "surface.frag"});
   if (!program) return program.error();
   made.program_ = *std::move(program);
+  Result<gpu::Program> shadow = gpu::Program::load({"shadow.vert", "shadow.frag"});
+  if (!shadow) return shadow.error();
+  made.shadow_ = *std::move(shadow);
 
   GLint largest = 0;  // [bytes] of a stream that a shader can reach
   glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
@@ -91,6 +96,11 @@ Result<Surfaces> Surfaces::make(const World& world) {
     made.boxes_.push_back(
         world_box(vertices_of(world.draw_meshes[drawable.mesh], nullptr), placement_of(world, entity)));
     made.items_.push_back(std::move(item));
+  }
+  if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.on_card; })) {
+    Result<FieldProgram> field = FieldProgram::make();
+    if (!field) return field.error();
+    made.field_program_ = *std::move(field);
   }
   return made;
 }
@@ -114,6 +124,8 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   if (touch && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
     stream = world.fields[deformable->field].stream;
   item.stream = StreamCopies(stream);
+  item.on_card = touch && world.field_place == FieldPlace::kCard && card_obstacle(*deformable).empty();
+  if (item.on_card) item.field = FieldOnCard(*touch);
 
   const mat4 to_world = placement_of(world, entity);
   const Placement placement{to_world, mat4(glm::transpose(glm::inverse(mat3(to_world))))};
@@ -123,23 +135,47 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
 }
 
 void Surfaces::take(const ObjectSnapshot& object) {
-  for (Item& item : items_)
-    if (item.gives_way && item.entity == object.object)
+  for (Item& item : items_) {
+    if (!item.gives_way || item.entity != object.object) continue;
+    if (item.on_card) {
+      item.sources.assign(object.terms.begin(), object.terms.begin() + object.term_count);
+    } else {
       item.stream.take({object.zones.data(), object.zone_count}, object.stream);
+    }
+  }
 }
 
 std::size_t Surfaces::upload() {
   std::size_t travelled = 0;
-  for (Item& item : items_) travelled += item.stream.upload();
+  for (Item& item : items_)
+    travelled += item.on_card ? item.field.evaluate(field_program_, item.sources, item.stream.buffer()) : item.stream.upload();
   return travelled;
+}
+
+void Surfaces::bind(const Item& item) const {
+  glBindVertexArray(item.layout.id());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kStreamBinding, item.stream.buffer().id());
+  glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, item.placement.id());
+}
+
+// Both sides of everything: a sheet, or the rim of a dent, blocks light whichever way it faces.
+void Surfaces::draw_shadow() const {
+  shadow_.use();
+  glDisable(GL_CULL_FACE);
+  for (const Item& item : items_) {
+    bind(item);
+    for (const DrawPart& part : item.parts) {
+      if (!materials_.casts_shadow(part.material)) continue;
+      materials_.bind(part.material);
+      draw_part(part);
+    }
+  }
 }
 
 void Surfaces::draw(bool blended) const {
   program_.use();
   for (const Item& item : items_) {
-    glBindVertexArray(item.layout.id());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kStreamBinding, item.stream.buffer().id());
-    glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, item.placement.id());
+    bind(item);
     glFrontFace(item.mirrored ? GL_CW : GL_CCW);
     for (const DrawPart& part : item.parts) {
       if (materials_.blends(part.material) != blended) continue;

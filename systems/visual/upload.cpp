@@ -6,6 +6,13 @@
 #include "runtime/assert.h"
 
 namespace pliant {
+namespace {
+
+// As much as one snapshot brings: more only comes when several were taken for one picture.
+constexpr std::size_t kStagedZones = 512;
+constexpr std::size_t kZoneBytes = kZoneSize * sizeof(vec4);
+
+}  // namespace
 
 StreamCopies::StreamCopies(std::span<const vec4> initial) : here_(initial.begin(), initial.end()) {
   const std::size_t zones = std::max<std::size_t>(1, (here_.size() + kZoneSize - 1) / kZoneSize);
@@ -13,6 +20,7 @@ StreamCopies::StreamCopies(std::span<const vec4> initial) : here_(initial.begin(
   newer_here_.assign(zones, false);
   waiting_.reserve(zones);
   on_card_ = gpu::Buffer::writable(here_.data(), here_.size() * sizeof(vec4));
+  staging_ = gpu::Staging(std::min(zones, kStagedZones) * kZoneBytes);
 }
 
 void StreamCopies::take(std::span<const std::uint32_t> zones, std::span<const vec4> packed) {
@@ -34,9 +42,9 @@ std::size_t StreamCopies::upload() {
     const std::size_t first = waiting_[i];
     std::size_t count = 0;
     for (; i < waiting_.size() && waiting_[i] == first + count; ++i, ++count) newer_here_[waiting_[i]] = false;
-    constexpr std::size_t kZoneBytes = kZoneSize * sizeof(vec4);
-    travelled += on_card_.write(first * kZoneBytes, &here_[first * kZoneSize], count * kZoneBytes);
+    travelled += staging_.send(on_card_, first * kZoneBytes, &here_[first * kZoneSize], count * kZoneBytes);
   }
+  staging_.finish();
   waiting_.clear();
   return travelled;
 }

@@ -9,6 +9,7 @@
 
 #include "components/math.h"
 #include "systems/visual/gpu/buffer.h"
+#include "systems/visual/gpu/staging.h"
 
 namespace pliant {
 
@@ -31,6 +32,7 @@ class StreamCopies {
   std::vector<bool> newer_here_;        // per zone
   std::vector<std::uint32_t> waiting_;  // zones with newer_here_, in the order in which they came
   gpu::Buffer on_card_;
+  gpu::Staging staging_;
 };
 
 }  // namespace pliant

@@ -9,12 +9,20 @@
 
 namespace pliant::gpu {
 
-Texture::Texture(GLenum format, int width, int height)
-    : levels_(std::bit_width(static_cast<unsigned>(std::max(width, height)))) {
+namespace {
+
+// Down to one pixel.
+int all_levels(int width, int height) {
+  return std::bit_width(static_cast<unsigned>(std::max(width, height)));
+}
+
+}  // namespace
+
+Texture::Texture(GLenum kind, GLenum format, int width, int height, int levels) {
   GLuint id = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &id);
+  glCreateTextures(kind, 1, &id);
   object_ = Object<DestroyTexture>(id);
-  glTextureStorage2D(id, levels_, format, width, height);
+  glTextureStorage2D(id, levels, format, width, height);
   glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
@@ -30,25 +38,32 @@ Result<Texture> Texture::from_image(const Image& image, Meaning meaning) {
     return Error{image.name, fmt::format("{}x{} pixels are more than the graphics card holds ({}); scale it down",
                                          image.width, image.height, limit)};
   const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
-  Texture texture(meaning == Meaning::kColor ? GL_SRGB8_ALPHA8 : GL_RGBA8, width, height);
+  Texture texture(GL_TEXTURE_2D, meaning == Meaning::kColor ? GL_SRGB8_ALPHA8 : GL_RGBA8, width, height,
+                  all_levels(width, height));
   const GLuint id = texture.object_.id();
   glTextureSubImage2D(id, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   glGenerateTextureMipmap(id);
   return texture;
 }
 
-Texture Texture::from_panorama(std::span<const float> rgb, int width, int height) {
-  ASSERT(rgb.size() == std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  Texture texture(GL_RGB16F, width, height);
+Texture Texture::from_cube(std::span<const std::uint16_t> rgb, int face, int levels) {
+  Texture texture(GL_TEXTURE_CUBE_MAP, GL_RGB16F, face, face, levels);
   const GLuint id = texture.object_.id();
-  glTextureSubImage2D(id, 0, 0, 0, width, height, GL_RGB, GL_FLOAT, rgb.data());
-  glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glGenerateTextureMipmap(id);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
+  std::size_t first = 0;
+  for (int level = 0; level < levels; ++level) {
+    const int size = face >> level;
+    const std::size_t count = std::size_t{18} * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+    ASSERT(first + count <= rgb.size());
+    glTextureSubImage3D(id, level, 0, 0, 0, size, size, 6, GL_RGB, GL_HALF_FLOAT, &rgb[first]);
+    first += count;
+  }
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   return texture;
 }
 
 Texture Texture::constant(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
-  Texture texture(GL_RGBA8, 1, 1);
+  Texture texture(GL_TEXTURE_2D, GL_RGBA8, 1, 1, 1);
   const std::uint8_t pixel[4] = {r, g, b, 255};
   glTextureSubImage2D(texture.object_.id(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
   return texture;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "components/appearance.h"
@@ -19,24 +20,23 @@ enum class Meaning {
   kData    // numbers: normals, roughness
 };
 
-// A two-dimensional texture with all its mipmaps. Rows lie as in the file: v = 0 is the top row, as glTF has it.
+// A texture with its mipmaps. Rows lie as in the file: v = 0 is the top row, as glTF has it.
 class Texture {
  public:
   Texture() = default;
   // Fails where the picture's size and its bytes do not agree, or the card cannot hold it.
   static Result<Texture> from_image(const Image& image, Meaning meaning);
-  // Linear RGB, wraps around horizontally; rgb.size() == 3 * width * height.
-  static Texture from_panorama(std::span<const float> rgb, int width, int height);
+  // A cube map in linear RGB, half floats: level by level, face by face (+X -X +Y -Y +Z -Z), `face` pixels an edge in
+  // level 0 and half as many in each that follows.
+  static Texture from_cube(std::span<const std::uint16_t> rgb, int face, int levels);
   // One pixel, for materials without a picture.
   static Texture constant(std::uint8_t r, std::uint8_t g, std::uint8_t b);
 
   void bind(GLuint unit) const { glBindTextureUnit(unit, object_.id()); }
-  int levels() const { return levels_; }
 
  private:
-  Texture(GLenum format, int width, int height);
+  Texture(GLenum kind, GLenum format, int width, int height, int levels);
   Object<DestroyTexture> object_;
-  int levels_ = 0;
 };
 
 }  // namespace pliant::gpu

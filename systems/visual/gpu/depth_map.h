@@ -1,0 +1,24 @@
+// A square of depths that shaders compare with: what a lamp sees.
+#pragma once
+
+#include "systems/visual/gpu/framebuffer.h"
+#include "systems/visual/gpu/texture.h"
+
+namespace pliant::gpu {
+
+class DepthMap {
+ public:
+  DepthMap() = default;
+  explicit DepthMap(int size);  // [pixels] an edge
+  // What is drawn from now on lands here.
+  void begin() const;
+  void bind(GLuint unit) const { glBindTextureUnit(unit, texture_.id()); }
+  int size() const { return size_; }
+
+ private:
+  Object<DestroyFramebuffer> framebuffer_;
+  Object<DestroyTexture> texture_;
+  int size_ = 0;
+};
+
+}  // namespace pliant::gpu
