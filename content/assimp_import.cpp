@@ -9,8 +9,11 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "content/gltf_document.h"
 #include "content/gltf_draco.h"
+#include "content/gltf_save.h"
 #include "content/image.h"
+#include "content/isolation.h"
 
 namespace pliant {
 
@@ -39,6 +42,11 @@ Status check_claims(const Bytes& bytes, const std::string& extension) {
     if (!(claim <= static_cast<double>(bytes.size())))
       return Error{"", fmt::format("claims {} elements in {} bytes; the file is damaged", claim, bytes.size())};
   return Done{};
+}
+
+// Names in files are bytes; ours are UTF-8.
+std::string utf8(const std::string& bytes) {
+  return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
 LocalTransform decompose(const aiMatrix4x4& m) {
@@ -93,7 +101,7 @@ Result<Primitive> read_primitive(const aiMesh& mesh) {
   return out;
 }
 
-Material read_material(const aiMaterial& in, const fs::path& folder, Level& level) {
+Material read_material(const aiMaterial& in, std::string& texture_name) {
   Material out;
   aiString name, texture;
   aiColor4D color;
@@ -106,16 +114,8 @@ Material read_material(const aiMaterial& in, const fs::path& folder, Level& leve
     out.alpha = Material::Alpha::kBlend;
   }
   if (!(out.base_color == out.base_color)) out.base_color = vec4(1);
-  if (in.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != AI_SUCCESS) return out;
-  const Result<fs::path> path = confined_path(folder, texture.C_Str());
-  Result<Image> image = path ? load_image(*path) : Result<Image>(path.error());
-  if (!image) {
-    level.notes.push_back("the texture " + std::string(texture.C_Str()) + " is left out: " + image.error().what);
-    return out;
-  }
-  image->name = fs::path(texture.C_Str()).filename().string();
-  out.base_color_texture = static_cast<std::int32_t>(level.images.size());
-  level.images.push_back(std::move(*image));
+  out.name = utf8(out.name);
+  if (in.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == AI_SUCCESS) texture_name = utf8(texture.C_Str());
   return out;
 }
 
@@ -134,7 +134,7 @@ Status read_nodes(const aiScene& scene, Level& level) {
     const std::int32_t here = static_cast<std::int32_t>(level.nodes.size());
     LevelNode node;
     node.parent = visit.parent;
-    node.name = visit.node->mName.length > 0 ? visit.node->mName.C_Str() : fmt::format("node_{}", here);
+    node.name = visit.node->mName.length > 0 ? utf8(visit.node->mName.C_Str()) : fmt::format("node_{}", here);
     node.local = decompose(visit.node->mTransformation);
     if (!finite(node.local)) return Error{"", "has a transformation that is not finite; repair the file"};
     if (visit.node->mNumMeshes > 0) {
@@ -162,53 +162,93 @@ Status read_nodes(const aiScene& scene, Level& level) {
   return Done{};
 }
 
-Result<Level> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
+// In the child: the scene as GLB, after a header that names each material's texture.
+Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
   if (const Status status = check_claims(bytes, extension); !status) return status.error();
   Assimp::Importer importer;
-  // Only what is read below; skeletons, animations, lights and cameras are not even parsed into memory.
+  // Only what is read below; skeletons, animations, lights and cameras are dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS | aiComponent_CAMERAS |
                                                           aiComponent_LIGHTS | aiComponent_COLORS | aiComponent_TEXTURES);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, false);
   const unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
   const aiScene* scene = importer.ReadFile(path.string(), steps);
   if (!scene || !scene->mRootNode) {
     std::string why = importer.GetErrorString();
     std::replace(why.begin(), why.end(), '\n', ' ');
-    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : why.substr(0, 200)) + "; export it again, or as glTF"};
+    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))) + "; export it again, or as glTF"};
   }
   Level level;
-  for (unsigned m = 0; m < scene->mNumMaterials; ++m)
-    level.materials.push_back(read_material(*scene->mMaterials[m], path.parent_path(), level));
+  Json textures = Json::array();
+  for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
+    std::string texture;
+    level.materials.push_back(read_material(*scene->mMaterials[m], texture));
+    textures.push_back(texture);
+  }
   if (const Status status = read_nodes(*scene, level); !status) return status.error();
   for (LevelMesh& mesh : level.meshes)
     for (Primitive& primitive : mesh.primitives)
       if (primitive.material >= static_cast<std::int32_t>(level.materials.size())) primitive.material = -1;
   if (level.meshes.empty()) return Error{"", "has no triangles; a point cloud or an empty mesh cannot be touched"};
+  const Result<Bytes> glb = level_as_glb(level);
+  if (!glb) return glb.error();
+  const std::string header = textures.dump();
+  const std::uint64_t size = header.size();
+  Bytes out;
+  append_bytes(out, &size, sizeof size);
+  append_bytes(out, header.data(), size);
+  append_bytes(out, glb->data(), glb->size());
+  return out;
+}
+
+// In the parent: what the child made is read like any other file.
+Result<Level> receive(const Bytes& answer, const fs::path& folder) {
+  Taker in(answer);
+  std::uint64_t size = 0;
+  std::string header;
+  if (!in.take(&size, sizeof size) || size > in.rest().size()) return Error{"", "was not imported to its end; try again"};
+  header.resize(size);
+  in.take(header.data(), size);
+  Result<Level> level = load_gltf(in.rest(), true, {});
+  if (!level) return level;
+  level->source.reset();  // that document was only a messenger
+  const Json textures = Json::parse(header);
+  for (std::size_t m = 0; m < textures.size() && m < level->materials.size(); ++m) {
+    const std::string name = textures[m].get<std::string>();
+    if (name.empty()) continue;
+    const Result<fs::path> path = confined_path(folder, name);
+    Result<Image> image = path ? load_image(*path) : Result<Image>(path.error());
+    if (!image) {
+      level->notes.push_back("the texture " + name + " is left out: " + image.error().what);
+      continue;
+    }
+    image->name = fs::path(name).filename().string();
+    level->materials[m].base_color_texture = static_cast<std::int32_t>(level->images.size());
+    level->images.push_back(std::move(*image));
+  }
   return level;
 }
 
 }  // namespace
 
 Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::string& name) {
-  Result<DracoFile> file = decode_draco_file(bytes);
-  if (!file) return file.error();
-  if (!file->semantics.count("POSITION") || file->mesh.index.empty()) return Error{"Draco data", "has no triangles to touch"};
+  Result<DracoMesh> mesh = decode_draco_file(bytes);
+  if (!mesh) return mesh.error();
   Primitive primitive;
-  primitive.index = std::move(file->mesh.index);
-  for (const auto& [semantic, which] : file->semantics) {
-    const DracoAttribute& attribute = file->mesh.attributes[which];
+  primitive.index = std::move(mesh->index);
+  for (const DracoAttribute& attribute : mesh->attributes) {
+    const std::string& semantic = attribute.name;
     const auto at = [&](std::size_t v, std::size_t c) { return attribute.values[v * attribute.width + c]; };
-    for (std::size_t v = 0; v < file->mesh.vertices; ++v)
+    for (std::size_t v = 0; v < mesh->vertices; ++v)
       for (std::size_t c = 0; c < attribute.width; ++c)
         if (!std::isfinite(at(v, c))) return Error{"Draco data", "has a number in " + semantic + " that is not finite"};
     if (semantic == "POSITION" && attribute.width != 3) return Error{"Draco data", "has positions that are not in space"};
-    for (std::size_t v = 0; v < file->mesh.vertices; ++v) {
+    for (std::size_t v = 0; v < mesh->vertices; ++v) {
       if (semantic == "POSITION") primitive.position.emplace_back(at(v, 0), at(v, 1), at(v, 2));
       if (semantic == "NORMAL" && attribute.width == 3) primitive.normal.emplace_back(at(v, 0), at(v, 1), at(v, 2));
       if (semantic == "TEXCOORD_0" && attribute.width == 2) primitive.uv.emplace_back(at(v, 0), 1.0f - at(v, 1));
     }
   }
+  if (primitive.position.empty() || primitive.index.empty()) return Error{"Draco data", "has no triangles to touch"};
   for (const vec3 normal : primitive.normal)
     if (std::abs(length(normal) - 1.0f) > 0.006f) {
       primitive.normal.clear();  // made anew at spawn
@@ -230,8 +270,9 @@ Result<Level> import_mesh(const fs::path& path) {
   if (!bytes) return bytes.error();
   try {
     if (extension == ".drc") return import_draco(*bytes, path.stem().string());
-    Result<Level> level = import_scene(path, *bytes, extension);
-    return level;
+    const Result<Bytes> answer = in_isolation(bytes->size(), [&] { return import_scene(path, *bytes, extension); });
+    if (!answer) return answer.error();
+    return receive(*answer, path.parent_path());
   } catch (const std::exception& e) {
     return Error{"", std::string("cannot be read: ") + e.what() + "; export it again, or as glTF"};
   }

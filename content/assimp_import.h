@@ -1,5 +1,5 @@
 // Meshes of other formats (.obj, .ply, .off, .stl, .fbx, ...) through Assimp, and bare .drc files through Draco, as
-// Levels without a source document: one node a mesh instance, core materials.
+// Levels without a source document: one node a mesh instance, core materials. The libraries run in a child process.
 #pragma once
 
 #include <filesystem>

@@ -9,6 +9,8 @@
 #include <draco/mesh/mesh.h>
 #include <fmt/format.h>
 
+#include "content/isolation.h"
+
 namespace pliant {
 
 namespace {
@@ -159,40 +161,91 @@ std::uint32_t add_attribute(draco::Mesh& mesh, const DracoAttribute& in, draco::
   return mesh.attribute(id)->unique_id();
 }
 
-}  // namespace
-
-Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids) {
-  Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(blob);
-  if (!mesh) return mesh.error();
-  DracoMesh out = read_faces(**mesh);
-  for (const std::uint32_t id : ids) {
-    const draco::PointAttribute* attribute = (*mesh)->GetAttributeByUniqueId(id);
-    if (!attribute) return refuse(fmt::format("has no attribute {}, which the primitive names", id));
-    Result<DracoAttribute> values = read_attribute(**mesh, *attribute);
-    if (!values) return values.error();
-    out.attributes.push_back(std::move(*values));
+// What a child decoded, as bytes and back.
+Bytes pack(const DracoMesh& mesh) {
+  Bytes out;
+  const std::uint64_t sizes[3] = {mesh.vertices, mesh.index.size(), mesh.attributes.size()};
+  append_bytes(out, sizes, sizeof sizes);
+  append_bytes(out, mesh.index.data(), mesh.index.size() * sizeof(std::uint32_t));
+  for (const DracoAttribute& each : mesh.attributes) {
+    const std::uint64_t header[3] = {each.id, each.width, each.name.size()};
+    append_bytes(out, header, sizeof header);
+    append_bytes(out, each.name.data(), each.name.size());
+    append_bytes(out, each.values.data(), each.values.size() * sizeof(float));
   }
   return out;
 }
-
-Result<DracoFile> decode_draco_file(std::span<const std::uint8_t> blob) {
-  Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(blob);
-  if (!mesh) return mesh.error();
-  DracoFile out;
-  out.mesh = read_faces(**mesh);
-  const std::pair<const char*, draco::GeometryAttribute::Type> kinds[] = {
-      {"POSITION", draco::GeometryAttribute::POSITION},
-      {"NORMAL", draco::GeometryAttribute::NORMAL},
-      {"TEXCOORD_0", draco::GeometryAttribute::TEX_COORD}};
-  for (const auto& kind : kinds) {
-    const draco::PointAttribute* attribute = (*mesh)->GetNamedAttribute(kind.second);
-    if (!attribute) continue;
-    Result<DracoAttribute> values = read_attribute(**mesh, *attribute);
-    if (!values) return values.error();
-    out.semantics[kind.first] = out.mesh.attributes.size();
-    out.mesh.attributes.push_back(std::move(*values));
+Result<DracoMesh> unpack(const Bytes& bytes) {
+  Taker in(bytes);
+  DracoMesh out;
+  std::uint64_t sizes[3];
+  bool good = in.take(sizes, sizeof sizes);
+  if (good) {
+    out.vertices = sizes[0];
+    out.index.resize(sizes[1]);
+    good = in.take(out.index.data(), sizes[1] * sizeof(std::uint32_t));
   }
+  for (std::uint64_t i = 0; good && i < sizes[2]; ++i) {
+    DracoAttribute attribute;
+    std::uint64_t header[3];
+    good = in.take(header, sizeof header) && header[2] < 64;
+    if (!good) break;
+    attribute.name.resize(header[2]);
+    good = in.take(attribute.name.data(), header[2]);
+    attribute.id = static_cast<std::uint32_t>(header[0]);
+    attribute.width = header[1];
+    attribute.values.resize(out.vertices * attribute.width);
+    good = good && in.take(attribute.values.data(), attribute.values.size() * sizeof(float));
+    out.attributes.push_back(std::move(attribute));
+  }
+  if (!good) return refuse("was not decoded to its end");
   return out;
+}
+
+using NamedAttributes = std::vector<std::pair<std::string, const draco::PointAttribute*>>;
+
+// The attributes that `wanted(mesh)` names, decoded in a child.
+template <class Wanted>
+Result<DracoMesh> decode(std::span<const std::uint8_t> blob, const Wanted& wanted) {
+  const Result<Bytes> packed = in_isolation(blob.size(), [&]() -> Result<Bytes> {
+    const Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(blob);
+    if (!mesh) return mesh.error();
+    DracoMesh out = read_faces(**mesh);
+    const Result<NamedAttributes> attributes = wanted(**mesh);
+    if (!attributes) return attributes.error();
+    for (const auto& [name, attribute] : *attributes) {
+      Result<DracoAttribute> values = read_attribute(**mesh, *attribute);
+      if (!values) return values.error();
+      values->name = name;
+      out.attributes.push_back(std::move(*values));
+    }
+    return pack(out);
+  });
+  if (!packed) return packed.error().where.empty() ? Error{"Draco data", packed.error().what} : packed.error();
+  return unpack(*packed);
+}
+
+}  // namespace
+
+Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids) {
+  return decode(blob, [&](const draco::Mesh& mesh) -> Result<NamedAttributes> {
+    NamedAttributes attributes;
+    for (const std::uint32_t id : ids) {
+      attributes.emplace_back("", mesh.GetAttributeByUniqueId(id));
+      if (!attributes.back().second) return refuse(fmt::format("has no attribute {}, which the primitive names", id));
+    }
+    return attributes;
+  });
+}
+
+Result<DracoMesh> decode_draco_file(std::span<const std::uint8_t> blob) {
+  return decode(blob, [](const draco::Mesh& mesh) -> Result<NamedAttributes> {
+    using Kind = draco::GeometryAttribute;
+    NamedAttributes attributes;
+    for (const auto& [name, kind] : {std::pair{"POSITION", Kind::POSITION}, std::pair{"NORMAL", Kind::NORMAL}, std::pair{"TEXCOORD_0", Kind::TEX_COORD}})
+      if (const draco::PointAttribute* attribute = mesh.GetNamedAttribute(kind)) attributes.emplace_back(name, attribute);
+    return attributes;
+  });
 }
 
 Result<Bytes> encode_draco(DracoMesh& in, int bits) {

@@ -182,6 +182,13 @@ Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
   return packed;
 }
 
+Result<Bytes> level_as_glb(const Level& level) {
+  Result<SourceDocument> document = build_document(level);
+  if (!document) return document.error();
+  Bytes bin = pack_document(*document, false);
+  return as_glb(document->json.dump(), std::move(bin));
+}
+
 Status save_level(const Level& level, const fs::path& path, const SaveOptions& options) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -18,4 +18,7 @@ Json transform_json(const LocalTransform& local);  // translation, rotation, sca
 // Moves a document's pictures (unless `keep_image_uris`) and buffers into one; returns it. /buffers/0 then stands for it.
 Bytes pack_document(SourceDocument& document, bool keep_image_uris);
 
+// A Level built, packed and wrapped as a .glb file.
+Result<Bytes> level_as_glb(const Level& level);
+
 }  // namespace pliant

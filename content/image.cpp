@@ -15,6 +15,18 @@ namespace {
 // bit; a JPEG block of 64 samples takes a few bits. A file that claims more is broken, and is refused before allocation.
 constexpr std::uint64_t kPixelsPerByte = 8300;
 
+// Every chunk of a PNG lies within the file: the decoder allocates by what a chunk says of itself.
+bool png_chunks_fit(std::span<const std::uint8_t> bytes) {
+  for (std::size_t at = 8; at + 12 <= bytes.size();) {
+    const std::uint64_t length = std::uint64_t{bytes[at]} << 24 | std::uint64_t{bytes[at + 1]} << 16 |
+                                 std::uint64_t{bytes[at + 2]} << 8 | bytes[at + 3];
+    if (length > bytes.size() - at - 12) return false;
+    if (std::equal(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 4, bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8, "IEND")) return true;
+    at += length + 12;
+  }
+  return false;
+}
+
 struct FreePixels {
   void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
@@ -33,6 +45,8 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   if (image_format(bytes) == ImageFormat::kUnknown)
     return Error{name, "is neither PNG nor JPEG; convert the picture to one of them"};
   if (bytes.size() > 0x7fffffff) return Error{name, "is too large a picture; use one below 2 GB"};
+  if (image_format(bytes) == ImageFormat::kPng && !png_chunks_fit(bytes))
+    return Error{name, "is a PNG that is cut off or damaged; save it again"};
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) || width <= 0 || height <= 0)

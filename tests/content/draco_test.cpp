@@ -48,7 +48,7 @@ TEST(Draco, DamagedBlobsAreDecodedOrRefusedAndIndicesStayInside) {
   ASSERT_TRUE(blob.ok());
   std::mt19937 random(1);
   int refused = 0;
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < 300; ++trial) {
     Bytes damaged = *blob;
     for (int k = 0; k < 1 + trial % 4; ++k) damaged[5 + random() % (damaged.size() - 5)] = static_cast<std::uint8_t>(random());
     if (trial % 3 == 0) damaged.resize(random() % damaged.size());
@@ -60,7 +60,7 @@ TEST(Draco, DamagedBlobsAreDecodedOrRefusedAndIndicesStayInside) {
     for (const std::uint32_t index : decoded->index) ASSERT_LT(index, decoded->vertices);
     ASSERT_EQ(decoded->attributes[0].values.size(), decoded->vertices * decoded->attributes[0].width);
   }
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, 50);
 }
 
 }  // namespace

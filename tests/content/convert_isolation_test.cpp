@@ -1,0 +1,45 @@
+// The child process that libraries run in: whatever happens there, the parent gets an answer.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <stdexcept>
+#include <vector>
+
+#include "content/isolation.h"
+
+namespace pliant::test {
+namespace {
+
+TEST(Isolation, AnswersAndRefusalsComeBackAsTheyWere) {
+  const Bytes large(3'000'000, 7);
+  const Result<Bytes> answer = in_isolation(0, [&]() -> Result<Bytes> { return large; });
+  ASSERT_TRUE(answer.ok());
+  EXPECT_EQ(*answer, large);
+  const Result<Bytes> refused = in_isolation(0, []() -> Result<Bytes> { return Error{"here", "is wrong; mend it"}; });
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message(), "here: is wrong; mend it");
+}
+
+TEST(Isolation, ACrashAHangAndAnExceptionInTheChildAreSentencesInTheParent) {
+  const auto refusal = [](const std::function<Result<Bytes>()>& work) {
+    const Result<Bytes> answer = in_isolation(0, work, 0.3);
+    return answer ? std::string("answered") : answer.error().message();
+  };
+  EXPECT_NE(refusal([]() -> Result<Bytes> { std::raise(SIGKILL); return Bytes{}; }).find("makes its reader fail"), std::string::npos);
+  EXPECT_NE(refusal([]() -> Result<Bytes> { std::abort(); }).find("makes its reader fail"), std::string::npos);
+  EXPECT_NE(refusal([]() -> Result<Bytes> { for (volatile bool forever = true; forever;) {} return Bytes{}; }).find("too long"), std::string::npos);
+  EXPECT_NE(refusal([]() -> Result<Bytes> { throw std::runtime_error("no good"); }).find("no good"), std::string::npos);
+}
+
+#ifndef PLIANT_SANITIZED
+TEST(Isolation, MoreMemoryThanTheFileWarrantsIsRefused) {
+  const Result<Bytes> answer = in_isolation(1000, []() -> Result<Bytes> {
+    const std::vector<char> taken(std::size_t{2} << 30, 1);
+    return Bytes{static_cast<std::uint8_t>(taken[taken.size() / 2])};
+  });
+  EXPECT_FALSE(answer.ok());
+}
+#endif
+
+}  // namespace
+}  // namespace pliant::test
