@@ -2,6 +2,8 @@
 // Rate: touch (read). Writer: content at spawn; editor and --set between ticks. Keys of PLIANT_deformable.
 #pragma once
 
+#include <string>
+
 #include "components/mesh.h"
 
 namespace pliant {
@@ -38,5 +40,8 @@ struct Deformable {
   Handle<Mesh> mesh;           // set at spawn
   Handle<HeightField> field;   // set at spawn
 };
+
+// Why this deformable's field cannot live on the card (systems/touch/field.h), as half a sentence; empty: it can.
+std::string card_obstacle(const Deformable& deformable);
 
 }  // namespace pliant

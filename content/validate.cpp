@@ -43,6 +43,8 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
   if (node.deformable && node.deformable->reach > 0.0 && node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
     warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices", node.deformable->reach,
                      built->mesh.mean_edge));
+  if (const std::string obstacle = node.deformable ? card_obstacle(*node.deformable) : ""; !obstacle.empty())
+    findings.push_back({Severity::kNote, pointer, "stays on the processor under --field gpu: " + obstacle});
 }
 
 }  // namespace

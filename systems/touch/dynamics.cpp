@@ -45,6 +45,9 @@ void dynamics(World& world, Tick tick) {
     HeightField& field = world.fields[deformable.field];
     if (object.on_card) {  // the card draws it; what has to move here is the list
       list_terms(object, deformable, tick);
+      std::uint32_t reached = 0;
+      for (const SourceState& source : object.sources) reached += static_cast<std::uint32_t>(source.zones.size()) * kZoneSize;
+      field.awake_vertices = std::min(reached, world.meshes[deformable.mesh].vertex_count);
       continue;
     }
     if (field.awake.empty()) {

@@ -42,14 +42,6 @@ HeightState released_at(const ObjectState& object, const Mesh& mesh, std::uint32
 
 }  // namespace
 
-std::string card_obstacle(const Deformable& d) {
-  if (d.spring == SpringLaw::kCubic || d.spring == SpringLaw::kExponential)
-    return "its spring law is not linear, so what a probe leaves behind has no closed form";
-  if (d.response == Response::kLag) return "response `lag` needs every step of the field";
-  if (d.distance == Distance::kSurface) return "distance `surface` is marched on the processor";
-  return {};
-}
-
 HeightState surface_at(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex) {
   if (!object.on_card) return {field.stream[vertex].w, field.rate[vertex].w};
   HeightState state = released_at(object, mesh, vertex, object.time);

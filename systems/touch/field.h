@@ -7,14 +7,9 @@
 // that travels, and the card evaluates it over the whole mesh (P1 section 5; methods.md 1.7).
 #pragma once
 
-#include <string>
-
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
-
-// Why this deformable's field cannot live on the card, as a sentence; empty: it can.
-std::string card_obstacle(const Deformable& deformable);
 
 // The surface at a vertex after the last tick: height above rest [m] and rate of its residual [m/s].
 HeightState surface_at(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex);
