@@ -33,6 +33,7 @@ enum DroppedBit : std::uint32_t {
   kDroppedStale = 16,         // a device's pose came too late and its force went to zero: check its connection
 };
 
+struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
 
 // Keys of PLIANT_simulation.
@@ -65,6 +66,7 @@ struct World {
   FieldPlace field_place = FieldPlace::kProcessor;  // kCard: of every object whose parameters allow it; read by prepare_touch
   std::uint32_t dropped = 0;              // DroppedBit
   std::shared_ptr<TouchState> touch;      // null until prepare_touch
+  std::shared_ptr<MouseInput> mouse;      // null unless a window drives a probe
   std::unique_ptr<TripleBuffer<Snapshot>> snapshots;  // touch clock -> visual clock; null until prepare_touch
 };
 

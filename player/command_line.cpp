@@ -31,6 +31,7 @@ std::string parse_size(const std::string& text, RunOptions& run) {
       static_cast<std::size_t>(used) != text.size() || run.width < 16 || run.height < 16 || run.width > 8192 ||
       run.height > 8192)
     return "--size: '" + text + "' is not WxH with both between 16 and 8192, such as 960x540";
+  run.sized = true;
   return {};
 }
 
@@ -46,7 +47,8 @@ void add_run(CLI::App& app, RunOptions& run) {
   verb->add_option("--seconds", run.seconds, "how long [s]; default: the longest script, at most 60, else 4")
       ->check(within(1e-4, 86400.0));
   verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")->check(within(10.0, 20000.0));
-  CLI::Option* lockstep = verb->add_flag("--lockstep")->description("virtual time, the same bits every time (default)");
+  CLI::Option* lockstep =
+      verb->add_flag("--lockstep", run.lockstep, "virtual time, the same bits every time (default without a window)");
   verb->add_flag("--realtime", run.realtime, "run the clocks; overruns are counted")->excludes(lockstep);
   verb->add_option("--field", run.field, "where the surface is computed: auto, cpu, gpu")
       ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
@@ -59,9 +61,12 @@ void add_run(CLI::App& app, RunOptions& run) {
       [&run](const std::string& text) {
         if (const std::string wrong = parse_size(text, run); !wrong.empty()) throw CLI::ValidationError(wrong);
       },
-      "of the pictures, WxH (960x540)");
-  CLI::Option* headless = verb->add_flag("--headless")->description("no window (default)");
-  verb->add_flag("--window", run.window, "in a window")->excludes(headless);
+      "of the pictures and the window, WxH (960x540, 1280x720)");
+  CLI::Option* headless = verb->add_flag("--headless", run.headless, "no window (default where there is no display)");
+  verb->add_flag("--window", run.window, "in a window (default where there is a display)")
+      ->excludes(headless)
+      ->excludes(lockstep);
+  verb->add_option("--input", run.input, "events for the window from a CSV file")->group("");  // docs/cli.md
   verb->add_option("--record", run.record, "write every probe's pose per tick to FILE");
   verb->add_option("--replay", run.replay, "move the probes as FILE says, in lockstep");
   verb->add_option("--threads", run.threads, "threads for loading and preparing; 0: all")->check(within(0, 1024));

@@ -22,7 +22,7 @@ struct BuiltIn {
 constexpr BuiltIn kBuiltIn[] = {
     {"script", "follows a CSV of times and poses", "--probe NAME=script:FILE.csv (header time_s,x,y,z; metres, world frame)"},
     {"orbit", "approaches, presses, slides and leaves, by itself", "--probe NAME=orbit"},
-    {"mouse", "moves in the plane of the picture", "needs a window, which is not yet built"},
+    {"mouse", "moves in the plane of the picture", "in a window: `pliant run LEVEL --probe finger=mouse`"},
     {"null", "stays where the level put it", "\"driver\": \"null\" in the level's PLIANT_haptic_device"},
 };
 

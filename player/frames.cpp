@@ -29,6 +29,12 @@ std::vector<std::uint64_t> regular_frames(std::uint64_t ticks, double rate, doub
   return at;
 }
 
+void FrameFigures::add(const FrameStats& stats) {
+  cost_.add(static_cast<std::uint64_t>(stats.draw_ms * 1e6));
+  upload_sum_ += stats.upload_bytes;
+  upload_max_ = std::max(upload_max_, stats.upload_bytes);
+}
+
 Frames::~Frames() = default;
 
 Result<std::unique_ptr<Frames>> Frames::create(const World& world, int width, int height) {
@@ -60,9 +66,7 @@ void Frames::update_all(World& world, Tick tick) {
 Status Frames::take(OutputFolder& out) {
   FrameStats stats;
   const Image image = renderer_->picture(viewpoint_, width_, height_, &stats);
-  cost_.add(static_cast<std::uint64_t>(stats.draw_ms * 1e6));
-  upload_sum_ += stats.upload_bytes;
-  upload_max_ = std::max(upload_max_, stats.upload_bytes);
+  figures_.add(stats);
   return write_file(out.stage(fmt::format("frame-{:04d}.png", count_++)),
                     encode_png(image.width, image.height, image.rgba.data()));
 }

@@ -22,6 +22,20 @@ std::vector<std::uint64_t> spread_frames(std::uint64_t ticks, int count);
 // Ticks of `fps` pictures per simulated second at `rate` ticks per second, at most 9999.
 std::vector<std::uint64_t> regular_frames(std::uint64_t ticks, double rate, double fps);
 
+// What drawing cost.
+class FrameFigures {
+ public:
+  void add(const FrameStats& stats);
+  std::size_t count() const { return static_cast<std::size_t>(cost_.count()); }
+  const Histogram& cost() const { return cost_; }
+  std::uint64_t upload_bytes() const { return upload_sum_; }
+  std::uint64_t upload_bytes_max() const { return upload_max_; }
+
+ private:
+  Histogram cost_;
+  std::uint64_t upload_sum_ = 0, upload_max_ = 0;  // [byte]
+};
+
 class Frames {
  public:
   // Makes a graphics context. The error says what is missing.
@@ -36,9 +50,7 @@ class Frames {
   Status take(OutputFolder& out);
 
   std::size_t count() const { return count_; }
-  const Histogram& cost() const { return cost_; }  // of drawing
-  std::uint64_t upload_bytes() const { return upload_sum_; }
-  std::uint64_t upload_bytes_max() const { return upload_max_; }
+  const FrameFigures& figures() const { return figures_; }
 
  private:
   Frames() = default;
@@ -47,8 +59,7 @@ class Frames {
   Viewpoint viewpoint_;
   int width_ = 0, height_ = 0;  // [pixel]
   std::size_t count_ = 0;
-  Histogram cost_;
-  std::uint64_t upload_sum_ = 0, upload_max_ = 0;  // [byte]
+  FrameFigures figures_;
 };
 
 }  // namespace pliant

@@ -31,6 +31,7 @@ class Keeper {
   void record_to(RecordingWriter writer) { recording_.emplace(std::move(writer)); }
 
   void keep(Journal& journal);  // all rows that wait
+  const std::vector<TickRow>& latest() const { return rows_; }  // what the last keep() took
   Status finish();              // closes forces.csv and the recording
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }

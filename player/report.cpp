@@ -64,7 +64,7 @@ Json systems(const Schedule<World>& schedule) {
 
 std::string report_json(const RunFigures& figures) {
   static const Histogram none;
-  const Frames* frames = figures.frames;
+  const FrameFigures* frames = figures.frames;
   Json json;
   json["pliant"] = PLIANT_VERSION;
   json["level"] = figures.world.name;
@@ -96,7 +96,7 @@ void print_summary(const RunFigures& figures, const std::filesystem::path& out) 
                probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
                probe.max_force, probe.net_work * 1e3);
   fmt::print("{}: report.json, forces.csv, forces.png", out.string());
-  if (figures.frames) fmt::print(", {} pictures", figures.frames->count());
+  if (figures.pictures > 0) fmt::print(", {} pictures", figures.pictures);
   fmt::print("\n");
 }
 

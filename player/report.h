@@ -19,7 +19,8 @@ struct RunFigures {
   const Schedule<World>& schedule;
   const Journal& journal;
   const Keeper& keeper;
-  const Frames* frames = nullptr;
+  const FrameFigures* frames = nullptr;  // of drawing; null: nothing was drawn
+  std::size_t pictures = 0;              // that were written
   std::string mode;                  // lockstep, realtime
   std::string field;                 // cpu
   double rate = 1000.0;              // [Hz]

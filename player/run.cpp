@@ -20,10 +20,12 @@
 #include "player/sources.h"
 #include "player/touch_loop.h"
 #include "player/verbs.h"
+#include "player/window_session.h"
 #include "runtime/parallel.h"
 #include "systems/schedule.h"
 #include "systems/touch/hash_state.h"
 #include "systems/touch/prepare.h"
+#include "systems/visual/field_cost.h"
 
 namespace pliant {
 namespace {
@@ -32,6 +34,8 @@ constexpr double kDefaultSeconds = 4.0;    // [s] without a script
 constexpr double kLongestDefault = 60.0;   // [s] of a script, unless --seconds asks for more
 constexpr double kJournalSeconds = 8.0;    // [s] of rows that may wait while a picture is drawn and written
 constexpr int kDefaultFrames = 12;
+constexpr int kWindowWidth = 1280, kWindowHeight = 720;  // [pixel]
+constexpr double kEndless = 1e7;           // [s] a window stays open until it is closed
 
 // What could not be done, and whether the arguments or the input are to blame.
 struct Failure {
@@ -44,20 +48,29 @@ Outcome wrong_arguments(Error error) { return Failure{kUsage, std::move(error)};
 Outcome failed(Error error) { return Failure{kFailed, std::move(error)}; }
 
 Outcome check(const RunOptions& options) {
-  if (options.window) return wrong_arguments({"--window", "not yet built; use --headless"});
-  if (options.field == "gpu") return wrong_arguments({"--field gpu", "not yet built; use cpu or auto"});
+  if (options.field == "gpu" && options.frames == 0)
+    return wrong_arguments({"--field gpu", "computes the surface for pictures; leave out --frames 0"});
   if (!options.replay.empty() && options.realtime)
     return wrong_arguments({"--replay", "runs in lockstep; leave out --realtime"});
   if (!options.replay.empty() && !options.probes.empty())
     return wrong_arguments({"--replay", "moves every probe itself; leave out --probe"});
+  if (!options.replay.empty() && options.window)
+    return wrong_arguments({"--replay", "runs in lockstep, which a window does not; leave out --window"});
   return {};
 }
 
 // Everything a run needs before its first tick.
 struct Prepared {
+  RunOptions options;
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
+};
+
+// A window and what is to be shown in it.
+struct Shown {
+  std::unique_ptr<Window> window;
+  InputScript script;
 };
 
 void say(Prepared& run, const std::string& sentence) {
@@ -80,14 +93,28 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
   return {};
 }
 
+// In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets one.
+std::optional<ProbeSource> mouse_probe(const Level& level) {
+  for (const LevelNode& node : level.nodes)
+    if (node.device && node.device->driver == Driver::kMouse) return {};
+  std::string name = "mouse";
+  const auto taken = [&](const LevelNode& node) { return node.name == name; };
+  while (std::any_of(level.nodes.begin(), level.nodes.end(), taken)) name += "'";
+  return ProbeSource{name, Driver::kMouse, {}};
+}
+
 // Probes that are not the level's: from --probe, from the recording, or one on a mesh that has none.
-Outcome choose_probes(const RunOptions& options, Level& level, bool bare, Prepared& run,
+Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bool bare, Prepared& run,
                       std::vector<ProbeSource>& sources) {
   for (const std::string& argument : options.probes) {
     auto source = parse_source(argument);
     if (!source) return wrong_arguments(source.error());
+    if (source->driver == Driver::kMouse && !windowed)
+      return wrong_arguments({"--probe " + argument, "the mouse needs a window; leave out --headless, or use orbit"});
     sources.push_back(*source);
   }
+  if (windowed && sources.empty())
+    if (const std::optional<ProbeSource> mouse = mouse_probe(level)) sources.push_back(*mouse);
   std::vector<ProbeSource> added = sources;
   if (run.replay) {
     for (const std::string& name : run.replay->header.probes) {
@@ -102,8 +129,17 @@ Outcome choose_probes(const RunOptions& options, Level& level, bool bare, Prepar
   return {};
 }
 
+// Where height fields live. `auto` goes by measured cost where there is a card and a display to refresh; lockstep stays on
+// the processor, so that the same input gives the same bits everywhere.
+FieldPlace choose_field(const RunOptions& options, bool windowed, const World& world) {
+  if (options.field == "gpu") return FieldPlace::kCard;
+  if (options.field == "cpu" || !windowed) return FieldPlace::kProcessor;
+  const Result<FieldCost> cost = measure_field_cost(world, 60.0);
+  return cost && cost->card_us < cost->processor_us ? FieldPlace::kCard : FieldPlace::kProcessor;
+}
+
 // File -> Level -> World, ready to be touched.
-Outcome prepare(const RunOptions& options, Prepared& run) {
+Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (!options.replay.empty()) {
     auto recording = read_recording(options.replay);
     if (!recording) return failed(recording.error());
@@ -119,7 +155,7 @@ Outcome prepare(const RunOptions& options, Prepared& run) {
   const bool bare = !level.has_pliant();
   if (bare) make_touchable(level);
   std::vector<ProbeSource> sources;
-  if (Outcome wrong = choose_probes(options, level, bare, run, sources)) return wrong;
+  if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
   for (const std::string& assignment : options.sets)
     if (const Status status = set_key(level, assignment); !status) return wrong_arguments(status.error());
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
@@ -129,6 +165,7 @@ Outcome prepare(const RunOptions& options, Prepared& run) {
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
+  run.world.field_place = choose_field(options, windowed, run.world);
   if (const Status status = prepare_touch(run.world); !status) return failed(status.error());
   make_orbits(run.world);
   if (run.replay) {
@@ -151,13 +188,39 @@ double default_seconds(const World& world) {
   return longest > 0.0 ? std::min(longest, kLongestDefault) : kDefaultSeconds;
 }
 
-std::uint64_t count_ticks(const RunOptions& options, const Prepared& run) {
+std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepared& run) {
   const double rate = run.world.simulation.touch_rate;
+  if (windowed) return static_cast<std::uint64_t>(std::llround((options.seconds > 0.0 ? options.seconds : kEndless) * rate));
   const bool all = run.replay && options.seconds <= 0.0;
   const double seconds = options.seconds > 0.0 ? options.seconds : default_seconds(run.world);
   const auto wanted = static_cast<std::uint64_t>(std::max<long long>(1, std::llround(seconds * rate)));
   const std::uint64_t recorded = run.replay ? run.replay->ticks.size() : wanted;
   return all ? recorded : std::min(wanted, recorded);
+}
+
+// A window where there is a display, unless that was forbidden or what is asked for needs virtual time. Without one, only
+// an order to have one is a failure.
+Outcome open_window(const RunOptions& options, Shown& shown) {
+  const bool possible = !options.headless && !options.lockstep && options.replay.empty();
+  if (!options.window && (!possible || !Window::display_is_there())) {
+    if (!options.input.empty()) return wrong_arguments({"--input", "is for a window; leave out --headless"});
+    return {};
+  }
+  auto window = Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
+  if (!window) {
+    if (options.window) return failed(window.error());
+    note(window.error().what + " (going on without a window)");
+    return {};
+  }
+  if (options.frames > 0 && options.seconds <= 0.0)
+    return wrong_arguments({"--frames", "spreads pictures over a duration; give --seconds, or use --fps"});
+  if (!options.input.empty()) {
+    auto script = InputScript::load(options.input);
+    if (!script) return failed(script.error());
+    shown.script = std::move(script).value();
+  }
+  shown.window = std::move(window).value();
+  return {};
 }
 
 // Without a working graphics library, pictures that nobody asked for are left out with a note.
@@ -191,14 +254,68 @@ Outcome write_reports(const RunFigures& figures, OutputFolder& out) {
   return {};
 }
 
-Outcome run_prepared(const RunOptions& options, Prepared& run) {
+// Options for a file that was dropped: what was said of the first level's nodes and files is not meant for it.
+RunOptions another_level(const RunOptions& options, const std::string& file) {
+  RunOptions other = options;
+  other.level = file;
+  other.probes.clear();
+  other.sets.clear();
+  other.record.clear();
+  if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
+  return other;
+}
+
+// What a run was like, whichever clock it ran on.
+struct Ran {
+  std::string mode;
+  std::uint64_t overruns = 0;
+  std::optional<FrameFigures> drawn;
+  std::size_t pictures = 0;
+  bool opened = false;  // another level takes its place
+};
+
+Result<Ran> run_headless(const RunOptions& options, TouchLoop& loop) {
+  Ran ran{options.realtime ? "realtime" : "lockstep"};
+  const Status status = options.realtime ? run_realtime(loop, ran.overruns) : run_lockstep(loop);
+  if (!status) return status.error();
+  if (loop.frames) {
+    ran.drawn = loop.frames->figures();
+    ran.pictures = loop.frames->count();
+  }
+  return ran;
+}
+
+Result<Ran> run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
+  WindowSession session{*shown.window, shown.script, loop.world, loop.schedule, loop.journal, loop.keeper, loop.out};
+  session.level = options.level;
+  session.rate = loop.rate;
+  session.ticks = loop.ticks;
+  session.frame_width = options.width;
+  session.frame_height = options.height;
+  if (options.fps > 0.0) session.frame_ticks = regular_frames(loop.ticks, loop.rate, options.fps);
+  if (options.frames > 0) session.frame_ticks = spread_frames(loop.ticks, options.frames);
+  session.open = [&options, &next](const std::string& file) -> std::optional<Error> {
+    next = Prepared();
+    RunOptions other = options;
+    if (file != options.level) other = another_level(options, file);
+    if (Outcome wrong = prepare(other, true, next)) return wrong->error;
+    next.options = other;
+    return {};
+  };
+  auto figures = run_window(session);
+  if (!figures) return figures.error();
+  return Ran{"window", figures->overruns, figures->frames, figures->pictures, figures->opened};
+}
+
+// `shown`: the window, or null. `next`: what is to be run after this, if a window asked for it.
+Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std::optional<Prepared>& next) {
   World& world = run.world;
   const double rate = world.simulation.touch_rate;
-  const std::uint64_t ticks = count_ticks(options, run);
+  const std::uint64_t ticks = count_ticks(options, shown, run);
 
   auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out);
   if (!out) return failed(out.error());
-  Journal journal(world, options.realtime ? kJournalSeconds : 2.0 / rate);
+  Journal journal(world, options.realtime || shown ? kJournalSeconds : 2.0 / rate);
   std::vector<std::string> sources;
   for (Entity probe : journal.probes())
     sources.push_back(run.replay ? "replay:" + options.replay : describe_source(world, probe));
@@ -213,7 +330,8 @@ Outcome run_prepared(const RunOptions& options, Prepared& run) {
     keeper->record_to(std::move(writer).value());
   }
   std::unique_ptr<Frames> frames;
-  if (Outcome wrong = make_frames(options, run, frames)) return wrong;
+  if (!shown)
+    if (Outcome wrong = make_frames(options, run, frames)) return wrong;
 
   Schedule<World> schedule(touch_schedule());
   TouchLoop loop{world, schedule, journal, *keeper, *out, rate, ticks, frames.get(), {}, nullptr};
@@ -221,16 +339,18 @@ Outcome run_prepared(const RunOptions& options, Prepared& run) {
   if (frames)
     loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps)
                                          : spread_frames(ticks, options.frames < 0 ? kDefaultFrames : options.frames);
-  std::uint64_t overruns = 0;
-  const Status ran = options.realtime ? run_realtime(loop, overruns) : run_lockstep(loop);
+  Prepared other;
+  auto ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
   if (!ran) return failed(ran.error());
+  if (ran->opened) next = std::move(other);
   Hash hash = journal.hash();
   hash_state(world, hash);
   release_devices(world);
   if (const Status kept = keeper->finish(); !kept) return failed(kept.error());
 
-  RunFigures figures{world, schedule, journal, *keeper, frames.get(), options.realtime ? "realtime" : "lockstep", "cpu",
-                     rate, overruns, explain_dropped(world.dropped), fmt::format("{:016x}", hash.value())};
+  RunFigures figures{world, schedule, journal, *keeper, ran->drawn ? &*ran->drawn : nullptr, ran->pictures, ran->mode,
+                     world.field_place == FieldPlace::kCard ? "gpu" : "cpu",
+                     rate, ran->overruns, explain_dropped(world.dropped), fmt::format("{:016x}", hash.value())};
   if (journal.lost() > 0)
     figures.dropped.push_back(fmt::format("{} rows of forces.csv were lost because writing fell behind: take fewer or "
                                           "smaller pictures",
@@ -245,10 +365,18 @@ Outcome run_prepared(const RunOptions& options, Prepared& run) {
 
 int run(const RunOptions& options) {
   set_thread_count(options.threads);
-  Outcome wrong = check(options);
-  Prepared prepared;
-  if (!wrong) wrong = prepare(options, prepared);
-  if (!wrong) wrong = run_prepared(options, prepared);
+  if (Outcome wrong = check(options)) return fail(wrong->status, wrong->error);
+  Shown shown;
+  if (Outcome wrong = open_window(options, shown)) return fail(wrong->status, wrong->error);
+  const bool windowed = shown.window != nullptr;
+  std::optional<Prepared> next(std::in_place);
+  next->options = options;
+  Outcome wrong = prepare(options, windowed, *next);
+  while (!wrong && next) {
+    Prepared now = std::move(*next);
+    next.reset();
+    wrong = run_prepared(now.options, now, windowed ? &shown : nullptr, next);
+  }
   return wrong ? fail(wrong->status, wrong->error) : kDone;
 }
 

@@ -8,6 +8,8 @@
 namespace pliant {
 namespace {
 
+constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
+
 // The device that moves this probe and no other; a shared one is copied first, so that the others keep theirs.
 Entity own_device(World& world, Entity probe) {
   const Entity current = world.registry.get<Probe>(probe).device;
@@ -45,7 +47,10 @@ Result<ProbeSource> parse_source(const std::string& argument) {
     source.file = what.substr(7);
     return source;
   }
-  if (what == "mouse") return Error{where, "the mouse needs a window, which is not yet built; use orbit or script:FILE.csv"};
+  if (what == "mouse") {
+    source.driver = Driver::kMouse;
+    return source;
+  }
   if (what.starts_with("device:"))
     return Error{where, "drivers for devices are not yet built; `pliant devices` lists what is found"};
   return Error{where, "there is no source '" + what + "'; use script:FILE.csv, orbit, mouse or device:ID"};
@@ -67,6 +72,7 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
     LevelNode node;
     node.name = name;
     node.probe.emplace();
+    if (sources[i].driver == Driver::kMouse) node.probe->color = kMouseColor;
     node.device.emplace();
     node.probe_device = name;
     level.nodes.push_back(node);

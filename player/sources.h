@@ -16,7 +16,7 @@ struct ProbeSource {
   std::string file;           // of a script, relative to the working directory
 };
 
-// NAME=script:FILE.csv or NAME=orbit. `mouse` and `device:ID` get a sentence that says what they need.
+// NAME=script:FILE.csv, NAME=orbit or NAME=mouse. `device:ID` gets a sentence that says what it needs.
 Result<ProbeSource> parse_source(const std::string& argument);
 
 // Adds a node for each source that names no node of the level: a point probe with a device of its own. Before --set, so

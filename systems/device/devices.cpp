@@ -1,5 +1,6 @@
 #include "systems/device/devices.h"
 
+#include "systems/device/mouse.h"
 #include "systems/device/path.h"
 #include "systems/touch/touch_state.h"
 
@@ -18,6 +19,7 @@ void sense(const World& world, HapticDevice& device, double time) {
 }  // namespace
 
 void read_devices(World& world, Tick tick) {
+  read_mouse(world, tick);
   for (auto [entity, device] : world.registry.view<HapticDevice>()) sense(world, device, tick.time);
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     const HapticDevice& device = world.registry.get<HapticDevice>(probe.device);

@@ -36,7 +36,10 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"run", "--frames", "3", "--fps", "10"}, 2, "--fps");
   expect_refused({"run", "--lockstep", "--realtime"}, 2, "--lockstep");
   expect_refused({"run", "--headless", "--window"}, 2, "--headless");
-  expect_refused({"run", "--window"}, 2, "not yet built");
+  expect_refused({"run", "--window"}, 1, "DISPLAY");  // there is none in these tests
+  expect_refused({"run", "--window", "--lockstep"}, 2, "--lockstep");
+  expect_refused({"run", "--window", "--replay", "x.pose"}, 2, "--replay");
+  expect_refused({"run", "--input", "events.csv"}, 2, "--input");
   expect_refused({"run", "--field", "gpu"}, 2, "--field");
   expect_refused({"run", "--field", "abacus"}, 2, "abacus");
   expect_refused({"run", "plate.obj", "--probe", "orbit"}, 2, "NAME=SOURCE");

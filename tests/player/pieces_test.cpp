@@ -124,8 +124,9 @@ TEST(Sources, AreANameAndWhatMovesIt) {
   EXPECT_EQ(orbit->name, "finger");
   EXPECT_EQ(orbit->driver, Driver::kOrbit);
   EXPECT_EQ(script->driver, Driver::kScript);
+  EXPECT_EQ(parse_source("m=mouse")->driver, Driver::kMouse);
   EXPECT_EQ(script->file, "dir/x=1.csv");
-  for (const char* wrong : {"", "orbit", "=orbit", "p=", "p=script:", "p=orbits", "p=mouse", "p=device:1"})
+  for (const char* wrong : {"", "orbit", "=orbit", "p=", "p=script:", "p=orbits", "p=device:1"})
     EXPECT_FALSE(parse_source(wrong)) << wrong;
 }
 

@@ -1,0 +1,43 @@
+// A window with an OpenGL 4.5 core context, and what a hand does to it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "player/window_input.h"
+#include "runtime/result.h"
+
+struct GLFWwindow;
+
+namespace pliant {
+
+class Window {
+ public:
+  // DISPLAY or WAYLAND_DISPLAY is set.
+  static bool display_is_there();
+  // Hidden at first; its context is current on the calling thread, which must be the first one of the process. Sizes in
+  // pixels. One window at a time.
+  static Result<std::unique_ptr<Window>> create(int width, int height);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  void show(const std::string& title);
+  void poll(std::vector<InputEvent>& events);  // appends what happened since
+  void present();                              // shows what was drawn; waits for the display's next picture
+  void hide_cursor(bool hidden);
+  int width() const;   // [pixel] of what is drawn into
+  int height() const;  // [pixel]
+  float scale() const;  // [1] of text, 1 on an ordinary display
+
+ private:
+  Window() = default;
+  static void connect(GLFWwindow* handle);
+  void add(InputEvent event) { events_.push_back(std::move(event)); }
+  GLFWwindow* handle_ = nullptr;
+  bool cursor_hidden_ = false;
+  std::vector<InputEvent> events_;
+};
+
+}  // namespace pliant

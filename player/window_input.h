@@ -1,0 +1,46 @@
+// What a hand does to the window: the same events whether they come from GLFW or from a file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/result.h"
+
+namespace pliant {
+
+enum class InputKind : std::uint8_t { kMove, kPress, kRelease, kWheel, kKey, kDrop, kClose };
+enum class MouseButton : std::uint8_t { kLeft, kMiddle, kRight };
+enum ModifierBit : std::uint8_t { kShift = 1, kControl = 2, kAlt = 4 };
+
+struct InputEvent {
+  InputKind kind = InputKind::kMove;
+  double x = 0, y = 0;  // [pixel] from the upper left corner; of a wheel, y: clicks, > 0 away from the hand
+  MouseButton button = MouseButton::kLeft;
+  int key = 0;                 // as GLFW numbers them
+  std::uint8_t modifiers = 0;  // ModifierBit
+  std::string file;            // that was dropped
+};
+
+// Events from a file, for trying the window without a hand. Columns: time_s,event,args, where event and args are
+//   move X Y | press [BUTTON] [MODIFIER...] | release [BUTTON] | wheel CLICKS [MODIFIER...] | key NAME | drop FILE | close
+// BUTTON is left (default), middle or right; MODIFIER shift, control or alt; NAME a letter or digit, F1 to F12, Tab, Esc,
+// Space or Home. Times [s] ascend and count from the first picture.
+class InputScript {
+ public:
+  static Result<InputScript> load(const std::string& file);
+  // Appends what is due at `now` [s] and was not given yet. Time begins with the first call.
+  void take(double now, std::vector<InputEvent>& events);
+
+ private:
+  struct Row {
+    double time;
+    InputEvent event;
+  };
+  std::vector<Row> rows_;
+  std::size_t next_ = 0;
+  std::optional<double> start_;  // [s]
+};
+
+}  // namespace pliant

@@ -1,0 +1,120 @@
+#include "player/window_loop.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace pliant {
+namespace {
+
+std::size_t imgui_button(MouseButton button) {
+  return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
+}
+
+}  // namespace
+
+void WindowLoop::say(std::string sentence, bool error) {
+  state_.message = std::move(sentence);
+  state_.message_is_error = error;
+  said_at_ = seconds_;
+}
+
+void WindowLoop::open(const std::string& file) {
+  if (opening_.valid()) return;
+  say("opening " + file, false);
+  opening_ = std::async(std::launch::async, s_.open, file);
+}
+
+void WindowLoop::look_for_opened() {
+  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (const std::optional<Error> wrong = opening_.get()) {
+    say(wrong->message(), true);
+  } else {
+    figures_.opened = true;
+  }
+}
+
+void WindowLoop::press(const InputEvent& event) {
+  if (overlay_.wants_mouse() || drag_ != Drag::kNone) return;
+  dragging_ = event.button;
+  if (event.button == MouseButton::kMiddle || (event.button == MouseButton::kLeft && (event.modifiers & kShift))) {
+    drag_ = Drag::kPan;
+  } else if (event.button == MouseButton::kRight || (event.modifiers & kAlt) || !radius_ || !pointer_.hits(ray())) {
+    drag_ = Drag::kOrbit;
+  } else {
+    drag_ = Drag::kPress;
+    pointer_.hold(true);
+  }
+}
+
+void WindowLoop::move(const InputEvent& event) {
+  const double dx = event.x - mouse_.x, dy = event.y - mouse_.y;
+  if (drag_ == Drag::kOrbit) camera_.orbit(dx, dy, s_.window.height());
+  if (drag_ == Drag::kPan) camera_.pan(dx, dy, s_.window.height());
+  mouse_.x = event.x;
+  mouse_.y = event.y;
+  cursor_.move_to(event.x, event.y);
+  pointed_ = true;
+}
+
+void WindowLoop::wheel(const InputEvent& event) {
+  mouse_.wheel = event.y;
+  if (overlay_.wants_mouse()) return;
+  const int steps = event.y > 0 ? 1 : -1;
+  if (drag_ == Drag::kPress) {
+    pointer_.deepen(steps);
+  } else if ((event.modifiers & kControl) && radius_) {
+    pointer_.stand(steps);
+  } else {
+    camera_.zoom(event.y);
+  }
+}
+
+void WindowLoop::key(int key) {
+  RenderOptions& options = renderer_.options();
+  switch (key) {
+    case GLFW_KEY_ESCAPE:
+      if (!overlay_.help) close_ = true;
+      overlay_.help = false;
+      break;
+    case GLFW_KEY_F1: overlay_.help = !overlay_.help; break;
+    case GLFW_KEY_TAB: overlay_.visible = !overlay_.visible; break;
+    case GLFW_KEY_F12: wants_screenshot_ = true; break;
+    case GLFW_KEY_F: camera_.frame(); break;
+    case GLFW_KEY_HOME: camera_.home(); break;
+    case GLFW_KEY_1: case GLFW_KEY_KP_1: camera_.look_from(0, 0); break;
+    case GLFW_KEY_3: case GLFW_KEY_KP_3: camera_.look_from(glm::half_pi<double>(), 0); break;
+    case GLFW_KEY_7: case GLFW_KEY_KP_7: camera_.look_from(0, glm::half_pi<double>()); break;
+    case GLFW_KEY_SPACE: touch_->pause(!touch_->paused()); break;
+    case GLFW_KEY_R: open(s_.level); break;
+    case GLFW_KEY_W: options.wireframe = !options.wireframe; break;
+    case GLFW_KEY_Z: options.zones = !options.zones; break;
+    case GLFW_KEY_H: options.tint_height = options.tint_height > 0 ? 0.0f : tint_; break;
+    case GLFW_KEY_C: options.contact_frames = !options.contact_frames; break;
+    case GLFW_KEY_A: options.forces = !options.forces; break;
+    case GLFW_KEY_S: options.shadows = !options.shadows; break;
+    default: break;
+  }
+}
+
+void WindowLoop::handle(const InputEvent& event) {
+  switch (event.kind) {
+    case InputKind::kMove: move(event); break;
+    case InputKind::kPress:
+      mouse_.down[imgui_button(event.button)] = true;
+      press(event);
+      break;
+    case InputKind::kRelease:
+      mouse_.down[imgui_button(event.button)] = false;
+      if (event.button == dragging_) {
+        drag_ = Drag::kNone;
+        pointer_.hold(false);
+      }
+      break;
+    case InputKind::kWheel: wheel(event); break;
+    case InputKind::kKey: key(event.key); break;
+    case InputKind::kDrop: open(event.file); break;
+    case InputKind::kClose: close_ = true; break;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+#include "systems/device/mouse.h"
+
+#include <algorithm>
+
+namespace pliant {
+
+void read_mouse(World& world, Tick tick) {
+  if (!world.mouse) return;
+  MouseInput& mouse = *world.mouse;
+  bool first = false;
+  if (mouse.samples.acquire()) {
+    first = !mouse.heard;
+    mouse.lasts = mouse.heard ? std::clamp(tick.time - mouse.heard_at, tick.dt, kMouseSlowestFrame) : tick.dt;
+    mouse.heard = true;
+    mouse.heard_at = tick.time;
+    mouse.from = mouse.position;
+    mouse.to = mouse.samples.read().position;
+  }
+  if (!mouse.heard || tick.time - mouse.heard_at > kMouseSilence) return;
+  const double share = std::min(1.0, (tick.time - mouse.heard_at + tick.dt) / mouse.lasts);
+  mouse.position = mouse.from + share * (mouse.to - mouse.from);
+  for (auto [entity, device] : world.registry.view<HapticDevice>()) {
+    if (device.driver != Driver::kMouse) continue;
+    if (first) device.status = DeviceStatus::kReady;
+    device.position = mouse.position;
+    device.sensed_at = tick.time;
+  }
+}
+
+void add_mouse(World& world, dvec3 start) {
+  world.mouse = std::make_shared<MouseInput>(start);
+  for (auto [entity, device] : world.registry.view<HapticDevice>()) {
+    if (device.driver != Driver::kMouse) continue;
+    device.status = DeviceStatus::kLost;
+    device.position = start;
+  }
+}
+
+}  // namespace pliant

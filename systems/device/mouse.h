@@ -1,0 +1,36 @@
+// The mouse as a device: the visual clock says where the pointing hand is, some 60 times a second; the touch clock needs
+// it a thousand times a second and must notice when nobody speaks any more.
+#pragma once
+
+#include "components/world.h"
+#include "runtime/clock.h"
+
+namespace pliant {
+
+inline constexpr double kMouseSilence = 0.25;      // [s] unheard for so long: no more poses, so safety sends no force
+inline constexpr double kMouseSlowestFrame = 0.1;  // [s] a pose that came later than this is reached as if it had not
+
+// Where the pointing hand wants the probe. Written by the visual clock every frame, also when nothing moved.
+struct MouseSample {
+  dvec3 position{0};  // [m] world
+};
+
+// One mouse. Its probe runs straight from pose to pose, each in the time since the pose before: at most a frame late.
+struct MouseInput {
+  explicit MouseInput(dvec3 start) : from(start), position(start), to(start) {}
+
+  TripleBuffer<MouseSample> samples;  // visual clock -> touch clock
+  // Touch clock's.
+  bool heard = false;
+  double heard_at = 0.0;         // [s] when the newest pose came
+  double lasts = 1e-3;           // [s] how long the way to it takes
+  dvec3 from, position, to;      // [m] world
+};
+
+// Gives World::mouse to every device whose driver is `mouse`. Without one, those devices keep still and grow stale.
+void read_mouse(World& world, Tick tick);
+
+// Puts a mouse at `start` [m] into the world before the touch clock runs; its devices are lost until it is first heard.
+void add_mouse(World& world, dvec3 start);
+
+}  // namespace pliant
