@@ -7,6 +7,11 @@
 #include <cmath>
 #include <memory>
 
+#ifdef PLIANT_SANITIZED
+// Fontconfig keeps its configuration, on purpose, until the program ends; the leak sanitizer asks us about it.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
+#endif
+
 namespace pliant {
 namespace {
 
