@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr std::uint32_t kSmallestFace = 64, kLargestFace = 256;  // [pixels]
-constexpr std::uint32_t kSamples = 128;                          // directions that a filtered pixel gathers
+constexpr std::uint32_t kSamples = 256;                          // directions that a filtered pixel gathers
 constexpr float kLargestHalf = 65000.0f;
 
 // One level of a cube, in floats.
@@ -111,7 +111,7 @@ std::vector<Sample> gathered(float roughness, std::uint32_t face, std::size_t le
     if (way.z <= 0) continue;
     const float d = cosine * cosine * (alpha2 - 1) + 1, density = alpha2 / (kPi * d * d) / 4;  // [1/sr]
     const float share = 1 / (static_cast<float>(kSamples) * density);
-    const float lod = std::round(std::max(0.0f, 0.5f * std::log2(share / pixel) + 1));
+    const float lod = std::round(std::max(0.0f, 0.5f * std::log2(share / pixel)));
     samples.push_back({way, way.z, std::min(static_cast<std::size_t>(lod), levels - 1)});
   }
   return samples;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kVersion = 1;  // one more whenever filtered_cube gives other numbers
+constexpr std::uint32_t kVersion = 2;  // one more whenever filtered_cube gives other numbers
 constexpr std::uint32_t kLargestFace = 4096;
 
 struct Header {

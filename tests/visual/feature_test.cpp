@@ -1,0 +1,329 @@
+// One picture for each thing the renderer can do, beside a picture that somebody has looked at (golden/). Each test also
+// draws with that one thing switched off, and that picture must fail the same comparison: it is what the test is about.
+// To make the golden pictures anew: PLIANT_WRITE_GOLDEN=FOLDER test_visual --gtest_filter='Feature.*', look, then copy.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "systems/visual/png.h"
+#include "systems/visual/renderer.h"
+#include "tests/visual/compare.h"
+#include "tests/visual/scene.h"
+
+namespace pliant {
+namespace {
+
+using test::dent;
+using test::perceived_difference;
+using test::snapshot_of;
+
+constexpr int kWidth = 192, kHeight = 144;
+constexpr double kTolerance = 1.0;  // [of 255] see perceived_difference
+
+const Viewpoint kFront{.eye = {0, 0.8, 4}, .target = {0, 0, 0}};
+const Viewpoint kNear{.eye = {0.2, 1.0, 0.6}, .target = {-0.12, -0.1, 0}};
+const Viewpoint kSlanted{.eye = {0, 1.5, 1.4}, .target = {0, 0, 0.05}};
+
+// A sky of soft coloured tiles over a dark chequered floor: whatever bends light bends lines.
+Panorama tiles() {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  Panorama p{.name = "tiles", .width = 256, .height = 128, .rgb = {}};
+  for (std::uint32_t y = 0; y < p.height; ++y)
+    for (std::uint32_t x = 0; x < p.width; ++x) {
+      const float turn = (static_cast<float>(x) + 0.5f) / 256, fall = (static_cast<float>(y) + 0.5f) / 128;
+      const float wave = std::sin(24 * kPi * turn) * std::sin(12 * kPi * fall), edge = glm::smoothstep(-0.2f, 0.2f, wave);
+      const vec3 above = glm::mix(vec3(0.25f, 0.45f, 0.9f), vec3(1.3f, 1.1f, 0.7f), edge);
+      const vec3 below = glm::mix(vec3(0.05f, 0.04f, 0.04f), vec3(0.4f, 0.15f, 0.08f), edge);
+      const vec3 c = glm::mix(above, below, glm::smoothstep(0.49f, 0.51f, fall));
+      p.rgb.insert(p.rgb.end(), {c.r, c.g, c.b});
+    }
+  return p;
+}
+
+void paint(World& world, const Material& material) {
+  world.materials = {material};
+  for (DrawPart& part : world.draw_meshes[world.registry.get<Drawable>(test::object_of(world)).mesh].parts)
+    part.material = 0;
+}
+
+// Light from the left, 20 degrees above the ground.
+void light_low(World& world) {
+  const Entity light = world.registry.create();
+  mat4 m(1);
+  m[2] = vec4(normalize(vec3(-1.0f, 0.36f, 0.1f)), 0);
+  world.registry.add<Light>(light, {.color = {1, 0.97f, 0.9f}, .intensity = 8});
+  world.registry.add<WorldTransform>(light, {m});
+}
+
+// The sheet of snapshot_of(stream), by the stream's own function, and what light_low's lamp reaches of it.
+struct StreamCheck {
+  test::StreamAt stream;
+  double height(double x, double z) const { return stream(vec3(x, 0, z), {0, 1, 0}).w; }
+  // Cosine between the surface's normal and the lamp, in the middle row.
+  double faces_lamp(double x) const {
+    return dot(normalize(dvec3(0, 1, 0) + dvec3(stream(vec3(x, 0, 0), {0, 1, 0}))), normalize(dvec3(-1, 0.36, 0.1)));
+  }
+  bool open_to_lamp(double x) const {
+    for (double t = 0.02; t < 1.0; t += 0.002)
+      if (height(x - t, 0.1 * t) > height(x, 0) + 0.36 * t) return false;
+    return true;
+  }
+};
+
+World ball_of(const Material& material) {
+  World world = test::sphere(64);
+  world.meshes[world.registry.get<Deformable>(test::object_of(world)).mesh].closed = true;
+  world.environment.panorama = tiles();
+  paint(world, material);
+  return world;
+}
+
+Material chrome() {
+  Material m;
+  m.base_color = {0.95f, 0.95f, 0.95f, 1};
+  m.metallic = 1;
+  m.roughness = 0.05f;
+  return m;
+}
+
+Material glass() {
+  Material m;
+  m.base_color = vec4(1);
+  m.roughness = 0;
+  m.ior = 1.45f;
+  m.transmission = 1;
+  m.thickness = 2;
+  m.attenuation_color = {1.0f, 0.6f, 0.6f};
+  m.attenuation_distance = 3;
+  return m;
+}
+
+World clay_sheet() {
+  World world = test::sheet(96);
+  Material clay;
+  clay.base_color = {0.62f, 0.5f, 0.42f, 1};
+  clay.roughness = 0.7f;
+  clay.double_sided = true;
+  paint(world, clay);
+  light_low(world);
+  return world;
+}
+
+std::unique_ptr<Renderer> renderer_for(const World& world) {
+  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
+  if (!made) ADD_FAILURE() << made.error().message();
+  return made ? *std::move(made) : nullptr;
+}
+
+// The picture `on` against golden/NAME.png, and `off` against both.
+void expect_feature(const std::string& name, const Image& on, const Image& off) {
+  if (const char* folder = std::getenv("PLIANT_WRITE_GOLDEN")) {
+    ASSERT_TRUE(write_png(on, std::filesystem::path(folder) / (name + ".png")));
+    ASSERT_TRUE(write_png(off, std::filesystem::path(folder) / (name + "_off.png")));
+  }
+  EXPECT_GT(perceived_difference(on, off), kTolerance) << name << " looks the same when it is switched off";
+  if (test::context()->renderer_name().find("llvmpipe") == std::string::npos)
+    GTEST_SKIP() << "golden pictures are llvmpipe's; this is " << test::context()->renderer_name()
+                 << ", where only on against off was compared";
+  const std::filesystem::path path = std::filesystem::path(PLIANT_SOURCE_DIR) / "tests/visual/golden" / (name + ".png");
+  const std::optional<Image> golden = test::read_png(path);
+  ASSERT_TRUE(golden) << path << " cannot be read";
+  const double now = perceived_difference(on, *golden), without = perceived_difference(off, *golden);
+  if (now > kTolerance) {
+    const std::filesystem::path seen = std::filesystem::path(testing::TempDir()) / (name + "_seen.png");
+    EXPECT_TRUE(write_png(on, seen));
+    ADD_FAILURE() << name << " differs from its golden picture by " << now << " of 255; see " << seen;
+  }
+  EXPECT_GT(without, kTolerance) << name << " switched off passes for switched on";
+}
+
+// Draws `world` twice, with and without what `switch_off` takes away.
+template <class SwitchOff>
+void expect_option(const std::string& name, const World& world, const Snapshot& pressed, const Viewpoint& view,
+                   SwitchOff switch_off) {
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  renderer->update(pressed);
+  const Image on = renderer->picture(view, kWidth, kHeight);
+  switch_off(renderer->options());
+  expect_feature(name, on, renderer->picture(view, kWidth, kHeight));
+}
+
+TEST(Feature, TheSurroundingsStandBehindEverything) {
+  NEEDS_A_CONTEXT();
+  expect_option("environment", ball_of(Material{}), {}, kFront, [](RenderOptions& o) { o.background = false; });
+}
+
+TEST(Feature, ChromeMirrorsTheSurroundingsAndADentBendsThem) {
+  NEEDS_A_CONTEXT();
+  const World world = ball_of(chrome());
+  const Snapshot pressed = snapshot_of(world, dent(normalize(vec3(0.3f, 0.35f, 0.9f)), 0.15f, 0.7f));
+  expect_option("reflection", world, pressed, kFront, [](RenderOptions& o) { o.reflection = false; });
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  const Image rest = renderer->picture(kFront, kWidth, kHeight);
+  renderer->update(pressed);
+  EXPECT_GT(perceived_difference(rest, renderer->picture(kFront, kWidth, kHeight)), kTolerance);
+}
+
+TEST(Feature, GlassShowsTheSurroundingsUpsideDown) {
+  NEEDS_A_CONTEXT();
+  const World world = ball_of(glass());
+  const Snapshot pressed = snapshot_of(world, dent(normalize(vec3(-0.3f, 0.3f, 0.9f)), 0.1f, 0.6f));
+  expect_option("refraction", world, pressed, kFront, [](RenderOptions& o) { o.refraction = false; });
+  // The sky is blue and bright, the floor red and dark: in the ball the floor is above.
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  const Image seen = renderer->picture(kFront, kWidth, kHeight);
+  auto brightness = [&](int y) {
+    int sum = 0;
+    for (int x = kWidth / 2 - 12; x < kWidth / 2 + 12; ++x)
+      for (std::size_t c = 0; c < 3; ++c) sum += seen.rgba[4 * static_cast<std::size_t>(y * kWidth + x) + c];
+    return sum;
+  };
+  EXPECT_GT(brightness(kHeight / 2 + 28), 3 * brightness(kHeight / 2 - 28) / 2);
+}
+
+TEST(Feature, AHeightTextureRoughensTheSurface) {
+  NEEDS_A_CONTEXT();
+  World world = clay_sheet();
+  Image cobbles{.name = "cobbles", .width = 128, .height = 64, .rgba = {}};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 128; ++x) {
+      const double wave = std::sin(std::numbers::pi * x / 8) * std::sin(std::numbers::pi * y / 8);
+      const auto height = static_cast<std::uint8_t>(127.5 + 127.0 * wave);
+      cobbles.rgba.insert(cobbles.rgba.end(), {height, height, height, 255});
+    }
+  world.images.push_back(std::move(cobbles));
+  world.materials[0].height_texture = 0;
+  world.materials[0].height_scale = 0.03f;
+  expect_option("bump", world, {}, kSlanted, [](RenderOptions& o) { o.bump = false; });
+}
+
+TEST(Feature, ADentShadowsItself) {
+  NEEDS_A_CONTEXT();
+  const World world = clay_sheet();
+  expect_option("self_shadow", world, snapshot_of(world, dent({-0.2f, 0, 0}, 0.25f, 0.5f)), kNear,
+                [](RenderOptions& o) { o.shadows = false; });
+}
+
+TEST(Feature, WhatBlendsLetsTheSurroundingsThrough) {
+  NEEDS_A_CONTEXT();
+  Material film;
+  film.base_color = {0.1f, 0.5f, 0.25f, 0.35f};
+  film.roughness = 0.3f;
+  film.alpha = Material::Alpha::kBlend;
+  film.double_sided = true;
+  World world = ball_of(film);
+  const Image on = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  world.materials[0].alpha = Material::Alpha::kOpaque;
+  expect_feature("transparent", on, renderer_for(world)->picture(kFront, kWidth, kHeight));
+}
+
+
+TEST(Shadow, FallsWhereARayToTheLampMeetsTheDentAndNowhereElse) {
+  NEEDS_A_CONTEXT();
+  const World world = clay_sheet();
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  const Viewpoint above{.eye = {0, 2.2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
+  const StreamCheck dented{dent({-0.2f, 0, 0}, 0.25f, 0.5f)};
+  renderer->update(snapshot_of(world, dented.stream));
+  const Image with = renderer->picture(above, kWidth, kHeight);
+  renderer->options().shadows = false;
+  const Image without = renderer->picture(above, kWidth, kHeight);
+
+  // Along the middle row, where what is seen can be told from the same function that made the dent.
+  const double metre = kHeight / 2 / std::tan(0.5 * above.yfov);
+  int dark = 0, bright = 0;
+  for (double x = -0.95; x < 0.95; x += 0.01) {
+    bool all_open = true, all_blocked = true;  // about here: the shadow's soft edge counts for neither
+    for (const double aside : {-0.03, -0.015, 0.0, 0.015, 0.03})
+      (dented.open_to_lamp(x + aside) ? all_blocked : all_open) = false;
+    const double column = kWidth / 2 + metre * x / (above.eye.y - dented.height(x, 0));
+    const std::size_t i = 4 * static_cast<std::size_t>(kHeight / 2 * kWidth + static_cast<int>(column));
+    const int taken = int{without.rgba[i]} - int{with.rgba[i]};
+    if (all_open) {
+      EXPECT_LE(std::abs(taken), 2) << x;
+      ++bright;
+    } else if (all_blocked && dented.faces_lamp(x) > 0.15) {
+      EXPECT_GT(taken, 8) << x;
+      ++dark;
+    }
+  }
+  EXPECT_GT(dark, 3);
+  EXPECT_GT(bright, 100);
+}
+
+TEST(Option, WireframeShowsTheBackgroundBetweenItsLines) {
+  NEEDS_A_CONTEXT();
+  const World world = ball_of(Material{});
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  const Image filled = renderer->picture(kFront, 2 * kWidth, 2 * kHeight);
+  renderer->options().wireframe = true;
+  const Image lines = renderer->picture(kFront, 2 * kWidth, 2 * kHeight);
+  EXPECT_GT(perceived_difference(filled, lines), kTolerance);
+  renderer->options().wireframe = false;
+  EXPECT_EQ(renderer->picture(kFront, 2 * kWidth, 2 * kHeight).rgba, filled.rgba);
+}
+
+TEST(Option, EveryZoneHasAColourOfItsOwn) {
+  NEEDS_A_CONTEXT();
+  const World world = clay_sheet();
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  const Image plain = renderer->picture(kSlanted, kWidth, kHeight);
+  renderer->options().zones = true;
+  EXPECT_GT(perceived_difference(plain, renderer->picture(kSlanted, kWidth, kHeight)), kTolerance);
+}
+
+TEST(Option, ForcesAndContactFramesComeAndGoByThemselves) {
+  NEEDS_A_CONTEXT();
+  World world = clay_sheet();
+  const Entity probe = test::add_probe(world, {0, 0.05, 0}, 0.05);
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  Snapshot pushed;
+  pushed.probes.push_back({.probe = probe, .position = {0, 0.05, 0}, .force = {0, 2, 0}, .touching = true, .normal = {0, 1, 0}});
+  renderer->update(pushed);
+  auto drawn = [&](bool forces, bool frames) {
+    renderer->options().forces = forces;
+    renderer->options().contact_frames = frames;
+    return renderer->picture(kSlanted, kWidth, kHeight);
+  };
+  const Image bare = drawn(false, false), arrow = drawn(true, false), frame = drawn(false, true);
+  EXPECT_NE(bare.rgba, arrow.rgba);
+  EXPECT_NE(bare.rgba, frame.rgba);
+  int green = 0;  // the frame's normal
+  for (std::size_t i = 0; i < frame.rgba.size(); i += 4)
+    green += frame.rgba[i + 1] > frame.rgba[i] + 60 && frame.rgba[i + 1] > frame.rgba[i + 2] + 60;
+  EXPECT_GT(green, 10);
+  EXPECT_EQ(bare.rgba, drawn(false, false).rgba);
+}
+
+TEST(Lamp, ASecondLampAddsItsLightWhereItReaches) {
+  NEEDS_A_CONTEXT();
+  World world = clay_sheet();
+  const std::unique_ptr<Renderer> one = renderer_for(world);
+  const Entity entity = world.registry.create();
+  mat4 m(1);
+  m[3] = vec4(0.7f, 0.2f, 0, 1);
+  world.registry.add<Light>(entity, {.kind = Light::Kind::kPoint, .color = {0, 0, 1}, .intensity = 0.3f, .range = 0.5f});
+  world.registry.add<WorldTransform>(entity, {m});
+  const std::unique_ptr<Renderer> two = renderer_for(world);
+  ASSERT_TRUE(one && two);
+  const Viewpoint above{.eye = {0, 2.2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
+  const Image a = one->picture(above, kWidth, kHeight), b = two->picture(above, kWidth, kHeight);
+  const double metre = kHeight / 2 / std::tan(0.5 * above.yfov) / above.eye.y;
+  auto at = [&](double x) {
+    return 4 * static_cast<std::size_t>(kHeight / 2 * kWidth + static_cast<int>(kWidth / 2 + metre * x)) + 2;
+  };
+  EXPECT_GT(b.rgba[at(0.7)], a.rgba[at(0.7)] + 20);
+  EXPECT_EQ(b.rgba[at(-0.5)], a.rgba[at(-0.5)]);
+}
+
+}  // namespace
+}  // namespace pliant
