@@ -81,6 +81,26 @@ std::vector<NamedStroke> pad_strokes() {
           {"b", "sweeps one line 4 mm deep over the soft half", b}};
 }
 
+// Both lobes from the front, and the flank below them.
+std::vector<NamedStroke> heart_strokes() {
+  const Stroke a{8.0, 0.005, 0.030, 0.010, 0.4, 2.0, 5.4, 7.0, {{-0.046, 0.034, 0.04}, {-0.022, 0.012, 0.05}}, {2.0, 5.2}};
+  const Stroke b{8.0, 0.005, 0.030, 0.010, 1.0, 2.6, 5.8, 7.4, {{0.048, 0.012, 0.04}, {0.030, 0.036, 0.05}}, {2.6, 5.6}};
+  const Stroke c{8.0, 0.004, 0.030, 0.008, 1.8, 3.4, 6.2, 7.6, {{0.008, -0.040, 0.04}, {-0.006, -0.014, 0.05}}, {3.4, 6.0}};
+  return {{"a", "presses 10 mm deep on the left lobe and slides down", a},
+          {"b", "presses 10 mm deep on the right lobe and slides up", b},
+          {"c", "presses 8 mm deep above the point and slides up between them", c}};
+}
+
+// Two balls that meet in the middle and part again.
+std::vector<NamedStroke> cushion_strokes() {
+  const Stroke a{8.0, 0.008, 0.030, 0.011, 0.4, 2.0, 5.6, 7.2,
+                 {{-0.060, 0.03, 0.030}, {-0.018, 0.03, 0.010}, {-0.050, 0.03, -0.030}}, {2.0, 3.8, 5.6}};
+  const Stroke b{8.0, 0.006, 0.030, 0.010, 0.9, 2.5, 5.8, 7.4,
+                 {{0.062, 0.03, -0.020}, {0.020, 0.03, 0.014}, {0.045, 0.03, 0.045}}, {2.5, 4.1, 5.8}};
+  return {{"a", "presses 11 mm deep on the left, slides to the middle and back", a},
+          {"b", "presses 10 mm deep on the right, slides to the middle and forward", b}};
+}
+
 Status save_strokes(const Level& level, const Solid& solid, const std::vector<NamedStroke>& strokes,
                     const std::filesystem::path& folder) {
   for (const NamedStroke& s : strokes) {
@@ -88,6 +108,19 @@ Status save_strokes(const Level& level, const Solid& solid, const std::vector<Na
     if (!saved) return saved;
   }
   return Done{};
+}
+
+// A body without texture coordinates, of one material.
+LevelNode& add_body(Level& level, const Solid& solid, const Material& material, const Detail& detail) {
+  level.materials.push_back(material);
+  Primitive primitive = to_primitive(cover(solid, detail.smooth_coarse, detail.smooth_doublings), solid);
+  primitive.material = 0;
+  primitive.uv.clear();
+  level.meshes.push_back({level.name, {std::move(primitive)}});
+  LevelNode& node = add_node(level, "body");
+  node.mesh = 0;
+  node.deformable = Deformable{};
+  return node;
 }
 
 }  // namespace
@@ -154,6 +187,47 @@ Level inclusion(const Detail& detail) {
   return level;
 }
 
+Level glass_heart(const Detail& detail) {
+  Level level;
+  level.name = "glass_heart";
+  Material glass;
+  glass.name = "soft glass";
+  glass.base_color = vec4(1);
+  glass.roughness = 0.02f;
+  glass.ior = 1.45f;
+  glass.transmission = 1.0f;
+  glass.thickness = 0.07f;
+  glass.attenuation_color = {0.92f, 0.35f, 0.42f};
+  glass.attenuation_distance = 0.09f;
+  LevelNode& node = add_body(level, heart(), glass, detail);
+  node.deformable->stiffness = 250.0;
+  node.deformable->reach = 0.022;
+  node.deformable->shape = Shape::kVolume;
+  add_probe(level, "probe_a", 0.005, kCoral);
+  add_probe(level, "probe_b", 0.005, kTeal);
+  add_probe(level, "probe_c", 0.004, kGold);
+  add_view(level, {0.05, 0.05, 0.36}, {0.0, 0.0, 0.0});
+  return level;
+}
+
+Level chrome_cushion(const Detail& detail) {
+  Level level;
+  level.name = "chrome_cushion";
+  Material chrome;
+  chrome.name = "chrome";
+  chrome.base_color = vec4(0.92f, 0.93f, 0.95f, 1.0f);
+  chrome.metallic = 1.0f;
+  chrome.roughness = 0.05f;
+  LevelNode& node = add_body(level, cushion(), chrome, detail);
+  node.deformable->stiffness = 250.0;
+  node.deformable->reach = 0.034;
+  node.deformable->shape = Shape::kVolume;
+  add_probe(level, "probe_a", 0.008, kCoral);
+  add_probe(level, "probe_b", 0.006, kTeal);
+  add_view(level, {0.06, 0.20, 0.34}, {0.0, -0.005, 0.0});
+  return level;
+}
+
 Status generate(const std::filesystem::path& folder, const Detail& detail) {
   const std::filesystem::path levels = folder / "levels", environments = folder / "environments";
   std::error_code code;
@@ -168,6 +242,11 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = save_strokes(organ_level, organ(), organ_strokes(), levels); !s) return s;
   if (Status s = save_level(pad_level, levels / "inclusion.glb", draco); !s) return s;
   if (Status s = save_strokes(pad_level, pad(), pad_strokes(), levels); !s) return s;
+  const Level heart_level = glass_heart(detail), cushion_level = chrome_cushion(detail);
+  if (Status s = save_level(heart_level, levels / "glass_heart.glb", draco); !s) return s;
+  if (Status s = save_strokes(heart_level, heart(), heart_strokes(), levels); !s) return s;
+  if (Status s = save_level(cushion_level, levels / "chrome_cushion.glb", draco); !s) return s;
+  if (Status s = save_strokes(cushion_level, cushion(), cushion_strokes(), levels); !s) return s;
   return write_minimal(levels);
 }
 

@@ -11,11 +11,14 @@ namespace pliant::generate {
 struct Detail {
   int organ_coarse = 10, organ_doublings = 3;                          // 8 (10 * 2^3)^2 = 51,200 triangles
   int pad_coarse = 25, pad_doublings = 1;                              // 20,000 triangles
+  int smooth_coarse = 12, smooth_doublings = 2;                        // 18,432 triangles: heart and cushion
   std::uint32_t color_size = 256, normal_size = 512, sky_width = 512;  // [px]
 };
 
 Level three_probes(const Detail& detail);
 Level inclusion(const Detail& detail);
+Level glass_heart(const Detail& detail);
+Level chrome_cushion(const Detail& detail);
 
 // Writes levels/ and environments/ below `folder`: every file that ships. Each appears whole or not at all.
 Status generate(const std::filesystem::path& folder, const Detail& detail = {});

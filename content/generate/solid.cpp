@@ -76,4 +76,25 @@ Solid pad() {
   };
 }
 
+Solid heart() {
+  return [](dvec3 p) {
+    constexpr double kBlend = 0.014;  // [m] over which the parts flow into one another
+    const double parts[] = {ellipsoid(p, {-0.036, 0.024, 0.0}, {0.042, 0.042, 0.036}),
+                            ellipsoid(p, {0.036, 0.024, 0.0}, {0.042, 0.042, 0.036}),
+                            ellipsoid(p, {0.0, -0.012, 0.0}, {0.046, 0.040, 0.036}),
+                            ellipsoid(p, {0.0, -0.046, 0.0}, {0.018, 0.026, 0.018})};
+    double sum = 0.0;
+    for (const double d : parts) sum += std::exp(-d / kBlend);
+    return -kBlend * std::log(sum);
+  };
+}
+
+Solid cushion() {
+  return [](dvec3 p) {
+    const dvec3 half(0.100, 0.035, 0.100), q = p / half;
+    const double flat = std::sqrt(q.x * q.x * q.x * q.x + q.z * q.z * q.z * q.z);  // round corners
+    return 0.5 * (flat + q.y * q.y - 1.0) * half.y;
+  };
+}
+
 }  // namespace pliant::generate

@@ -20,5 +20,9 @@ Solid organ();
 double groove(dvec3 p);
 // A pad 0.16 m x 0.04 m x 0.10 m with rounded sides and a gently curved top (+Y).
 Solid pad();
+// A plump heart 0.16 m wide, its point down, that faces +Z.
+Solid heart();
+// A square pillow 0.2 m x 0.07 m x 0.2 m, thin towards its edges.
+Solid cushion();
 
 }  // namespace pliant::generate
