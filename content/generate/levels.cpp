@@ -25,7 +25,7 @@ LocalTransform looking(dvec3 eye, dvec3 target) {
   return {vec3(eye), quat(glm::normalize(glm::quat_cast(dmat3(x, cross(z, x), z)))), vec3(1)};
 }
 
-void add_view(Level& level, dvec3 eye, dvec3 target) {
+void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "sky.exr") {
   LevelNode& camera = add_node(level, "camera");
   camera.camera = Camera{0.55f, 0.01f, 10.0f};
   camera.local = looking(eye, target);
@@ -34,7 +34,7 @@ void add_view(Level& level, dvec3 eye, dvec3 target) {
   key.light->color = {1.0f, 0.95f, 0.88f};
   key.light->intensity = 2.5f;
   key.local = looking(target + dvec3(0.55, 0.62, 0.56), target);  // from the sky's sun
-  level.environment = LevelEnvironment{"../environments/sky.exr", 0.8, 0.0};
+  level.environment = LevelEnvironment{std::string("../environments/") + environment, 0.8, 0.0};
 }
 
 void add_probe(Level& level, const std::string& name, double radius, vec3 color) {
@@ -206,7 +206,7 @@ Level glass_heart(const Detail& detail) {
   add_probe(level, "probe_a", 0.005, kCoral);
   add_probe(level, "probe_b", 0.005, kTeal);
   add_probe(level, "probe_c", 0.004, kGold);
-  add_view(level, {0.05, 0.05, 0.36}, {0.0, 0.0, 0.0});
+  add_view(level, {0.05, 0.05, 0.36}, {0.0, 0.0, 0.0}, "terrace.exr");
   return level;
 }
 
@@ -224,7 +224,7 @@ Level chrome_cushion(const Detail& detail) {
   node.deformable->shape = Shape::kVolume;
   add_probe(level, "probe_a", 0.008, kCoral);
   add_probe(level, "probe_b", 0.006, kTeal);
-  add_view(level, {0.06, 0.20, 0.34}, {0.0, -0.005, 0.0});
+  add_view(level, {0.06, 0.20, 0.34}, {0.0, 0.012, 0.0}, "terrace.exr");
   return level;
 }
 
@@ -236,6 +236,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (code) return Error{folder.string(), "cannot make the folders levels/ and environments/; check its permissions"};
 
   if (Status s = save_panorama(sky(detail.sky_width), environments / "sky.exr"); !s) return s;
+  if (Status s = save_panorama(terrace(2 * detail.sky_width), environments / "terrace.exr"); !s) return s;
   const SaveOptions draco{16};
   const Level organ_level = three_probes(detail), pad_level = inclusion(detail);
   if (Status s = save_level(organ_level, levels / "three_probes.glb", draco); !s) return s;
