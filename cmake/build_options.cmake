@@ -1,13 +1,15 @@
 # Flags that every target shares, as one interface library.
 add_library(pliant_options INTERFACE)
 target_compile_features(pliant_options INTERFACE cxx_std_20)
+# How we build is not how those who use us must: warnings and flags stay inside the build tree.
 # No contraction into fused multiply-add: the same bits on every machine (lockstep).
-target_compile_options(pliant_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Werror
-                                                -ffp-contract=off)
+target_compile_options(pliant_options INTERFACE
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow;-Wconversion;-Wno-sign-conversion;-Wno-missing-field-initializers;-Werror>"
+  "$<BUILD_INTERFACE:-ffp-contract=off>")
 # Nobody reads errno after sqrt or traps on a comparison; knowing that lets loops become SIMD, without changing a bit.
-target_compile_options(pliant_options INTERFACE -fno-math-errno -fno-trapping-math)
+target_compile_options(pliant_options INTERFACE "$<BUILD_INTERFACE:-fno-math-errno;-fno-trapping-math>")
 # GCC 12 sees overlaps in std::string that cannot be (its bug 105651).
-target_compile_options(pliant_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>)
 target_include_directories(pliant_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                     $<INSTALL_INTERFACE:include/pliant>)
 if(PLIANT_VALIDATE)

@@ -7,6 +7,7 @@ install(TARGETS pliant_options pliant_runtime pliant_components pliant_systems p
 install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY runtime components systems content DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pliant
         FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY shaders/shared DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pliant/shaders)  # headers include this arithmetic
 install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
 install(DIRECTORY shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant)
 install(EXPORT pliant-targets NAMESPACE pliant:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
