@@ -60,22 +60,24 @@ async function compare(page, name, level, part) {
 
 function table(rows) {
   const f = (x, digits = 1) => x.toFixed(digits), rgb = (v) => v.map((x) => f(x)).join(' / ');
-  return ['| body | light | pixels | mean abs. R / G / B | inside R / G / B | inside signed R / G / B | inside 95 % | inside, emitted |',
+  return ['| body | light | pixels | whole, R / G / B | inside, R / G / B | signed, R / G / B | 95 % | emitted |',
     '|---|---|---|---|---|---|---|---|',
     ...rows.map(({ name, part, whole, inside }) => `| ${name} | ${part} | ${whole.pixels} | ${rgb(whole.absolute)} | ` +
       `${rgb(inside.absolute)} | ${rgb(inside.signed)} | ${f(inside.p95)} | ${f(inside.emitted, 3)} |`)].join('\n');
 }
 
-if (!existsSync(options.pliant)) throw new Error(`${options.pliant}: not there; build it with ./dev build, or give --pliant`);
+if (!existsSync(options.pliant))
+  throw new Error(`${options.pliant}: not there; build it with ./dev build, or give --pliant`);
 mkdirSync(out, { recursive: true });
 mkdirSync(options.images, { recursive: true });
 const panorama = basename(options.environment);
 copyFileSync(options.environment, join(out, panorama));
 
 const server = await serve(), profile = mkdtempSync(join(tmpdir(), 'pliant-reference-'));
-const browser = await chromium.launchPersistentContext(profile, { executablePath: options.browser, headless: true, args: [
-  '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
-  '--disable-background-networking', '--disable-component-update', '--disable-sync', '--force-color-profile=srgb'] });
+const browser = await chromium.launchPersistentContext(profile, { executablePath: options.browser, args: [
+  '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-first-run',
+  '--disable-quic', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+  '--force-color-profile=srgb'] });
 try {
   const page = await browser.newPage();
   page.on('pageerror', (error) => console.error(error.message));

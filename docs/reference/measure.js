@@ -2,6 +2,8 @@
 
 const kRim = 2;  // [pixels] from a body's outline: there the edges' filters are compared, not its light
 
+const kWidest = 1000;  // [pixels] of a sheet
+
 const linear = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
 
 async function loaded(address) {
@@ -62,8 +64,8 @@ export async function measure(picture, { canvas, mask, names }) {
   });
 }
 
-// Pliant, the reference, four times the difference: cut to the bodies' box, beneath each other where that is wide, else in
-// a row. A PNG as a data address.
+// Pliant, the reference, four times the difference: cut to the bodies' box, beneath each other where that is wide,
+// else in a row. A PNG as a data address.
 export async function sideBySide(picture, { canvas, mask }) {
   const { width, height } = canvas, ours = await loaded(picture);
   let x0 = width, x1 = 0, y0 = height, y1 = 0;
@@ -80,17 +82,22 @@ export async function sideBySide(picture, { canvas, mask }) {
   const change = document.createElement('canvas').getContext('2d');
   Object.assign(change.canvas, { width, height });
   const a = pixels(ours), b = pixels(canvas), shown = change.createImageData(width, height);
-  for (let i = 0; i < a.length; ++i) shown.data[i] = i % 4 === 3 ? 255 : mask[i >> 2] ? 4 * Math.abs(a[i] - b[i]) : 0;
+  for (let i = 0; i < a.length; ++i)
+    shown.data[i] = i % 4 === 3 ? 255 : mask[i >> 2] ? 4 * Math.abs(a[i] - b[i]) : 0;
   change.putImageData(shown, 0, 0);
 
+  const panels = wide ? [1, 3] : [3, 1], full = [panels[0] * (w + gap) - gap, panels[1] * (h + title)];
+  const scale = Math.min(1, kWidest / full[0]);
   const sheet = document.createElement('canvas').getContext('2d');
-  Object.assign(sheet.canvas, wide ? { width: w, height: 3 * (h + title + gap) } : { width: 3 * (w + gap) - gap, height: h + title });
+  Object.assign(sheet.canvas, { width: Math.round(scale * full[0]), height: Math.round(scale * full[1]) });
+  sheet.scale(scale, scale);
+  sheet.imageSmoothingQuality = 'high';
   sheet.fillStyle = '#fff';
-  sheet.fillRect(0, 0, sheet.canvas.width, sheet.canvas.height);
+  sheet.fillRect(0, 0, ...full);
   sheet.fillStyle = '#222';
   sheet.font = '14px sans-serif';
   [['Pliant', ours], ['three.js', canvas], ['difference × 4', change.canvas]].forEach(([name, panel], i) => {
-    const x = wide ? 0 : i * (w + gap), y = wide ? i * (h + title + gap) : 0;
+    const x = wide ? 0 : i * (w + gap), y = wide ? i * (h + title) : 0;
     sheet.fillText(name, x + 2, y + 15);
     sheet.drawImage(panel, x0, y0, w, h, x, y + title, w, h);
   });

@@ -68,14 +68,15 @@ function castShadows(scene, meshes, lights) {
     light.target.position.copy(ball.center);
     light.position.copy(ball.center).addScaledVector(towards.normalize(), 2 * ball.radius);
     Object.assign(light.shadow.camera,
-      { left: -ball.radius, right: ball.radius, top: ball.radius, bottom: -ball.radius, near: 0, far: 4 * ball.radius });
+      { left: -ball.radius, right: ball.radius, bottom: -ball.radius,
+        top: ball.radius, far: 4 * ball.radius, near: 0 });
     light.shadow.mapSize.set(2048, 2048);
     light.shadow.normalBias = 0.002 * ball.radius;
     light.castShadow = true;
   }
 }
 
-// Draws the glTF file at address `level` through its first camera: {canvas, mask, names of the mask's bodies, exposure}.
+// Draws the glTF file at address `level` through its first camera: {canvas, mask, names of its bodies, exposure}.
 export async function draw(level, width, height, shadows) {
   const renderer = new THREE.WebGLRenderer({ antialias: true });
   renderer.setSize(width, height, false);

@@ -56,21 +56,26 @@ function sphere(r, rings, sectors) {
       if (i > 0) indices.push(a, b, a + 1);
       if (i < rings - 1) indices.push(a + 1, b, b + 1);
     }
-  return { positions: new Float32Array(positions), normals: new Float32Array(normals), indices: new Uint16Array(indices) };
+  return { positions: Float32Array.from(positions), normals: Float32Array.from(normals),
+    indices: Uint16Array.from(indices) };
 }
 
 const kRadius = 0.045, kStep = 0.1;  // [m]
 
+const metallicRoughness = (baseColorFactor, metallicFactor, roughnessFactor) =>
+  ({ baseColorFactor: [...baseColorFactor, 1], metallicFactor, roughnessFactor });
+
 const kMaterials = [
-  { name: 'matt', pbrMetallicRoughness: { baseColorFactor: [0.8, 0.8, 0.8, 1], metallicFactor: 0, roughnessFactor: 1 } },
-  { name: 'glazed', pbrMetallicRoughness: { baseColorFactor: [0.5, 0.06, 0.04, 1], metallicFactor: 0, roughnessFactor: 0.25 } },
-  { name: 'gold', pbrMetallicRoughness: { baseColorFactor: [1, 0.77, 0.34, 1], metallicFactor: 1, roughnessFactor: 0.4 } },
-  { name: 'chrome', pbrMetallicRoughness: { baseColorFactor: [0.95, 0.95, 0.95, 1], metallicFactor: 1, roughnessFactor: 0.06 } },
-  { name: 'glass', pbrMetallicRoughness: { baseColorFactor: [1, 1, 1, 1], metallicFactor: 0, roughnessFactor: 0.06 },
+  { name: 'matt', pbrMetallicRoughness: metallicRoughness([0.8, 0.8, 0.8], 0, 1) },
+  { name: 'glazed', pbrMetallicRoughness: metallicRoughness([0.5, 0.06, 0.04], 0, 0.25) },
+  { name: 'gold', pbrMetallicRoughness: metallicRoughness([1, 0.77, 0.34], 1, 0.4) },
+  { name: 'chrome', pbrMetallicRoughness: metallicRoughness([0.95, 0.95, 0.95], 1, 0.06) },
+  { name: 'glass', pbrMetallicRoughness: metallicRoughness([1, 1, 1], 0, 0.06),
     extensions: {
       KHR_materials_transmission: { transmissionFactor: 1 },
       KHR_materials_ior: { ior: 1.5 },
-      KHR_materials_volume: { thicknessFactor: 2 * kRadius, attenuationColor: [0.7, 0.9, 0.8], attenuationDistance: 0.2 },
+      KHR_materials_volume: {
+        thicknessFactor: 2 * kRadius, attenuationColor: [0.7, 0.9, 0.8], attenuationDistance: 0.2 },
     } },
 ];
 
@@ -90,7 +95,8 @@ export function writeBalls(part, panorama, path) {
     scenes: [{ nodes: [...kMaterials.keys(), kMaterials.length, kMaterials.length + 1],
       extensions: { PLIANT_environment: { panorama, intensity: 0.8 } } }],
     nodes: [
-      ...kMaterials.map((m, i) => ({ name: m.name, mesh: i, translation: [(i - (kMaterials.length - 1) / 2) * kStep, 0, 0] })),
+      ...kMaterials.map((m, i) => (
+        { name: m.name, mesh: i, translation: [(i - (kMaterials.length - 1) / 2) * kStep, 0, 0] })),
       { name: 'camera', camera: 0, translation: [0, 0, 1.1] },
       { name: 'key_light', rotation, extensions: { KHR_lights_punctual: { light: 0 } } },
     ],
