@@ -25,7 +25,8 @@ LocalTransform looking(dvec3 eye, dvec3 target) {
   return {vec3(eye), quat(glm::normalize(glm::quat_cast(dmat3(x, cross(z, x), z)))), vec3(1)};
 }
 
-void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "sky.exr") {
+void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "sky.exr",
+              dvec3 to_light = {0.55, 0.62, 0.56}) {  // the sky's sun
   LevelNode& camera = add_node(level, "camera");
   camera.camera = Camera{0.55f, 0.01f, 10.0f};
   camera.local = looking(eye, target);
@@ -33,7 +34,7 @@ void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "
   key.light = Light{};
   key.light->color = {1.0f, 0.95f, 0.88f};
   key.light->intensity = 2.5f;
-  key.local = looking(target + dvec3(0.55, 0.62, 0.56), target);  // from the sky's sun
+  key.local = looking(target + to_light, target);
   level.environment = LevelEnvironment{std::string("../environments/") + environment, 0.8, 0.0};
 }
 
@@ -151,7 +152,9 @@ Level three_probes(const Detail& detail) {
   add_probe(level, "probe_a", 0.004, kCoral);
   add_probe(level, "probe_b", 0.003, kTeal);
   add_probe(level, "probe_c", 0.0, kGold);
-  add_view(level, {0.02, 0.09, 0.36}, {0.002, -0.006, 0.0});
+  // Lower than the sun, along the front: dents shadow themselves.
+  add_view(level, {0.02, 0.09, 0.36}, {0.002, -0.006, 0.0}, "sky.exr", {0.74, 0.60, 0.30});
+  level.nodes.back().light->intensity = 3.5f;
   return level;
 }
 
