@@ -206,6 +206,11 @@ Outcome open_window(const RunOptions& options, Shown& shown) {
     if (!options.input.empty()) return wrong_arguments({"--input", "is for a window; leave out --headless"});
     return {};
   }
+  if (!options.input.empty()) {
+    auto script = InputScript::load(options.input);
+    if (!script) return failed(script.error());
+    shown.script = std::move(script).value();
+  }
   auto window = Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
   if (!window) {
     if (options.window) return failed(window.error());
@@ -214,11 +219,6 @@ Outcome open_window(const RunOptions& options, Shown& shown) {
   }
   if (options.frames > 0 && options.seconds <= 0.0)
     return wrong_arguments({"--frames", "spreads pictures over a duration; give --seconds, or use --fps"});
-  if (!options.input.empty()) {
-    auto script = InputScript::load(options.input);
-    if (!script) return failed(script.error());
-    shown.script = std::move(script).value();
-  }
   shown.window = std::move(window).value();
   return {};
 }
@@ -294,10 +294,13 @@ Result<Ran> run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, 
   session.frame_height = options.height;
   if (options.fps > 0.0) session.frame_ticks = regular_frames(loop.ticks, loop.rate, options.fps);
   if (options.frames > 0) session.frame_ticks = spread_frames(loop.ticks, options.frames);
-  session.open = [&options, &next](const std::string& file) -> std::optional<Error> {
+  // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
+  const std::string field = loop.world.field_place == FieldPlace::kCard ? "gpu" : "cpu";
+  session.open = [&options, &next, field](const std::string& file) -> std::optional<Error> {
     next = Prepared();
     RunOptions other = options;
     if (file != options.level) other = another_level(options, file);
+    other.field = field;
     if (Outcome wrong = prepare(other, true, next)) return wrong->error;
     next.options = other;
     return {};

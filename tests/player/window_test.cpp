@@ -1,0 +1,135 @@
+// The window, on a display that nobody sees (Xvfb), touched by events from a file and by events of X itself.
+#include <cmath>
+
+#include "content/image.h"
+#include "tests/player/command.h"
+
+namespace pliant::testing {
+namespace {
+
+class WindowTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    if (!there("xvfb-run")) GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+    write_text(folder / "plate.obj", plate_obj());
+  }
+  static bool there(const std::string& program) {
+    return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+  }
+  Said shown(const std::vector<std::string>& arguments, const std::string& events) const {
+    write_text(folder / "events.csv", "time_s,event,args\n" + events);
+    std::vector<std::string> all{"run"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    for (const char* more : {"--window", "--input", "events.csv", "--out", "out", "--size", "240x160"})
+      all.push_back(more);
+    return pliant(all, "timeout 60 xvfb-run -a -s '-screen 0 400x300x24'");
+  }
+  Json probe(const std::string& name) const {
+    const Json all = report("out");
+    for (const Json& each : all["probes"])
+      if (each["name"] == name) return each;
+    ADD_FAILURE() << "no probe " << name;
+    return {};
+  }
+  // The last row of every probe says what the hand was left with.
+  void expect_no_force_at_the_end() const {
+    const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+    const std::size_t probes = report("out")["probes"].size();
+    ASSERT_GE(forces.rows.size(), probes);
+    for (std::size_t i = forces.rows.size() - probes; i < forces.rows.size(); ++i)
+      for (const char* axis : {"fx", "fy", "fz"}) EXPECT_EQ(forces.number(i, axis), 0.0) << forces.rows[i].at("probe");
+  }
+};
+
+// Standard deviation of what the pixels of a picture say, 0 to 255.
+double contrast(const fs::path& file) {
+  const auto image = load_image(file);
+  if (!image) return 0.0;
+  double sum = 0, squares = 0, count = 0;
+  for (std::size_t i = 0; i < image->rgba.size(); ++i) {
+    if (i % 4 == 3) continue;
+    sum += image->rgba[i];
+    squares += double(image->rgba[i]) * image->rgba[i];
+    ++count;
+  }
+  return std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count)));
+}
+
+TEST_F(WindowTest, TheMouseTouchesTheDemoOrganAndAScreenshotShowsIt) {
+  const Said said = shown({"three_probes", "--probe", "finger=mouse"},
+                          "0.0,key,Tab\n0.0,move,120 80\n0.3,press,\n1.5,key,F12\n1.8,release,\n2.1,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json finger = probe("finger");
+  EXPECT_EQ(finger["source"], "mouse");
+  EXPECT_GT(finger["contact_ticks"], 100);
+  EXPECT_GT(finger["max_depth_m"], 1e-4);
+  EXPECT_EQ(report("out")["mode"], "window");
+  EXPECT_GT(report("out")["frame_ms"]["p50"], 0.0);
+  EXPECT_GT(contrast(folder / "out" / "screenshot-001.png"), 10.0) << "the screenshot is blank";
+  expect_no_force_at_the_end();
+}
+
+TEST_F(WindowTest, MouseAndScriptPressTogetherAndFeelForce) {
+  write_text(folder / "press.csv", press_csv(0.002));
+  const Said said = shown({"plate.obj", "--probe", "finger=mouse", "--probe", "tip=script:press.csv"},
+                          "0.0,key,Tab\n0.0,move,120 80\n0.2,press,\n1.6,release,\n1.9,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  for (const char* name : {"finger", "tip"}) {
+    EXPECT_GT(probe(name)["contact_ticks"], 100) << name;
+    EXPECT_GT(probe(name)["max_force_N"], 0.05) << name;
+  }
+  expect_no_force_at_the_end();
+}
+
+TEST_F(WindowTest, ClosingWhileItPressesStillWritesTheReportAndLeavesNoForce) {
+  const Said said = shown({"plate.obj"}, "0.0,key,Tab\n0.0,move,120 80\n0.1,press,\n0.8,key,Esc\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(probe("mouse")["source"], "mouse") << "a bare mesh in a window is the mouse's";
+  EXPECT_GT(report("out")["ticks"], 500);
+  EXPECT_EQ(read_text(folder / "out" / "forces.png").substr(1, 3), "PNG");
+  expect_no_force_at_the_end();
+}
+
+TEST_F(WindowTest, SecondsEndItAndADroppedFileThatIsNoneLeavesTheLevelAsItWas) {
+  const Said said = shown({"plate.obj", "--seconds", "1"}, "0.1,drop,nowhere.glb\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(report("out")["level"], "plate");
+  EXPECT_GE(report("out")["ticks"].get<int>() + report("out")["overruns"].get<int>(), 1000);
+}
+
+TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
+  write_text(folder / "other.obj", plate_obj());
+  const Said said = shown({"plate.obj"}, "0.1,drop,other.obj\n3.0,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(report("out")["level"], "plate");
+  EXPECT_EQ(report("out/other")["level"], "other");
+}
+
+TEST_F(WindowTest, EventsOfTheDisplayItselfMoveAndCloseIt) {
+  if (!there("xdotool")) GTEST_SKIP() << "xdotool is missing; install it to try the window with real events";
+  write_text(folder / "hand.sh", "cd " + quoted(folder.string()) + "\n" + quoted(PLIANT_BINARY) +
+                                     " run plate.obj --window --out out --size 240x160 &\n"
+                                     "id=$(timeout 40 xdotool search --sync --onlyvisible --class pliant | tail -n 1)\n"
+                                     "xdotool mousemove --window $id 200 100; sleep 0.3; xdotool mousemove --window "
+                                     "$id 120 80; xdotool key Tab; sleep 0.5\n"
+                                     "xdotool mousedown 1; sleep 1; xdotool mouseup 1; sleep 0.2\n"
+                                     "kill -INT $!; wait $!\n");
+  const std::string line = "env -u WAYLAND_DISPLAY timeout 60 xvfb-run -a -s '-screen 0 400x300x24' sh " +
+                           quoted((folder / "hand.sh").string()) + " >" + quoted((folder / "said").string()) + " 2>&1";
+  ASSERT_EQ(std::system(line.c_str()), 0) << read_text(folder / "said");
+  EXPECT_GT(probe("mouse")["contact_ticks"], 50);
+  expect_no_force_at_the_end();
+}
+
+TEST_F(WindowTest, EventsThatMakeNoSenseAreRefusedWithTheirLine) {
+  for (const char* wrong : {"0.1,jump,3\n", "0.1,move,3\n", "x,move,3 4\n", "0.1,key,Q9\n", "1,close,\n0,close,\n",
+                            "0.1\n", "0.1,drop,\n", "0,press,middle twice\n", "inf,close,\n"}) {
+    const Said said = shown({"plate.obj"}, wrong);
+    EXPECT_EQ(said.status, 1) << wrong;
+    EXPECT_NE(said.err.find("events.csv:"), std::string::npos) << wrong << said.err;
+  }
+}
+
+}  // namespace
+}  // namespace pliant::testing
