@@ -1,13 +1,13 @@
 #include "content/assimp_import.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
 
 #include "content/gltf_document.h"
 #include "content/gltf_draco.h"
@@ -26,12 +26,14 @@ constexpr std::size_t kMaxNodes = 100'000;
 
 // Counts at the head of an OFF or PLY file, from which Assimp allocates before it has read anything else.
 Status check_claims(const Bytes& bytes, const std::string& extension) {
-  const std::string head(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 4096)));
+  const std::string head(bytes.begin(),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 4096)));
   std::vector<double> claims;
   if (extension == ".off") {
     const std::size_t digits = head.find_first_of("0123456789");
     double vertices = 0, faces = 0;
-    if (digits != std::string::npos && std::sscanf(head.c_str() + digits, "%lf %lf", &vertices, &faces) == 2) claims = {vertices, faces};
+    if (digits != std::string::npos && std::sscanf(head.c_str() + digits, "%lf %lf", &vertices, &faces) == 2)
+      claims = {vertices, faces};
   }
   if (extension == ".ply")
     for (std::size_t at = head.find("element "); at != std::string::npos; at = head.find("element ", at + 1)) {
@@ -167,15 +169,18 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   if (const Status status = check_claims(bytes, extension); !status) return status.error();
   Assimp::Importer importer;
   // Only what is read below; skeletons, animations, lights and cameras are dropped.
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS | aiComponent_CAMERAS |
-                                                          aiComponent_LIGHTS | aiComponent_COLORS | aiComponent_TEXTURES);
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
+                                                          aiComponent_CAMERAS | aiComponent_LIGHTS |
+                                                          aiComponent_COLORS | aiComponent_TEXTURES);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
+  const unsigned steps =
+      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
   const aiScene* scene = importer.ReadFile(path.string(), steps);
   if (!scene || !scene->mRootNode) {
     std::string why = importer.GetErrorString();
     std::replace(why.begin(), why.end(), '\n', ' ');
-    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))) + "; export it again, or as glTF"};
+    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))) +
+                         "; export it again, or as glTF"};
   }
   Level level;
   Json textures = Json::array();
@@ -205,7 +210,8 @@ Result<Level> receive(const Bytes& answer, const fs::path& folder) {
   Taker in(answer);
   std::uint64_t size = 0;
   std::string header;
-  if (!in.take(&size, sizeof size) || size > in.rest().size()) return Error{"", "was not imported to its end; try again"};
+  if (!in.take(&size, sizeof size) || size > in.rest().size())
+    return Error{"", "was not imported to its end; try again"};
   header.resize(size);
   in.take(header.data(), size);
   Result<Level> level = load_gltf(in.rest(), true, {});
@@ -241,7 +247,8 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
     for (std::size_t v = 0; v < mesh->vertices; ++v)
       for (std::size_t c = 0; c < attribute.width; ++c)
         if (!std::isfinite(at(v, c))) return Error{"Draco data", "has a number in " + semantic + " that is not finite"};
-    if (semantic == "POSITION" && attribute.width != 3) return Error{"Draco data", "has positions that are not in space"};
+    if (semantic == "POSITION" && attribute.width != 3)
+      return Error{"Draco data", "has positions that are not in space"};
     for (std::size_t v = 0; v < mesh->vertices; ++v) {
       if (semantic == "POSITION") primitive.position.emplace_back(at(v, 0), at(v, 1), at(v, 2));
       if (semantic == "NORMAL" && attribute.width == 3) primitive.normal.emplace_back(at(v, 0), at(v, 1), at(v, 2));
@@ -265,7 +272,8 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
 
 Result<Level> import_mesh(const fs::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   Result<Bytes> bytes = read_file(path, kMaxImportBytes);
   if (!bytes) return bytes.error();
   try {

@@ -1,10 +1,5 @@
 #include "content/exr.h"
 
-#include <cmath>
-#include <cstring>
-#include <exception>
-#include <mutex>
-
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -12,6 +7,11 @@
 #include <ImfInputFile.h>
 #include <ImfRgbaFile.h>
 #include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <mutex>
 
 #include "content/exr_header.h"
 #include "content/file_io.h"
@@ -27,9 +27,11 @@ constexpr std::int64_t kMaxRowBlock = std::int64_t{256} << 20;  // [byte]
 
 class MemoryStream final : public Imf::IStream {
  public:
-  MemoryStream(std::span<const std::uint8_t> bytes, const std::string& name) : Imf::IStream(name.c_str()), bytes_(bytes) {}
+  MemoryStream(std::span<const std::uint8_t> bytes, const std::string& name)
+      : Imf::IStream(name.c_str()), bytes_(bytes) {}
   bool read(char out[], int count) override {
-    if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() - at_) throw std::runtime_error("unexpected end of file");
+    if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() - at_)
+      throw std::runtime_error("unexpected end of file");
     std::memcpy(out, bytes_.data() + at_, static_cast<std::size_t>(count));
     at_ += static_cast<std::size_t>(count);
     return at_ < bytes_.size();
@@ -49,10 +51,11 @@ Status check_header(const ExrHeader& header, std::size_t size, const std::string
   if (header.deep) return Error{name, "holds deep samples instead of a flat picture; flatten it"};
   if (header.width > kMaxPanoramaWidth || header.height > kMaxPanoramaHeight ||
       static_cast<std::uint64_t>(header.width * header.height) > kMaxPanoramaPixels)
-    return Error{name, fmt::format("has {} x {} pixels; use at most {} x {}", header.width, header.height, kMaxPanoramaWidth,
-                                   kMaxPanoramaPixels / kMaxPanoramaWidth)};
+    return Error{name, fmt::format("has {} x {} pixels; use at most {} x {}", header.width, header.height,
+                                   kMaxPanoramaWidth, kMaxPanoramaPixels / kMaxPanoramaWidth)};
   if (header.width * header.height > kFreePixels + kPixelsPerByte * static_cast<std::int64_t>(size))
-    return Error{name, fmt::format("claims {} x {} pixels in {} bytes; the file is damaged", header.width, header.height, size)};
+    return Error{
+        name, fmt::format("claims {} x {} pixels in {} bytes; the file is damaged", header.width, header.height, size)};
   std::int64_t pixel = 0;
   for (const auto& [channel, bytes] : header.channels) pixel += bytes;
   if (pixel * header.width * 256 > kMaxRowBlock) return Error{name, "has too many channels; keep R, G and B"};
@@ -82,10 +85,13 @@ void read_channels(Imf::IStream& stream, const ExrHeader& header, bool luminance
   char* origin = reinterpret_cast<char*>(out.rgb.data()) - static_cast<std::ptrdiff_t>(x_step) * window.min.x -
                  static_cast<std::ptrdiff_t>(y_step) * window.min.y;
   Imf::FrameBuffer frame;
-  if (luminance) frame.insert("Y", Imf::Slice(Imf::FLOAT, origin, x_step, y_step));
+  if (luminance)
+    frame.insert("Y", Imf::Slice(Imf::FLOAT, origin, x_step, y_step));
   else
     for (int c = 0; c < 3; ++c)
-      frame.insert(std::string(1, "RGB"[c]), Imf::Slice(Imf::FLOAT, origin + c * static_cast<std::ptrdiff_t>(sizeof(float)), x_step, y_step, 1, 1, 0.0));
+      frame.insert(
+          std::string(1, "RGB"[c]),
+          Imf::Slice(Imf::FLOAT, origin + c * static_cast<std::ptrdiff_t>(sizeof(float)), x_step, y_step, 1, 1, 0.0));
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
   if (luminance)
@@ -94,7 +100,8 @@ void read_channels(Imf::IStream& stream, const ExrHeader& header, bool luminance
 
 }  // namespace
 
-Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std::string& name, std::vector<std::string>* notes) {
+Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std::string& name,
+                                 std::vector<std::string>* notes) {
   const Result<ExrHeader> header = read_exr_header(bytes, name);
   if (!header) return header.error();
   if (const Status status = check_header(*header, bytes.size(), name); !status) return status.error();
@@ -114,8 +121,10 @@ Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std:
     out.height = static_cast<std::uint32_t>(header->height);
     out.rgb.assign(std::size_t{3} * out.width * out.height, 0.0f);
     MemoryStream stream(bytes, name);
-    if (luminance && has("RY") && has("BY")) read_chroma(stream, *header, out);
-    else read_channels(stream, *header, luminance, out);
+    if (luminance && has("RY") && has("BY"))
+      read_chroma(stream, *header, out);
+    else
+      read_channels(stream, *header, luminance, out);
   } catch (const std::exception& e) {
     std::string what = e.what();
     for (char& c : what)
@@ -128,7 +137,8 @@ Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std:
       value = 0.0f;
       ++mended;
     }
-  if (mended > 0 && notes) notes->push_back(fmt::format("{}: {} values that were infinite, negative or no number are 0", name, mended));
+  if (mended > 0 && notes)
+    notes->push_back(fmt::format("{}: {} values that were infinite, negative or no number are 0", name, mended));
   return out;
 }
 

@@ -1,9 +1,9 @@
 #include "content/exr_header.h"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <optional>
-
-#include <fmt/format.h>
 
 namespace pliant {
 
@@ -57,7 +57,9 @@ bool read_channels(std::span<const std::uint8_t> value, ExrHeader& header) {
 }  // namespace
 
 Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std::string& name) {
-  const auto damaged = [&](const std::string& what) { return Error{name, what + "; the file is damaged, save it again"}; };
+  const auto damaged = [&](const std::string& what) {
+    return Error{name, what + "; the file is damaged, save it again"};
+  };
   Reader in(bytes);
   const std::optional<std::int32_t> magic = in.integer(), version = in.integer();
   if (!magic || !version || *magic != 20000630) return Error{name, "is no OpenEXR file; convert the panorama to .exr"};
@@ -89,7 +91,8 @@ Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std
         has_channels = true;
       }
       if (*attribute == "dataWindow") {
-        const std::optional<std::int32_t> x0 = fields.integer(), y0 = fields.integer(), x1 = fields.integer(), y1 = fields.integer();
+        const std::optional<std::int32_t> x0 = fields.integer(), y0 = fields.integer(), x1 = fields.integer(),
+                                          y1 = fields.integer();
         if (!y1) return damaged("has a data window that cannot be read");
         header.width = std::int64_t{*x1} - *x0 + 1;
         header.height = std::int64_t{*y1} - *y0 + 1;
@@ -100,7 +103,8 @@ Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std
     if (!attribute) return damaged("ends within its header");
     if (!multi_part) break;
   }
-  if (!has_window || !has_channels || header.width < 1 || header.height < 1) return damaged("has no data window or no channels");
+  if (!has_window || !has_channels || header.width < 1 || header.height < 1)
+    return damaged("has no data window or no channels");
   return header;
 }
 

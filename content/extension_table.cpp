@@ -1,10 +1,8 @@
 #include "content/extension_table.h"
 
-#include <algorithm>
-#include <cmath>
-#include <sstream>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace pliant {
 
@@ -22,7 +20,8 @@ auto at(T Owner::*slot, Member T::*member) {
 
 // get and set of one member through conversions to and from JSON.
 template <class Access, class ToJson, class FromJson>
-Key key(std::string name, std::string unit, KeyType type, std::string doc, Access access, ToJson to_json, FromJson from_json) {
+Key key(std::string name, std::string unit, KeyType type, std::string doc, Access access, ToJson to_json,
+        FromJson from_json) {
   Key out;
   out.name = std::move(name);
   out.unit = std::move(unit);
@@ -35,53 +34,63 @@ Key key(std::string name, std::string unit, KeyType type, std::string doc, Acces
 
 template <class Access>
 Key number(std::string name, std::string unit, KeyRange range, Access access, std::string doc) {
-  Key out = key(std::move(name), std::move(unit), KeyType::kNumber, std::move(doc), access,
-                [](double value) { return value; }, [](const Json& json) { return json.get<double>(); });
+  Key out = key(
+      std::move(name), std::move(unit), KeyType::kNumber, std::move(doc), access, [](double value) { return value; },
+      [](const Json& json) { return json.get<double>(); });
   out.range = range;
   return out;
 }
 template <class Access>
 Key text(std::string name, KeyType type, Access access, std::string doc) {
-  return key(std::move(name), type == KeyType::kNode ? "node" : "", type, std::move(doc), access,
-             [](const std::string& value) { return value; }, [](const Json& json) { return json.get<std::string>(); });
+  return key(
+      std::move(name), type == KeyType::kNode ? "node" : "", type, std::move(doc), access,
+      [](const std::string& value) { return value; }, [](const Json& json) { return json.get<std::string>(); });
 }
 template <class Access>
 Key flag(std::string name, Access access, std::string doc) {
-  return key(std::move(name), "", KeyType::kFlag, std::move(doc), access, [](bool value) { return value; },
-             [](const Json& json) { return json.get<bool>(); });
+  return key(
+      std::move(name), "", KeyType::kFlag, std::move(doc), access, [](bool value) { return value; },
+      [](const Json& json) { return json.get<bool>(); });
 }
 // An enumeration; the names stand in the order of its values.
 template <class Access>
 Key choice(std::string name, std::vector<std::string> names, Access access, std::string doc) {
   using Enum = std::remove_reference_t<decltype(access(nullptr))>;
-  Key out = key(std::move(name), "", KeyType::kChoice, std::move(doc), access,
-                [names](Enum value) { return names[static_cast<std::size_t>(value)]; },
-                [names](const Json& json) {
-                  const auto it = std::find(names.begin(), names.end(), json.get<std::string>());
-                  return static_cast<Enum>(it - names.begin());
-                });
+  Key out = key(
+      std::move(name), "", KeyType::kChoice, std::move(doc), access,
+      [names](Enum value) { return names[static_cast<std::size_t>(value)]; },
+      [names](const Json& json) {
+        const auto it = std::find(names.begin(), names.end(), json.get<std::string>());
+        return static_cast<Enum>(it - names.begin());
+      });
   out.choices = std::move(names);
   return out;
 }
 template <class Access>
 Key pair(std::string name, std::string unit, Access access, std::string doc) {
-  Key out = key(std::move(name), std::move(unit), KeyType::kPair, std::move(doc), access,
-                [](const std::array<double, 2>& value) { return value; },
-                [](const Json& json) { return std::array<double, 2>{json[0].get<double>(), json[1].get<double>()}; });
+  Key out = key(
+      std::move(name), std::move(unit), KeyType::kPair, std::move(doc), access,
+      [](const std::array<double, 2>& value) { return value; },
+      [](const Json& json) {
+        return std::array<double, 2>{json[0].get<double>(), json[1].get<double>()};
+      });
   out.range = {0.0, 1e9};
   return out;
 }
 template <class Access>
 Key box(std::string name, Access access, std::string doc) {
   const auto corner = [](vec3 p) { return Json::array({p.x, p.y, p.z}); };
-  const auto point = [](const Json& json) { return vec3(json[0].get<float>(), json[1].get<float>(), json[2].get<float>()); };
-  return key(std::move(name), "m", KeyType::kBox, std::move(doc), access,
-             [corner](const Box& value) {
-               return value.empty() ? Json() : Json{{"min", corner(value.min)}, {"max", corner(value.max)}};
-             },
-             [point](const Json& json) {
-               return json.is_null() ? Box{} : Box{point(json["min"]), point(json["max"])};
-             });
+  const auto point = [](const Json& json) {
+    return vec3(json[0].get<float>(), json[1].get<float>(), json[2].get<float>());
+  };
+  return key(
+      std::move(name), "m", KeyType::kBox, std::move(doc), access,
+      [corner](const Box& value) {
+        return value.empty() ? Json() : Json{{"min", corner(value.min)}, {"max", corner(value.max)}};
+      },
+      [point](const Json& json) {
+        return json.is_null() ? Box{} : Box{point(json["min"]), point(json["max"])};
+      });
 }
 
 constexpr KeyRange kFriction{0.0, 10.0};
@@ -91,13 +100,17 @@ std::vector<Key> deformable_keys() {
   const auto d = [](auto member) { return at(&LevelNode::deformable, member); };
   std::vector<Key> keys;
   keys.push_back(choice("spring", {"linear", "cubic", "exponential", "sls"}, d(&D::spring), "law of the normal force"));
-  keys.push_back(number("stiffness", "N/m", {0.0, 1e7}, d(&D::stiffness), "small-depth slope of normal force against depth at the probe"));
+  keys.push_back(number("stiffness", "N/m", {0.0, 1e7}, d(&D::stiffness),
+                        "small-depth slope of normal force against depth at the probe"));
   keys.push_back(number("cubic", "N/m3", {0.0, 1e15}, d(&D::cubic), "k3 of the cubic law"));
   keys.push_back(number("stiffening", "1/m", {0.0, 1e6, true}, d(&D::stiffening), "alpha of the exponential law"));
-  keys.push_back(number("relaxation.stiffness", "N/m", {0.0, 1e7}, d(&D::relaxation_stiffness), "arm of the standard linear solid"));
-  keys.push_back(number("relaxation.time", "s", {0.0, 1e6, true}, d(&D::relaxation_time), "relaxation time of that arm"));
+  keys.push_back(number("relaxation.stiffness", "N/m", {0.0, 1e7}, d(&D::relaxation_stiffness),
+                        "arm of the standard linear solid"));
+  keys.push_back(
+      number("relaxation.time", "s", {0.0, 1e6, true}, d(&D::relaxation_time), "relaxation time of that arm"));
   keys.push_back(number("damping_ratio", "1", {0.0, 100.0}, d(&D::damping_ratio), "damping ratio of the free surface"));
-  keys.push_back(number("settling_time", "s", {1e-4, 100.0}, d(&D::settling_time), "2 % settling time of the free surface"));
+  keys.push_back(
+      number("settling_time", "s", {1e-4, 100.0}, d(&D::settling_time), "2 % settling time of the free surface"));
   Key damping;
   damping.name = "contact_damping";
   damping.unit = "N s/m";
@@ -114,13 +127,20 @@ std::vector<Key> deformable_keys() {
     it.contact_damping = value.is_string() ? 0.0 : value.get<double>();
   };
   keys.push_back(damping);
-  keys.push_back(choice("response", {"follow", "lag"}, d(&D::response), "whether the drawn surface follows a pressing probe or lags by its settling time"));
-  keys.push_back(choice("shape", {"punch", "hertz", "gaussian", "wendland", "volume", "kelvinlet"}, d(&D::shape), "shape of the dent around the probe"));
-  keys.push_back(choice("distance", {"chord", "surface"}, d(&D::distance), "distance that the shape is a function of: straight, or along the surface"));
-  keys.push_back(number("reach", "m", {0.0, 1e6}, d(&D::reach), "radius R of the field; 0: 0.08 of the diagonal of the object's box"));
-  keys.push_back(number("volume", "1", {0.0, 1.0}, d(&D::volume), "share of the volume conserved by the shape `volume`"));
-  keys.push_back(number("friction_static", "1", kFriction, d(&D::friction_static), "coefficient of static friction, at least that of sliding"));
-  keys.push_back(number("friction_sliding", "1", kFriction, d(&D::friction_sliding), "coefficient of sliding friction"));
+  keys.push_back(choice("response", {"follow", "lag"}, d(&D::response),
+                        "whether the drawn surface follows a pressing probe or lags by its settling time"));
+  keys.push_back(choice("shape", {"punch", "hertz", "gaussian", "wendland", "volume", "kelvinlet"}, d(&D::shape),
+                        "shape of the dent around the probe"));
+  keys.push_back(choice("distance", {"chord", "surface"}, d(&D::distance),
+                        "distance that the shape is a function of: straight, or along the surface"));
+  keys.push_back(number("reach", "m", {0.0, 1e6}, d(&D::reach),
+                        "radius R of the field; 0: 0.08 of the diagonal of the object's box"));
+  keys.push_back(
+      number("volume", "1", {0.0, 1.0}, d(&D::volume), "share of the volume conserved by the shape `volume`"));
+  keys.push_back(number("friction_static", "1", kFriction, d(&D::friction_static),
+                        "coefficient of static friction, at least that of sliding"));
+  keys.push_back(
+      number("friction_sliding", "1", kFriction, d(&D::friction_sliding), "coefficient of sliding friction"));
   Key both = number("friction", "1", kFriction, d(&D::friction_static), "sets friction_static and friction_sliding");
   both.alias = true;
   both.set = [](void* owner, const Json& value) {
@@ -128,9 +148,11 @@ std::vector<Key> deformable_keys() {
     it.friction_static = it.friction_sliding = value.get<double>();
   };
   keys.push_back(both);
-  keys.push_back(number("young", "Pa", {0.0, 1e12}, d(&D::young), "Young's modulus, instead of `stiffness`; 0: not given"));
+  keys.push_back(
+      number("young", "Pa", {0.0, 1e12}, d(&D::young), "Young's modulus, instead of `stiffness`; 0: not given"));
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
-  keys.push_back(number("thickness", "m", {0.0, 1e6}, d(&D::thickness), "thickness of the layer, with `young`; 0: deep"));
+  keys.push_back(
+      number("thickness", "m", {0.0, 1e6}, d(&D::thickness), "thickness of the layer, with `young`; 0: deep"));
   return keys;
 }
 
@@ -146,13 +168,18 @@ std::string settle_deformable(void* owner) {
 std::vector<Key> probe_keys() {
   std::vector<Key> keys;
   keys.push_back(number("radius", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::radius), "radius; 0: a point"));
-  Key color = key("color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
-                  [](vec3 c) { return Json::array({c.x, c.y, c.z}); },
-                  [](const Json& json) { return vec3(json[0].get<float>(), json[1].get<float>(), json[2].get<float>()); });
+  Key color = key(
+      "color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
+      [](vec3 c) {
+        return Json::array({c.x, c.y, c.z});
+      },
+      [](const Json& json) { return vec3(json[0].get<float>(), json[1].get<float>(), json[2].get<float>()); });
   color.range = {0.0, 1.0};
   keys.push_back(color);
-  keys.push_back(text("device", KeyType::kNode, [](void* owner) -> std::string& { return static_cast<LevelNode*>(owner)->probe_device; },
-                      "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
+  keys.push_back(text(
+      "device", KeyType::kNode,
+      [](void* owner) -> std::string& { return static_cast<LevelNode*>(owner)->probe_device; },
+      "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
   return keys;
 }
 
@@ -160,13 +187,16 @@ std::vector<Key> device_keys() {
   using H = HapticDevice;
   const auto d = [](auto member) { return at(&LevelNode::device, member); };
   std::vector<Key> keys;
-  keys.push_back(choice("driver", {"null", "script", "orbit", "mouse", "external"}, d(&H::driver), "what moves the probe"));
+  keys.push_back(
+      choice("driver", {"null", "script", "orbit", "mouse", "external"}, d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
   keys.push_back(number("scale", "1", {0.0, 1e6, true}, d(&H::scale), "workspace to world"));
   keys.push_back(number("max_force", "N", {0.0, 1e3}, d(&H::max_force), "norm of the force sent"));
-  keys.push_back(number("max_stiffness", "N/m", {0.0, 1e7}, d(&H::max_stiffness), "limit on the rise of force with displacement; 0: none"));
-  keys.push_back(number("max_slew", "N/s", {0.0, 1e7, true}, d(&H::max_slew), "limit on the change of force with time"));
+  keys.push_back(number("max_stiffness", "N/m", {0.0, 1e7}, d(&H::max_stiffness),
+                        "limit on the rise of force with displacement; 0: none"));
+  keys.push_back(
+      number("max_slew", "N/s", {0.0, 1e7, true}, d(&H::max_slew), "limit on the change of force with time"));
   return keys;
 }
 
@@ -179,10 +209,13 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", {0.0, 1e3}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
-  keys.push_back(text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
-  keys.push_back(box("pinned", s(&S::pinned), "what is held fast: a box in the object frame; left out: the attribute _PINNED"));
+  keys.push_back(
+      text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
+  keys.push_back(
+      box("pinned", s(&S::pinned), "what is held fast: a box in the object frame; left out: the attribute _PINNED"));
   keys.push_back(number("friction_static", "1", kFriction, s(&S::friction_static), "coefficient of static friction"));
-  keys.push_back(number("friction_sliding", "1", kFriction, s(&S::friction_sliding), "coefficient of sliding friction"));
+  keys.push_back(
+      number("friction_sliding", "1", kFriction, s(&S::friction_sliding), "coefficient of sliding friction"));
   return keys;
 }
 
@@ -190,13 +223,17 @@ std::vector<Key> handle_keys() {
   using H = Handle6;
   const auto h = [](auto member) { return at(&LevelNode::handle, member); };
   std::vector<Key> keys;
-  keys.push_back(box("box", h(&H::box), "which part is rigid: a box in the object frame; left out: the attribute _HANDLE"));
+  keys.push_back(
+      box("box", h(&H::box), "which part is rigid: a box in the object frame; left out: the attribute _HANDLE"));
   keys.push_back(choice("attachment", {"spring", "slave"}, h(&H::attachment), "how flesh is held to the handle"));
-  keys.push_back(pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
+  keys.push_back(
+      pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
   keys.push_back(pair("coupling.rotation", "N m/rad, N m s/rad", h(&H::rotation), "the same for rotation"));
   keys.push_back(number("coupling.max_force", "N", {0.0, 1e4}, h(&H::max_force), "saturation of the coupling's force"));
-  keys.push_back(number("coupling.max_torque", "N m", {0.0, 1e4}, h(&H::max_torque), "saturation of the coupling's torque"));
-  keys.push_back(text("device", KeyType::kNode, h(&H::device), "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
+  keys.push_back(
+      number("coupling.max_torque", "N m", {0.0, 1e4}, h(&H::max_torque), "saturation of the coupling's torque"));
+  keys.push_back(text("device", KeyType::kNode, h(&H::device),
+                      "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
   return keys;
 }
 
@@ -207,7 +244,8 @@ std::vector<Key> rigid_body_keys() {
   keys.push_back(number("mass", "kg", {0.0, 1e9}, r(&R::mass), "mass; 0: from density"));
   keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, r(&R::density), "density"));
   keys.push_back(number("friction_static", "1", kFriction, r(&R::friction_static), "coefficient of static friction"));
-  keys.push_back(number("friction_sliding", "1", kFriction, r(&R::friction_sliding), "coefficient of sliding friction"));
+  keys.push_back(
+      number("friction_sliding", "1", kFriction, r(&R::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(flag("fixed", r(&R::fixed), "does not move"));
   return keys;
 }
@@ -216,7 +254,8 @@ std::vector<Key> environment_keys() {
   using E = LevelEnvironment;
   const auto e = [](auto member) { return at(&Level::environment, member); };
   std::vector<Key> keys;
-  keys.push_back(text("panorama", KeyType::kText, e(&E::panorama), "latitude-longitude OpenEXR file, relative to the level"));
+  keys.push_back(
+      text("panorama", KeyType::kText, e(&E::panorama), "latitude-longitude OpenEXR file, relative to the level"));
   keys.push_back(number("intensity", "1", {0.0, 1e6}, e(&E::intensity), "factor on the panorama"));
   keys.push_back(number("rotation", "rad", {-1e3, 1e3}, e(&E::rotation), "about +Y"));
   return keys;
@@ -228,12 +267,15 @@ std::vector<Key> simulation_keys() {
   std::vector<Key> keys;
   keys.push_back(number("touch_rate", "Hz", {10.0, 100000.0}, s(&S::touch_rate), "rate of the touch clock"));
   keys.push_back(number("soft_step", "s", {0.0, 1.0, true}, s(&S::soft_step), "step of the soft clock"));
-  Key gravity = key("gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),
-                    [](dvec3 g) { return Json::array({g.x, g.y, g.z}); },
-                    [](const Json& json) {
-                      return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
-                                              : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-                    });
+  Key gravity = key(
+      "gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),
+      [](dvec3 g) {
+        return Json::array({g.x, g.y, g.z});
+      },
+      [](const Json& json) {
+        return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
+                                : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+      });
   gravity.range = {-1e3, 1e3};
   keys.push_back(gravity);
   return keys;
@@ -254,7 +296,8 @@ Extension extension(std::string name, std::string doc, std::optional<T> Owner::*
 
 std::string settle_device(void* owner) {
   const HapticDevice& it = *static_cast<LevelNode*>(owner)->device;
-  return it.driver == Driver::kScript && it.file.empty() ? "has the driver script without a `file`; name the CSV file" : "";
+  return it.driver == Driver::kScript && it.file.empty() ? "has the driver script without a `file`; name the CSV file"
+                                                         : "";
 }
 
 template <class T>
@@ -269,9 +312,11 @@ std::vector<Extension> make_table() {
   table.push_back(extension("probe", "What a person holds against the surface.", &LevelNode::probe, probe_keys()));
   table.push_back(extension("haptic_device", "Moves a probe, and may push back.", &LevelNode::device, device_keys()));
   table.back().settle = settle_device;
-  table.push_back(extension("soft_body", "The node's mesh is flesh with inertia.", &LevelNode::soft_body, soft_body_keys()));
+  table.push_back(
+      extension("soft_body", "The node's mesh is flesh with inertia.", &LevelNode::soft_body, soft_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->soft_body); };
-  table.push_back(extension("handle", "The rigid part that a person holds a soft body by.", &LevelNode::handle, handle_keys()));
+  table.push_back(
+      extension("handle", "The rigid part that a person holds a soft body by.", &LevelNode::handle, handle_keys()));
   table.push_back(extension("rigid_body", "The node's mesh is rigid.", &LevelNode::rigid_body, rigid_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->rigid_body); };
   table.push_back(extension("environment", "What surrounds the scene.", &Level::environment, environment_keys()));
@@ -285,13 +330,6 @@ std::vector<Extension> make_table() {
   simulation.settle = [](void*) { return std::string(); };
   table.push_back(simulation);
   return table;
-}
-
-bool numbers(const Json& value, std::size_t count, const KeyRange& range) {
-  if (!value.is_array() || value.size() != count) return false;
-  for (const Json& each : value)
-    if (!each.is_number() || !(each.get<double>() >= range.min && each.get<double>() <= range.max)) return false;
-  return true;
 }
 
 }  // namespace
@@ -311,75 +349,6 @@ const Key* find_key(const Extension& extension, const std::string& name) {
   for (const Key& each : extension.keys)
     if (each.name == name) return &each;
   return nullptr;
-}
-
-std::string range_text(const Key& key) {
-  const bool low = std::isfinite(key.range.min), high = std::isfinite(key.range.max);
-  if (!low && !high) return "any";
-  return fmt::format("{}{}, {}", key.range.above_min ? "(" : "[", key.range.min, key.range.max) + (high ? "]" : ")");
-}
-
-std::string check_value(const Key& key, const Json& value) {
-  const auto number = [&] {
-    const double it = value.get<double>();
-    const bool inside = (key.range.above_min ? it > key.range.min : it >= key.range.min) && it <= key.range.max;
-    return inside ? std::string()
-                  : fmt::format("is {}, out of the range {} {}", value.dump(), range_text(key), key.unit == "1" ? "" : key.unit);
-  };
-  const std::string given = value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
-  switch (key.type) {
-    case KeyType::kNumber: return value.is_number() ? number() : "is " + given + ", not a number";
-    case KeyType::kNumberOrMaterial:
-      if (value == "material") return "";
-      return value.is_number() ? number() : "is " + given + ", neither a number nor \"material\"";
-    case KeyType::kFlag: return value.is_boolean() ? "" : "is " + given + ", neither true nor false";
-    case KeyType::kText:
-    case KeyType::kNode: return value.is_string() ? "" : "is " + given + ", not a text";
-    case KeyType::kChoice: {
-      std::string all;
-      for (const std::string& each : key.choices) {
-        if (value == each) return "";
-        all += (all.empty() ? "" : ", ") + each;
-      }
-      return "is " + given + ", none of " + all;
-    }
-    case KeyType::kColor: return numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
-    case KeyType::kPair: return numbers(value, 2, key.range) ? "" : "is " + given + ", not two numbers in " + range_text(key);
-    case KeyType::kVector:
-      return value.is_number() || numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
-    case KeyType::kBox: {
-      const KeyRange any{-1e6, 1e6};
-      bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&
-                  numbers(value["min"], 3, any) && numbers(value["max"], 3, any);
-      for (std::size_t i = 0; good && i < 3; ++i) good = value["min"][i].get<double>() <= value["max"][i].get<double>();
-      return good ? "" : "is " + given + ", not a box {\"min\": [x, y, z], \"max\": [x, y, z]}";
-    }
-  }
-  return "";
-}
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
-  std::string best;
-  std::size_t least = 1 + std::min<std::size_t>(3, word.size() / 2);
-  for (const std::string& name : names) {
-    // Levenshtein's distance, one row at a time.
-    std::vector<std::size_t> row(name.size() + 1);
-    for (std::size_t j = 0; j <= name.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= std::min<std::size_t>(word.size(), 64); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j <= name.size(); ++j) {
-        const std::size_t kept = diagonal + (word[i - 1] == name[j - 1] ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({kept, row[j] + 1, row[j - 1] + 1});
-      }
-    }
-    if (row.back() < least) {
-      least = row.back();
-      best = name;
-    }
-  }
-  return best.empty() ? "" : "; did you mean " + best + "?";
 }
 
 }  // namespace pliant

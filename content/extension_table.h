@@ -37,8 +37,8 @@ struct Extension {
   bool on_scene = false;
   std::vector<Key> keys;
   std::function<bool(const void*)> present;
-  std::function<void(void*)> add;             // with defaults
-  std::function<std::string(void*)> settle;   // after keys were set: derives what follows; a sentence if they clash
+  std::function<void(void*)> add;            // with defaults
+  std::function<std::string(void*)> settle;  // after keys were set: derives what follows; a sentence if they clash
 };
 
 const std::vector<Extension>& extension_table();

@@ -1,9 +1,9 @@
 #include "content/extensions.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "content/extension_table.h"
 
@@ -49,11 +49,12 @@ class Reader {
         take(*key, value, here);
         continue;
       }
-      const bool group = std::any_of(extension_.keys.begin(), extension_.keys.end(), [&](const Key& each) {
-        return each.name.rfind(dotted + ".", 0) == 0;
-      });
-      if (group && prefix.empty()) walk(value, dotted + ".", here);
-      else report_(here, "is no key of PLIANT_" + extension_.name + suggestion(dotted, key_names(extension_)));
+      const bool group = std::any_of(extension_.keys.begin(), extension_.keys.end(),
+                                     [&](const Key& each) { return each.name.rfind(dotted + ".", 0) == 0; });
+      if (group && prefix.empty())
+        walk(value, dotted + ".", here);
+      else
+        report_(here, "is no key of PLIANT_" + extension_.name + suggestion(dotted, key_names(extension_)));
     }
   }
 
@@ -78,8 +79,8 @@ class Reader {
 
 // Every PLIANT_* extension that an object has.
 template <class Report>
-void read_all(const Json& extensions, const std::string& pointer, bool on_scene, const std::vector<std::string>& node_names,
-              void* owner, const Report& report) {
+void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
+              const std::vector<std::string>& node_names, void* owner, const Report& report) {
   std::vector<std::string> names;
   for (const Extension& each : extension_table())
     if (each.on_scene == on_scene) names.push_back("PLIANT_" + each.name);
@@ -87,8 +88,10 @@ void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
     if (name.rfind("PLIANT_", 0) != 0) continue;
     const std::string here = pointer + "/" + name;
     const Extension* extension = find_extension(name.substr(7));
-    if (!extension || extension->on_scene != on_scene) report(here, "is no extension known here" + suggestion(name, names));
-    else Reader<Report>(*extension, owner, node_names, report).read(json, here);
+    if (!extension || extension->on_scene != on_scene)
+      report(here, "is no extension known here" + suggestion(name, names));
+    else
+      Reader<Report>(*extension, owner, node_names, report).read(json, here);
   }
 }
 
@@ -149,58 +152,6 @@ Json write_all(bool on_scene, const Owner& owner, const Json& before) {
   return out;
 }
 
-Json schema_of(const Key& key, const Json& standard) {
-  Json out = {{"description", key.doc + (key.unit.empty() || key.unit == "1" || key.unit == "node" ? "" : " [" + key.unit + "]")}};
-  const auto bound = [&](Json& json) {
-    if (std::isfinite(key.range.min)) json[key.range.above_min ? "exclusiveMinimum" : "minimum"] = key.range.min;
-    if (std::isfinite(key.range.max)) json["maximum"] = key.range.max;
-  };
-  const auto array = [&](std::size_t count) {
-    Json items = {{"type", "number"}};
-    bound(items);
-    return Json{{"type", "array"}, {"items", items}, {"minItems", count}, {"maxItems", count}};
-  };
-  if (!key.alias && !standard.is_null() && standard != "") out["default"] = standard;
-  switch (key.type) {
-    case KeyType::kNumber:
-      out["type"] = "number";
-      bound(out);
-      break;
-    case KeyType::kNumberOrMaterial: {
-      Json number = {{"type", "number"}};
-      bound(number);
-      out["anyOf"] = Json::array({number, {{"const", "material"}}});
-      break;
-    }
-    case KeyType::kFlag: out["type"] = "boolean"; break;
-    case KeyType::kText: out["type"] = "string"; break;
-    case KeyType::kNode: out["anyOf"] = Json::array({{{"type", "string"}}, {{"type", "integer"}, {"minimum", 0}}}); break;
-    case KeyType::kChoice: out["enum"] = key.choices; break;
-    case KeyType::kColor: out.update(array(3)); break;
-    case KeyType::kPair: out.update(array(2)); break;
-    case KeyType::kVector: out["anyOf"] = Json::array({array(3), {{"type", "number"}}}); break;
-    case KeyType::kBox: {
-      const Json corner = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
-      out["type"] = "object";
-      out["properties"] = {{"min", corner}, {"max", corner}};
-      out["required"] = {"min", "max"};
-      out["additionalProperties"] = false;
-      break;
-    }
-  }
-  return out;
-}
-
-// An owner with this extension at its defaults.
-struct Defaults {
-  LevelNode node;
-  Level level;
-  explicit Defaults(const Extension& extension) : owner(extension.on_scene ? static_cast<void*>(&level) : &node) {
-    extension.add(owner);
-  }
-  void* owner;
-};
-
 }  // namespace
 
 double calibrated_stiffness(double young, double poisson, double thickness) {
@@ -208,8 +159,8 @@ double calibrated_stiffness(double young, double poisson, double thickness) {
   return 2.0 * young / (1.0 - poisson * poisson) * radius;
 }
 
-Status parse_node_extensions(const Json& extensions, const std::string& pointer, const std::vector<std::string>& node_names,
-                             LevelNode& node) {
+Status parse_node_extensions(const Json& extensions, const std::string& pointer,
+                             const std::vector<std::string>& node_names, LevelNode& node) {
   std::optional<Error> error;
   read_all(extensions, pointer, false, node_names, &node, FirstFault{error});
   if (error) return *error;
@@ -240,8 +191,9 @@ Status check_references(const Level& level) {
     if (node.device) devices.push_back(node.name);
   const auto check = [&](const LevelNode& node, const char* extension, const std::string& device) -> Status {
     if (device.empty() || std::find(devices.begin(), devices.end(), device) != devices.end()) return Done{};
-    return Error{node.name + "." + extension + ".device",
-                 "names '" + device.substr(0, 100) + "', which is no node with a PLIANT_haptic_device" + suggestion(device, devices)};
+    return Error{node.name + "." + extension + ".device", "names '" + device.substr(0, 100) +
+                                                              "', which is no node with a PLIANT_haptic_device" +
+                                                              suggestion(device, devices)};
   };
   for (const LevelNode& node : level.nodes) {
     if (node.probe)
@@ -252,52 +204,11 @@ Status check_references(const Level& level) {
   return Done{};
 }
 
-Json node_extensions(const LevelNode& node, const Json& before) { return write_all(false, node, before); }
-Json scene_extensions(const Level& level, const Json& before) { return write_all(true, level, before); }
-
-std::vector<SchemaFile> extension_schemas() {
-  std::vector<SchemaFile> files;
-  for (const Extension& extension : extension_table()) {
-    Defaults defaults(extension);
-    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                   {"title", "PLIANT_" + extension.name},
-                   {"description", extension.doc},
-                   {"type", "object"},
-                   {"additionalProperties", false}};
-    Json& properties = schema["properties"];
-    for (const Key& key : extension.keys) {
-      const std::size_t dot = key.name.find('.');
-      Json& parent = dot == std::string::npos ? properties : properties[key.name.substr(0, dot)]["properties"];
-      if (dot != std::string::npos) {
-        properties[key.name.substr(0, dot)]["type"] = "object";
-        properties[key.name.substr(0, dot)]["additionalProperties"] = false;
-      }
-      parent[dot == std::string::npos ? key.name : key.name.substr(dot + 1)] = schema_of(key, key.get(defaults.owner));
-    }
-    properties["extras"] = Json::object();
-    properties["extensions"] = {{"type", "object"}};
-    files.push_back({"PLIANT_" + extension.name + ".schema.json", schema.dump(2) + "\n"});
-  }
-  return files;
+Json node_extensions(const LevelNode& node, const Json& before) {
+  return write_all(false, node, before);
 }
-
-std::string extension_tables() {
-  std::string out;
-  for (const Extension& extension : extension_table()) {
-    Defaults defaults(extension);
-    out += fmt::format("### {} extension `PLIANT_{}`\n\n{}\n\n| key | unit | range | default | meaning |\n|---|---|---|---|---|\n",
-                       extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
-    for (const Key& key : extension.keys) {
-      std::string range;
-      for (const std::string& each : key.choices) range += (range.empty() ? "`" : " · `") + each + "`";
-      if (range.empty() && key.type != KeyType::kText && key.type != KeyType::kNode && key.type != KeyType::kFlag) range = range_text(key);
-      const Json standard = key.get(defaults.owner);
-      const std::string shown = key.alias || standard.is_null() || standard == "" ? "" : standard.is_string() ? standard.get<std::string>() : standard.dump();
-      out += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit, range, shown, key.doc);
-    }
-    out += "\n";
-  }
-  return out;
+Json scene_extensions(const Level& level, const Json& before) {
+  return write_all(true, level, before);
 }
 
 }  // namespace pliant

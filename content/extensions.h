@@ -2,10 +2,9 @@
 // for. The table serves reading, saving, --set, the JSON Schemas and the tables in docs/level-format.md.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "content/finding.h"
 #include "content/level.h"
@@ -15,8 +14,8 @@ namespace pliant {
 using Json = nlohmann::json;
 
 // `extensions` of a glTF node: fills the node's components. `node_names` by glTF number, for keys that name a node.
-Status parse_node_extensions(const Json& extensions, const std::string& pointer, const std::vector<std::string>& node_names,
-                             LevelNode& node);
+Status parse_node_extensions(const Json& extensions, const std::string& pointer,
+                             const std::vector<std::string>& node_names, LevelNode& node);
 Status parse_scene_extensions(const Json& extensions, const std::string& pointer, Level& level);
 // The same for `pliant validate`: every finding instead of the first error.
 void find_in_node_extensions(const Json& extensions, const std::string& pointer,
@@ -31,8 +30,8 @@ Status check_references(const Level& level);
 Json node_extensions(const LevelNode& node, const Json& before);
 Json scene_extensions(const Level& level, const Json& before);
 
-// Stiffness of a point contact of 4 mm radius on a half-space: 2 E/(1-nu^2) a [N/m]; a layer thinner than that lends its
-// thickness as the radius (methods.md 1.3 and 4).
+// Stiffness of a point contact of 4 mm radius on a half-space: 2 E/(1-nu^2) a [N/m]; a layer thinner than that lends
+// its thickness as the radius (methods.md 1.3 and 4).
 double calibrated_stiffness(double young, double poisson, double thickness);
 
 struct SchemaFile {

@@ -1,5 +1,6 @@
 #include "content/file_io.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -7,8 +8,6 @@
 #include <cstring>
 #include <memory>
 #include <system_error>
-
-#include <fmt/format.h>
 
 namespace pliant {
 
@@ -38,9 +37,11 @@ Result<Bytes> read_file(const fs::path& path, std::uint64_t limit) {
   const std::uint64_t size = fs::file_size(path, error);
   if (error) return Error{path.string(), "its size cannot be told: " + error.message()};
   if (size > limit)
-    return Error{path.string(), fmt::format("is {} bytes, more than the {} that are read; use a smaller file", size, limit)};
+    return Error{path.string(),
+                 fmt::format("is {} bytes, more than the {} that are read; use a smaller file", size, limit)};
   const File file(std::fopen(path.c_str(), "rb"));
-  if (!file) return Error{path.string(), fmt::format("cannot be opened: {}; check its permissions", std::strerror(errno))};
+  if (!file)
+    return Error{path.string(), fmt::format("cannot be opened: {}; check its permissions", std::strerror(errno))};
   Bytes bytes(size);
   if (std::fread(bytes.data(), 1, size, file.get()) != size)
     return Error{path.string(), "could not be read to its end; check the disk"};
@@ -68,7 +69,9 @@ Status write_files(const std::vector<FileToWrite>& files) {
   return Done{};
 }
 
-Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) { return write_files({{path, bytes}}); }
+Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  return write_files({{path, bytes}});
+}
 
 Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
   std::string decoded;

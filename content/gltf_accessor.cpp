@@ -10,12 +10,16 @@ namespace {
 std::size_t size_of_component(int type) {
   switch (type) {
     case kByte:
-    case kUnsignedByte: return 1;
+    case kUnsignedByte:
+      return 1;
     case kShort:
-    case kUnsignedShort: return 2;
+    case kUnsignedShort:
+      return 2;
     case kUnsignedInt:
-    case kFloat: return 4;
-    default: return 0;
+    case kFloat:
+      return 4;
+    default:
+      return 0;
   }
 }
 
@@ -33,12 +37,18 @@ Out component(const std::uint8_t* at, int type, bool normalized) {
     return normalized ? static_cast<Out>(std::max(static_cast<float>(value) / scale, -1.0f)) : static_cast<Out>(value);
   };
   switch (type) {
-    case kByte: return scaled(load<std::int8_t>(at), 127.0f);
-    case kUnsignedByte: return scaled(*at, 255.0f);
-    case kShort: return scaled(load<std::int16_t>(at), 32767.0f);
-    case kUnsignedShort: return scaled(load<std::uint16_t>(at), 65535.0f);
-    case kUnsignedInt: return static_cast<Out>(load<std::uint32_t>(at));
-    default: return static_cast<Out>(load<float>(at));
+    case kByte:
+      return scaled(load<std::int8_t>(at), 127.0f);
+    case kUnsignedByte:
+      return scaled(*at, 255.0f);
+    case kShort:
+      return scaled(load<std::int16_t>(at), 32767.0f);
+    case kUnsignedShort:
+      return scaled(load<std::uint16_t>(at), 65535.0f);
+    case kUnsignedInt:
+      return static_cast<Out>(load<std::uint32_t>(at));
+    default:
+      return static_cast<Out>(load<float>(at));
   }
 }
 
@@ -100,7 +110,8 @@ AccessorLayout layout_of(const Json& accessor) {
   layout.column_size = layout.rows * layout.component_size;
   if (layout.columns > 1) layout.column_size = (layout.column_size + 3) / 4 * 4;
   layout.element_size = layout.columns * layout.column_size;
-  layout.last_size = layout.element_size == 0 ? 0 : (layout.columns - 1) * layout.column_size + layout.rows * layout.component_size;
+  layout.last_size =
+      layout.element_size == 0 ? 0 : (layout.columns - 1) * layout.column_size + layout.rows * layout.component_size;
   layout.count = accessor["count"].get<std::uint64_t>();
   layout.normalized = value_of(accessor, "normalized", false);
   layout.known = layout.element_size > 0;

@@ -22,7 +22,7 @@ struct AccessorLayout {
   std::size_t last_size = 0;          // [byte] of an element without the padding behind its last column
   std::uint64_t count = 0;
   bool normalized = false;
-  bool known = false;                 // false: a type or component type that glTF 2.0 does not have
+  bool known = false;  // false: a type or component type that glTF 2.0 does not have
   std::size_t components() const { return rows * columns; }
 };
 AccessorLayout layout_of(const Json& accessor);

@@ -1,9 +1,9 @@
 // A Level that did not come from glTF, as glTF. What load_level reads of the result is the Level again, bit for bit.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-
-#include <fmt/format.h>
 
 #include "content/gltf_accessor.h"
 #include "content/gltf_save.h"
@@ -63,7 +63,8 @@ class Builder {
     Json json = Json::object();
     if (!m.name.empty()) json["name"] = m.name;
     Json& pbr = json["pbrMetallicRoughness"];
-    pbr = {{"baseColorFactor", numbers(m.base_color)}, {"metallicFactor", m.metallic}, {"roughnessFactor", m.roughness}};
+    pbr = {
+        {"baseColorFactor", numbers(m.base_color)}, {"metallicFactor", m.metallic}, {"roughnessFactor", m.roughness}};
     set_texture(pbr, "baseColorTexture", m.base_color_texture);
     set_texture(pbr, "metallicRoughnessTexture", m.metallic_roughness_texture);
     set_texture(json, "normalTexture", m.normal_texture);
@@ -97,14 +98,17 @@ class Builder {
   }
 
   // Appends an array to the buffer as a bufferView and an accessor of its own.
-  std::size_t add_accessor(const void* data, std::size_t count, std::size_t element, int component, const char* type, int target) {
+  std::size_t add_accessor(const void* data, std::size_t count, std::size_t element, int component, const char* type,
+                           int target) {
     bytes_.resize((bytes_.size() + 7) / 8 * 8);
     const auto* begin = static_cast<const std::uint8_t*>(data);
     json_["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", count * element}, {"target", target}});
     bytes_.insert(bytes_.end(), begin, begin + count * element);
-    json_["accessors"].push_back(
-        {{"bufferView", json_["bufferViews"].size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
+    json_["accessors"].push_back({{"bufferView", json_["bufferViews"].size() - 1},
+                                  {"componentType", component},
+                                  {"count", count},
+                                  {"type", type}});
     return json_["accessors"].size() - 1;
   }
   template <class T>
@@ -115,7 +119,8 @@ class Builder {
   bool has_textures(std::int32_t material) const {
     if (material < 0 || material >= static_cast<std::int32_t>(level_.materials.size())) return false;
     const Material& m = level_.materials[static_cast<std::size_t>(material)];
-    return std::max({m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.height_texture}) >= 0;
+    return std::max({m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.occlusion_texture,
+                     m.emissive_texture, m.height_texture}) >= 0;
   }
 
   Status add_mesh(const LevelMesh& mesh) {
@@ -124,11 +129,13 @@ class Builder {
       if (primitive.index.empty() || primitive.position.empty()) continue;
       const std::size_t count = primitive.position.size();
       const auto fits = [&](const auto& values) { return values.empty() || values.size() == count; };
-      if (!fits(primitive.normal) || !fits(primitive.tangent) || !fits(primitive.uv) || !fits(primitive.stiffness) || !fits(primitive.friction))
+      if (!fits(primitive.normal) || !fits(primitive.tangent) || !fits(primitive.uv) || !fits(primitive.stiffness) ||
+          !fits(primitive.friction))
         return Error{mesh.name, "has attributes of different lengths and cannot be saved"};
       Box box;
       for (const vec3 p : primitive.position) {
-        if (!std::isfinite(p.x + p.y + p.z)) return Error{mesh.name, "has a position that is not finite and cannot be saved"};
+        if (!std::isfinite(p.x + p.y + p.z))
+          return Error{mesh.name, "has a position that is not finite and cannot be saved"};
         box.add(p);
       }
       Json json, &attributes = json["attributes"];
@@ -140,14 +147,16 @@ class Builder {
       if (!primitive.tangent.empty()) attributes["TANGENT"] = add_attribute(primitive.tangent, "VEC4");
       if (!primitive.uv.empty()) attributes["TEXCOORD_0"] = add_attribute(primitive.uv, "VEC2");
       // A textured material on a primitive without coordinates is not glTF: all of it takes the texture's corner.
-      else if (has_textures(primitive.material)) attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), "VEC2");
+      else if (has_textures(primitive.material))
+        attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), "VEC2");
       if (!primitive.stiffness.empty()) attributes["_STIFFNESS"] = add_attribute(primitive.stiffness, "SCALAR");
       if (!primitive.friction.empty()) attributes["_FRICTION"] = add_attribute(primitive.friction, "SCALAR");
       if (count < 65535) {
         const std::vector<std::uint16_t> small(primitive.index.begin(), primitive.index.end());
         json["indices"] = add_accessor(small.data(), small.size(), 2, kUnsignedShort, "SCALAR", 34963);
       } else {
-        json["indices"] = add_accessor(primitive.index.data(), primitive.index.size(), 4, kUnsignedInt, "SCALAR", 34963);
+        json["indices"] =
+            add_accessor(primitive.index.data(), primitive.index.size(), 4, kUnsignedInt, "SCALAR", 34963);
       }
       if (primitive.material >= 0) json["material"] = primitive.material;
       primitives.push_back(std::move(json));
@@ -175,7 +184,8 @@ class Builder {
       if (node.camera) {
         const Camera& camera = *node.camera;
         json_["cameras"].push_back(
-            {{"type", "perspective"}, {"perspective", {{"yfov", camera.yfov}, {"znear", camera.znear}, {"zfar", camera.zfar}}}});
+            {{"type", "perspective"},
+             {"perspective", {{"yfov", camera.yfov}, {"znear", camera.znear}, {"zfar", camera.zfar}}}});
         json["camera"] = json_["cameras"].size() - 1;
       }
       if (node.parent < 0 && node.in_scene) roots.push_back(i);
@@ -187,7 +197,9 @@ class Builder {
 
   std::size_t add_light(const Light& light) {
     constexpr const char* kTypes[] = {"directional", "point", "spot"};
-    Json json = {{"type", kTypes[static_cast<std::size_t>(light.kind)]}, {"color", numbers(light.color)}, {"intensity", light.intensity}};
+    Json json = {{"type", kTypes[static_cast<std::size_t>(light.kind)]},
+                 {"color", numbers(light.color)},
+                 {"intensity", light.intensity}};
     if (light.range > 0.0f) json["range"] = light.range;
     if (light.kind == Light::Kind::kSpot)
       json["spot"] = {{"innerConeAngle", light.inner_cone}, {"outerConeAngle", light.outer_cone}};
@@ -222,6 +234,8 @@ Json transform_json(const LocalTransform& local) {
   return json;
 }
 
-Result<SourceDocument> build_document(const Level& level) { return Builder(level).build(); }
+Result<SourceDocument> build_document(const Level& level) {
+  return Builder(level).build();
+}
 
 }  // namespace pliant

@@ -1,10 +1,10 @@
 // Draco compression of a document (KHR_draco_mesh_compression), and the removal of what it leaves without use.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "content/gltf_accessor.h"
 #include "content/gltf_draco.h"
@@ -61,8 +61,10 @@ void drop_unused(Json& json, const char* collection, const EachReference& each_r
     kept.push_back(std::move(json[collection][i]));
   }
   each_reference_of(json, [&](Json& number) { number = renumbered[number.get<std::size_t>()]; });
-  if (kept.empty()) json.erase(collection);
-  else json[collection] = std::move(kept);
+  if (kept.empty())
+    json.erase(collection);
+  else
+    json[collection] = std::move(kept);
 }
 
 // Whether this primitive's data are triangles of plain attributes, all present.
@@ -93,7 +95,8 @@ Status compress_primitive(SourceDocument& document, Json& primitive, int bits, c
   if (mesh.index.empty()) return Done{};
   for (const auto& [name, number] : attributes.items()) {
     const std::size_t i = number.get<std::size_t>();
-    mesh.attributes.push_back({name, 0, layout_of(accessors[i]).rows, name.rfind("JOINTS_", 0) == 0, read_floats(document, i)});
+    mesh.attributes.push_back(
+        {name, 0, layout_of(accessors[i]).rows, name.rfind("JOINTS_", 0) == 0, read_floats(document, i)});
   }
   std::vector<float> position;
   for (const DracoAttribute& each : mesh.attributes)
@@ -127,7 +130,8 @@ Status compress_primitive(SourceDocument& document, Json& primitive, int bits, c
   document.json["bufferViews"].push_back({{"buffer", document.buffers.size()}, {"byteLength", blob->size()}});
   document.json["buffers"].push_back({{"byteLength", blob->size()}});
   document.buffers.push_back(std::move(*blob));
-  primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", document.json["bufferViews"].size() - 1}, {"attributes", named}};
+  primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", document.json["bufferViews"].size() - 1},
+                                                           {"attributes", named}};
   return Done{};
 }
 
@@ -138,12 +142,14 @@ void split_buffers(SourceDocument& document) {
   Json described = Json::array();
   for (Json& view : document.json["bufferViews"]) {
     const Bytes& old = document.buffers[view["buffer"].get<std::size_t>()];
-    const std::size_t offset = value_of<std::size_t>(view, "byteOffset", 0), length = view["byteLength"].get<std::size_t>();
+    const std::size_t offset = value_of<std::size_t>(view, "byteOffset", 0),
+                      length = view["byteLength"].get<std::size_t>();
     view["buffer"] = buffers.size();
     if (!old.empty()) view.erase("byteOffset");
     described.push_back({{"byteLength", old.empty() ? offset + length : length}});
-    buffers.push_back(old.empty() ? Bytes{} : Bytes(old.begin() + static_cast<std::ptrdiff_t>(offset),
-                                                    old.begin() + static_cast<std::ptrdiff_t>(offset + length)));
+    buffers.push_back(old.empty() ? Bytes{}
+                                  : Bytes(old.begin() + static_cast<std::ptrdiff_t>(offset),
+                                          old.begin() + static_cast<std::ptrdiff_t>(offset + length)));
   }
   document.buffers = std::move(buffers);
   document.json["buffers"] = std::move(described);
@@ -159,14 +165,17 @@ Status compress_document(SourceDocument& document, int bits) {
     for (std::size_t p = 0; p < document.json["meshes"][m]["primitives"].size(); ++p) {
       Json& primitive = document.json["meshes"][m]["primitives"][p];
       if (!can_compress(document, primitive)) continue;
-      if (const Status status = compress_primitive(document, primitive, bits, fmt::format("/meshes/{}/primitives/{}", m, p)); !status)
+      if (const Status status =
+              compress_primitive(document, primitive, bits, fmt::format("/meshes/{}/primitives/{}", m, p));
+          !status)
         return status;
       any = true;
     }
   if (!any) return Done{};
   declare_extension(document.json, "KHR_draco_mesh_compression", true);
   drop_unused(document.json, "accessors", [](Json& json, const auto& visit) { each_accessor(json, visit); });
-  drop_unused(document.json, "bufferViews", [](Json& json, const auto& visit) { each_reference(json, "bufferView", visit); });
+  drop_unused(document.json, "bufferViews",
+              [](Json& json, const auto& visit) { each_reference(json, "bufferView", visit); });
   split_buffers(document);
   return Done{};
 }

@@ -1,10 +1,10 @@
 // The bytes of a glTF file against what its JSON promises: finite numbers, declared bounds, indices, unit vectors,
 // weights. Every accessor is read once; what the buffers do not hold (placeholders) cannot be wrong.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "components/math.h"
 #include "content/gltf_accessor.h"
@@ -58,8 +58,10 @@ class DataCheck {
     const bool declared = accessor(i).contains("min") || accessor(i).contains("max");
     if (!is_float && !declared) return;
     // Bounds are of the stored values: for quantised data, the integers.
-    if (is_float) compare_bounds(i, layout.components(), read_floats(document_, i), 2e-6);
-    else compare_bounds(i, layout.components(), read_stored(document_, i), 0.0);
+    if (is_float)
+      compare_bounds(i, layout.components(), read_floats(document_, i), 2e-6);
+    else
+      compare_bounds(i, layout.components(), read_stored(document_, i), 0.0);
   }
 
   // `slack`: exporters print bounds with six digits or more.
@@ -69,7 +71,8 @@ class DataCheck {
     for (std::size_t e = 0; e * width < values.size(); ++e)
       for (std::size_t c = 0; c < width; ++c) {
         const double value = static_cast<double>(values[e * width + c]);
-        if (!std::isfinite(value)) return error(pointer_of(i), fmt::format("holds a number that is not finite in element {}", e));
+        if (!std::isfinite(value))
+          return error(pointer_of(i), fmt::format("holds a number that is not finite in element {}", e));
         low[c] = std::min(low[c], value);
         high[c] = std::max(high[c], value);
       }
@@ -77,9 +80,11 @@ class DataCheck {
     for (std::size_t c = 0; c < width; ++c) {
       const double allowed = slack * std::max({std::abs(low[c]), std::abs(high[c]), 1e-30});
       if (json.contains("min") && std::abs(json["min"][c].get<double>() - low[c]) > allowed)
-        return error(fmt::format("{}/min/{}", pointer_of(i), c), fmt::format("is not the smallest element, {}", low[c]));
+        return error(fmt::format("{}/min/{}", pointer_of(i), c),
+                     fmt::format("is not the smallest element, {}", low[c]));
       if (json.contains("max") && std::abs(json["max"][c].get<double>() - high[c]) > allowed)
-        return error(fmt::format("{}/max/{}", pointer_of(i), c), fmt::format("is not the largest element, {}", high[c]));
+        return error(fmt::format("{}/max/{}", pointer_of(i), c),
+                     fmt::format("is not the largest element, {}", high[c]));
     }
   }
 
@@ -96,17 +101,22 @@ class DataCheck {
     for (std::size_t e = 0; e + width <= values.size(); e += width) {
       const float norm = length(vec3(values[e], values[e + 1], values[e + 2]));
       // Exporters write zeros where triangles are degenerate: such normals and tangents are made anew.
-      if (norm == 0.0f) return warn(pointer_of(i), fmt::format("holds a vector of length 0 in element {}; made anew", e / width));
+      if (norm == 0.0f)
+        return warn(pointer_of(i), fmt::format("holds a vector of length 0 in element {}; made anew", e / width));
       if (std::abs(norm - 1.0f) > kUnitTolerance)
-        return error(pointer_of(i), fmt::format("holds a vector of length {:.3g} instead of 1 in element {}", norm, e / width));
+        return error(pointer_of(i),
+                     fmt::format("holds a vector of length {:.3g} instead of 1 in element {}", norm, e / width));
       if (sign && std::abs(values[e + 3]) != 1.0f)
-        return error(pointer_of(i), fmt::format("holds a tangent whose w is neither 1 nor -1 in element {}", e / width));
+        return error(pointer_of(i),
+                     fmt::format("holds a tangent whose w is neither 1 nor -1 in element {}", e / width));
     }
   }
 
   void primitive(const Json& primitive, const std::string& pointer) {
     const Json& attributes = primitive["attributes"];
-    const auto attribute = [&](const char* name) { return attributes.contains(name) ? attributes[name].get<std::size_t>() : SIZE_MAX; };
+    const auto attribute = [&](const char* name) {
+      return attributes.contains(name) ? attributes[name].get<std::size_t>() : SIZE_MAX;
+    };
     if (const std::size_t i = attribute("NORMAL"); i != SIZE_MAX && first(i, Role::kNormal)) unit_vectors(i, 3, false);
     if (const std::size_t i = attribute("TANGENT"); i != SIZE_MAX && first(i, Role::kTangent)) unit_vectors(i, 4, true);
     for (const auto& [name, value] : attributes.items())
@@ -137,13 +147,15 @@ class DataCheck {
       const std::vector<float> values = read_floats(document_, i);
       sums.resize(values.size() / 4);
       for (std::size_t k = 0; k < values.size(); ++k) {
-        if (values[k] < 0.0f) return error(pointer + "/attributes", fmt::format("have a negative weight in element {}", k / 4));
+        if (values[k] < 0.0f)
+          return error(pointer + "/attributes", fmt::format("have a negative weight in element {}", k / 4));
         sums[k / 4] += values[k];
       }
     }
     for (std::size_t v = 0; v < sums.size(); ++v)
       if (std::abs(sums[v] - 1.0f) > kWeightTolerance)
-        return warn(pointer + "/attributes", fmt::format("have weights that sum to {:.3g} instead of 1 in element {}; scaled", sums[v], v));
+        return warn(pointer + "/attributes",
+                    fmt::format("have weights that sum to {:.3g} instead of 1 in element {}; scaled", sums[v], v));
   }
 
   void skinned(const Json& node) {
@@ -211,6 +223,8 @@ class DataCheck {
 
 }  // namespace
 
-void check_data(const SourceDocument& document, Findings& findings) { DataCheck(document, findings).all(); }
+void check_data(const SourceDocument& document, Findings& findings) {
+  DataCheck(document, findings).all();
+}
 
 }  // namespace pliant

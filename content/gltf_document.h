@@ -1,13 +1,12 @@
-// A glTF file taken apart and checked: its JSON, the bytes of its buffers and of its pictures. load_level reads from it,
-// save_level writes it back; nothing else knows glTF's containers.
+// A glTF file taken apart and checked: its JSON, the bytes of its buffers and of its pictures. load_level reads from
+// it, save_level writes it back; nothing else knows glTF's containers.
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "components/transform.h"
 #include "content/file_io.h"
@@ -25,9 +24,9 @@ struct SourceDocument {
   std::vector<Bytes> images;   // encoded, as many as json["images"]; empty: not read (a format that is not shown)
 
   // What load_level made of it, so that save_level writes only what has changed since.
-  std::vector<std::int32_t> json_node;  // Level node -> /nodes/i
-  std::vector<LevelNode> nodes_as_read; // without meshes: name, transform and extensions
-  std::size_t mesh_count = 0;           // Level meshes
+  std::vector<std::int32_t> json_node;   // Level node -> /nodes/i
+  std::vector<LevelNode> nodes_as_read;  // without meshes: name, transform and extensions
+  std::size_t mesh_count = 0;            // Level meshes
 };
 
 // Opens .gltf or .glb and checks it against the glTF 2.0 specification. Every finding goes to `findings`; the document

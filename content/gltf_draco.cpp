@@ -1,13 +1,13 @@
 #include "content/gltf_draco.h"
 
-#include <cmath>
-#include <cstring>
-#include <exception>
-
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 #include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <exception>
 
 #include "content/isolation.h"
 
@@ -39,7 +39,9 @@ class HeaderReader {
     return value;
   }
   void skip(std::size_t count) { at_ += count; }
-  std::span<const std::uint8_t> rest() const { return at_ < bytes_.size() ? bytes_.subspan(at_) : std::span<const std::uint8_t>{}; }
+  std::span<const std::uint8_t> rest() const {
+    return at_ < bytes_.size() ? bytes_.subspan(at_) : std::span<const std::uint8_t>{};
+  }
 
  private:
   std::span<const std::uint8_t> bytes_;
@@ -76,17 +78,20 @@ std::uint64_t claimed_elements(std::span<const std::uint8_t> blob) {
   const bool sequential = method == 0;
   // Counts became variable in length with 2.2 for sequential streams and with 2.0 for edgebreaker's.
   const auto count = [&] { return version < (sequential ? 0x0202 : 0x0200) ? in.fixed(4) : in.varint(); };
-  if (!sequential) in.byte();                  // how edgebreaker walks
+  if (!sequential) in.byte();                    // how edgebreaker walks
   if (!sequential && version < 0x0202) count();  // vertices that splits add
   const std::uint64_t first = count();
   return std::max(first, count());
 }
 
-Error refuse(const std::string& what) { return Error{"Draco data", what + "; compress the mesh again"}; }
+Error refuse(const std::string& what) {
+  return Error{"Draco data", what + "; compress the mesh again"};
+}
 
 // A decoded mesh with every index inside it.
 Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::span<const std::uint8_t> blob) {
-  if (blob.size() < 11 || std::memcmp(blob.data(), "DRACO", 5) != 0) return refuse("does not begin as a Draco stream does");
+  if (blob.size() < 11 || std::memcmp(blob.data(), "DRACO", 5) != 0)
+    return refuse("does not begin as a Draco stream does");
   const std::uint64_t claimed = claimed_elements(blob);
   if (claimed > kFreeElements + kElementsPerByte * blob.size())
     return refuse(fmt::format("claims {} elements in {} bytes", claimed, blob.size()));
@@ -242,8 +247,10 @@ Result<DracoMesh> decode_draco_file(std::span<const std::uint8_t> blob) {
   return decode(blob, [](const draco::Mesh& mesh) -> Result<NamedAttributes> {
     using Kind = draco::GeometryAttribute;
     NamedAttributes attributes;
-    for (const auto& [name, kind] : {std::pair{"POSITION", Kind::POSITION}, std::pair{"NORMAL", Kind::NORMAL}, std::pair{"TEXCOORD_0", Kind::TEX_COORD}})
-      if (const draco::PointAttribute* attribute = mesh.GetNamedAttribute(kind)) attributes.emplace_back(name, attribute);
+    for (const auto& [name, kind] : {std::pair{"POSITION", Kind::POSITION}, std::pair{"NORMAL", Kind::NORMAL},
+                                     std::pair{"TEXCOORD_0", Kind::TEX_COORD}})
+      if (const draco::PointAttribute* attribute = mesh.GetNamedAttribute(kind))
+        attributes.emplace_back(name, attribute);
     return attributes;
   });
 }

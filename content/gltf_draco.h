@@ -14,10 +14,10 @@ namespace pliant {
 
 // One attribute per vertex. Integers fit a float exactly up to 2^24.
 struct DracoAttribute {
-  std::string name;        // glTF semantic; empty where only the id was asked for
-  std::uint32_t id = 0;    // Draco's unique id
-  std::size_t width = 0;   // components
-  bool integer = false;    // stored as 16-bit unsigned (JOINTS)
+  std::string name;       // glTF semantic; empty where only the id was asked for
+  std::uint32_t id = 0;   // Draco's unique id
+  std::size_t width = 0;  // components
+  bool integer = false;   // stored as 16-bit unsigned (JOINTS)
   std::vector<float> values;
 };
 struct DracoMesh {

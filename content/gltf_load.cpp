@@ -1,16 +1,15 @@
 // load_level: a checked glTF document -> Level. Nodes come out parents first; meshes, materials and pictures keep their
 // glTF numbers (skinned instances follow after the meshes).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "content/assimp_import.h"
 #include "content/extensions.h"
-#include "content/gltf_accessor.h"
+#include "content/gltf_appearance.h"
 #include "content/gltf_document.h"
 #include "content/gltf_mesh.h"
-#include "content/image.h"
 
 namespace pliant {
 
@@ -18,21 +17,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kSupported[] = {
-    "KHR_mesh_quantization", "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_ior",
-    "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_emissive_strength", "KHR_texture_transform",
-    "KHR_materials_unlit", "KHR_node_visibility", "KHR_materials_variants", "KHR_animation_pointer",
-    "KHR_materials_specular", "KHR_materials_sheen", "KHR_materials_clearcoat", "KHR_materials_anisotropy",
-    "KHR_materials_dispersion", "KHR_materials_iridescence"};
-constexpr std::uint64_t kMaxDecodedPictures = std::uint64_t{768} << 20;  // [byte] of a level, all together
-
-template <class Vector>
-Vector vector_of(const Json& object, const char* key, Vector otherwise) {
-  const auto it = object.find(key);
-  if (it == object.end()) return otherwise;
-  for (int i = 0; i < Vector::length(); ++i) otherwise[i] = (*it)[static_cast<std::size_t>(i)].get<float>();
-  return otherwise;
-}
+constexpr const char* kSupported[] = {"KHR_mesh_quantization",
+                                      "KHR_draco_mesh_compression",
+                                      "KHR_lights_punctual",
+                                      "KHR_materials_ior",
+                                      "KHR_materials_transmission",
+                                      "KHR_materials_volume",
+                                      "KHR_materials_emissive_strength",
+                                      "KHR_texture_transform",
+                                      "KHR_materials_unlit",
+                                      "KHR_node_visibility",
+                                      "KHR_materials_variants",
+                                      "KHR_animation_pointer",
+                                      "KHR_materials_specular",
+                                      "KHR_materials_sheen",
+                                      "KHR_materials_clearcoat",
+                                      "KHR_materials_anisotropy",
+                                      "KHR_materials_dispersion",
+                                      "KHR_materials_iridescence"};
 
 LocalTransform transform_of(const Json& node) {
   LocalTransform local;
@@ -58,115 +60,6 @@ LocalTransform transform_of(const Json& node) {
   return local;
 }
 
-// The picture of a texture slot, -1: none.
-std::int32_t texture_of(const SourceDocument& document, const Json& object, const char* key, Level& level) {
-  if (!object.contains(key)) return -1;
-  const Json& info = object[key];
-  if (extension_of(info, "KHR_texture_transform")) level.notes.push_back("KHR_texture_transform is ignored: textures are laid as they are");
-  if (value_of(info, "texCoord", 0) != 0) level.notes.push_back("textures on another set than TEXCOORD_0 use TEXCOORD_0");
-  return value_of(document.json["textures"][info["index"].get<std::size_t>()], "source", -1);
-}
-
-// Relief that glTF has no place for, in the material's extras: {"height_texture": {"index": n}, "height_scale": metres}.
-// Extras are anybody's: what does not have this form is not ours, and is left alone.
-void read_relief(const SourceDocument& document, const Json& json, Material& out) {
-  if (!json.contains("extras") || !json["extras"].is_object()) return;
-  const Json& extras = json["extras"];
-  if (!extras.contains("height_texture") || !extras["height_texture"].is_object()) return;
-  if (!extras.contains("height_scale") || !extras["height_scale"].is_number()) return;
-  const Json& texture = extras["height_texture"];
-  const float scale = extras["height_scale"].get<float>();
-  if (!texture.contains("index") || !texture["index"].is_number_unsigned() || !document.json.contains("textures")) return;
-  const std::size_t index = texture["index"].get<std::size_t>();
-  if (index >= document.json["textures"].size() || !(scale > 0.0f && scale < 1e3f)) return;
-  out.height_texture = value_of(document.json["textures"][index], "source", -1);
-  out.height_scale = scale;
-}
-
-Material material_of(const SourceDocument& document, const Json& json, Level& level) {
-  static const Json kEmpty = Json::object();
-  const auto part = [&](const Json* found) -> const Json& { return found ? *found : kEmpty; };
-  const Json& pbr = json.contains("pbrMetallicRoughness") ? json["pbrMetallicRoughness"] : kEmpty;
-  Material out;
-  out.name = value_of<std::string>(json, "name", "");
-  out.base_color = vector_of(pbr, "baseColorFactor", vec4(1));
-  out.metallic = value_of(pbr, "metallicFactor", 1.0f);
-  out.roughness = value_of(pbr, "roughnessFactor", 1.0f);
-  out.emissive = vector_of(json, "emissiveFactor", vec3(0)) *
-                 value_of(part(extension_of(json, "KHR_materials_emissive_strength")), "emissiveStrength", 1.0f);
-  out.base_color_texture = texture_of(document, pbr, "baseColorTexture", level);
-  out.metallic_roughness_texture = texture_of(document, pbr, "metallicRoughnessTexture", level);
-  out.normal_texture = texture_of(document, json, "normalTexture", level);
-  out.occlusion_texture = texture_of(document, json, "occlusionTexture", level);
-  out.emissive_texture = texture_of(document, json, "emissiveTexture", level);
-  read_relief(document, json, out);
-  if (json.contains("normalTexture")) out.normal_scale = value_of(json["normalTexture"], "scale", 1.0f);
-  if (json.contains("occlusionTexture")) out.occlusion_strength = value_of(json["occlusionTexture"], "strength", 1.0f);
-  out.ior = value_of(part(extension_of(json, "KHR_materials_ior")), "ior", 1.5f);
-  out.transmission = value_of(part(extension_of(json, "KHR_materials_transmission")), "transmissionFactor", 0.0f);
-  const Json& volume = part(extension_of(json, "KHR_materials_volume"));
-  out.thickness = value_of(volume, "thicknessFactor", 0.0f);
-  out.attenuation_color = vector_of(volume, "attenuationColor", vec3(1));
-  out.attenuation_distance = value_of(volume, "attenuationDistance", 0.0f);
-  const std::string alpha = value_of<std::string>(json, "alphaMode", "OPAQUE");
-  out.alpha = alpha == "MASK" ? Material::Alpha::kMask : alpha == "BLEND" ? Material::Alpha::kBlend : Material::Alpha::kOpaque;
-  out.alpha_cutoff = value_of(json, "alphaCutoff", 0.5f);
-  out.double_sided = value_of(json, "doubleSided", false);
-  return out;
-}
-
-std::optional<Light> light_of(const SourceDocument& document, const Json& node) {
-  const Json* reference = extension_of(node, "KHR_lights_punctual");
-  if (!reference) return std::nullopt;
-  const Json& json = (*extension_of(document.json, "KHR_lights_punctual"))["lights"][(*reference)["light"].get<std::size_t>()];
-  Light out;
-  const std::string type = json["type"].get<std::string>();
-  if (type == "point") out.kind = Light::Kind::kPoint;
-  else if (type == "spot") out.kind = Light::Kind::kSpot;
-  else if (type != "directional") return std::nullopt;
-  out.color = vector_of(json, "color", vec3(1));
-  out.intensity = value_of(json, "intensity", 1.0f);
-  out.range = value_of(json, "range", 0.0f);
-  if (out.kind == Light::Kind::kSpot) {
-    out.inner_cone = value_of(json["spot"], "innerConeAngle", 0.0f);
-    out.outer_cone = value_of(json["spot"], "outerConeAngle", 0.7853982f);
-  }
-  return out;
-}
-
-std::optional<Camera> camera_of(const SourceDocument& document, const Json& node, Level& level) {
-  if (!node.contains("camera")) return std::nullopt;
-  const Json& json = document.json["cameras"][node["camera"].get<std::size_t>()];
-  if (!json.contains("perspective")) {
-    level.notes.push_back("orthographic cameras are ignored");
-    return std::nullopt;
-  }
-  Camera out;
-  out.yfov = json["perspective"]["yfov"].get<float>();
-  out.znear = json["perspective"]["znear"].get<float>();
-  out.zfar = value_of(json["perspective"], "zfar", out.zfar);
-  return out;
-}
-
-Status read_images(const SourceDocument& document, Level& level) {
-  std::uint64_t decoded = 0;
-  const Json& images = array_of(document.json, "images");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    std::string name = value_of<std::string>(images[i], "name", "");
-    if (document.images[i].empty()) {
-      level.images.push_back({name, 1, 1, {255, 255, 255, 255}});
-      continue;
-    }
-    Result<Image> image = decode_image(document.images[i], "picture");
-    if (!image) return Error{fmt::format("/images/{}", i), image.error().message()};
-    decoded += image->rgba.size();
-    if (decoded > kMaxDecodedPictures) return Error{fmt::format("/images/{}", i), "makes the pictures too large together; shrink them"};
-    image->name = std::move(name);
-    level.images.push_back(std::move(*image));
-  }
-  return Done{};
-}
-
 // Parents first, the shown scene's roots before all others; every node keeps its number in document.json_node.
 void order_nodes(SourceDocument& document, Level& level) {
   const Json& nodes = array_of(document.json, "nodes");
@@ -174,7 +67,8 @@ void order_nodes(SourceDocument& document, Level& level) {
   const std::size_t shown = value_of<std::size_t>(document.json, "scene", 0);
   std::vector<std::int32_t> parent(nodes.size(), -1);
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (const Json& child : array_of(nodes[i], "children")) parent[child.get<std::size_t>()] = static_cast<std::int32_t>(i);
+    for (const Json& child : array_of(nodes[i], "children"))
+      parent[child.get<std::size_t>()] = static_cast<std::int32_t>(i);
   struct Visit {
     std::size_t node;
     std::int32_t parent;
@@ -201,7 +95,8 @@ void order_nodes(SourceDocument& document, Level& level) {
     document.json_node.push_back(static_cast<std::int32_t>(visit.node));
     if (visit.parent >= 0) level.nodes[static_cast<std::size_t>(visit.parent)].children.push_back(here);
     const Json& children = array_of(nodes[visit.node], "children");
-    for (std::size_t c = children.size(); c-- > 0;) stack.push_back({children[c].get<std::size_t>(), here, visit.in_scene});
+    for (std::size_t c = children.size(); c-- > 0;)
+      stack.push_back({children[c].get<std::size_t>(), here, visit.in_scene});
   }
 }
 
@@ -241,14 +136,16 @@ Status read_nodes(SourceDocument& document, MeshReader& meshes, Level& level) {
     const std::size_t number = static_cast<std::size_t>(document.json_node[i]);
     const Json& json = nodes[number];
     if (json.contains("skin")) {
-      Result<LevelMesh> mesh = meshes.read_skinned(json["mesh"].get<std::size_t>(), json["skin"].get<std::size_t>(), world, number);
+      Result<LevelMesh> mesh =
+          meshes.read_skinned(json["mesh"].get<std::size_t>(), json["skin"].get<std::size_t>(), world, number);
       if (!mesh) return mesh.error();
       level.notes.push_back("skins are read at rest: " + level.nodes[i].name);
       level.nodes[i].mesh = static_cast<std::int32_t>(level.meshes.size());
       level.meshes.push_back(std::move(*mesh));
     }
     if (!json.contains("extensions")) continue;
-    const Status status = parse_node_extensions(json["extensions"], fmt::format("/nodes/{}/extensions", number), json_names, level.nodes[i]);
+    const Status status = parse_node_extensions(json["extensions"], fmt::format("/nodes/{}/extensions", number),
+                                                json_names, level.nodes[i]);
     if (!status) return status;
   }
   return check_references(level);
@@ -267,10 +164,13 @@ Status fill(SourceDocument& document, Level& level) {
     const std::string& wanted = name.get_ref<const std::string&>();
     const bool known = wanted.rfind("PLIANT_", 0) == 0 ||
                        std::find(std::begin(kSupported), std::end(kSupported), wanted) != std::end(kSupported);
-    if (!known) return Error{"/extensionsRequired", "asks for " + wanted.substr(0, 100) + ", which is not supported; export without it"};
+    if (!known)
+      return Error{"/extensionsRequired",
+                   "asks for " + wanted.substr(0, 100) + ", which is not supported; export without it"};
   }
   if (const Status status = read_images(document, level); !status) return status;
-  for (const Json& material : array_of(document.json, "materials")) level.materials.push_back(material_of(document, material, level));
+  for (const Json& material : array_of(document.json, "materials"))
+    level.materials.push_back(material_of(document, material, level));
   MeshReader meshes(document);
   for (std::size_t m = 0; m < array_of(document.json, "meshes").size(); ++m) {
     Result<LevelMesh> mesh = meshes.read(m);
@@ -319,7 +219,8 @@ Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, co
 
 Result<Level> load_level(const fs::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
   Result<Level> level = Error{"", ""};
   if (is_gltf) {
@@ -331,7 +232,8 @@ Result<Level> load_level(const fs::path& path) {
   }
   if (!level) {
     const std::string where = level.error().where;
-    return Error{where.empty() || where == path.string() ? path.string() : path.string() + " " + where, level.error().what};
+    return Error{where.empty() || where == path.string() ? path.string() : path.string() + " " + where,
+                 level.error().what};
   }
   level->name = path.stem().string();
   level->path = path;

@@ -1,16 +1,17 @@
-// What glTF 2.0 says beyond types and references: hierarchy, buffers and accessors, pictures, cameras, lights. Meshes and
-// animations, the users of accessors, are checked in gltf_primitives.cpp. The structure has been checked before.
+// What glTF 2.0 says beyond types and references: hierarchy, buffers and accessors. The users of accessors are checked
+// in gltf_primitives.cpp, what is only looked at in gltf_look.cpp. The structure has been checked before.
+#include "content/gltf_meaning.h"
+
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <map>
 #include <set>
 
-#include <fmt/format.h>
-
 #include "components/math.h"
 #include "content/gltf_accessor.h"
 #include "content/gltf_check.h"
-#include "content/gltf_meaning.h"
 
 namespace pliant {
 
@@ -73,8 +74,8 @@ void check_placement(const Json& json, const Json& holder, const std::string& po
   const std::uint64_t offset = value_of<std::uint64_t>(holder, "byteOffset", 0);
   const std::uint64_t length = view["byteLength"].get<std::uint64_t>();
   if (offset + stride * (count - 1) + element > length)
-    check.error(pointer, fmt::format("needs {} bytes from {} on, but its bufferView has {}", stride * (count - 1) + element,
-                                     offset, length));
+    check.error(pointer, fmt::format("needs {} bytes from {} on, but its bufferView has {}",
+                                     stride * (count - 1) + element, offset, length));
   if (offset % alignment != 0)
     check.error(pointer + "/byteOffset", fmt::format("is {}, no multiple of {}", offset, alignment));
   else if ((offset + value_of<std::uint64_t>(view, "byteOffset", 0)) % component != 0)
@@ -117,13 +118,14 @@ void check_accessors(const Json& json, Meaning& check) {
       check.error(pointer + "/normalized", "is only for 8 and 16 bit integers");
     for (const char* bound : {"min", "max"})
       if (accessor.contains(bound) && accessor[bound].size() != layout.components())
-        check.error(pointer + "/" + bound, fmt::format("has {} values, the type has {}", accessor[bound].size(), layout.components()));
+        check.error(pointer + "/" + bound,
+                    fmt::format("has {} values, the type has {}", accessor[bound].size(), layout.components()));
     if (accessor.contains("bufferView")) {
       const Json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
       const std::uint64_t stride = value_of<std::uint64_t>(view, "byteStride", layout.element_size);
       if (stride < layout.element_size) check.error(pointer, "has elements longer than its bufferView's byteStride");
-      check_placement(json, accessor, pointer, layout.count, layout.last_size, stride,
-                      layout.component_size, layout.columns > 1 ? 4 : layout.component_size, check);
+      check_placement(json, accessor, pointer, layout.count, layout.last_size, stride, layout.component_size,
+                      layout.columns > 1 ? 4 : layout.component_size, check);
     }
     if (accessor.contains("sparse")) check_sparse(json, accessor, layout, pointer, check);
     // Every accessor is read once to be checked: many of them over the same bytes, or sparse ones over nothing, would
@@ -155,8 +157,10 @@ std::vector<std::int32_t> check_hierarchy(const Json& json, Meaning& check) {
     const Json& children = array_of(nodes[i], "children");
     for (std::size_t c = 0; c < children.size(); ++c) {
       std::int32_t& slot = parent[children[c].get<std::size_t>()];
-      if (slot >= 0) check.error(fmt::format("/nodes/{}/children/{}", i, c), "already has another parent");
-      else slot = static_cast<std::int32_t>(i);
+      if (slot >= 0)
+        check.error(fmt::format("/nodes/{}/children/{}", i, c), "already has another parent");
+      else
+        slot = static_cast<std::int32_t>(i);
     }
   }
   // Every node has at most one parent, so a node that no root leads to is in a loop or below one.
@@ -231,72 +235,6 @@ void check_skins(const Json& json, const std::vector<std::int32_t>& parent, Mean
   }
 }
 
-void check_images(const Json& json, Meaning& check) {
-  const Json& images = array_of(json, "images");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const std::string pointer = fmt::format("/images/{}", i);
-    if (images[i].contains("uri") == images[i].contains("bufferView"))
-      check.error(pointer, "needs either uri or bufferView, and one of them only");
-    if (!images[i].contains("bufferView")) continue;
-    if (!images[i].contains("mimeType")) check.error(pointer + "/bufferView", "needs a mimeType beside it");
-    check.use_view(images[i]["bufferView"].get<std::size_t>(), BufferUse::kImage, pointer + "/bufferView");
-  }
-  const Json& textures = array_of(json, "textures");
-  for (std::size_t i = 0; i < textures.size(); ++i) {
-    if (!textures[i].contains("source")) continue;
-    const std::string mime = value_of<std::string>(images[textures[i]["source"].get<std::size_t>()], "mimeType", "image/png");
-    if (mime != "image/png" && mime != "image/jpeg")
-      check.error(fmt::format("/textures/{}/source", i), "is neither PNG nor JPEG; convert the picture");
-  }
-}
-
-void check_cameras(const Json& json, Meaning& check) {
-  const Json& cameras = array_of(json, "cameras");
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const Json& camera = cameras[i];
-    const std::string pointer = fmt::format("/cameras/{}", i);
-    const std::string type = camera["type"].get<std::string>();
-    if (camera.contains("perspective") && camera.contains("orthographic"))
-      check.error(pointer, "is both perspective and orthographic");
-    if ((type == "perspective" || type == "orthographic") && !camera.contains(type))
-      check.error(pointer, "lacks '" + type + "', the type it says it has");
-    for (const char* kind : {"perspective", "orthographic"}) {
-      if (!camera.contains(kind)) continue;
-      const Json& lens = camera[kind];
-      const std::string where = pointer + "/" + kind;
-      if (lens.contains("zfar") && lens["zfar"].get<double>() <= lens["znear"].get<double>())
-        check.error(where, "has its zfar before its znear");
-      for (const char* magnification : {"xmag", "ymag"})
-        if (lens.contains(magnification) && lens[magnification].get<double>() == 0.0)
-          check.error(where + "/" + magnification, "is zero");
-    }
-  }
-}
-
-void check_lights_and_variants(const Json& json, Meaning& check) {
-  if (const Json* extension = extension_of(json, "KHR_lights_punctual")) {
-    const Json& lights = (*extension)["lights"];
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-      const std::string pointer = fmt::format("/extensions/KHR_lights_punctual/lights/{}", i);
-      if (lights[i]["type"] == "spot" && !lights[i].contains("spot")) check.error(pointer, "is a spot without 'spot'");
-      if (!lights[i].contains("spot")) continue;
-      if (value_of(lights[i]["spot"], "innerConeAngle", 0.0) >= value_of(lights[i]["spot"], "outerConeAngle", 0.7853981633974483))
-        check.error(pointer + "/spot", "has an inner cone that is not inside its outer cone");
-    }
-  }
-  const Json& meshes = array_of(json, "meshes");
-  for (std::size_t m = 0; m < meshes.size(); ++m)
-    for (std::size_t p = 0; p < meshes[m]["primitives"].size(); ++p)
-      if (const Json* extension = extension_of(meshes[m]["primitives"][p], "KHR_materials_variants")) {
-        std::set<std::size_t> seen;
-        for (const Json& mapping : (*extension)["mappings"])
-          for (const Json& variant : mapping["variants"])
-            if (!seen.insert(variant.get<std::size_t>()).second)
-              check.error(fmt::format("/meshes/{}/primitives/{}/extensions/KHR_materials_variants", m, p),
-                          "uses a variant twice");
-      }
-}
-
 }  // namespace
 
 void Meaning::error(std::string pointer, std::string message) {
@@ -316,7 +254,8 @@ void Meaning::use(std::size_t accessor, BufferUse use, const std::string& pointe
 void Meaning::use_view(std::size_t view, BufferUse use, const std::string& pointer) {
   const Json& json = json_["bufferViews"][view];
   const auto found = view_use_.emplace(view, use);
-  if (!found.second && found.first->second != use) error(pointer, "stands on a bufferView that already serves another end");
+  if (!found.second && found.first->second != use)
+    error(pointer, "stands on a bufferView that already serves another end");
   const int target = value_of(json, "target", 0);
   if ((target == 34962 && use != BufferUse::kVertices) || (target == 34963 && use != BufferUse::kIndices))
     error(pointer, "stands on a bufferView whose target says otherwise");

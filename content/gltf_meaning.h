@@ -25,6 +25,9 @@ class Meaning {
   std::map<std::size_t, BufferUse> accessor_use_, view_use_;
 };
 
+void check_images(const Json& json, Meaning& check);
+void check_cameras(const Json& json, Meaning& check);
+void check_lights_and_variants(const Json& json, Meaning& check);
 void check_meshes(const Json& json, Meaning& check);
 void check_animations(const Json& json, Meaning& check);
 

@@ -1,11 +1,11 @@
 #include "content/gltf_mesh.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <glm/gtc/matrix_inverse.hpp>
 #include <map>
 #include <numeric>
-
-#include <fmt/format.h>
-#include <glm/gtc/matrix_inverse.hpp>
 
 #include "content/gltf_accessor.h"
 #include "content/gltf_draco.h"
@@ -46,9 +46,12 @@ std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> cor
   }
   std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i + 2 < corner.size(); ++i) {
-    if (mode == kFan) out.insert(out.end(), {corner[i + 1], corner[i + 2], corner[0]});
-    else if (i % 2 == 0) out.insert(out.end(), {corner[i], corner[i + 1], corner[i + 2]});
-    else out.insert(out.end(), {corner[i], corner[i + 2], corner[i + 1]});
+    if (mode == kFan)
+      out.insert(out.end(), {corner[i + 1], corner[i + 2], corner[0]});
+    else if (i % 2 == 0)
+      out.insert(out.end(), {corner[i], corner[i + 1], corner[i + 2]});
+    else
+      out.insert(out.end(), {corner[i], corner[i + 2], corner[i + 1]});
   }
   return out;
 }
@@ -95,13 +98,15 @@ Status MeshReader::read_draco(const Json& json, const std::string& pointer, Sour
     ids.push_back(id.get<std::uint32_t>());
   }
   Result<DracoMesh> mesh = decode_draco(
-      std::span(buffer).subspan(value_of<std::size_t>(view, "byteOffset", 0), view["byteLength"].get<std::size_t>()), ids);
+      std::span(buffer).subspan(value_of<std::size_t>(view, "byteOffset", 0), view["byteLength"].get<std::size_t>()),
+      ids);
   if (!mesh) return Error{here, mesh.error().message()};
   source.draco = true;
   source.vertices = mesh->vertices;
   source.index = std::move(mesh->index);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const AccessorLayout layout = layout_of(document_.json["accessors"][json["attributes"][names[i]].get<std::size_t>()]);
+    const AccessorLayout layout =
+        layout_of(document_.json["accessors"][json["attributes"][names[i]].get<std::size_t>()]);
     std::vector<float>& values = mesh->attributes[i].values;
     if (layout.components() != mesh->attributes[i].width || layout.count != mesh->vertices)
       return Error{here, fmt::format("holds {} x {} numbers for {}, its accessor says {} x {}", mesh->vertices,
@@ -142,7 +147,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
       const std::size_t view = document_.json["accessors"][position]["bufferView"].get<std::size_t>();
       const std::size_t buffer = document_.json["bufferViews"][view]["buffer"].get<std::size_t>();
       if (document_.json["buffers"][buffer].contains("uri"))
-        return Error{fmt::format("/buffers/{}/uri", buffer), "lies on another machine and is not fetched; download it beside the level"};
+        return Error{fmt::format("/buffers/{}/uri", buffer),
+                     "lies on another machine and is not fetched; download it beside the level"};
       notes_.insert("primitives whose buffer has no data are left out");
       return out;
     }
@@ -158,7 +164,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
       std::iota(source.index.begin(), source.index.end(), 0u);
     }
   }
-  if (mode == kTriangles && source.index.size() % 3 != 0) notes_.insert("corners beyond the last whole triangle are left out");
+  if (mode == kTriangles && source.index.size() % 3 != 0)
+    notes_.insert("corners beyond the last whole triangle are left out");
   if (json.contains("targets")) notes_.insert("morph targets are ignored: the mesh is read at rest");
   for (const std::uint32_t index : source.index)
     if (index >= source.vertices)
@@ -172,7 +179,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     if (which[0] == '_' && !values.empty()) {
       if (width != 1) return Error{pointer, fmt::format("has {} with {} numbers a vertex instead of one", name, width)};
       for (const float value : values)
-        if (value < 0.0f) return Error{pointer, fmt::format("has a negative factor {} in {}; use 0 or more", value, name)};
+        if (value < 0.0f)
+          return Error{pointer, fmt::format("has a negative factor {} in {}; use 0 or more", value, name)};
     }
     if (which == "POSITION") out.position = as_vectors<vec3>(values);
     // Directions of length zero are none: all of the primitive's are made anew at spawn.
@@ -190,7 +198,8 @@ Result<LevelMesh> MeshReader::read(std::size_t mesh) {
   LevelMesh out;
   out.name = value_of<std::string>(json, "name", "");
   for (std::size_t p = 0; p < json["primitives"].size(); ++p) {
-    Result<Primitive> primitive = read_primitive(json["primitives"][p], fmt::format("/meshes/{}/primitives/{}", mesh, p));
+    Result<Primitive> primitive =
+        read_primitive(json["primitives"][p], fmt::format("/meshes/{}/primitives/{}", mesh, p));
     if (!primitive) return primitive.error();
     if (!primitive->index.empty()) out.primitives.push_back(std::move(*primitive));
   }
@@ -210,11 +219,13 @@ Result<LevelMesh> MeshReader::read_skinned(std::size_t mesh, std::size_t skin, c
   const dmat4 to_node = glm::inverse(world[node]);
   std::vector<dmat4> motion(joints.size());
   std::vector<float> bind;
-  if (json.contains("inverseBindMatrices")) bind = read_floats(document_, json["inverseBindMatrices"].get<std::size_t>());
+  if (json.contains("inverseBindMatrices"))
+    bind = read_floats(document_, json["inverseBindMatrices"].get<std::size_t>());
   for (std::size_t j = 0; j < joints.size(); ++j) {
     dmat4 inverse_bind(1.0);
     if (bind.size() >= 16 * (j + 1))
-      for (std::size_t c = 0; c < 16; ++c) inverse_bind[static_cast<int>(c / 4)][static_cast<int>(c % 4)] = bind[16 * j + c];
+      for (std::size_t c = 0; c < 16; ++c)
+        inverse_bind[static_cast<int>(c / 4)][static_cast<int>(c % 4)] = bind[16 * j + c];
     motion[j] = to_node * world[joints[j].get<std::size_t>()] * inverse_bind;
   }
   std::size_t next = 0;  // primitives without triangles are not in the mesh that was read
@@ -252,7 +263,8 @@ Result<LevelMesh> MeshReader::read_skinned(std::size_t mesh, std::size_t skin, c
       };
       if (!out.normal.empty()) out.normal[v] = turned(turn, out.normal[v]);
       if (!out.tangent.empty()) out.tangent[v] = vec4(turned(dmat3(m), vec3(out.tangent[v])), out.tangent[v].w);
-      if (!std::isfinite(length(out.position[v]))) return Error{fmt::format("/skins/{}", skin), "moves a vertex to infinity"};
+      if (!std::isfinite(length(out.position[v])))
+        return Error{fmt::format("/skins/{}", skin), "moves a vertex to infinity"};
     }
   }
   return read_mesh;

@@ -1,10 +1,10 @@
 // What glTF 2.0 says of those who use accessors: mesh primitives, morph targets, materials' texture coordinates,
 // animations. Called by check_meaning.
+#include <fmt/format.h>
+
 #include <cctype>
 #include <map>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "content/gltf_accessor.h"
 #include "content/gltf_check.h"
@@ -46,8 +46,8 @@ bool format_is_allowed(const std::string& semantic, const AccessorLayout& layout
     return width == 2 && (is_float || (small_unsigned && layout.normalized) || (quantized && small) ||
                           (target && small && layout.normalized));
   if (semantic == "COLOR")
-    return (width == 3 || width == 4) && (is_float || (small_unsigned && layout.normalized) ||
-                                          (target && small && layout.normalized));
+    return (width == 3 || width == 4) &&
+           (is_float || (small_unsigned && layout.normalized) || (target && small && layout.normalized));
   if (semantic == "JOINTS") return width == 4 && small_unsigned && !layout.normalized;
   return width == 4 && (is_float || (small_unsigned && layout.normalized));
 }
@@ -73,7 +73,8 @@ class MeshCheck {
   void shared_views() {
     for (const auto& [view, accessors] : vertex_accessors_)
       if (accessors.size() > 1 && !json_["bufferViews"][view].contains("byteStride"))
-        check_.error(fmt::format("/bufferViews/{}", view), "serves several vertex attributes and so needs a byteStride");
+        check_.error(fmt::format("/bufferViews/{}", view),
+                     "serves several vertex attributes and so needs a byteStride");
   }
 
  private:
@@ -82,9 +83,11 @@ class MeshCheck {
     const AccessorLayout layout = layout_of(accessor);
     std::string semantic;
     int set;
-    if (!split_attribute(name, semantic, set)) return check_.error(pointer, "is no attribute that glTF knows; prefix your own with _");
+    if (!split_attribute(name, semantic, set))
+      return check_.error(pointer, "is no attribute that glTF knows; prefix your own with _");
     if (!layout.known || !format_is_allowed(semantic, layout, quantized_, target))
-      return check_.error(pointer, fmt::format("cannot be of {} {}", accessor["type"].get<std::string>(), layout.component_type));
+      return check_.error(
+          pointer, fmt::format("cannot be of {} {}", accessor["type"].get<std::string>(), layout.component_type));
     if (semantic == "POSITION" && !(accessor.contains("min") && accessor.contains("max")))
       check_.error(pointer, "is an accessor without min and max, which POSITION must have");
     check_.use(index, BufferUse::kVertices, pointer);
@@ -186,7 +189,8 @@ void check_node_meshes(const Json& json, Meaning& check) {
     if (nodes[i].contains("weights") && nodes[i]["weights"].size() != array_of(first, "targets").size())
       check.error(pointer + "/weights", "are not as many as the mesh's morph targets");
     const bool skinned = first["attributes"].contains("JOINTS_0") && first["attributes"].contains("WEIGHTS_0");
-    if (nodes[i].contains("skin") && !skinned) check.error(pointer + "/skin", "is for a mesh without JOINTS_0 and WEIGHTS_0");
+    if (nodes[i].contains("skin") && !skinned)
+      check.error(pointer + "/skin", "is for a mesh without JOINTS_0 and WEIGHTS_0");
     if (!nodes[i].contains("skin") && skinned) check.warn(pointer, "shows a skinned mesh without a skin");
   }
 }
@@ -237,7 +241,8 @@ void check_animations(const Json& json, Meaning& check) {
         check.error(here + "/target", "is the target of an earlier channel too");
       const Json& sampler = samplers[channel["sampler"].get<std::size_t>()];
       const AccessorLayout output = layout_of(json["accessors"][sampler["output"].get<std::size_t>()]);
-      const std::map<std::string, std::size_t> widths = {{"translation", 3}, {"rotation", 4}, {"scale", 3}, {"weights", 1}};
+      const std::map<std::string, std::size_t> widths = {
+          {"translation", 3}, {"rotation", 4}, {"scale", 3}, {"weights", 1}};
       const auto width = widths.find(path);
       if (width == widths.end()) continue;
       const bool any_small = path == "rotation" || path == "weights";

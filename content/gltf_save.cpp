@@ -1,10 +1,10 @@
 // save_level: the document that the Level came from, or one built from it, with what has changed since.
 #include "content/gltf_save.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
-
-#include <fmt/format.h>
 
 #include "content/extensions.h"
 #include "content/image.h"
@@ -32,8 +32,10 @@ void set_extensions(Json& json, Json& object, Json pliant) {
     it = it.key().rfind("PLIANT_", 0) == 0 ? extensions.erase(it) : std::next(it);
   for (const auto& [name, value] : pliant.items()) declare_extension(json, name, false);
   extensions.update(pliant);
-  if (extensions.empty()) object.erase("extensions");
-  else object["extensions"] = std::move(extensions);
+  if (extensions.empty())
+    object.erase("extensions");
+  else
+    object["extensions"] = std::move(extensions);
 }
 
 void write_nodes(const Level& level, SourceDocument& document) {
@@ -47,7 +49,8 @@ void write_nodes(const Level& level, SourceDocument& document) {
       json["nodes"].push_back(transform_json(node.local));
       if (node.mesh >= 0) json["nodes"][number]["mesh"] = node.mesh;
       if (node.parent >= 0)
-        json["nodes"][static_cast<std::size_t>(document.json_node[static_cast<std::size_t>(node.parent)])]["children"].push_back(number);
+        json["nodes"][static_cast<std::size_t>(document.json_node[static_cast<std::size_t>(node.parent)])]["children"]
+            .push_back(number);
       else if (json.contains("scenes") && node.in_scene)
         json["scenes"][value_of<std::size_t>(json, "scene", 0)]["nodes"].push_back(number);
     }
@@ -91,9 +94,12 @@ void forget_unused(const Level& level, Json& json) {
   for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
     Json kept = Json::array();
     for (const Json& name : array_of(json, list))
-      if (name.get<std::string>().rfind("PLIANT_", 0) != 0 || present.contains(name.get<std::string>())) kept.push_back(name);
-    if (kept.empty()) json.erase(list);
-    else json[list] = std::move(kept);
+      if (name.get<std::string>().rfind("PLIANT_", 0) != 0 || present.contains(name.get<std::string>()))
+        kept.push_back(name);
+    if (kept.empty())
+      json.erase(list);
+    else
+      json[list] = std::move(kept);
   }
 }
 
@@ -145,8 +151,10 @@ Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
   std::vector<std::size_t> offset(document.buffers.size()), number(document.buffers.size(), 0);
   Json placeholders = Json::array();
   for (std::size_t i = 0; i < document.buffers.size(); ++i) {
-    if (!document.buffers[i].empty()) offset[i] = add(document.buffers[i]);
-    else placeholders.push_back(json["buffers"][i]);
+    if (!document.buffers[i].empty())
+      offset[i] = add(document.buffers[i]);
+    else
+      placeholders.push_back(json["buffers"][i]);
   }
   Json images = array_of(json, "images");
   std::vector<std::size_t> embedded;
@@ -177,8 +185,10 @@ Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
   Json buffers = Json::array();
   if (!packed.empty()) buffers.push_back({{"byteLength", packed.size()}});
   buffers.insert(buffers.end(), placeholders.begin(), placeholders.end());
-  if (buffers.empty()) json.erase("buffers");
-  else json["buffers"] = std::move(buffers);
+  if (buffers.empty())
+    json.erase("buffers");
+  else
+    json["buffers"] = std::move(buffers);
   return packed;
 }
 
@@ -191,8 +201,10 @@ Result<Bytes> level_as_glb(const Level& level) {
 
 Status save_level(const Level& level, const fs::path& path, const SaveOptions& options) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".gltf" && extension != ".glb") return Error{path.string(), "is neither .gltf nor .glb; name one of them"};
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension != ".gltf" && extension != ".glb")
+    return Error{path.string(), "is neither .gltf nor .glb; name one of them"};
   SourceDocument document;
   if (still_fits(level)) {
     document = *level.source;
@@ -209,7 +221,9 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
 
   const bool glb = extension == ".glb";
   std::error_code ignored;
-  const bool same_folder = !document.folder.empty() && fs::equivalent(document.folder, path.parent_path().empty() ? "." : path.parent_path(), ignored);
+  const bool same_folder =
+      !document.folder.empty() &&
+      fs::equivalent(document.folder, path.parent_path().empty() ? "." : path.parent_path(), ignored);
   Bytes bin = pack_document(document, !glb && same_folder);
   if (glb) {
     const Bytes whole = as_glb(document.json.dump(), std::move(bin));

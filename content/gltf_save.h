@@ -15,7 +15,8 @@ Status compress_document(SourceDocument& document, int bits);
 void declare_extension(Json& json, const std::string& name, bool required);
 Json transform_json(const LocalTransform& local);  // translation, rotation, scale where they are not the default
 
-// Moves a document's pictures (unless `keep_image_uris`) and buffers into one; returns it. /buffers/0 then stands for it.
+// Moves a document's pictures (unless `keep_image_uris`) and buffers into one; returns it. /buffers/0 then stands for
+// it.
 Bytes pack_document(SourceDocument& document, bool keep_image_uris);
 
 // A Level built, packed and wrapped as a .glb file.

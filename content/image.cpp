@@ -1,18 +1,19 @@
 #include "content/image.h"
 
-#include <algorithm>
-#include <memory>
-
 #include <fmt/format.h>
 #include <stb_image.h>
 #include <stb_image_write.h>
+
+#include <algorithm>
+#include <memory>
 
 namespace pliant {
 
 namespace {
 
-// How many pixels a byte of a file can stand for at most: deflate reaches 1030 bytes a byte, and a pixel is at least one
-// bit; a JPEG block of 64 samples takes a few bits. A file that claims more is broken, and is refused before allocation.
+// How many pixels a byte of a file can stand for at most: deflate reaches 1030 bytes a byte, and a pixel is at least
+// one bit; a JPEG block of 64 samples takes a few bits. A file that claims more is broken, and is refused before
+// allocation.
 constexpr std::uint64_t kPixelsPerByte = 8300;
 
 // Every chunk of a PNG lies within the file: the decoder allocates by what a chunk says of itself.
@@ -21,7 +22,9 @@ bool png_chunks_fit(std::span<const std::uint8_t> bytes) {
     const std::uint64_t length = std::uint64_t{bytes[at]} << 24 | std::uint64_t{bytes[at + 1]} << 16 |
                                  std::uint64_t{bytes[at + 2]} << 8 | bytes[at + 3];
     if (length > bytes.size() - at - 12) return false;
-    if (std::equal(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 4, bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8, "IEND")) return true;
+    if (std::equal(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 4,
+                   bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8, "IEND"))
+      return true;
     at += length + 12;
   }
   return false;

@@ -1,5 +1,6 @@
 #include "content/isolation.h"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -11,8 +12,6 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
-
-#include <fmt/format.h>
 
 namespace pliant {
 
@@ -69,7 +68,8 @@ bool write_all(int end, const void* data, std::size_t size) {
 
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds) {
   using Clock = std::chrono::steady_clock;
-  const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3) + static_cast<std::int64_t>(input_bytes / 4000));
+  const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3) +
+                                                                 static_cast<std::int64_t>(input_bytes / 4000));
   const std::uint64_t memory = private_bytes() + (std::uint64_t{768} << 20) + 64 * std::uint64_t{input_bytes};
   int ends[2];
   if (pipe(ends) != 0) return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno)};

@@ -41,7 +41,8 @@ bool split(const Level& level, const std::string& path, Assignment& out) {
 
 Status assign(const Extension& extension, const Key& key, const Json& value, void* owner, const std::string& where) {
   // Stiffness and Young's modulus stand for each other: the one that is set last holds.
-  if (extension.name == "deformable" && key.name == "stiffness") static_cast<LevelNode*>(owner)->deformable->young = 0.0;
+  if (extension.name == "deformable" && key.name == "stiffness")
+    static_cast<LevelNode*>(owner)->deformable->young = 0.0;
   key.set(owner, value);
   if (const std::string clash = extension.settle(owner); !clash.empty()) return Error{where, clash};
   return Done{};
@@ -60,10 +61,13 @@ Status set_key(Level& level, const std::string& assignment) {
   std::vector<std::string> extensions, keys, nodes;
   for (const Extension& each : extension_table()) extensions.push_back(each.name);
   const Extension* extension = find_extension(it.extension);
-  if (!extension) return Error{where, "names the extension '" + it.extension + "', which does not exist" + suggestion(it.extension, extensions)};
+  if (!extension)
+    return Error{where, "names the extension '" + it.extension + "', which does not exist" +
+                            suggestion(it.extension, extensions)};
   for (const Key& each : extension->keys) keys.push_back(each.name);
   const Key* key = find_key(*extension, it.key);
-  if (!key) return Error{where, "names '" + it.key + "', which is no key of PLIANT_" + it.extension + suggestion(it.key, keys)};
+  if (!key)
+    return Error{where, "names '" + it.key + "', which is no key of PLIANT_" + it.extension + suggestion(it.key, keys)};
   if (key->type == KeyType::kText || key->type == KeyType::kNode || key->type == KeyType::kChoice)
     it.value = assignment.substr(equals + 1);
   const std::string wrong = check_value(*key, it.value);
@@ -97,7 +101,9 @@ Status set_key(Level& level, const std::string& assignment) {
   std::string have;
   for (std::size_t i = 0; i < nodes.size() && i < 5; ++i) have += (i ? ", " : "") + nodes[i];
   const std::string hint = have.empty() ? "; no node of this level has one" : "; nodes that have one: " + have;
-  if (!node_exists) return Error{where, "names the node '" + it.node + "', which the level does not have" + (suggestion(it.node, nodes).empty() ? hint : suggestion(it.node, nodes))};
+  if (!node_exists)
+    return Error{where, "names the node '" + it.node + "', which the level does not have" +
+                            (suggestion(it.node, nodes).empty() ? hint : suggestion(it.node, nodes))};
   if (!done) return Error{where, "names a node without PLIANT_" + it.extension + hint};
   if (key->type == KeyType::kNode)
     if (const Status status = check_references(changed); !status) return Error{where, status.error().what};

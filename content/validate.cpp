@@ -1,8 +1,8 @@
 #include "content/validate.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "content/exr.h"
 #include "content/extensions.h"
@@ -19,7 +19,8 @@ namespace {
 void find_in_extensions(const Json& json, Findings& findings) {
   const Json& nodes = array_of(json, "nodes");
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < nodes.size(); ++i) names.push_back(value_of<std::string>(nodes[i], "name", fmt::format("node_{}", i)));
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    names.push_back(value_of<std::string>(nodes[i], "name", fmt::format("node_{}", i)));
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes[i].contains("extensions"))
       find_in_node_extensions(nodes[i]["extensions"], fmt::format("/nodes/{}/extensions", i), names, findings);
@@ -36,13 +37,17 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
   const auto warn = [&](std::string message) { findings.push_back({Severity::kWarning, pointer, std::move(message)}); };
   const MeshReport& report = built->report;
   if (report.degenerate_triangles + report.duplicate_triangles > 0)
-    warn(fmt::format("has {} degenerate and {} duplicate triangles, which are dropped", report.degenerate_triangles, report.duplicate_triangles));
-  if (report.border_edges > 0) warn(fmt::format("is open along {} edges: volume is not conserved there", report.border_edges));
+    warn(fmt::format("has {} degenerate and {} duplicate triangles, which are dropped", report.degenerate_triangles,
+                     report.duplicate_triangles));
+  if (report.border_edges > 0)
+    warn(fmt::format("is open along {} edges: volume is not conserved there", report.border_edges));
   if (report.non_manifold_edges > 0)
-    warn(fmt::format("has {} edges where more than two triangles, or two of opposite orientation, meet", report.non_manifold_edges));
-  if (node.deformable && node.deformable->reach > 0.0 && node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
-    warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices", node.deformable->reach,
-                     built->mesh.mean_edge));
+    warn(fmt::format("has {} edges where more than two triangles, or two of opposite orientation, meet",
+                     report.non_manifold_edges));
+  if (node.deformable && node.deformable->reach > 0.0 &&
+      node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
+    warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices",
+                     node.deformable->reach, built->mesh.mean_edge));
   if (const std::string obstacle = node.deformable ? card_obstacle(*node.deformable) : ""; !obstacle.empty())
     findings.push_back({Severity::kNote, pointer, "stays on the processor under --field gpu: " + obstacle});
 }
@@ -52,7 +57,8 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
 Findings validate_level(const fs::path& path) {
   Findings findings;
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   if (extension == ".gltf" || extension == ".glb") {
     const std::optional<SourceDocument> document = open_gltf(path, findings);
     if (!document) return findings;
@@ -70,7 +76,8 @@ Findings validate_level(const fs::path& path) {
   for (const std::string& note : level->notes)
     if (note.empty() || note[0] != '/') findings.push_back({Severity::kNote, "", note});
   if (!level->has_pliant())
-    findings.push_back({Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
+    findings.push_back(
+        {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
   for (std::size_t i = 0; i < level->nodes.size(); ++i) {
     const LevelNode& node = level->nodes[i];
     if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable)) continue;
@@ -81,7 +88,8 @@ Findings validate_level(const fs::path& path) {
   const fs::path folder = path.parent_path();
   for (const LevelNode& node : level->nodes)
     if (node.device && !node.device->file.empty() && !fs::is_regular_file(folder / node.device->file))
-      findings.push_back({Severity::kError, node.name, "names the script " + node.device->file + ", which does not exist"});
+      findings.push_back(
+          {Severity::kError, node.name, "names the script " + node.device->file + ", which does not exist"});
   if (level->environment && !level->environment->panorama.empty()) {
     std::vector<std::string> notes;
     const Result<Panorama> panorama = load_panorama(folder / level->environment->panorama, &notes);

@@ -7,7 +7,9 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto level = pliant::import_draco({data, size}, "mesh");
-  if (level) pliant::assert_sound(*level);
-  else ASSERT(!level.error().message().empty());
+  if (level)
+    pliant::assert_sound(*level);
+  else
+    ASSERT(!level.error().message().empty());
   return 0;
 }

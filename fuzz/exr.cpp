@@ -1,9 +1,10 @@
 // OpenEXR panoramas: finite light for every pixel, or one sentence.
+#include "content/exr.h"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-#include "content/exr.h"
 #include "runtime/assert.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,13 +1,13 @@
 // Writes the seeds that are committed: small files that exercise every branch of a reader, made by the project's own
 // writers. make_seeds FOLDER
-#include <cstdio>
-#include <filesystem>
-#include <string>
-
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
 
 #include "content/file_io.h"
 #include "content/gltf_draco.h"
@@ -89,14 +89,22 @@ int main(int count, char** arguments) {
   const Primitive& p = level.meshes[0].primitives[0];
   DracoMesh mesh{4, p.index, {{"POSITION", 0, 3, false, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}}}};
   const Result<Bytes> blob = encode_draco(mesh, 10);
-  bool good = save_level(level, folder / "gltf/plain.glb").ok() && save_level(level, folder / "gltf/draco.glb", {12}).ok();
+  bool good =
+      save_level(level, folder / "gltf/plain.glb").ok() && save_level(level, folder / "gltf/draco.glb", {12}).ok();
   good = good && blob && write_file(folder / "draco/tetrahedron", *blob);
   good = good && write_file(folder / "image/checker", encode_png(2, 2, level.images[0].rgba.data()));
-  good = good && write_text(folder / "mesh/obj", std::string(1, '\0') + "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nf 1/1/1 2/1/1 3/1/1\n");
-  good = good && write_text(folder / "mesh/ply", "\1ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                                                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  good =
+      good && write_text(folder / "mesh/obj",
+                         std::string(1, '\0') + "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nf 1/1/1 2/1/1 3/1/1\n");
+  good =
+      good &&
+      write_text(folder / "mesh/ply",
+                 "\1ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   good = good && write_text(folder / "mesh/off", "\2OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  good = good && write_text(folder / "mesh/stl", "\3solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid t\n");
+  good = good && write_text(folder / "mesh/stl",
+                            "\3solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+                            "0\nendloop\nendfacet\nendsolid t\n");
   write_panorama(folder / "exr/zip", Imf::ZIP_COMPRESSION);
   write_panorama(folder / "exr/piz", Imf::PIZ_COMPRESSION);
   write_panorama(folder / "exr/dwaa", Imf::DWAA_COMPRESSION);

@@ -12,12 +12,14 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr const char* kFormats[] = {".obj", ".ply", ".off", ".stl"};
   if (size < 1) return 0;
-  const std::filesystem::path path = std::filesystem::temp_directory_path() /
-                                     ("pliant-fuzz-" + std::to_string(::getpid()) + kFormats[data[0] % 4]);
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("pliant-fuzz-" + std::to_string(::getpid()) + kFormats[data[0] % 4]);
   if (!pliant::write_file(path, {data + 1, size - 1})) return 0;
   const auto level = pliant::import_mesh(path);
   std::filesystem::remove(path);
-  if (level) pliant::assert_sound(*level);
-  else ASSERT(!level.error().message().empty());
+  if (level)
+    pliant::assert_sound(*level);
+  else
+    ASSERT(!level.error().message().empty());
   return 0;
 }

@@ -25,9 +25,18 @@ TEST(Isolation, ACrashAHangAndAnExceptionInTheChildAreSentencesInTheParent) {
     const Result<Bytes> answer = in_isolation(0, work, 0.3);
     return answer ? std::string("answered") : answer.error().message();
   };
-  EXPECT_NE(refusal([]() -> Result<Bytes> { std::raise(SIGKILL); return Bytes{}; }).find("makes its reader fail"), std::string::npos);
+  EXPECT_NE(refusal([]() -> Result<Bytes> {
+              std::raise(SIGKILL);
+              return Bytes{};
+            }).find("makes its reader fail"),
+            std::string::npos);
   EXPECT_NE(refusal([]() -> Result<Bytes> { std::abort(); }).find("makes its reader fail"), std::string::npos);
-  EXPECT_NE(refusal([]() -> Result<Bytes> { for (volatile bool forever = true; forever;) {} return Bytes{}; }).find("too long"), std::string::npos);
+  EXPECT_NE(refusal([]() -> Result<Bytes> {
+              for (volatile bool forever = true; forever;) {
+              }
+              return Bytes{};
+            }).find("too long"),
+            std::string::npos);
   EXPECT_NE(refusal([]() -> Result<Bytes> { throw std::runtime_error("no good"); }).find("no good"), std::string::npos);
 }
 

@@ -27,12 +27,15 @@ TEST_F(Convert, TheSameTetrahedronFromEveryFormatIsTheSameSurface) {
   const std::vector<std::pair<const char*, std::string>> files = {
       {"t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"},
       {"t.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"},
-      {"t.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
-                "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"},
-      {"t.stl", "solid t\nfacet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n"
-                "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\n"
-                "facet normal 1 1 1\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\n"
-                "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\nendfacet\nendsolid t\n"}};
+      {"t.ply",
+       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
+       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 "
+       "3 2\n"},
+      {"t.stl",
+       "solid t\nfacet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n"
+       "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\n"
+       "facet normal 1 1 1\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\n"
+       "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\nendfacet\nendsolid t\n"}};
   for (const auto& [name, text] : files) {
     const Result<Level> level = load_level(write(name, text));
     ASSERT_TRUE(level.ok()) << level.error().message();
@@ -51,11 +54,14 @@ TEST_F(Convert, TheSameTetrahedronFromEveryFormatIsTheSameSurface) {
 }
 
 TEST_F(Convert, WhatCannotBeTouchedIsRefusedInASentence) {
-  const std::string points = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n1 1 1\n";
+  const std::string points =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 "
+      "0\n1 1 1\n";
   const std::string nan = "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   const std::string huge = "OFF\n2000000000 2000000000 0\n0 0 0\n";
-  for (const auto& [name, text] : {std::pair{"points.ply", points}, std::pair{"nan.obj", nan}, std::pair{"huge.off", huge},
-                                   std::pair{"empty.obj", std::string()}, std::pair{"what.xyz", std::string("?")}}) {
+  for (const auto& [name, text] :
+       {std::pair{"points.ply", points}, std::pair{"nan.obj", nan}, std::pair{"huge.off", huge},
+        std::pair{"empty.obj", std::string()}, std::pair{"what.xyz", std::string("?")}}) {
     const fs::path path = write(name, text);
     const Result<Level> level = load_level(path);
     ASSERT_FALSE(level.ok()) << name;

@@ -10,9 +10,8 @@
 #include <fstream>
 #include <functional>
 #include <map>
-#include <set>
-
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "content/exr.h"
 #include "content/level.h"
@@ -57,7 +56,8 @@ Read in_child(const std::function<std::string()>& read) {
   close(ends[1]);
   std::string answer;
   char buffer[4096];
-  for (ssize_t got; (got = ::read(ends[0], buffer, sizeof buffer)) > 0;) answer.append(buffer, static_cast<std::size_t>(got));
+  for (ssize_t got; (got = ::read(ends[0], buffer, sizeof buffer)) > 0;)
+    answer.append(buffer, static_cast<std::size_t>(got));
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
@@ -84,7 +84,8 @@ Read read_panorama(const fs::path& path) {
 std::vector<fs::path> files_below(const char* folder, const std::set<std::string>& extensions) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(kCorpus / folder))
-    if (entry.is_regular_file() && (extensions.empty() || extensions.count(entry.path().extension().string()))) files.push_back(entry.path());
+    if (entry.is_regular_file() && (extensions.empty() || extensions.count(entry.path().extension().string())))
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -97,11 +98,13 @@ void expect_sentence(const Read& read, const fs::path& path) {
   EXPECT_EQ(read.sentence.find('\n'), std::string::npos) << read.sentence;
 }
 
-// What we accept although the validator's report has an error, with the reason. Of these only inputs whose every error is
-// of such a code may load.
+// What we accept although the validator's report has an error, with the reason. Of these only inputs whose every error
+// is of such a code may load.
 const std::map<std::string, const char*> kAcceptedCodes = {
-    {"ACCESSOR_WEIGHTS_NON_NORMALIZED", "skins are read once, at rest, and weights are divided by their sum; shipped models break this"},
-    {"ACCESSOR_VECTOR3_NON_UNIT", "only where the length is exactly 0, which exporters write at degenerate triangles: made anew"},
+    {"ACCESSOR_WEIGHTS_NON_NORMALIZED",
+     "skins are read once, at rest, and weights are divided by their sum; shipped models break this"},
+    {"ACCESSOR_VECTOR3_NON_UNIT",
+     "only where the length is exactly 0, which exporters write at degenerate triangles: made anew"},
     {"IO_ERROR", "only for a picture that is missing: a surface can be touched without it"},
 };
 
@@ -119,8 +122,10 @@ TEST(Corpus, GltfFilesAreRefusedExactlyWhereTheKhronosValidatorReportsErrors) {
     const bool sound = report["issues"]["numErrors"] == 0;
     const Read read = read_level(input);
     expect_sentence(read, input);
-    if (sound) EXPECT_EQ(read.outcome, Outcome::kLoaded) << input << ": " << read.sentence;
-    else if (!forgiven) EXPECT_EQ(read.outcome, Outcome::kRefused) << input;
+    if (sound)
+      EXPECT_EQ(read.outcome, Outcome::kLoaded) << input << ": " << read.sentence;
+    else if (!forgiven)
+      EXPECT_EQ(read.outcome, Outcome::kRefused) << input;
     ++judged;
   }
   EXPECT_GE(judged, 100);
@@ -153,7 +158,9 @@ TEST(Corpus, DracoFilesOldOnesIncludedDecodeOrAreRefusedInOneSentence) {
     loaded += read.outcome == Outcome::kLoaded;
     // Refused are point clouds, and two files whose buffers are not in the corpus.
     if (read.outcome == Outcome::kRefused)
-      EXPECT_TRUE(read.sentence.find("point cloud") != std::string::npos || read.sentence.find("no such file") != std::string::npos) << read.sentence;
+      EXPECT_TRUE(read.sentence.find("point cloud") != std::string::npos ||
+                  read.sentence.find("no such file") != std::string::npos)
+          << read.sentence;
   }
   EXPECT_GE(loaded, 20);
 }
@@ -175,7 +182,8 @@ TEST(Corpus, SoundPanoramasLoadUnlessDeepAndNothingInThemIsInfinite) {
   for (const fs::path& path : files_below("exr-valid", {".exr"})) {
     const Read read = read_panorama(path);
     expect_sentence(read, path);
-    EXPECT_EQ(read.outcome, refused.count(path.filename().string()) ? Outcome::kRefused : Outcome::kLoaded) << path << ": " << read.sentence;
+    EXPECT_EQ(read.outcome, refused.count(path.filename().string()) ? Outcome::kRefused : Outcome::kLoaded)
+        << path << ": " << read.sentence;
   }
 }
 

@@ -20,7 +20,8 @@ class Difference {
     if (!d.first_.empty()) return d.first_;
     for (std::size_t i = 0; i < a.nodes.size(); ++i) d.node("node " + std::to_string(i), a.nodes[i], b.nodes[i]);
     for (std::size_t i = 0; i < a.meshes.size(); ++i) d.mesh("mesh " + std::to_string(i), a.meshes[i], b.meshes[i]);
-    for (std::size_t i = 0; i < a.materials.size(); ++i) d.material("material " + std::to_string(i), a.materials[i], b.materials[i]);
+    for (std::size_t i = 0; i < a.materials.size(); ++i)
+      d.material("material " + std::to_string(i), a.materials[i], b.materials[i]);
     for (std::size_t i = 0; i < a.images.size(); ++i) {
       const std::string at = "image " + std::to_string(i);
       d.same(at + " name", a.images[i].name, b.images[i].name);
@@ -47,7 +48,9 @@ class Difference {
   }
   template <class T>
   void array(const std::string& what, const std::vector<T>& a, const std::vector<T>& b) {
-    if (first_.empty() && (a.size() != b.size() || (!a.empty() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) != 0))) first_ = what;
+    if (first_.empty() &&
+        (a.size() != b.size() || (!a.empty() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) != 0)))
+      first_ = what;
   }
   void node(const std::string& at, const LevelNode& a, const LevelNode& b) {
     same(at + " name", a.name, b.name);
@@ -79,9 +82,9 @@ class Difference {
       same(at + " spring", p.spring, q.spring);
       for (double Deformable::*member :
            {&Deformable::stiffness, &Deformable::cubic, &Deformable::stiffening, &Deformable::relaxation_stiffness,
-            &Deformable::relaxation_time, &Deformable::damping_ratio, &Deformable::settling_time, &Deformable::contact_damping,
-            &Deformable::reach, &Deformable::volume, &Deformable::friction_static, &Deformable::friction_sliding,
-            &Deformable::young, &Deformable::poisson, &Deformable::thickness})
+            &Deformable::relaxation_time, &Deformable::damping_ratio, &Deformable::settling_time,
+            &Deformable::contact_damping, &Deformable::reach, &Deformable::volume, &Deformable::friction_static,
+            &Deformable::friction_sliding, &Deformable::young, &Deformable::poisson, &Deformable::thickness})
         same(at + " a number of deformable", p.*member, q.*member);
       same(at + " contact damping of the material", p.contact_damping_material, q.contact_damping_material);
       same(at + " response", p.response, q.response);
@@ -149,12 +152,13 @@ class Difference {
   void material(const std::string& at, const Material& a, const Material& b) {
     same(at + " name", a.name, b.name);
     same(at + " base color", a.base_color, b.base_color);
-    for (float Material::*member : {&Material::metallic, &Material::roughness, &Material::normal_scale, &Material::occlusion_strength,
-                                    &Material::ior, &Material::transmission, &Material::thickness,
-                                    &Material::attenuation_distance, &Material::alpha_cutoff})
+    for (float Material::*member : {&Material::metallic, &Material::roughness, &Material::normal_scale,
+                                    &Material::occlusion_strength, &Material::ior, &Material::transmission,
+                                    &Material::thickness, &Material::attenuation_distance, &Material::alpha_cutoff})
       same(at + " a factor", a.*member, b.*member);
-    for (std::int32_t Material::*member : {&Material::base_color_texture, &Material::metallic_roughness_texture,
-                                           &Material::normal_texture, &Material::occlusion_texture, &Material::emissive_texture})
+    for (std::int32_t Material::*member :
+         {&Material::base_color_texture, &Material::metallic_roughness_texture, &Material::normal_texture,
+          &Material::occlusion_texture, &Material::emissive_texture})
       same(at + " a texture", a.*member, b.*member);
     same(at + " emissive", a.emissive, b.emissive);
     same(at + " attenuation color", a.attenuation_color, b.attenuation_color);

@@ -29,7 +29,9 @@ class Document : public ::testing::Test {
     EXPECT_TRUE(level.ok()) << (level ? "" : level.error().message());
     return level ? *level : Level{};
   }
-  std::size_t files() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator())); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
   fs::path folder_;
 };
 
@@ -38,7 +40,8 @@ Primitive sheet(std::uint32_t n) {
   Primitive out;
   for (std::uint32_t j = 0; j < n; ++j)
     for (std::uint32_t i = 0; i < n; ++i) {
-      const float u = static_cast<float>(i) / static_cast<float>(n - 1), v = static_cast<float>(j) / static_cast<float>(n - 1);
+      const float u = static_cast<float>(i) / static_cast<float>(n - 1),
+                  v = static_cast<float>(j) / static_cast<float>(n - 1);
       out.position.emplace_back(0.1f * u, 0.01f * std::sin(9.0f * u) * std::cos(7.0f * v), 0.1f * v);
       out.normal.push_back(normalize(vec3(std::sin(u), 2.0f, std::cos(3.0f * v))));
       out.tangent.push_back(vec4(normalize(vec3(1.0f, 0.1f * u, 0.0f)), i % 2 ? 1.0f : -1.0f));
@@ -178,7 +181,8 @@ TEST_F(Document, DracoKeepsEveryPositionWithinItsQuantisation) {
   for (std::size_t v = 0; v < after.position.size(); ++v) {
     std::size_t nearest = 0;
     for (std::size_t w = 0; w < before.position.size(); ++w)
-      if (length(before.position[w] - after.position[v]) < length(before.position[nearest] - after.position[v])) nearest = w;
+      if (length(before.position[w] - after.position[v]) < length(before.position[nearest] - after.position[v]))
+        nearest = w;
     const vec3 error = glm::abs(before.position[nearest] - after.position[v]);
     ASSERT_LE(std::max({error.x, error.y, error.z}), allowed);
     ASSERT_NEAR(before.stiffness[nearest], after.stiffness[v], 1e-4);
@@ -263,7 +267,8 @@ TEST_F(Document, SavingASkinnedLevelKeepsItsSkin) {
     EXPECT_TRUE(again.source->json.contains("skins"));
   }
   ASSERT_TRUE(save_level(first, folder_ / "small.glb", {14}).ok());
-  EXPECT_EQ(load(folder_ / "small.glb").meshes.back().primitives[0].index.size(), first.meshes.back().primitives[0].index.size());
+  EXPECT_EQ(load(folder_ / "small.glb").meshes.back().primitives[0].index.size(),
+            first.meshes.back().primitives[0].index.size());
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ TEST(Draco, ABareFileReadsBackWithItsTriangles) {
   EXPECT_EQ(primitive.index.size(), 8u * 8 * 2 * 3);
   float area = 0.0f;
   for (std::size_t t = 0; t < primitive.index.size(); t += 3) {
-    const vec3 a = primitive.position[primitive.index[t]], b = primitive.position[primitive.index[t + 1]], c = primitive.position[primitive.index[t + 2]];
+    const vec3 a = primitive.position[primitive.index[t]], b = primitive.position[primitive.index[t + 1]],
+               c = primitive.position[primitive.index[t + 2]];
     area += 0.5f * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));  // of the shadow on z = 0
   }
   EXPECT_NEAR(area, 64.0f, 1e-3f);
@@ -50,7 +51,8 @@ TEST(Draco, DamagedBlobsAreDecodedOrRefusedAndIndicesStayInside) {
   int refused = 0;
   for (int trial = 0; trial < 300; ++trial) {
     Bytes damaged = *blob;
-    for (int k = 0; k < 1 + trial % 4; ++k) damaged[5 + random() % (damaged.size() - 5)] = static_cast<std::uint8_t>(random());
+    for (int k = 0; k < 1 + trial % 4; ++k)
+      damaged[5 + random() % (damaged.size() - 5)] = static_cast<std::uint8_t>(random());
     if (trial % 3 == 0) damaged.resize(random() % damaged.size());
     const Result<DracoMesh> decoded = decode_draco(damaged, {0});
     if (!decoded) {

@@ -1,15 +1,15 @@
 // OpenEXR panoramas written here and read back.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <limits>
+#include "content/exr.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+#include <gtest/gtest.h>
 
-#include "content/exr.h"
+#include <filesystem>
+#include <limits>
+
 #include "content/file_io.h"
 
 namespace pliant::test {
@@ -18,14 +18,16 @@ namespace {
 namespace fs = std::filesystem;
 
 // A picture of these float channels, each width*height long, as a file's bytes.
-Bytes exr(int width, int height, const std::vector<std::pair<std::string, std::vector<float>>>& channels, int x0 = 0, int y0 = 0) {
+Bytes exr(int width, int height, const std::vector<std::pair<std::string, std::vector<float>>>& channels, int x0 = 0,
+          int y0 = 0) {
   const fs::path path = fs::temp_directory_path() / ("pliant-exr-test-" + std::to_string(::getpid()) + ".exr");
   const Imath::Box2i window(Imath::V2i(x0, y0), Imath::V2i(x0 + width - 1, y0 + height - 1));
   Imf::Header header(window, window, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
   Imf::FrameBuffer frame;
   for (const auto& [name, values] : channels) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    char* origin = const_cast<char*>(reinterpret_cast<const char*>(values.data())) - 4 * x0 - 4 * std::ptrdiff_t{width} * y0;
+    char* origin =
+        const_cast<char*>(reinterpret_cast<const char*>(values.data())) - 4 * x0 - 4 * std::ptrdiff_t{width} * y0;
     frame.insert(name, Imf::Slice(Imf::FLOAT, origin, 4, 4 * static_cast<std::size_t>(width)));
   }
   {

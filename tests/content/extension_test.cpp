@@ -27,18 +27,31 @@ Gltf with(const Json& extensions) {
   for (const auto& [name, value] : extensions.items()) gltf.json["extensionsUsed"].push_back(name);
   return gltf;
 }
-Gltf deformable(const Json& keys) { return with({{"PLIANT_deformable", keys}}); }
+Gltf deformable(const Json& keys) {
+  return with({{"PLIANT_deformable", keys}});
+}
 std::string set(Level& level, const char* assignment) {
   const Status status = set_key(level, assignment);
   return status ? "" : status.error().message();
 }
 
 TEST(Extension, EveryKeyOfADeformableIsRead) {
-  const Result<Level> level = deformable({{"spring", "sls"}, {"stiffness", 120}, {"cubic", 5e6}, {"stiffening", 80.5},
-                                          {"relaxation", {{"stiffness", 90}, {"time", 0.25}}}, {"damping_ratio", 0.7},
-                                          {"settling_time", 0.04}, {"contact_damping", "material"}, {"response", "lag"},
-                                          {"shape", "kelvinlet"}, {"reach", 0.03}, {"volume", 0.5}, {"distance", "surface"},
-                                          {"friction_static", 0.6}, {"friction_sliding", 0.2}}).load();
+  const Result<Level> level = deformable({{"spring", "sls"},
+                                          {"stiffness", 120},
+                                          {"cubic", 5e6},
+                                          {"stiffening", 80.5},
+                                          {"relaxation", {{"stiffness", 90}, {"time", 0.25}}},
+                                          {"damping_ratio", 0.7},
+                                          {"settling_time", 0.04},
+                                          {"contact_damping", "material"},
+                                          {"response", "lag"},
+                                          {"shape", "kelvinlet"},
+                                          {"reach", 0.03},
+                                          {"volume", 0.5},
+                                          {"distance", "surface"},
+                                          {"friction_static", 0.6},
+                                          {"friction_sliding", 0.2}})
+                                  .load();
   ASSERT_TRUE(level.ok()) << level.error().message();
   const Deformable& it = *level->nodes[0].deformable;
   EXPECT_EQ(it.spring, SpringLaw::kStandardLinearSolid);
@@ -66,7 +79,8 @@ TEST(Extension, YoungsModulusBecomesTheStiffnessOfAPointContact) {
   EXPECT_DOUBLE_EQ(liver->nodes[0].deformable->stiffness, 57.6);
   EXPECT_DOUBLE_EQ(calibrated_stiffness(5400, 0.5, 0.002), 28.8);  // a layer of 2 mm lends its thickness
   EXPECT_DOUBLE_EQ(calibrated_stiffness(5400, 0.5, 0.100), 57.6);
-  EXPECT_NE(deformable({{"young", 5400}, {"stiffness", 300}}).refusal().find("both young and stiffness"), std::string::npos);
+  EXPECT_NE(deformable({{"young", 5400}, {"stiffness", 300}}).refusal().find("both young and stiffness"),
+            std::string::npos);
 }
 
 TEST(Extension, WhatIsWrongIsNamedWithWhatWouldBeRight) {
@@ -80,16 +94,19 @@ TEST(Extension, WhatIsWrongIsNamedWithWhatWouldBeRight) {
   expect({{"shape", "round"}}, {"\"round\"", "kelvinlet"});
   expect({{"relaxation", {{"tiem", 3}}}}, {"relaxation/tiem", "relaxation.time"});
   expect({{"relaxation", 3}}, {"relaxation", "not an object"});
-  expect({{"friction_static", 0.1}, {"friction_sliding", 0.2}}, {"friction_sliding (0.2) is above friction_static (0.1)"});
+  expect({{"friction_static", 0.1}, {"friction_sliding", 0.2}},
+         {"friction_sliding (0.2) is above friction_static (0.1)"});
   expect({{"contact_damping", "much"}}, {"material"});
-  EXPECT_NE(with({{"PLIANT_deformabel", Json::object()}}).refusal().find("did you mean PLIANT_deformable?"), std::string::npos);
+  EXPECT_NE(with({{"PLIANT_deformabel", Json::object()}}).refusal().find("did you mean PLIANT_deformable?"),
+            std::string::npos);
   EXPECT_NE(with({{"PLIANT_environment", Json::object()}}).refusal(), "");
   EXPECT_NE(with({{"PLIANT_haptic_device", {{"driver", "script"}}}}).refusal().find("file"), std::string::npos);
 }
 
 TEST(Extension, AProbeNamesItsDeviceByNameOrNumber) {
   for (const Json& device : {Json("hand"), Json(1)}) {
-    Gltf gltf = with({{"PLIANT_probe", {{"radius", 0.002}, {"device", device}}}, {"PLIANT_haptic_device", Json::object()}});
+    Gltf gltf =
+        with({{"PLIANT_probe", {{"radius", 0.002}, {"device", device}}}, {"PLIANT_haptic_device", Json::object()}});
     gltf.json["nodes"][0]["extensions"].erase("PLIANT_haptic_device");
     gltf.json["nodes"].push_back({{"name", "hand"}, {"extensions", {{"PLIANT_haptic_device", {{"driver", "orbit"}}}}}});
     const Result<Level> level = gltf.load();

@@ -18,7 +18,8 @@ struct Gltf {
   std::size_t view(const std::vector<T>& values) {
     bin.resize((bin.size() + 3) / 4 * 4);
     const auto* begin = reinterpret_cast<const std::uint8_t*>(values.data());
-    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", values.size() * sizeof(T)}});
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", values.size() * sizeof(T)}});
     bin.insert(bin.end(), begin, begin + values.size() * sizeof(T));
     return json["bufferViews"].size() - 1;
   }
@@ -30,7 +31,8 @@ struct Gltf {
     accessor["count"] = values.size() / width;
     for (std::size_t c = 0; bounds && c < width; ++c) {
       T low = values[c], high = values[c];
-      for (std::size_t i = c; i < values.size(); i += width) low = std::min(low, values[i]), high = std::max(high, values[i]);
+      for (std::size_t i = c; i < values.size(); i += width)
+        low = std::min(low, values[i]), high = std::max(high, values[i]);
       accessor["min"].push_back(low);
       accessor["max"].push_back(high);
     }

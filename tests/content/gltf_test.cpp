@@ -19,7 +19,8 @@ Primitive only_primitive(const Gltf& gltf) {
 }
 
 TEST(Gltf, StripsAndFansBecomeTrianglesOfTheSameOrientation) {
-  for (const auto& [mode, expected] : {std::pair{5, Triangles{0, 1, 2, 1, 3, 2}}, std::pair{6, Triangles{1, 2, 0, 2, 3, 0}}, std::pair{4, Triangles{0, 1, 2}}}) {
+  for (const auto& [mode, expected] : {std::pair{5, Triangles{0, 1, 2, 1, 3, 2}},
+                                       std::pair{6, Triangles{1, 2, 0, 2, 3, 0}}, std::pair{4, Triangles{0, 1, 2}}}) {
     Gltf gltf;
     gltf.primitive({{"POSITION", gltf.positions(kSquare)}})["mode"] = mode;
     EXPECT_EQ(only_primitive(gltf).index, expected) << mode;
@@ -29,8 +30,10 @@ TEST(Gltf, StripsAndFansBecomeTrianglesOfTheSameOrientation) {
 TEST(Gltf, IndicesOfEveryWidthAreTheSameTriangles) {
   const Triangles expected = {2, 1, 0, 1, 2, 3};
   Gltf bytes, shorts, ints;
-  bytes.primitive({{"POSITION", bytes.positions(kSquare)}})["indices"] = bytes.accessor(std::vector<std::uint8_t>{2, 1, 0, 1, 2, 3}, "SCALAR", kUnsignedByte);
-  shorts.primitive({{"POSITION", shorts.positions(kSquare)}})["indices"] = shorts.accessor(std::vector<std::uint16_t>{2, 1, 0, 1, 2, 3}, "SCALAR", kUnsignedShort);
+  bytes.primitive({{"POSITION", bytes.positions(kSquare)}})["indices"] =
+      bytes.accessor(std::vector<std::uint8_t>{2, 1, 0, 1, 2, 3}, "SCALAR", kUnsignedByte);
+  shorts.primitive({{"POSITION", shorts.positions(kSquare)}})["indices"] =
+      shorts.accessor(std::vector<std::uint16_t>{2, 1, 0, 1, 2, 3}, "SCALAR", kUnsignedShort);
   ints.primitive({{"POSITION", ints.positions(kSquare)}})["indices"] = ints.accessor(expected, "SCALAR", kUnsignedInt);
   for (const Gltf* gltf : {&bytes, &shorts, &ints}) EXPECT_EQ(only_primitive(*gltf).index, expected);
 }
@@ -38,10 +41,13 @@ TEST(Gltf, IndicesOfEveryWidthAreTheSameTriangles) {
 TEST(Gltf, SparseValuesReplaceThoseBelowAndStandOnZerosWithoutAny) {
   for (const bool based : {true, false}) {
     Gltf gltf;
-    const std::size_t indices = gltf.view(std::vector<std::uint8_t>{1, 3}), values = gltf.view(std::vector<float>{5, 6, 7, 8, 9, 10});
+    const std::size_t indices = gltf.view(std::vector<std::uint8_t>{1, 3}),
+                      values = gltf.view(std::vector<float>{5, 6, 7, 8, 9, 10});
     Json accessor = {{"componentType", kFloat}, {"type", "VEC3"}, {"count", 4}};
     if (based) accessor["bufferView"] = gltf.view(kSquare);
-    accessor["sparse"] = {{"count", 2}, {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}}, {"values", {{"bufferView", values}}}};
+    accessor["sparse"] = {{"count", 2},
+                          {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}},
+                          {"values", {{"bufferView", values}}}};
     accessor["min"] = {0, 0, 0};
     accessor["max"] = {8, 9, 10};
     gltf.json["accessors"].push_back(accessor);
@@ -57,7 +63,8 @@ TEST(Gltf, SparseValuesReplaceThoseBelowAndStandOnZerosWithoutAny) {
 TEST(Gltf, QuantisedPositionsAndTextureCoordinatesAreScaledAsTheSpecificationSays) {
   Gltf gltf;
   gltf.json["extensionsUsed"] = gltf.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-  const std::size_t position = gltf.accessor(std::vector<std::int16_t>{-32768, 0, 32767, 0, 32767, 0, 0, 0, 16384, 0, 0, 0}, "VEC4", kShort);
+  const std::size_t position =
+      gltf.accessor(std::vector<std::int16_t>{-32768, 0, 32767, 0, 32767, 0, 0, 0, 16384, 0, 0, 0}, "VEC4", kShort);
   gltf.json["accessors"][position]["type"] = "VEC3";
   gltf.json["accessors"][position]["normalized"] = true;
   gltf.json["accessors"][position]["min"] = {-32768, 0, 0};
@@ -83,13 +90,14 @@ TEST(Gltf, PaintedStiffnessAndFrictionComeWithTheVertices) {
   EXPECT_EQ(only_primitive(gltf).stiffness, (std::vector<float>{1, 2, 3, 4}));
   EXPECT_EQ(only_primitive(gltf).friction, (std::vector<float>{0.5f, 0, 1, 2}));
   Gltf negative;
-  negative.primitive({{"POSITION", negative.positions(kSquare)}, {"_STIFFNESS", negative.accessor(std::vector<float>{1, -2, 3, 4}, "SCALAR", kFloat)}});
+  negative.primitive({{"POSITION", negative.positions(kSquare)},
+                      {"_STIFFNESS", negative.accessor(std::vector<float>{1, -2, 3, 4}, "SCALAR", kFloat)}});
   EXPECT_NE(negative.refusal().find("_STIFFNESS"), std::string::npos) << negative.refusal();
 }
 
 TEST(Gltf, ASkinAtRestShowsVerticesWhereJointsAndBindMatricesPutThem) {
-  // Joint 0 rests at x = 1 and was bound at x = 1: its vertices stay. Joint 1, turned a quarter about z at (1, 0, 0), was
-  // bound there unturned: its vertices turn about that point. The mesh's own node must not matter.
+  // Joint 0 rests at x = 1 and was bound at x = 1: its vertices stay. Joint 1, turned a quarter about z at (1, 0, 0),
+  // was bound there unturned: its vertices turn about that point. The mesh's own node must not matter.
   Gltf gltf;
   std::vector<float> bind(32, 0.0f);
   for (std::size_t m = 0; m < 2; ++m) {
@@ -97,20 +105,23 @@ TEST(Gltf, ASkinAtRestShowsVerticesWhereJointsAndBindMatricesPutThem) {
     bind[16 * m + 12] = -1.0f;
   }
   const std::size_t weights = gltf.accessor(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, "VEC4", kFloat);
-  const std::size_t joints = gltf.accessor(std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, "VEC4", kUnsignedByte);
+  const std::size_t joints =
+      gltf.accessor(std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, "VEC4", kUnsignedByte);
   const std::size_t position = gltf.positions({0, 0, 0, 2, 0, 0, 1, 3, 0});
   gltf.primitive({{"POSITION", position}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}});
   gltf.json["nodes"][0]["skin"] = 0;
   gltf.json["nodes"][0]["translation"] = {10, 20, 30};
   gltf.json["nodes"].push_back({{"translation", {1, 0, 0}}, {"children", {2}}});
   gltf.json["nodes"].push_back({{"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}});
-  gltf.json["skins"] = Json::array({{{"joints", {1, 2}}, {"inverseBindMatrices", gltf.accessor(bind, "MAT4", kFloat)}}});
+  gltf.json["skins"] =
+      Json::array({{{"joints", {1, 2}}, {"inverseBindMatrices", gltf.accessor(bind, "MAT4", kFloat)}}});
   const Result<Level> level = gltf.load();
   ASSERT_TRUE(level.ok()) << level.error().message();
   const LevelNode& node = level->nodes[0];
   const std::vector<vec3> expected = {{0, 0, 0}, {1, 1, 0}, {-2, 0, 0}};
   for (std::size_t v = 0; v < 3; ++v) {
-    const vec3 world = level->meshes[static_cast<std::size_t>(node.mesh)].primitives[0].position[v] + node.local.translation;
+    const vec3 world =
+        level->meshes[static_cast<std::size_t>(node.mesh)].primitives[0].position[v] + node.local.translation;
     EXPECT_LT(length(world - expected[v]), 1e-5f) << v;
   }
   EXPECT_FALSE(level->notes.empty());
@@ -118,7 +129,8 @@ TEST(Gltf, ASkinAtRestShowsVerticesWhereJointsAndBindMatricesPutThem) {
 
 TEST(Gltf, ParentsStandBeforeChildrenAndOtherScenesAreMarked) {
   Gltf gltf;
-  gltf.json["nodes"] = Json::array({{{"name", "leaf"}}, {{"name", "root"}, {"children", {3, 0}}}, {{"name", "elsewhere"}}, {{"name", "first"}}});
+  gltf.json["nodes"] = Json::array(
+      {{{"name", "leaf"}}, {{"name", "root"}, {"children", {3, 0}}}, {{"name", "elsewhere"}}, {{"name", "first"}}});
   gltf.json["scenes"] = Json::array({{{"nodes", {2}}}, {{"nodes", {1}}}});
   gltf.json["scene"] = 1;
   const Result<Level> level = gltf.load();
@@ -141,7 +153,8 @@ TEST(Gltf, PointsAreLeftOutWithANoteAndTheRestIsRead) {
   const Result<Level> level = gltf.load();
   ASSERT_TRUE(level.ok());
   EXPECT_EQ(level->meshes[0].primitives.size(), 1u);
-  EXPECT_TRUE(std::any_of(level->notes.begin(), level->notes.end(), [](const std::string& note) { return note.find("points") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(level->notes.begin(), level->notes.end(),
+                          [](const std::string& note) { return note.find("points") != std::string::npos; }));
 }
 
 TEST(Gltf, RefusalsNameThePlace) {
@@ -159,7 +172,8 @@ TEST(Gltf, RefusalsNameThePlace) {
   refused("an accessor past its view", "/accessors/0", [](Gltf& g) { g.json["accessors"][0]["count"] = 5; });
   refused("a count that overflows", "/accessors/0", [](Gltf& g) { g.json["accessors"][0]["count"] = 4000000000u; });
   refused("a view past its buffer", "/bufferViews/0", [](Gltf& g) { g.json["bufferViews"][0]["byteLength"] = 1000; });
-  refused("an offset that overflows", "/bufferViews/0", [](Gltf& g) { g.json["bufferViews"][0]["byteOffset"] = 4294967290u; });
+  refused("an offset that overflows", "/bufferViews/0",
+          [](Gltf& g) { g.json["bufferViews"][0]["byteOffset"] = 4294967290u; });
   refused("a missing mesh", "/nodes/0/mesh", [](Gltf& g) { g.json["nodes"][0]["mesh"] = 7; });
   refused("a negative mesh", "/nodes/0/mesh", [](Gltf& g) { g.json["nodes"][0]["mesh"] = -1; });
   refused("a loop of nodes", "/nodes/0", [](Gltf& g) {
@@ -170,8 +184,10 @@ TEST(Gltf, RefusalsNameThePlace) {
     g.json["nodes"].push_back({{"children", {0}}});
     g.json["nodes"].push_back({{"children", {0}}});
   });
-  refused("a shearing matrix", "/nodes/0/matrix", [](Gltf& g) { g.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; });
-  refused("an unknown required extension", "MADE_up", [](Gltf& g) { g.json["extensionsUsed"] = g.json["extensionsRequired"] = {"MADE_up"}; });
+  refused("a shearing matrix", "/nodes/0/matrix",
+          [](Gltf& g) { g.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; });
+  refused("an unknown required extension", "MADE_up",
+          [](Gltf& g) { g.json["extensionsUsed"] = g.json["extensionsRequired"] = {"MADE_up"}; });
   refused("bounds that do not hold", "/accessors/0/max", [](Gltf& g) { g.json["accessors"][0]["max"][0] = 2; });
 }
 
@@ -180,7 +196,8 @@ TEST(Gltf, HugeClaimsOfASmallFileAreRefusedBeforeMemoryIsTaken) {
   Gltf gltf;
   const std::size_t position = gltf.positions(std::vector<float>(3 * 30000, 0.0f));
   gltf.primitive({{"POSITION", position}});
-  for (int i = 0; i < 1000; ++i) gltf.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", position}}}});
+  for (int i = 0; i < 1000; ++i)
+    gltf.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", position}}}});
   EXPECT_NE(gltf.refusal().find("split the level"), std::string::npos) << gltf.refusal();
   // Depth of the JSON text.
   const std::string deep = std::string(100000, '[');

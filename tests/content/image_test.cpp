@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "content/image.h"
+
+#include <gtest/gtest.h>
 
 namespace pliant::test {
 namespace {
@@ -20,7 +20,8 @@ TEST(Image, EveryTruncationIsReadOrRefusedAndNeverCrashes) {
   const Bytes whole = encode_png(64, 64, pixels.data());
   EXPECT_FALSE(decode_image(std::span(whole).first(whole.size() / 2), "cut").ok());
   for (std::size_t size = 0; size < whole.size(); ++size)
-    if (const Result<Image> image = decode_image(std::span(whole).first(size), "cut"); image) EXPECT_EQ(image->rgba.size(), pixels.size());
+    if (const Result<Image> image = decode_image(std::span(whole).first(size), "cut"); image)
+      EXPECT_EQ(image->rgba.size(), pixels.size());
 }
 
 TEST(Image, AHeaderThatClaimsImmenseSizeIsRefusedBeforeMemoryIsTaken) {

@@ -1,0 +1,99 @@
+// What may stand for a key, and the words for what may not.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/extension_table.h"
+
+namespace pliant {
+
+namespace {
+
+bool numbers(const Json& value, std::size_t count, const KeyRange& range) {
+  if (!value.is_array() || value.size() != count) return false;
+  for (const Json& each : value)
+    if (!each.is_number() || !(each.get<double>() >= range.min && each.get<double>() <= range.max)) return false;
+  return true;
+}
+
+}  // namespace
+
+std::string range_text(const Key& key) {
+  const bool low = std::isfinite(key.range.min), high = std::isfinite(key.range.max);
+  if (!low && !high) return "any";
+  return fmt::format("{}{}, {}", key.range.above_min ? "(" : "[", key.range.min, key.range.max) + (high ? "]" : ")");
+}
+
+std::string check_value(const Key& key, const Json& value) {
+  const auto number = [&] {
+    const double it = value.get<double>();
+    const bool inside = (key.range.above_min ? it > key.range.min : it >= key.range.min) && it <= key.range.max;
+    return inside ? std::string()
+                  : fmt::format("is {}, out of the range {} {}", value.dump(), range_text(key),
+                                key.unit == "1" ? "" : key.unit);
+  };
+  const std::string given = value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
+  switch (key.type) {
+    case KeyType::kNumber:
+      return value.is_number() ? number() : "is " + given + ", not a number";
+    case KeyType::kNumberOrMaterial:
+      if (value == "material") return "";
+      return value.is_number() ? number() : "is " + given + ", neither a number nor \"material\"";
+    case KeyType::kFlag:
+      return value.is_boolean() ? "" : "is " + given + ", neither true nor false";
+    case KeyType::kText:
+    case KeyType::kNode:
+      return value.is_string() ? "" : "is " + given + ", not a text";
+    case KeyType::kChoice: {
+      std::string all;
+      for (const std::string& each : key.choices) {
+        if (value == each) return "";
+        all += (all.empty() ? "" : ", ") + each;
+      }
+      return "is " + given + ", none of " + all;
+    }
+    case KeyType::kColor:
+      return numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
+    case KeyType::kPair:
+      return numbers(value, 2, key.range) ? "" : "is " + given + ", not two numbers in " + range_text(key);
+    case KeyType::kVector:
+      return value.is_number() || numbers(value, 3, key.range)
+                 ? ""
+                 : "is " + given + ", not three numbers in " + range_text(key);
+    case KeyType::kBox: {
+      const KeyRange any{-1e6, 1e6};
+      bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&
+                  numbers(value["min"], 3, any) && numbers(value["max"], 3, any);
+      for (std::size_t i = 0; good && i < 3; ++i) good = value["min"][i].get<double>() <= value["max"][i].get<double>();
+      return good ? "" : "is " + given + ", not a box {\"min\": [x, y, z], \"max\": [x, y, z]}";
+    }
+  }
+  return "";
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t least = 1 + std::min<std::size_t>(3, word.size() / 2);
+  for (const std::string& name : names) {
+    // Levenshtein's distance, one row at a time.
+    std::vector<std::size_t> row(name.size() + 1);
+    for (std::size_t j = 0; j <= name.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= std::min<std::size_t>(word.size(), 64); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= name.size(); ++j) {
+        const std::size_t kept = diagonal + (word[i - 1] == name[j - 1] ? 0 : 1);
+        diagonal = row[j];
+        row[j] = std::min({kept, row[j] + 1, row[j - 1] + 1});
+      }
+    }
+    if (row.back() < least) {
+      least = row.back();
+      best = name;
+    }
+  }
+  return best.empty() ? "" : "; did you mean " + best + "?";
+}
+
+}  // namespace pliant
