@@ -10,6 +10,7 @@
 #ifdef PLIANT_SANITIZED
 // Fontconfig keeps its configuration, on purpose, until the program ends; the leak sanitizer asks us about it.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
+extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
 #endif
 
 namespace pliant {

@@ -40,7 +40,7 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"run", "--window", "--lockstep"}, 2, "--lockstep");
   expect_refused({"run", "--window", "--replay", "x.pose"}, 2, "--replay");
   expect_refused({"run", "--input", "events.csv"}, 2, "--input");
-  expect_refused({"run", "--field", "gpu"}, 2, "--field");
+  expect_refused({"run", "--field", "gpu", "--frames", "0"}, 2, "--field");
   expect_refused({"run", "--field", "abacus"}, 2, "abacus");
   expect_refused({"run", "plate.obj", "--probe", "orbit"}, 2, "NAME=SOURCE");
   expect_refused({"run", "plate.obj", "--probe", "p=magic"}, 2, "magic");
