@@ -42,9 +42,9 @@ vec3 lit_by(Lamp lamp, Surface s) {
   if (n_l <= 0.0) return vec3(0.0);
   vec3 h = normalize(l + s.to_eye);
   float alpha = s.roughness * s.roughness;
-  vec3 coat = fresnel(s.reflectance, max(dot(l, h), 0.0)) * ggx(max(dot(s.normal, h), 0.0), alpha) *
-              visibility(n_l, n_v, alpha);
-  return arriving * n_l * (s.diffuse / kPi + coat);
+  vec3 mirrored = fresnel(s.reflectance, max(dot(l, h), 0.0));
+  vec3 coat = mirrored * ggx(max(dot(s.normal, h), 0.0), alpha) * visibility(n_l, n_v, alpha);
+  return arriving * n_l * ((1.0 - mirrored) * s.diffuse / kPi + coat);  // what the coat mirrors does not enter
 }
 
 // Every lamp; of the first only the share `open` that its shadow leaves.
@@ -54,17 +54,16 @@ vec3 lit_by_lamps(Surface s, float open) {
   return sum;
 }
 
-// The coat's directional reflectance, the second factor of the split sum, in closed form: Karis, Physically Based
-// Shading on Mobile (2014).
+// The coat's directional reflectance, the second factor of the split sum (systems/visual/coat.h).
+layout(binding = 8) uniform sampler2D coat_map;
 vec3 coat_of_surroundings(Surface s) {
-  float n_v = max(dot(s.normal, s.to_eye), 1e-3);
-  vec4 r = s.roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-  float a = min(r.x * r.x, exp2(-9.28 * n_v)) * r.x + r.y;
-  return s.reflectance * (-1.04 * a + r.z) + (1.04 * a + r.w);
+  vec2 ab = textureLod(coat_map, vec2(max(dot(s.normal, s.to_eye), 0.0), s.roughness), 0.0).rg;
+  return s.reflectance * ab.x + ab.y;
 }
 
 vec3 lit_by_surroundings(Surface s) {
-  vec3 light = s.diffuse / kPi * irradiance_on(s.normal);
-  if (on(kReflection)) light += coat_of_surroundings(s) * radiance_from(reflect(-s.to_eye, s.normal), s.roughness);
+  vec3 coat = coat_of_surroundings(s);
+  vec3 light = (1.0 - coat) * s.diffuse / kPi * irradiance_on(s.normal);
+  if (on(kReflection)) light += coat * radiance_from(reflect(-s.to_eye, s.normal), s.roughness);
   return s.occlusion * light;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "systems/visual/coat.h"
 #include "systems/visual/cube.h"
 #include "systems/visual/viewpoint.h"
 
@@ -145,6 +146,8 @@ Surroundings Surroundings::make(const World& world) {
 
   Surroundings made;
   const Cube cube = cached_cube(panorama);
+  constexpr int kCoatSize = 32;
+  made.coat_ = gpu::Texture::from_table(coat_table(kCoatSize), kCoatSize);
   made.cube_ = gpu::Texture::from_cube(cube.rgb, static_cast<int>(cube.face), static_cast<int>(kCubeLevels));
   FrameConstants& frame = made.constants_;
   frame.irradiance = irradiance_of(scaled_down(panorama, kWidestForIrradiance));

@@ -23,10 +23,13 @@ class Surroundings {
   static Surroundings make(const World& world);
   // Writes everything about light and exposure into `frame`.
   void light(FrameConstants& frame) const;
-  void bind() const { cube_.bind(kSurroundingsUnit); }
+  void bind() const {
+    cube_.bind(kSurroundingsUnit);
+    coat_.bind(kCoatUnit);
+  }
 
  private:
-  gpu::Texture cube_;
+  gpu::Texture cube_, coat_;
   FrameConstants constants_;  // its part about light
 };
 

@@ -50,7 +50,8 @@ enum TextureUnit : unsigned {
   kOcclusionUnit = 4,
   kEmissiveUnit = 5,
   kHeightUnit = 6,
-  kShadowUnit = 7
+  kShadowUnit = 7,
+  kCoatUnit = 8
 };
 
 }  // namespace pliant

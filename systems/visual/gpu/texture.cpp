@@ -62,6 +62,17 @@ Texture Texture::from_cube(std::span<const std::uint16_t> rgb, int face, int lev
   return texture;
 }
 
+Texture Texture::from_table(std::span<const vec2> values, int size) {
+  ASSERT(values.size() == static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+  Texture texture(GL_TEXTURE_2D, GL_RG16F, size, size, 1);
+  const GLuint id = texture.object_.id();
+  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glTextureSubImage2D(id, 0, 0, 0, size, size, GL_RG, GL_FLOAT, values.data());
+  return texture;
+}
+
 Texture Texture::constant(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   Texture texture(GL_TEXTURE_2D, GL_RGBA8, 1, 1, 1);
   const std::uint8_t pixel[4] = {r, g, b, 255};

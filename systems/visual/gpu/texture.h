@@ -29,6 +29,8 @@ class Texture {
   // A cube map in linear RGB, half floats: level by level, face by face (+X -X +Y -Y +Z -Z), `face` pixels an edge in
   // level 0 and half as many in each that follows.
   static Texture from_cube(std::span<const std::uint16_t> rgb, int face, int levels);
+  // Pairs of numbers, `size` x `size`, row by row; interpolated in between, the border's values beyond.
+  static Texture from_table(std::span<const vec2> values, int size);
   // One pixel, for materials without a picture.
   static Texture constant(std::uint8_t r, std::uint8_t g, std::uint8_t b);
 
