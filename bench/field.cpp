@@ -1,0 +1,156 @@
+// The field on the processor against the field on the card, from 1e4 vertices up: what a whole evaluation costs on each,
+// what the processor pays when only the reached zones move, how far the two are apart, and how much of the card's measured
+// copy bandwidth the compute shader uses.
+//   bench_field [--large] [--out FILE.json]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "runtime/clock.h"
+#include "systems/touch/field_kernels.h"
+#include "systems/visual/field_gpu.h"
+#include "systems/visual/gpu/context.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant {
+namespace {
+
+template <class Work>
+double median_us(int repeats, Work work) {
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) {
+    const std::uint64_t start = now_ns();
+    work();
+    times.push_back(static_cast<double>(now_ns() - start) * 1e-3);
+  }
+  std::sort(times.begin(), times.end());
+  return times[times.size() / 2];
+}
+
+struct Row {
+  std::uint32_t vertices = 0, reached = 0;
+  double reached_us = 0, whole_us = 0, card_us = 0, copy_us = 0;
+  double height_error = 0;  // [1] of the largest height
+  double normal_error = 0;  // [deg]
+};
+
+// Two overlapping contacts that reach about 2,000 vertices each.
+Row measure(const FieldProgram& program, int n) {
+  scenes::Stage stage;
+  const Entity surface = stage.add(scenes::sphere(n, 0.1), {});
+  const Mesh& mesh = stage.mesh(surface);
+  Row row;
+  row.vertices = mesh.vertex_count;
+  const float reach = static_cast<float>(0.2 * std::sqrt(0.55 * 2000.0 / mesh.vertex_count));
+  std::vector<FieldSource> sources;
+  for (const std::uint32_t v : {0u, 40u}) {
+    FieldSource s;
+    s.center = mesh.position(v);
+    s.normal = mesh.normal(v);
+    s.amplitude = 0.1f * reach;
+    s.inv_reach2 = 1 / (reach * reach);
+    s.parameter = 5.0f;
+    sources.push_back(s);
+  }
+  const std::uint32_t zones = mesh.zone_count();
+  std::vector<vec4> here(std::size_t{zones} * kZoneSize);
+  const auto zone_field = [&](std::uint32_t zone) {
+    ZoneTargets t{};
+    for (const FieldSource& s : sources) add_targets(mesh, zone, s, t);
+    for (std::uint32_t i = 0; i < kZoneSize; ++i) here[zone * kZoneSize + i] = vec4(t.nx[i], t.ny[i], t.nz[i], t.h[i]);
+  };
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t zone = 0; zone < zones; ++zone) {
+    for (const FieldSource& s : sources) {
+      const Box& box = mesh.zone_box[zone];
+      const vec3 d = glm::max(glm::max(box.min - s.center, s.center - box.max), vec3(0));
+      if (dot(d, d) < reach * reach) {
+        near.push_back(zone);
+        break;
+      }
+    }
+  }
+  row.reached = static_cast<std::uint32_t>(near.size()) * kZoneSize;
+  row.reached_us = median_us(51, [&] {
+    for (const std::uint32_t zone : near) zone_field(zone);
+  });
+  row.whole_us = median_us(5, [&] {
+    for (std::uint32_t zone = 0; zone < zones; ++zone) zone_field(zone);
+  });
+
+  const std::size_t bytes = here.size() * sizeof(vec4);
+  const gpu::Buffer stream = gpu::Buffer::writable(nullptr, bytes);
+  FieldOnCard field(mesh);
+  row.card_us = median_us(15, [&] {
+    field.evaluate(program, sources, stream);
+    glFinish();
+  });
+  std::vector<vec4> card(here.size());
+  glGetNamedBufferSubData(stream.id(), 0, static_cast<GLsizeiptr>(bytes), card.data());
+  double largest = 0;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    largest = std::max<double>(largest, std::abs(here[v].w));
+    row.height_error = std::max<double>(row.height_error, std::abs(here[v].w - card[v].w));
+    const dvec3 a = normalize(dvec3(mesh.normal(v) + vec3(here[v]))), b = normalize(dvec3(mesh.normal(v) + vec3(card[v])));
+    row.normal_error = std::max(row.normal_error, length(cross(a, b)) * 180 / M_PI);
+  }
+  row.height_error /= largest;
+  // The shader reads 24 bytes a vertex and writes 16. A copy of 20 reads 20 and writes 20: the same 40.
+  const std::size_t copied = std::size_t{20} * mesh.vertex_count / 4 * 4;
+  const gpu::Buffer from = gpu::Buffer::writable(nullptr, copied), to = gpu::Buffer::writable(nullptr, copied);
+  row.copy_us = median_us(15, [&] {
+    glCopyNamedBufferSubData(from.id(), to.id(), 0, 0, static_cast<GLsizeiptr>(copied));
+    glFinish();
+  });
+  return row;
+}
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  using namespace pliant;
+  bool large = false;
+  std::string out;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]) == "--large") large = true;
+    if (std::string(argv[i]) == "--out" && i + 1 < argc) out = argv[++i];
+  }
+  auto context = HeadlessContext::create();
+  if (!context) {
+    fmt::print("bench_field: {}\n", context.error().message());
+    return 0;
+  }
+  const auto program = FieldProgram::make();
+  if (!program) {
+    fmt::print(stderr, "bench_field: {}\n", program.error().message());
+    return 1;
+  }
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
+  fmt::print("The field on {}\n", (*context)->renderer_name());
+  fmt::print("{:>10} {:>9} {:>11} {:>11} {:>11} {:>11} {:>8} {:>10} {:>10}\n", "vertices", "reached", "reached us", "whole us", "card us",
+             "copy us", "of copy", "height err", "normal deg");
+  std::string json = fmt::format("{{\n  \"renderer\": \"{}\",\n  \"field\": [", (*context)->renderer_name());
+  std::vector<int> sizes{41, 130, 409};
+  if (large) sizes.push_back(1291);
+  for (const int n : sizes) {
+    if (std::size_t{6} * static_cast<std::size_t>(n * n) * 16 > static_cast<std::size_t>(largest)) {
+      fmt::print("{:>10} vertices need more than the {} MiB that this driver gives a buffer\n", 6 * n * n, largest >> 20);
+      continue;
+    }
+    const Row r = measure(*program, n);
+    fmt::print("{:>10} {:>9} {:>11.1f} {:>11.1f} {:>11.1f} {:>11.1f} {:>7.0f}% {:>10.1e} {:>10.1e}\n", r.vertices, r.reached, r.reached_us,
+               r.whole_us, r.card_us, r.copy_us, 100 * r.copy_us / r.card_us, r.height_error, r.normal_error);
+    json += fmt::format("{}\n    {{\"vertices\": {}, \"reached\": {}, \"processor_reached_us\": {:.2f}, \"processor_whole_us\": {:.1f}, "
+                        "\"card_us\": {:.1f}, \"card_copy_us\": {:.1f}, \"share_of_copy\": {:.3f}, \"height_error\": {:.2e}, \"normal_error_deg\": {:.2e}}}",
+                        n == 41 ? "" : ",", r.vertices, r.reached, r.reached_us, r.whole_us, r.card_us, r.copy_us, r.copy_us / r.card_us,
+                        r.height_error, r.normal_error);
+  }
+  json += "\n  ]\n}\n";
+  if (!out.empty()) std::ofstream(out) << json;
+}
