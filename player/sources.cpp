@@ -94,7 +94,6 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
     device.driver = source.driver;
     device.file = source.file;
     device.path = path;
-    device.scale = 1.0;  // these sources speak in world coordinates
   }
   return Done{};
 }
@@ -108,7 +107,6 @@ void make_orbits(World& world) {
     HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
     if (!device || device->driver != Driver::kOrbit) continue;
     device->path = world.paths.add(make_orbit(world, index++, probe.radius));
-    device->scale = 1.0;  // the orbit is made in world coordinates
   }
 }
 

@@ -7,11 +7,12 @@
 namespace pliant {
 namespace {
 
-// Drivers whose motion is known beforehand are sampled here; the others have written position and sensed_at themselves.
+// Drivers whose motion is known beforehand are sampled here; it is in world coordinates, so `scale` is not theirs. The
+// others have written position and sensed_at themselves.
 void sense(const World& world, HapticDevice& device, double time) {
   if (!device.path.valid()) return;
   const PathRow row = sample_path(world.paths[device.path], time);
-  device.position = device.scale * row.position;
+  device.position = row.position;
   device.rotation = row.rotation;
   device.sensed_at = time;
 }
