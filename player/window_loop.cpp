@@ -95,7 +95,7 @@ void WindowLoop::point(double dt) {
   cursor_.update(drag_ == Drag::kPress, force, dt);
   if (!radius_) return;
   if (pointed_ && drag_ != Drag::kOrbit && drag_ != Drag::kPan) probe_at_ = pointer_.update(ray(), dt);
-  s_.world.mouse->samples.write() = {probe_at_};
+  s_.world.mouse->samples.write() = {probe_at_, pointer_.free()};
   s_.world.mouse->samples.publish();
   state_.cursor = pointed_ && drag_ != Drag::kOrbit && drag_ != Drag::kPan;
   state_.cursor_x = cursor_.x();

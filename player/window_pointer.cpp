@@ -78,6 +78,7 @@ std::optional<Pointer::Hit> Pointer::cast(const Ray& ray) const {
 
 dvec3 Pointer::update(const Ray& ray, double dt) {
   const std::optional<Hit> hit = cast(ray);
+  over_ = hit.has_value();
   if (hit) reach_ = hit->reach;
   const double goal = hit && pressing() ? -depth_goal() : hover_;
   const double time = goal < height_ ? kPressTime : kLiftTime;

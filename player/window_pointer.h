@@ -39,6 +39,7 @@ class Pointer {
   void stand(int steps);                  // without holding: the depth at which it stays
   bool pressing() const { return held_ || standing_ > 0; }
   double depth_goal() const;              // [m]
+  bool free() const { return !over_ || height_ > 0.2 * hover_; }  // clear of every surface
 
   // Where the probe should be now. `dt` [s] since the last call.
   dvec3 update(const Ray& ray, double dt);
@@ -62,7 +63,7 @@ class Pointer {
   Box scene_;
   double radius_, size_, hover_;  // [m]
   double reach_ = 0;              // [m] of what was last pointed at
-  bool held_ = false;
+  bool held_ = false, over_ = false;  // over_: something is pointed at
   int deep_, standing_ = 0;       // [1] steps
   double height_;                 // [m] of the probe's lowest point above the surface at rest; < 0: pressed in
   double away_;                   // [m] from the eye, where nothing is hit

@@ -7,14 +7,15 @@ namespace pliant {
 void read_mouse(World& world, Tick tick) {
   if (!world.mouse) return;
   MouseInput& mouse = *world.mouse;
-  bool first = false;
+  bool first = false, free = false;
   if (mouse.samples.acquire()) {
     first = !mouse.heard;
     mouse.lasts = mouse.heard ? std::clamp(tick.time - mouse.heard_at, tick.dt, kMouseSlowestFrame) : tick.dt;
     mouse.heard = true;
     mouse.heard_at = tick.time;
-    mouse.from = mouse.position;
     mouse.to = mouse.samples.read().position;
+    free = mouse.samples.read().free;
+    mouse.from = free ? mouse.to : mouse.position;
   }
   if (!mouse.heard || tick.time - mouse.heard_at > kMouseSilence) return;
   const double share = std::min(1.0, (tick.time - mouse.heard_at + tick.dt) / mouse.lasts);
@@ -25,6 +26,9 @@ void read_mouse(World& world, Tick tick) {
     device.position = mouse.position;
     device.sensed_at = tick.time;
   }
+  if (!free) return;
+  for (auto [entity, probe] : world.registry.view<Probe>())  // no segment from where it was before
+    if (world.registry.get<HapticDevice>(probe.device).driver == Driver::kMouse) probe.placed = false;
 }
 
 void add_mouse(World& world, dvec3 start) {

@@ -13,9 +13,10 @@ inline constexpr double kMouseSlowestFrame = 0.1;  // [s] a pose that came later
 // Where the pointing hand wants the probe. Written by the visual clock every frame, also when nothing moved.
 struct MouseSample {
   dvec3 position{0};  // [m] world
+  bool free = true;   // it hovers: it is put there, and does not travel through whatever lies on the way
 };
 
-// One mouse. Its probe runs straight from pose to pose, each in the time since the pose before: at most a frame late.
+// One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at most a frame late.
 struct MouseInput {
   explicit MouseInput(dvec3 start) : from(start), position(start), to(start) {}
 
