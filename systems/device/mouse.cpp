@@ -14,7 +14,9 @@ void read_mouse(World& world, Tick tick) {
     mouse.heard = true;
     mouse.heard_at = tick.time;
     mouse.to = mouse.samples.read().position;
-    free = mouse.samples.read().free;
+    const bool free_now = mouse.samples.read().free;
+    free = free_now && mouse.free;  // the way out of a press is travelled: force acts along it
+    mouse.free = free_now;
     mouse.from = free ? mouse.to : mouse.position;
   }
   if (!mouse.heard || tick.time - mouse.heard_at > kMouseSilence) return;

@@ -23,6 +23,7 @@ struct MouseInput {
   TripleBuffer<MouseSample> samples;  // visual clock -> touch clock
   // Touch clock's.
   bool heard = false;
+  bool free = true;              // the newest pose hovers
   double heard_at = 0.0;         // [s] when the newest pose came
   double lasts = 1e-3;           // [s] how long the way to it takes
   dvec3 from, position, to;      // [m] world

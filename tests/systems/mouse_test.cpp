@@ -64,6 +64,29 @@ TEST(Mouse, APressTravelsBetweenFramesAndIsFelt) {
   EXPECT_NEAR(s.stage.read(s.probe).normal_force, 300 * 0.004, 0.02);
 }
 
+TEST(Mouse, LettingGoOfAPressGivesOutNoEnergy) {
+  MouseScene s;
+  scenes::WorkMeter meter;
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      s.run(1);
+      meter.add(s.stage.read(s.probe));
+    }
+  };
+  s.say({0, 0.102, 0}, true);
+  run(16);
+  for (int frame = 1; frame <= 12; ++frame) {
+    s.say({0, 0.102 - 0.0005 * frame, 0}, false);
+    run(16);
+  }
+  s.say({0, 0.115, 0}, true);  // a slow picture: out in one frame
+  run(100);
+  s.say({0, 0.12, 0}, true);
+  run(16);
+  EXPECT_FALSE(s.stage.read(s.probe).in_contact);
+  EXPECT_LE(meter.work(), 1e-12);
+}
+
 TEST(Mouse, SilenceOfAQuarterSecondLetsGo) {
   MouseScene s;
   s.say({0, 0.102, 0}, true);
