@@ -29,6 +29,9 @@ class TripleBuffer {
     return (previous & kFresh) == 0;
   }
 
+  // Writer. True while the reader has not taken what was published last.
+  bool unseen() const { return (between_.load(std::memory_order_relaxed) & kFresh) != 0; }
+
   // Reader. Takes the newest state if there is one; returns whether it did.
   bool acquire() {
     if ((between_.load(std::memory_order_relaxed) & kFresh) == 0) return false;

@@ -161,12 +161,20 @@ PLIANT_KERNEL void largest(const float* __restrict state, const float* __restric
   }
 }
 
-// The largest height of a zone, 0 at least. Lanes 3 and 7 of eight floats are heights.
+// The largest height of a zone, 0 at least. Of a stream, lanes 3 and 7 of eight floats are heights; of targets, all.
 PLIANT_KERNEL float highest(const float* __restrict stream) {
   float best[kLanes] = {};
   for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes)
     for (std::uint32_t l = 0; l < kLanes; ++l) best[l] = best[l] > stream[i + l] ? best[l] : stream[i + l];
   return best[3] > best[7] ? best[3] : best[7];
+}
+PLIANT_KERNEL float highest_target(const float* __restrict h) {
+  float best[kLanes] = {};
+  for (std::uint32_t i = 0; i < kZoneSize; i += kLanes)
+    for (std::uint32_t l = 0; l < kLanes; ++l) best[l] = best[l] > h[i + l] ? best[l] : h[i + l];
+  float most = 0.0f;
+  for (const float b : best) most = b > most ? b : most;
+  return most;
 }
 
 ZoneRest rest_of(const Motion& motion, const vec4* state, const vec4* rate) {
@@ -270,6 +278,7 @@ float compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* 
     interleave(*targets, &residual->x, &stream->x);
   } else if (targets) {
     interleave(*targets, &stream->x);
+    return highest_target(targets->h.data());
   } else if (with_residual) {
     std::copy(residual, residual + kZoneSize, stream);
   } else {

@@ -61,6 +61,7 @@ void publish(World& world, Tick tick) {
     }
   }
   const bool last_was_seen = world.snapshots->publish();
+  touch.unseen = last_was_seen ? 0 : touch.unseen + 1;
   for (std::size_t i = 0; i < touch.objects.size(); ++i) {
     ObjectState& object = touch.objects[i];
     HeightField& field = world.fields[world.registry.get<Deformable>(object.entity).field];
@@ -74,7 +75,10 @@ void publish(World& world, Tick tick) {
 
 void publish_paced(World& world, Tick tick) {
   const std::uint64_t every = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(1 / (tick.dt * kPublishRate))));
-  if (tick.index % every == 0) publish(world, tick);
+  if (tick.index % every != 0) return;
+  // What nobody takes only grows: every zone touched since would be copied again and again.
+  if (world.touch->unseen > kPatience && world.snapshots->unseen()) return;
+  publish(world, tick);
 }
 
 }  // namespace pliant

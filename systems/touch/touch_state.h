@@ -63,6 +63,7 @@ struct ProbeState {
 struct TouchState {
   std::vector<ObjectState> objects;
   std::vector<ProbeState> probes;
+  std::uint32_t unseen = 0;              // snapshots in a row that nobody took
   double extent = 1.0;                   // [m] diagonal of everything that can be touched
   double dt = 1e-3;                      // [s] the step that `motion` was computed for
 };
