@@ -1,6 +1,6 @@
-// The field on the processor against the field on the card, from 1e4 vertices up: what a whole evaluation costs on each,
-// what the processor pays when only the reached zones move, how far the two are apart, and how much of the card's measured
-// copy bandwidth the compute shader uses.
+// The field on the processor against the field on the card, from 1e4 vertices up: what a whole evaluation costs on
+// each, what the processor pays when only the reached zones move, how far the two are apart, and how much of the card's
+// measured copy bandwidth the compute shader uses.
 //   bench_field [--large] [--out FILE.json]
 #include <fmt/format.h>
 
@@ -95,7 +95,8 @@ Row measure(const FieldProgram& program, int n) {
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     largest = std::max<double>(largest, std::abs(here[v].w));
     row.height_error = std::max<double>(row.height_error, std::abs(here[v].w - card[v].w));
-    const dvec3 a = normalize(dvec3(mesh.normal(v) + vec3(here[v]))), b = normalize(dvec3(mesh.normal(v) + vec3(card[v])));
+    const dvec3 a = normalize(dvec3(mesh.normal(v) + vec3(here[v]))),
+                b = normalize(dvec3(mesh.normal(v) + vec3(card[v])));
     row.normal_error = std::max(row.normal_error, length(cross(a, b)) * 180 / M_PI);
   }
   row.height_error /= largest;
@@ -133,23 +134,28 @@ int main(int argc, char** argv) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
   fmt::print("The field on {}\n", (*context)->renderer_name());
-  fmt::print("{:>10} {:>9} {:>11} {:>11} {:>11} {:>11} {:>8} {:>10} {:>10}\n", "vertices", "reached", "reached us", "whole us", "card us",
-             "copy us", "of copy", "height err", "normal deg");
+  fmt::print("{:>10} {:>9} {:>11} {:>11} {:>11} {:>11} {:>8} {:>10} {:>10}\n", "vertices", "reached", "reached us",
+             "whole us", "card us", "copy us", "of copy", "height err", "normal deg");
   std::string json = fmt::format("{{\n  \"renderer\": \"{}\",\n  \"field\": [", (*context)->renderer_name());
   std::vector<int> sizes{41, 130, 409};
   if (large) sizes.push_back(1291);
   for (const int n : sizes) {
     if (std::size_t{6} * static_cast<std::size_t>(n * n) * 16 > static_cast<std::size_t>(largest)) {
-      fmt::print("{:>10} vertices need more than the {} MiB that this driver gives a buffer\n", 6 * n * n, largest >> 20);
+      fmt::print("{:>10} vertices need more than the {} MiB that this driver gives a buffer\n", 6 * n * n,
+                 largest >> 20);
       continue;
     }
     const Row r = measure(*program, n);
-    fmt::print("{:>10} {:>9} {:>11.1f} {:>11.1f} {:>11.1f} {:>11.1f} {:>7.0f}% {:>10.1e} {:>10.1e}\n", r.vertices, r.reached, r.reached_us,
-               r.whole_us, r.card_us, r.copy_us, 100 * r.copy_us / r.card_us, r.height_error, r.normal_error);
-    json += fmt::format("{}\n    {{\"vertices\": {}, \"reached\": {}, \"processor_reached_us\": {:.2f}, \"processor_whole_us\": {:.1f}, "
-                        "\"card_us\": {:.1f}, \"card_copy_us\": {:.1f}, \"share_of_copy\": {:.3f}, \"height_error\": {:.2e}, \"normal_error_deg\": {:.2e}}}",
-                        n == 41 ? "" : ",", r.vertices, r.reached, r.reached_us, r.whole_us, r.card_us, r.copy_us, r.copy_us / r.card_us,
-                        r.height_error, r.normal_error);
+    fmt::print("{:>10} {:>9} {:>11.1f} {:>11.1f} {:>11.1f} {:>11.1f} {:>7.0f}% {:>10.1e} {:>10.1e}\n", r.vertices,
+               r.reached, r.reached_us, r.whole_us, r.card_us, r.copy_us, 100 * r.copy_us / r.card_us, r.height_error,
+               r.normal_error);
+    json += fmt::format(
+        "{}\n    {{\"vertices\": {}, \"reached\": {}, \"processor_reached_us\": {:.2f}, \"processor_whole_us\": "
+        "{:.1f}, "
+        "\"card_us\": {:.1f}, \"card_copy_us\": {:.1f}, \"share_of_copy\": {:.3f}, \"height_error\": {:.2e}, "
+        "\"normal_error_deg\": {:.2e}}}",
+        n == 41 ? "" : ",", r.vertices, r.reached, r.reached_us, r.whole_us, r.card_us, r.copy_us,
+        r.copy_us / r.card_us, r.height_error, r.normal_error);
   }
   json += "\n  ]\n}\n";
   if (!out.empty()) std::ofstream(out) << json;

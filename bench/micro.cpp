@@ -1,5 +1,5 @@
-// The pieces of a touch tick, and of loading, one by one. Where a piece is an approximation, its error stands beside its
-// time as a counter.
+// The pieces of a touch tick, and of loading, one by one. Where a piece is an approximation, its error stands beside
+// its time as a counter.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -41,11 +41,14 @@ void step_zone(benchmark::State& state) {
       truth = {-0.004, 0};
     }
     benchmark::DoNotOptimize(step_residual(m, field, 0));
-    truth = m.nonlinear() ? step_restoring(m.law, truth, m.mass, m.damping, 1, 0, m.dt) : step_oscillator(truth, m.mass, m.damping, 1, 0, m.dt);
-    if (d.spring != SpringLaw::kStandardLinearSolid) error = std::max(error, std::abs(field.residual[5].w - truth.height) / 0.004);
+    truth = m.nonlinear() ? step_restoring(m.law, truth, m.mass, m.damping, 1, 0, m.dt)
+                          : step_oscillator(truth, m.mass, m.damping, 1, 0, m.dt);
+    if (d.spring != SpringLaw::kStandardLinearSolid)
+      error = std::max(error, std::abs(field.residual[5].w - truth.height) / 0.004);
   }
   state.counters["error"] = error;
-  state.counters["ns_per_vertex"] = benchmark::Counter(kZoneSize * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["ns_per_vertex"] =
+      benchmark::Counter(kZoneSize * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(step_zone)->Arg(0)->Arg(1)->Arg(2)->Arg(3)->ArgName("law");
 
@@ -76,7 +79,8 @@ void nearest_query(benchmark::State& state) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<dvec3> points;
-  for (int i = 0; i < 1000; ++i) points.push_back((0.1 + 0.004 * unit(random)) * normalize(dvec3(unit(random), unit(random), unit(random))));
+  for (int i = 0; i < 1000; ++i)
+    points.push_back((0.1 + 0.004 * unit(random)) * normalize(dvec3(unit(random), unit(random), unit(random))));
   std::size_t i = 0;
   double error = 0;
   for (auto _ : state) {
@@ -109,7 +113,8 @@ void amplitudes(benchmark::State& state) {
   std::vector<double> A(n * n), d(n), alpha(n);
   for (std::size_t i = 0; i < n; ++i) {
     d[i] = 0.004 + 0.0003 * static_cast<double>(i % 5);
-    for (std::size_t j = 0; j < n; ++j) A[i * n + j] = i == j ? 1.0 : 0.3 * std::exp(-0.5 * std::abs(double(i) - double(j)));
+    for (std::size_t j = 0; j < n; ++j)
+      A[i * n + j] = i == j ? 1.0 : 0.3 * std::exp(-0.5 * std::abs(double(i) - double(j)));
   }
   double violation = 0;
   for (auto _ : state) {

@@ -1,5 +1,6 @@
-// What one touch tick costs on meshes of different sizes with the same number of awake vertices, the step with everything
-// awake, and how far the single-precision field is from a double-precision reference: time and error, side by side.
+// What one touch tick costs on meshes of different sizes with the same number of awake vertices, the step with
+// everything awake, and how far the single-precision field is from a double-precision reference: time and error, side
+// by side.
 //   bench_touch_tick [--large] [--out FILE.json]
 #include <fmt/format.h>
 
@@ -40,7 +41,9 @@ double field_error(Stage& stage, Entity surface, Entity probe) {
   const Mesh& mesh = stage.mesh(surface);
   const Contact& contact = stage.contact(probe);
   const Deformable& d = stage.world.registry.get<Deformable>(surface);
-  const auto facing = [&](std::uint32_t v) { return std::clamp(4 * dot(dvec3(mesh.normal(v)), contact.normal), 0.0, 1.0); };
+  const auto facing = [&](std::uint32_t v) {
+    return std::clamp(4 * dot(dvec3(mesh.normal(v)), contact.normal), 0.0, 1.0);
+  };
   double S0 = 0, S1 = 0, Q0 = 0, Q1 = 0, Q2 = 0, bend = 0, spread = 0;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
@@ -52,17 +55,20 @@ double field_error(Stage& stage, Entity surface, Entity probe) {
   }
   const double aH = -contact.height * bend / spread;
   double c = S0 / S1;
-  for (int i = 0; i < 20; ++i) c -= (S0 - c * S1 - aH * (Q0 - 2 * c * Q1 + c * c * Q2)) / (-S1 + aH * (2 * Q1 - 2 * c * Q2));
+  for (int i = 0; i < 20; ++i)
+    c -= (S0 - c * S1 - aH * (Q0 - 2 * c * Q1 + c * c * Q2)) / (-S1 + aH * (2 * Q1 - 2 * c * Q2));
   const auto f = [&](std::uint32_t v) {
     const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
     const double u = std::min(1.0, dot(x, x) / (d.reach * d.reach));
     return std::pow(1 - u, 3) * (1 - c * u) * facing(v);
   };
   const uvec3 t = mesh.triangles[contact.triangle];
-  const double amplitude = -contact.height / (contact.barycentric.x * f(t.x) + contact.barycentric.y * f(t.y) + contact.barycentric.z * f(t.z));
+  const double amplitude = -contact.height / (contact.barycentric.x * f(t.x) + contact.barycentric.y * f(t.y) +
+                                              contact.barycentric.z * f(t.z));
   double worst = 0;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
-    worst = std::max(worst, std::abs(stage.field(surface).stream[v].w - stage.field(surface).residual[v].w + amplitude * f(v)));
+    worst = std::max(
+        worst, std::abs(stage.field(surface).stream[v].w - stage.field(surface).residual[v].w + amplitude * f(v)));
   return worst / amplitude;
 }
 
@@ -122,8 +128,8 @@ AllAwake measure_all_awake(int n) {
   const Motion m = motion(d, 1e-3);
   const std::uint32_t zones = stage.mesh(surface).zone_count();
   for (vec4& r : field.residual) r = vec4(1e-3f);
-  // A step reads residual and rate and writes residual, rate and stream: 5 x 16 bytes a vertex. A plain copy of the same
-  // bytes reads 2.5 x 16 and writes 2.5 x 16.
+  // A step reads residual and rate and writes residual, rate and stream: 5 x 16 bytes a vertex. A plain copy of the
+  // same bytes reads 2.5 x 16 and writes 2.5 x 16.
   std::vector<char> from(field.residual.size() * 40, 1), to(from.size());
   AllAwake out;
   out.vertices = stage.mesh(surface).vertex_count;
@@ -159,8 +165,8 @@ int main(int argc, char** argv) {
     if (std::string(argv[i]) == "--out" && i + 1 < argc) out = argv[++i];
   }
   fmt::print("One touch tick, probe sliding, ~2,000 awake vertices\n");
-  fmt::print("{:>10} {:>7} {:>9} {:>9} {:>9} {:>10} {:>10} {:>12}\n", "vertices", "awake", "p50 us", "p99 us", "max us", "bytes/vtx", "ready s",
-             "error/ampl.");
+  fmt::print("{:>10} {:>7} {:>9} {:>9} {:>9} {:>10} {:>10} {:>12}\n", "vertices", "awake", "p50 us", "p99 us", "max us",
+             "bytes/vtx", "ready s", "error/ampl.");
   std::vector<int> sizes{41, 130, 409};
   if (large) sizes.push_back(1291);
   std::string json = "{\n  \"tick\": [";
@@ -169,17 +175,22 @@ int main(int argc, char** argv) {
     const Row r = measure(n, 2000);
     if (first == 0) first = r.p50;
     if (n == 409) at_1e6 = r.p50;
-    fmt::print("{:>10} {:>7} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.0f} {:>10.2f} {:>12.1e}\n", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes,
-               r.prepare_s, r.error);
-    json += fmt::format("{}\n    {{\"vertices\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, \"max_us\": {:.1f}, "
-                        "\"bytes_per_vertex\": {:.1f}, \"ready_s\": {:.3f}, \"error_of_amplitude\": {:.3e}}}",
-                        n == 41 ? "" : ",", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes, r.prepare_s, r.error);
+    fmt::print("{:>10} {:>7} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.0f} {:>10.2f} {:>12.1e}\n", r.vertices, r.awake, r.p50,
+               r.p99, r.max, r.bytes, r.prepare_s, r.error);
+    json += fmt::format(
+        "{}\n    {{\"vertices\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, \"max_us\": {:.1f}, "
+        "\"bytes_per_vertex\": {:.1f}, \"ready_s\": {:.3f}, \"error_of_amplitude\": {:.3e}}}",
+        n == 41 ? "" : ",", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes, r.prepare_s, r.error);
   }
   const AllAwake all = measure_all_awake(409);
-  fmt::print("\ntick at 1e6 / tick at 1e4: {:.2f}\nall awake, {} vertices: {:.2f} ms a step, {:.2f} ms a copy of the same bytes, ratio {:.2f}\n",
-             at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
-  json += fmt::format("\n  ],\n  \"ratio_1e6_to_1e4\": {:.3f},\n  \"all_awake\": {{\"vertices\": {}, \"step_ms\": {:.3f}, \"copy_ms\": {:.3f}, "
-                      "\"ratio\": {:.3f}}}\n}}\n",
-                      at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
+  fmt::print(
+      "\ntick at 1e6 / tick at 1e4: {:.2f}\nall awake, {} vertices: {:.2f} ms a step, {:.2f} ms a copy of the same "
+      "bytes, ratio {:.2f}\n",
+      at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
+  json += fmt::format(
+      "\n  ],\n  \"ratio_1e6_to_1e4\": {:.3f},\n  \"all_awake\": {{\"vertices\": {}, \"step_ms\": {:.3f}, \"copy_ms\": "
+      "{:.3f}, "
+      "\"ratio\": {:.3f}}}\n}}\n",
+      at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
   if (!out.empty()) std::ofstream(out) << json;
 }

@@ -23,9 +23,9 @@ constexpr int kFrames = 11;
 struct Row {
   std::uint32_t triangles = 0;
   int width = 0, height = 0;
-  double ms = 0;                 // median
-  std::uint64_t bytes = 0;       // of the last frame
-  std::uint64_t allowed = 0;     // 16 x awake vertices + 4 KiB
+  double ms = 0;              // median
+  std::uint64_t bytes = 0;    // of the last frame
+  std::uint64_t allowed = 0;  // 16 x awake vertices + 4 KiB
 };
 
 // The object's first tenth of zones, dented by `height` [m].
@@ -46,7 +46,8 @@ Snapshot tenth(const World& world, Entity object, float height) {
 
 double error_of_upload() {
   std::vector<vec4> sent;
-  for (std::size_t i = 0; i < 64 * kZoneSize; ++i) sent.push_back(vec4(0.1f, -0.2f, 0.3f, 1e-3f) * std::sin(static_cast<float>(i)));
+  for (std::size_t i = 0; i < 64 * kZoneSize; ++i)
+    sent.push_back(vec4(0.1f, -0.2f, 0.3f, 1e-3f) * std::sin(static_cast<float>(i)));
   StreamCopies copies(std::vector<vec4>(sent.size(), vec4(0)));
   std::vector<std::uint32_t> zones;
   for (std::uint32_t zone = 0; zone < 64; ++zone) zones.push_back(zone);
@@ -109,7 +110,8 @@ int main(int argc, char** argv) {
   const double error = error_of_upload();
   fmt::print("{}; median of {} frames; upload error {:.1e}\n", (*context)->renderer_name(), kFrames, error);
   fmt::print("{:>10} {:>10} {:>9} {:>12} {:>12}\n", "triangles", "pixels", "ms", "bytes/frame", "allowed");
-  std::string json = fmt::format("{{\n  \"renderer\": \"{}\",\n  \"upload_error\": {:.3e},\n  \"frames\": [", (*context)->renderer_name(), error);
+  std::string json = fmt::format("{{\n  \"renderer\": \"{}\",\n  \"upload_error\": {:.3e},\n  \"frames\": [",
+                                 (*context)->renderer_name(), error);
   bool first = true;
   for (const int n : {20, 65, 205}) {
     Result<std::vector<Row>> rows = measure(n);
@@ -118,9 +120,12 @@ int main(int argc, char** argv) {
       return 1;
     }
     for (const Row& r : *rows) {
-      fmt::print("{:>10} {:>10} {:>9.2f} {:>12} {:>12}\n", r.triangles, fmt::format("{}x{}", r.width, r.height), r.ms, r.bytes, r.allowed);
-      json += fmt::format("{}\n    {{\"triangles\": {}, \"width\": {}, \"height\": {}, \"ms\": {:.3f}, \"upload_bytes\": {}, \"allowed_bytes\": {}}}",
-                          first ? "" : ",", r.triangles, r.width, r.height, r.ms, r.bytes, r.allowed);
+      fmt::print("{:>10} {:>10} {:>9.2f} {:>12} {:>12}\n", r.triangles, fmt::format("{}x{}", r.width, r.height), r.ms,
+                 r.bytes, r.allowed);
+      json += fmt::format(
+          "{}\n    {{\"triangles\": {}, \"width\": {}, \"height\": {}, \"ms\": {:.3f}, \"upload_bytes\": {}, "
+          "\"allowed_bytes\": {}}}",
+          first ? "" : ",", r.triangles, r.width, r.height, r.ms, r.bytes, r.allowed);
       first = false;
     }
   }

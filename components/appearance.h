@@ -41,9 +41,9 @@ struct Material {
   std::int32_t emissive_texture = -1;
   std::int32_t height_texture = -1;  // extras.height_texture: relief finer than the mesh, in its red channel
   float height_scale = 0.0f;         // [m] extras.height_scale: white above black
-  float ior = 1.5f;              // KHR_materials_ior
-  float transmission = 0.0f;     // KHR_materials_transmission
-  float thickness = 0.0f;        // [m] KHR_materials_volume
+  float ior = 1.5f;                  // KHR_materials_ior
+  float transmission = 0.0f;         // KHR_materials_transmission
+  float thickness = 0.0f;            // [m] KHR_materials_volume
   vec3 attenuation_color{1};
   float attenuation_distance = 0.0f;  // [m] 0: none
   enum class Alpha : std::uint8_t { kOpaque, kMask, kBlend } alpha = Alpha::kOpaque;
@@ -60,14 +60,14 @@ struct Drawable {
 struct Light {
   enum class Kind : std::uint8_t { kDirectional, kPoint, kSpot } kind = Kind::kDirectional;
   vec3 color{1};
-  float intensity = 1.0f;  // [lx] directional, [cd] point and spot
-  float range = 0.0f;      // [m] 0: unlimited
+  float intensity = 1.0f;                            // [lx] directional, [cd] point and spot
+  float range = 0.0f;                                // [m] 0: unlimited
   float inner_cone = 0.0f, outer_cone = 0.7853982f;  // [rad]
 };
 
 // A glTF perspective camera, at the entity's WorldTransform, looking along its -Z.
 struct Camera {
-  float yfov = 0.7f;   // [rad]
+  float yfov = 0.7f;                    // [rad]
   float znear = 0.001f, zfar = 100.0f;  // [m]
 };
 

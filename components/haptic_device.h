@@ -18,13 +18,13 @@ enum class DeviceStatus : std::uint8_t { kLost, kReady };
 
 // A path in time: script files, orbits, replays. Linear between rows, slerp for rotation; holds the last row.
 struct PathRow {
-  double time = 0.0;           // [s] ascending
-  dvec3 position{0};           // [m] world
+  double time = 0.0;  // [s] ascending
+  dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
 };
 struct Path {
   std::vector<PathRow> rows;
-  bool repeats = false;        // starts over after the last row (whose position equals the first's)
+  bool repeats = false;  // starts over after the last row (whose position equals the first's)
 };
 
 // Rate: touch. Writer: read_devices (what was sensed), write_devices (what was sent). Keys of PLIANT_haptic_device.
@@ -37,12 +37,12 @@ struct HapticDevice {
   double max_slew = 1000.0;    // [N/s] of the norm of the change
   std::string id;              // external drivers: which one
 
-  Handle<Path> path;           // script, orbit, replay
+  Handle<Path> path;  // script, orbit, replay
   DeviceStatus status = DeviceStatus::kReady;
-  dvec3 position{0};           // [m] world, as last sensed
+  dvec3 position{0};  // [m] world, as last sensed
   dquat rotation{1, 0, 0, 0};
-  double sensed_at = 0.0;      // [s] when; older than kStaleAfter: treated as lost
-  dvec3 force_sent{0};         // [N] world, what left for the hand in this tick
+  double sensed_at = 0.0;  // [s] when; older than kStaleAfter: treated as lost
+  dvec3 force_sent{0};     // [N] world, what left for the hand in this tick
 };
 
 }  // namespace pliant

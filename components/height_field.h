@@ -1,5 +1,5 @@
-// The moving part of a Deformable: per vertex the stream (nx, ny, nz, h) that any shader can draw, and the residual that
-// is still on its way back to rest.
+// The moving part of a Deformable: per vertex the stream (nx, ny, nz, h) that any shader can draw, and the residual
+// that is still on its way back to rest.
 //
 // While a probe holds the surface the field *follows*: stream = target + residual, where the target is the contacts'
 // shape and the residual is what earlier presses left behind. On release the target is folded into the residual, which
@@ -22,8 +22,8 @@ struct HeightField {
   std::vector<vec4> rate;      // [1/s,1/s,1/s,m/s] of the residual
   std::vector<vec4> arm;       // [N/m scaled by k: m] standard linear solid only, else empty
 
-  std::vector<std::uint8_t> zone_state;    // per zone: bits of ZoneBit
-  std::vector<std::uint32_t> awake;        // zones whose stream may change this tick (capacity: all zones)
+  std::vector<std::uint8_t> zone_state;  // per zone: bits of ZoneBit
+  std::vector<std::uint32_t> awake;      // zones whose stream may change this tick (capacity: all zones)
   std::uint32_t awake_vertices = 0;
 };
 

@@ -15,21 +15,21 @@ namespace pliant {
 inline constexpr std::uint32_t kMaxPublishedZones = 512;
 
 struct ObjectSnapshot {
-  Entity object;                      // has a Deformable
-  std::uint32_t zone_count = 0;       // valid entries of `zones`
-  std::vector<std::uint32_t> zones;   // which zones, capacity min(all, kMaxPublishedZones)
-  std::vector<vec4> stream;           // kZoneSize (nx, ny, nz, h) for each of them, packed in the same order
+  Entity object;                     // has a Deformable
+  std::uint32_t zone_count = 0;      // valid entries of `zones`
+  std::vector<std::uint32_t> zones;  // which zones, capacity min(all, kMaxPublishedZones)
+  std::vector<vec4> stream;          // kZoneSize (nx, ny, nz, h) for each of them, packed in the same order
   std::uint32_t awake_vertices = 0;
-  bool on_card = false;               // no zones: the whole field is these sources, evaluated by the card
+  bool on_card = false;  // no zones: the whole field is these sources, evaluated by the card
   std::uint32_t term_count = 0;
-  std::vector<FieldSource> terms;     // capacity for every source and release
+  std::vector<FieldSource> terms;  // capacity for every source and release
 };
 
 struct ProbeSnapshot {
   Entity probe;
   dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
-  dvec3 force{0};     // [N] world, as sent to the hand
+  dvec3 force{0};  // [N] world, as sent to the hand
   bool touching = false;
   double depth = 0.0;  // [m] below the undeformed surface, of the deepest contact
   dvec3 normal{0};     // [1] of the surface at the deepest contact, world; 0: it touches nothing
@@ -37,7 +37,7 @@ struct ProbeSnapshot {
 
 struct Snapshot {
   std::uint64_t tick = 0;
-  double time = 0.0;  // [s]
+  double time = 0.0;     // [s]
   bool complete = true;  // false: more dirty zones are waiting
   std::vector<ObjectSnapshot> objects;
   std::vector<ProbeSnapshot> probes;

@@ -10,32 +10,32 @@
 namespace pliant {
 
 struct SoftBody {
-  double young = 5e3;                     // [Pa]
-  double poisson = 0.45;                  // [1]
-  double density = 1000.0;                // [kg/m3]
-  std::array<double, 2> rayleigh{0, 0};   // alpha [1/s], beta [s]
-  double cell = 0.0;                      // [m] lattice cell; 0: sized from the bounds
-  std::string mesh;                       // tetrahedra file, instead of `cell`
-  Box pinned;                             // [m] object frame; empty: nothing (or the attribute _PINNED)
-  double friction_static = 0.4;           // [1]
-  double friction_sliding = 0.3;          // [1]
+  double young = 5e3;                    // [Pa]
+  double poisson = 0.45;                 // [1]
+  double density = 1000.0;               // [kg/m3]
+  std::array<double, 2> rayleigh{0, 0};  // alpha [1/s], beta [s]
+  double cell = 0.0;                     // [m] lattice cell; 0: sized from the bounds
+  std::string mesh;                      // tetrahedra file, instead of `cell`
+  Box pinned;                            // [m] object frame; empty: nothing (or the attribute _PINNED)
+  double friction_static = 0.4;          // [1]
+  double friction_sliding = 0.3;         // [1]
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };
 
 struct Handle6 {
-  Box box;                                         // [m] object frame: what is rigid; empty: the attribute _HANDLE
+  Box box;  // [m] object frame: what is rigid; empty: the attribute _HANDLE
   Attachment attachment = Attachment::kSlave;
-  std::array<double, 2> translation{200.0, 2.0};   // [N/m], [N s/m]
-  std::array<double, 2> rotation{0.5, 0.005};      // [N m/rad], [N m s/rad]
-  double max_force = 3.3;                          // [N]
-  double max_torque = 0.3;                         // [N m]
-  std::string device;                              // node with PLIANT_haptic_device
+  std::array<double, 2> translation{200.0, 2.0};  // [N/m], [N s/m]
+  std::array<double, 2> rotation{0.5, 0.005};     // [N m/rad], [N m s/rad]
+  double max_force = 3.3;                         // [N]
+  double max_torque = 0.3;                        // [N m]
+  std::string device;                             // node with PLIANT_haptic_device
 };
 
 struct RigidBody {
-  double mass = 0.0;        // [kg] 0: from density
-  double density = 1000.0;  // [kg/m3]
+  double mass = 0.0;                                     // [kg] 0: from density
+  double density = 1000.0;                               // [kg/m3]
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   bool fixed = false;
 };

@@ -15,12 +15,17 @@ Entity find_by_name(const World& world, const std::string& name) {
 
 std::vector<std::string> explain_dropped(std::uint32_t dropped) {
   std::vector<std::string> sentences;
-  if (dropped & kDroppedContacts) sentences.push_back("more probes on one object than it can hold; use fewer, or split the object");
-  if (dropped & kDroppedNonFinite) sentences.push_back("a pose or force was not a number and was replaced by zero; check the device");
-  if (dropped & kDroppedTravel) sentences.push_back("a probe moved farther in a tick than the level is large; check the device's units");
+  if (dropped & kDroppedContacts)
+    sentences.push_back("more probes on one object than it can hold; use fewer, or split the object");
+  if (dropped & kDroppedNonFinite)
+    sentences.push_back("a pose or force was not a number and was replaced by zero; check the device");
+  if (dropped & kDroppedTravel)
+    sentences.push_back("a probe moved farther in a tick than the level is large; check the device's units");
   if (dropped & kDroppedFlood) sentences.push_back("a contact reached more zones than the flood holds; reduce `reach`");
-  if (dropped & kDroppedReleases) sentences.push_back("more dents were recovering at once than the card's list holds; use --field cpu");
-  if (dropped & kDroppedStale) sentences.push_back("a device's pose came too late and its force went to zero; check its connection");
+  if (dropped & kDroppedReleases)
+    sentences.push_back("more dents were recovering at once than the card's list holds; use --field cpu");
+  if (dropped & kDroppedStale)
+    sentences.push_back("a device's pose came too late and its force went to zero; check its connection");
   return sentences;
 }
 

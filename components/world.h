@@ -25,12 +25,12 @@ namespace pliant {
 
 // What a step had to leave out, as bits; each says its cure.
 enum DroppedBit : std::uint32_t {
-  kDroppedContacts = 1,       // more probes on one object than kMaxContactsPerObject: use fewer, or split the object
-  kDroppedNonFinite = 2,      // a pose or force was not a number and was replaced by zero: check the device
-  kDroppedTravel = 4,         // a probe moved farther in a tick than the level is large: check the device's units
-  kDroppedFlood = 8,          // a contact reached more zones than the flood holds: reduce `reach`
-  kDroppedReleases = 32,      // more dents were recovering at once than the card's list holds: the oldest vanished
-  kDroppedStale = 16,         // a device's pose came too late and its force went to zero: check its connection
+  kDroppedContacts = 1,   // more probes on one object than kMaxContactsPerObject: use fewer, or split the object
+  kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check the device
+  kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
+  kDroppedFlood = 8,      // a contact reached more zones than the flood holds: reduce `reach`
+  kDroppedReleases = 32,  // more dents were recovering at once than the card's list holds: the oldest vanished
+  kDroppedStale = 16,     // a device's pose came too late and its force went to zero: check its connection
 };
 
 struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
@@ -38,9 +38,9 @@ struct TouchState;  // systems/touch/touch_state.h: working memory of the touch 
 
 // Keys of PLIANT_simulation.
 struct Simulation {
-  double touch_rate = 1000.0;      // [Hz]
-  double soft_step = 1.0 / 60.0;   // [s]
-  dvec3 gravity{0, -9.81, 0};      // [m/s2]
+  double touch_rate = 1000.0;     // [Hz]
+  double soft_step = 1.0 / 60.0;  // [s]
+  dvec3 gravity{0, -9.81, 0};     // [m/s2]
 };
 
 // Where height fields live (systems/touch/field.h).
@@ -63,10 +63,11 @@ struct World {
   std::vector<Image> images;
   Environment environment;
   Simulation simulation;
-  FieldPlace field_place = FieldPlace::kProcessor;  // kCard: of every object whose parameters allow it; read by prepare_touch
-  std::uint32_t dropped = 0;              // DroppedBit
-  std::shared_ptr<TouchState> touch;      // null until prepare_touch
-  std::shared_ptr<MouseInput> mouse;      // null unless a window drives a probe
+  FieldPlace field_place =
+      FieldPlace::kProcessor;         // kCard: of every object whose parameters allow it; read by prepare_touch
+  std::uint32_t dropped = 0;          // DroppedBit
+  std::shared_ptr<TouchState> touch;  // null until prepare_touch
+  std::shared_ptr<MouseInput> mouse;  // null unless a window drives a probe
   std::unique_ptr<TripleBuffer<Snapshot>> snapshots;  // touch clock -> visual clock; null until prepare_touch
 };
 

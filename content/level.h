@@ -22,13 +22,13 @@ namespace pliant {
 // One primitive as triangles. Attribute arrays are empty or as long as `position`. Strips, fans, quantised, sparse and
 // Draco-compressed data are already resolved; nothing is welded yet.
 struct Primitive {
-  std::vector<vec3> position;            // [m] mesh frame
+  std::vector<vec3> position;  // [m] mesh frame
   std::vector<vec3> normal;
   std::vector<vec4> tangent;
   std::vector<vec2> uv;
-  std::vector<float> stiffness;          // _STIFFNESS
-  std::vector<float> friction;           // _FRICTION
-  std::vector<std::uint32_t> index;      // three per triangle
+  std::vector<float> stiffness;      // _STIFFNESS
+  std::vector<float> friction;       // _FRICTION
+  std::vector<std::uint32_t> index;  // three per triangle
   std::int32_t material = -1;
 };
 
@@ -42,8 +42,8 @@ struct LevelNode {
   std::int32_t parent = -1;
   std::vector<std::int32_t> children;
   LocalTransform local;
-  bool in_scene = true;                  // reached from the scene that is shown
-  std::int32_t mesh = -1;                // into Level::meshes
+  bool in_scene = true;    // reached from the scene that is shown
+  std::int32_t mesh = -1;  // into Level::meshes
   std::optional<Light> light;
   std::optional<Camera> camera;
   std::optional<Deformable> deformable;  // PLIANT_deformable
@@ -64,23 +64,24 @@ struct LevelEnvironment {  // PLIANT_environment
 struct SourceDocument;  // the parsed glTF, kept so that saving loses nothing
 
 struct Level {
-  std::string name;                      // file name without extension
+  std::string name;  // file name without extension
   std::filesystem::path path;
-  std::vector<LevelNode> nodes;          // parents stand before children
+  std::vector<LevelNode> nodes;  // parents stand before children
   std::vector<LevelMesh> meshes;
   std::vector<Material> materials;
   std::vector<Image> images;
   std::optional<LevelEnvironment> environment;
-  Simulation simulation;                 // PLIANT_simulation
-  std::vector<std::string> notes;        // what was read differently than a user might expect (skins, skipped points...)
+  Simulation simulation;           // PLIANT_simulation
+  std::vector<std::string> notes;  // what was read differently than a user might expect (skins, skipped points...)
   // The glTF it came from: while it is there, save_level keeps meshes, materials and pictures from it. Whoever changes
   // one of those resets it, and everything is then written from the Level alone.
   std::shared_ptr<SourceDocument> source;
 
-  bool has_pliant() const;               // any PLIANT_* extension; false: a bare mesh
+  bool has_pliant() const;  // any PLIANT_* extension; false: a bare mesh
 };
 
-// Reads .gltf, .glb (and, through Assimp, what convert reads). Every failure is one sentence with file and JSON pointer.
+// Reads .gltf, .glb (and, through Assimp, what convert reads). Every failure is one sentence with file and JSON
+// pointer.
 Result<Level> load_level(const std::filesystem::path& path);
 
 struct SaveOptions {

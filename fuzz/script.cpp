@@ -1,9 +1,10 @@
 // Scripts: whatever the text, a path whose rows are finite and ascending, or one sentence.
+#include "content/script.h"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-#include "content/script.h"
 #include "runtime/assert.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

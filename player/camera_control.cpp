@@ -6,10 +6,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kFollowTime = 0.08;    // [s] time constant of the way to what is asked for
-constexpr double kOrbitTurn = 3.6;      // [rad] over the height of the picture
-constexpr double kZoomStep = 0.87;      // [1] of the distance
-constexpr double kSteepest = 1.55;      // [rad] of elevation: straight down the horizon has no direction
+constexpr double kFollowTime = 0.08;  // [s] time constant of the way to what is asked for
+constexpr double kOrbitTurn = 3.6;    // [rad] over the height of the picture
+constexpr double kZoomStep = 0.87;    // [1] of the distance
+constexpr double kSteepest = 1.55;    // [rad] of elevation: straight down the horizon has no direction
 constexpr double kNearest = 0.05, kFarthestAway = 20.0;  // [1] of the scene's size
 
 }  // namespace
@@ -19,7 +19,8 @@ Ray ray_through(const Viewpoint& view, double x, double y, int width, int height
   const dvec3 right = normalize(cross(forward, view.up)), up = cross(right, forward);
   const double slope = std::tan(0.5 * static_cast<double>(view.yfov));
   const double aspect = static_cast<double>(width) / height;
-  return {view.eye, normalize(forward + (2 * x / width - 1) * aspect * slope * right + (1 - 2 * y / height) * slope * up)};
+  return {view.eye,
+          normalize(forward + (2 * x / width - 1) * aspect * slope * right + (1 - 2 * y / height) * slope * up)};
 }
 
 CameraControl::CameraControl(const Viewpoint& home, const Box& scene) : scene_(scene), yfov_(home.yfov) {
@@ -60,7 +61,9 @@ void CameraControl::frame() {
   goal_.distance = 0.5 * size_ / std::sin(0.5 * static_cast<double>(yfov_));
 }
 
-void CameraControl::home() { goal_ = home_; }
+void CameraControl::home() {
+  goal_ = home_;
+}
 
 void CameraControl::update(double dt) {
   const double share = 1 - std::exp(-std::max(dt, 0.0) / kFollowTime);
@@ -76,6 +79,8 @@ Viewpoint CameraControl::at(const Pose& pose, float yfov) {
   return {.eye = pose.target + pose.distance * back, .target = pose.target, .up = dvec3(0, 1, 0), .yfov = yfov};
 }
 
-Viewpoint CameraControl::viewpoint() const { return at(shown_, yfov_); }
+Viewpoint CameraControl::viewpoint() const {
+  return at(shown_, yfov_);
+}
 
 }  // namespace pliant

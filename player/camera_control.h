@@ -8,25 +8,26 @@ namespace pliant {
 
 // From the eye through a pixel.
 struct Ray {
-  dvec3 from{0};           // [m] world
-  dvec3 along{0, 0, -1};   // [1] unit
+  dvec3 from{0};          // [m] world
+  dvec3 along{0, 0, -1};  // [1] unit
 };
 // Pixels count from the upper left corner.
 Ray ray_through(const Viewpoint& view, double x, double y, int width, int height);
 
 class CameraControl {
  public:
-  // Begins at `home`; `scene` [m] world is what frame() shows. The horizon stays level, so a rolled `home` is straightened.
+  // Begins at `home`; `scene` [m] world is what frame() shows. The horizon stays level, so a rolled `home` is
+  // straightened.
   CameraControl(const Viewpoint& home, const Box& scene);
 
   // `dx`, `dy` [pixel] of a picture `height` pixels high.
   void orbit(double dx, double dy, int height);
   void pan(double dx, double dy, int height);
-  void zoom(double steps);  // of a wheel, > 0: nearer
+  void zoom(double steps);                           // of a wheel, > 0: nearer
   void look_from(double azimuth, double elevation);  // [rad]
-  void frame();             // all of the scene, from where it is looked at now
+  void frame();                                      // all of the scene, from where it is looked at now
   void home();
-  void update(double dt);   // [s] since the last call
+  void update(double dt);  // [s] since the last call
 
   Viewpoint viewpoint() const;
 
@@ -40,7 +41,7 @@ class CameraControl {
   static Viewpoint at(const Pose& pose, float yfov);
 
   Box scene_;
-  float yfov_;  // [rad]
+  float yfov_;   // [rad]
   double size_;  // [m] of the scene
   Pose home_, goal_, shown_;
 };

@@ -55,7 +55,9 @@ void add_run(CLI::App& app, RunOptions& run) {
   verb->add_option("--out", run.out, "folder for what is written; default: out/<level name>");
   CLI::Option* frames =
       verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: none")->check(within(0, 9999));
-  verb->add_option("--fps", run.fps, "pictures per simulated second instead")->check(within(1e-3, 1000))->excludes(frames);
+  verb->add_option("--fps", run.fps, "pictures per simulated second instead")
+      ->check(within(1e-3, 1000))
+      ->excludes(frames);
   verb->add_option_function<std::string>(
       "--size",
       [&run](const std::string& text) {
@@ -92,7 +94,8 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
   verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
   verb->add_option("--unit", conversion.unit, "what one unit of the input is: m, cm, mm")
       ->check(CLI::IsMember({"m", "cm", "mm"}));
-  verb->footer("Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
+  verb->footer(
+      "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
 
   verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
   verb->add_option("level", validated, "level")->required();

@@ -25,7 +25,9 @@ std::string lower_extension(const fs::path& file) {
 }
 
 // Metres for one unit of the input.
-float metres(const std::string& unit) { return unit == "mm" ? 1e-3f : unit == "cm" ? 1e-2f : 1.0f; }
+float metres(const std::string& unit) {
+  return unit == "mm" ? 1e-3f : unit == "cm" ? 1e-2f : 1.0f;
+}
 
 // Scales the whole scene about the world's origin: what the roots say, their children inherit.
 void scale_roots(Level& level, float factor) {

@@ -20,7 +20,8 @@ struct BuiltIn {
   const char* use;
 };
 constexpr BuiltIn kBuiltIn[] = {
-    {"script", "follows a CSV of times and poses", "--probe NAME=script:FILE.csv (header time_s,x,y,z; metres, world frame)"},
+    {"script", "follows a CSV of times and poses",
+     "--probe NAME=script:FILE.csv (header time_s,x,y,z; metres, world frame)"},
     {"orbit", "approaches, presses, slides and leaves, by itself", "--probe NAME=orbit"},
     {"mouse", "moves in the plane of the picture", "in a window: `pliant run LEVEL --probe finger=mouse`"},
     {"null", "stays where the level put it", "\"driver\": \"null\" in the level's PLIANT_haptic_device"},
@@ -96,7 +97,8 @@ std::vector<Found> find_devices() {
 
 std::string how_to_use(const Found& device) {
   std::string use = fmt::format("a driver `{}` for it is not yet built", device.driver);
-  if (!device.opens) use += "; besides, it may not be opened: give your user access to its /dev/hidraw node (udev rule with uaccess)";
+  if (!device.opens)
+    use += "; besides, it may not be opened: give your user access to its /dev/hidraw node (udev rule with uaccess)";
   return use;
 }
 
@@ -111,15 +113,21 @@ int devices(bool json) {
       out["built_in"].push_back({{"name", source.name}, {"what", source.what}, {"use", source.use}});
     out["found"] = nlohmann::ordered_json::array();
     for (const Found& device : found)
-      out["found"].push_back({{"id", device.id}, {"driver", device.driver}, {"what", device.what},
-                              {"product", device.product}, {"opens", device.opens}, {"use", how_to_use(device)}});
+      out["found"].push_back({{"id", device.id},
+                              {"driver", device.driver},
+                              {"what", device.what},
+                              {"product", device.product},
+                              {"opens", device.opens},
+                              {"use", how_to_use(device)}});
     fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
   fmt::print("Built in:\n");
-  for (const BuiltIn& source : kBuiltIn) fmt::print("  {:<8} {}\n           {}\n", source.name, source.what, source.use);
+  for (const BuiltIn& source : kBuiltIn)
+    fmt::print("  {:<8} {}\n           {}\n", source.name, source.what, source.use);
   fmt::print("\nFound on this machine:\n");
-  if (found.empty()) fmt::print("  no known haptic or pointing device (plugged in, switched on, passed through to this machine?)\n");
+  if (found.empty())
+    fmt::print("  no known haptic or pointing device (plugged in, switched on, passed through to this machine?)\n");
   for (const Found& device : found)
     fmt::print("  {} {}\n           {}\n           {}\n", device.id, device.product, device.what, how_to_use(device));
   return 0;

@@ -23,6 +23,8 @@ int fail(ExitStatus status, const Error& error) {
   return status;
 }
 
-void note(const std::string& sentence) { std::fprintf(stderr, "pliant: note: %s\n", one_line(sentence).c_str()); }
+void note(const std::string& sentence) {
+  std::fprintf(stderr, "pliant: note: %s\n", one_line(sentence).c_str());
+}
 
 }  // namespace pliant

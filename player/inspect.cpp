@@ -76,8 +76,10 @@ std::vector<std::string> problems(const ObjectReport& object) {
   const MeshReport& r = object.report;
   add(r.degenerate_triangles, "degenerate triangle", "degenerate triangles", "dropped");
   add(r.duplicate_triangles, "duplicate triangle", "duplicate triangles", "dropped");
-  add(r.border_edges, "border edge", "border edges", "the surface is open there: it can be touched, but does not enclose a volume");
-  add(r.non_manifold_edges, "non-manifold edge", "non-manifold edges", "more than two triangles, or two of opposite orientation, meet there");
+  add(r.border_edges, "border edge", "border edges",
+      "the surface is open there: it can be touched, but does not enclose a volume");
+  add(r.non_manifold_edges, "non-manifold edge", "non-manifold edges",
+      "more than two triangles, or two of opposite orientation, meet there");
   if (r.made_normals) list.push_back("no normals in the file; made from the faces");
   return list;
 }
@@ -86,8 +88,11 @@ std::string unit_hint(const Box& box) {
   const float diagonal = box.diagonal();
   if (box.empty()) return {};
   if (diagonal > kLargest)
-    return fmt::format("the diagonal is {:.4g} m: is the file in millimetres or centimetres? `pliant convert IN OUT --unit mm`", diagonal);
-  if (diagonal < kSmallest) return fmt::format("the diagonal is {:.4g} m: is the file in another unit than metres?", diagonal);
+    return fmt::format(
+        "the diagonal is {:.4g} m: is the file in millimetres or centimetres? `pliant convert IN OUT --unit mm`",
+        diagonal);
+  if (diagonal < kSmallest)
+    return fmt::format("the diagonal is {:.4g} m: is the file in another unit than metres?", diagonal);
   return {};
 }
 
@@ -108,16 +113,22 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
     triangles += object.file_triangles;
     vertices += object.file_vertices;
     touchable = touchable || object.refused.empty();
-    list.push_back({{"name", object.name}, {"deformable", object.deformable},
-                    {"file_vertices", object.file_vertices}, {"file_triangles", object.file_triangles},
-                    {"vertices", object.mesh.vertex_count}, {"triangles", object.mesh.triangles.size()},
-                    {"zones", object.mesh.zone_count()}, {"closed", object.mesh.closed},
-                    {"mean_edge_m", object.mesh.mean_edge}, {"welded_vertices", object.report.welded_vertices},
+    list.push_back({{"name", object.name},
+                    {"deformable", object.deformable},
+                    {"file_vertices", object.file_vertices},
+                    {"file_triangles", object.file_triangles},
+                    {"vertices", object.mesh.vertex_count},
+                    {"triangles", object.mesh.triangles.size()},
+                    {"zones", object.mesh.zone_count()},
+                    {"closed", object.mesh.closed},
+                    {"mean_edge_m", object.mesh.mean_edge},
+                    {"welded_vertices", object.report.welded_vertices},
                     {"degenerate_triangles", object.report.degenerate_triangles},
                     {"duplicate_triangles", object.report.duplicate_triangles},
                     {"border_edges", object.report.border_edges},
                     {"non_manifold_edges", object.report.non_manifold_edges},
-                    {"bounds_m", to_json(object.box)}, {"problems", problems(object)}});
+                    {"bounds_m", to_json(object.box)},
+                    {"problems", problems(object)}});
   }
   std::vector<std::string> probes, devices;
   std::set<std::string> extensions;
@@ -160,9 +171,10 @@ std::string join(const Json& list) {
 
 void print(const Json& json, const Box& box) {
   fmt::print("{}\n", json["file"].get<std::string>());
-  fmt::print("  {} nodes, {} meshes, {} triangles, {} vertices, {} materials, {} images\n", json["nodes"].get<std::size_t>(),
-             json["meshes"].get<std::size_t>(), json["triangles"].get<std::size_t>(), json["vertices"].get<std::size_t>(),
-             json["materials"].get<std::size_t>(), json["images"].get<std::size_t>());
+  fmt::print("  {} nodes, {} meshes, {} triangles, {} vertices, {} materials, {} images\n",
+             json["nodes"].get<std::size_t>(), json["meshes"].get<std::size_t>(), json["triangles"].get<std::size_t>(),
+             json["vertices"].get<std::size_t>(), json["materials"].get<std::size_t>(),
+             json["images"].get<std::size_t>());
   fmt::print("  extensions: {}\n  probes: {}\n  devices: {}\n", join(json["extensions"]), join(json["probes"]),
              join(json["devices"]));
   if (!box.empty())
@@ -170,10 +182,11 @@ void print(const Json& json, const Box& box) {
                box.size().z, box.center().x, box.center().y, box.center().z);
   if (const std::string hint = json["unit_hint"]; !hint.empty()) fmt::print("  unit: {}\n", hint);
   for (const Json& object : json["objects"]) {
-    fmt::print("  object {}: {} vertices (of {}), {} triangles (of {}), {} zones, {}{}\n", object["name"].get<std::string>(),
-               object["vertices"].get<std::size_t>(), object["file_vertices"].get<std::size_t>(),
-               object["triangles"].get<std::size_t>(), object["file_triangles"].get<std::size_t>(),
-               object["zones"].get<std::size_t>(), object["closed"].get<bool>() ? "closed" : "open",
+    fmt::print("  object {}: {} vertices (of {}), {} triangles (of {}), {} zones, {}{}\n",
+               object["name"].get<std::string>(), object["vertices"].get<std::size_t>(),
+               object["file_vertices"].get<std::size_t>(), object["triangles"].get<std::size_t>(),
+               object["file_triangles"].get<std::size_t>(), object["zones"].get<std::size_t>(),
+               object["closed"].get<bool>() ? "closed" : "open",
                object["deformable"].get<bool>() ? ", deformable" : "");
     for (const Json& problem : object["problems"]) fmt::print("    {}\n", problem.get<std::string>());
   }

@@ -28,6 +28,8 @@ Interrupt::~Interrupt() {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-bool Interrupt::requested() const { return g_requested; }
+bool Interrupt::requested() const {
+  return g_requested;
+}
 
 }  // namespace pliant

@@ -8,8 +8,7 @@
 namespace pliant {
 namespace {
 
-constexpr const char* kColumns =
-    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft\n";
+constexpr const char* kColumns = "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft\n";
 
 // RFC 4180: names come from files and may hold commas, quotes and line ends.
 std::string csv_text(const std::string& name) {
@@ -28,7 +27,9 @@ std::string name_of(const World& world, Entity entity) {
 }
 
 // Nine digits: exact for a float, and 1e-9 relative for what is kept in double. Adding zero turns -0 into 0.
-void put(std::string& line, double value) { fmt::format_to(std::back_inserter(line), ",{:.9g}", value + 0.0); }
+void put(std::string& line, double value) {
+  fmt::format_to(std::back_inserter(line), ",{:.9g}", value + 0.0);
+}
 void put(std::string& line, const dvec3& v) {
   put(line, v.x);
   put(line, v.y);

@@ -30,9 +30,9 @@ class Keeper {
                                const std::vector<std::string>& sources, const std::filesystem::path& csv);
   void record_to(RecordingWriter writer) { recording_.emplace(std::move(writer)); }
 
-  void keep(Journal& journal);  // all rows that wait
+  void keep(Journal& journal);                                  // all rows that wait
   const std::vector<TickRow>& latest() const { return rows_; }  // what the last keep() took
-  Status finish();              // closes forces.csv and the recording
+  Status finish();                                              // closes forces.csv and the recording
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
   const std::vector<Trace>& traces() const { return traces_; }
@@ -55,7 +55,7 @@ class Keeper {
   std::vector<std::string> names_;    // of the probes, quoted for CSV
   std::vector<std::string> objects_;  // by entity index, quoted
   std::optional<RecordingWriter> recording_;
-  std::uint64_t pending_tick_ = 0;     // whose poses are being gathered: only whole ticks are recorded
+  std::uint64_t pending_tick_ = 0;  // whose poses are being gathered: only whole ticks are recorded
   std::vector<RecordedPose> pending_;
 };
 

@@ -1,3 +1,5 @@
 #include "player/command_line.h"
 
-int main(int argc, char** argv) { return pliant::command_line(argc, argv); }
+int main(int argc, char** argv) {
+  return pliant::command_line(argc, argv);
+}

@@ -8,7 +8,9 @@ namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_frame(const std::string& name) { return name.starts_with("frame-") && name.ends_with(".png"); }
+bool is_frame(const std::string& name) {
+  return name.starts_with("frame-") && name.ends_with(".png");
+}
 
 }  // namespace
 

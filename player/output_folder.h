@@ -1,5 +1,5 @@
-// Files appear whole: everything is written into a hidden folder beside its place and moved there by commit(). Without a
-// commit nothing remains, not even the folders that had to be made.
+// Files appear whole: everything is written into a hidden folder beside its place and moved there by commit(). Without
+// a commit nothing remains, not even the folders that had to be made.
 #pragma once
 
 #include <filesystem>

@@ -1,11 +1,11 @@
 #include "player/overlay.h"
 
+#include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <backends/imgui_impl_opengl3.h>
 #include <cmath>
 #include <filesystem>
 
@@ -71,7 +71,7 @@ float round_up(float value) {
   return 10 * decade;
 }
 
-void curve(const ProbeHistory& history, float ProbeHistory::Bin::* value, float top, ImVec2 at, ImVec2 size, ImU32 color,
+void curve(const ProbeHistory& history, float ProbeHistory::Bin::*value, float top, ImVec2 at, ImVec2 size, ImU32 color,
            float thickness) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   std::vector<ImVec2> points;
@@ -106,9 +106,9 @@ void plot(const ProbeLine& probe, float scale) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImVec2 dot = ImGui::GetCursorScreenPos();
   const auto shown = [](float linear) { return std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f); };
-  list->AddCircleFilled({dot.x + 5 * scale, dot.y + 0.5f * ImGui::GetTextLineHeight()}, 5 * scale,
-                        ImGui::ColorConvertFloat4ToU32(
-                            {shown(probe.color.x), shown(probe.color.y), shown(probe.color.z), 1.0f}));
+  list->AddCircleFilled(
+      {dot.x + 5 * scale, dot.y + 0.5f * ImGui::GetTextLineHeight()}, 5 * scale,
+      ImGui::ColorConvertFloat4ToU32({shown(probe.color.x), shown(probe.color.y), shown(probe.color.z), 1.0f}));
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 17 * scale);
   ImGui::Text("%s", probe.name.c_str());
   ImGui::SameLine();
@@ -116,7 +116,8 @@ void plot(const ProbeLine& probe, float scale) {
   ImGui::TextColored(kDim, "%s", source.c_str());
 
   const ProbeHistory::Bin& now = probe.history.newest();
-  const std::string text_force = fmt::format("{:.2f} N", now.force), text_depth = fmt::format("{:.1f} mm", now.depth * 1e3f);
+  const std::string text_force = fmt::format("{:.2f} N", now.force),
+                    text_depth = fmt::format("{:.1f} mm", now.depth * 1e3f);
   const float wide = ImGui::CalcTextSize("00.0 mm").x, right = ImGui::GetWindowContentRegionMax().x;
   ImGui::SameLine(right - 2 * wide - 6 * scale);
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", text_force.c_str());
@@ -135,8 +136,8 @@ void plot(const ProbeLine& probe, float scale) {
   curve(probe.history, &ProbeHistory::Bin::force, force, at, size, kForceColor, 1.5f * scale);
   const std::string top = fmt::format("{:g} N  {:g} mm", force, depth * 1e3f);
   ImGui::SetWindowFontScale(0.8f);
-  list->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + 5 * scale, at.y + 2 * scale}, IM_COL32(160, 170, 180, 190),
-                top.c_str());
+  list->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + 5 * scale, at.y + 2 * scale},
+                IM_COL32(160, 170, 180, 190), top.c_str());
   ImGui::SetWindowFontScale(1.0f);
   ImGui::Dummy(size);
 }
@@ -170,7 +171,8 @@ void draw_message(const OverlayState& state, float scale) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoInputs);
   ImGui::PushTextWrapPos(0.75f * size.x);
-  ImGui::TextColored(state.message_is_error ? kBad : ImGui::GetStyle().Colors[ImGuiCol_Text], "%s", state.message.c_str());
+  ImGui::TextColored(state.message_is_error ? kBad : ImGui::GetStyle().Colors[ImGuiCol_Text], "%s",
+                     state.message.c_str());
   ImGui::PopTextWrapPos();
   ImGui::End();
 }
@@ -227,7 +229,9 @@ Overlay::~Overlay() {
   ImGui::DestroyContext();
 }
 
-bool Overlay::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
+bool Overlay::wants_mouse() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
 
 void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, float tint) {
   ImGui::SetNextWindowPos({12 * scale_, 12 * scale_}, ImGuiCond_Always);

@@ -51,13 +51,13 @@ struct OverlayState {
   std::uint64_t upload_bytes = 0;  // of the last frame
   std::uint64_t awake_vertices = 0;
   bool paused = false;
-  std::string message;             // a sentence for a while; empty: none
+  std::string message;  // a sentence for a while; empty: none
   bool message_is_error = false;
   std::vector<ProbeLine> probes;
   // The cursor, where a probe is driven by the mouse. [pixel]
   bool cursor = false, pressing = false;
   double cursor_x = 0, cursor_y = 0;
-  double cursor_force = 0;         // [N]
+  double cursor_force = 0;  // [N]
 };
 
 // The mouse as ImGui sees it.
@@ -79,8 +79,8 @@ class Overlay {
   // The mouse is over a panel: it is not for the scene.
   bool wants_mouse() const;
   // Draws over framebuffer 0. Switches change `options`; `tint` [m] is what the heights' colours then mean.
-  void draw(const OverlayState& state, RenderOptions& options, float tint, const OverlayMouse& mouse, int width, int height,
-            double dt);
+  void draw(const OverlayState& state, RenderOptions& options, float tint, const OverlayMouse& mouse, int width,
+            int height, double dt);
 
  private:
   void draw_panel(const OverlayState& state, RenderOptions& options, float tint);

@@ -15,8 +15,8 @@ struct Face {
   dvec3 middle, right, down;
 };
 constexpr dvec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
-const Face kFaces[6] = {{1, 0, kY, kX, kZ},    {0, 1, -kX, kZ, -kY}, {1, 1, kZ, kX, -kY},
-                        {2, 1, kX, -kZ, -kY},  {3, 1, -kZ, -kX, -kY}, {1, 2, -kY, kX, -kZ}};
+const Face kFaces[6] = {{1, 0, kY, kX, kZ},   {0, 1, -kX, kZ, -kY},  {1, 1, kZ, kX, -kY},
+                        {2, 1, kX, -kZ, -kY}, {3, 1, -kZ, -kX, -kY}, {1, 2, -kY, kX, -kZ}};
 
 const float* pixel(const Panorama& panorama, std::int64_t x, std::int64_t y) {
   const std::int64_t w = panorama.width, h = panorama.height;
@@ -40,7 +40,9 @@ dvec3 sample(const Panorama& panorama, dvec3 direction) {
   return sum;
 }
 
-double luminance(dvec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+double luminance(dvec3 c) {
+  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
 
 std::uint8_t encode(double linear) {
   const double x = linear / (1.0 + linear);

@@ -9,8 +9,12 @@
 
 #ifdef PLIANT_SANITIZED
 // Fontconfig keeps its configuration, on purpose, until the program ends; the leak sanitizer asks us about it.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
-extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libfontconfig\n";
+}
+extern "C" const char* __lsan_default_options() {
+  return "print_suppressions=0";
+}
 #endif
 
 namespace pliant {
@@ -29,8 +33,8 @@ constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
 constexpr double kLeft = 84, kRight = 28, kBetween = 100, kAbove = 40, kBelow = 52;
 
 struct Panel {
-  double x, y, w, h;           // [pixel] of the plotting area
-  double seconds, high;        // ranges: [0, seconds] and [0, high]
+  double x, y, w, h;     // [pixel] of the plotting area
+  double seconds, high;  // ranges: [0, seconds] and [0, high]
   double px(double t) const { return x + w * t / seconds; }
   double py(double v) const { return y + h - h * v / high; }
 };
@@ -181,8 +185,13 @@ double axis_high(double value) {
 void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double dt) {
   const double w = (kWidth - kLeft - kRight - kBetween) / 2, h = kRow - kAbove - kBelow;
   Panel depth{kLeft, top + kAbove, w, h, seconds, axis_high(largest(*row.trace, &TraceColumn::depth) * 1e3)};
-  Panel force{kLeft + w + kBetween, top + kAbove, w, h, seconds,
-              axis_high(std::max(largest(*row.trace, &TraceColumn::normal), largest(*row.trace, &TraceColumn::tangential)))};
+  Panel force{
+      kLeft + w + kBetween,
+      top + kAbove,
+      w,
+      h,
+      seconds,
+      axis_high(std::max(largest(*row.trace, &TraceColumn::normal), largest(*row.trace, &TraceColumn::tangential)))};
   pen.color(kInk);
   const double name = pen.text(kLeft, top + 28, 18, 0, row.name, true);
   pen.text(kLeft + name + 14, top + 28, 14, 0, row.source);

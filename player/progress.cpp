@@ -11,7 +11,9 @@ namespace {
 constexpr double kQuiet = 1.0;       // [s] before anything is said
 constexpr double kOnTerminal = 0.2;  // [s] between two updates there
 constexpr double kElsewhere = 5.0;   // [s]
-double seconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
+double seconds(std::uint64_t nanoseconds) {
+  return static_cast<double>(nanoseconds) * 1e-9;
+}
 }  // namespace
 
 Progress::Progress(std::string what)

@@ -107,7 +107,8 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
                             &pose.rotation.y, &pose.rotation.z})
         *value = in.get<double>();
       pose.ready = in.get<std::uint8_t>() == 1;
-      if (!sound(pose)) return Error{name, "has a pose that is no pose at tick " + std::to_string(index) + "; record it again"};
+      if (!sound(pose))
+        return Error{name, "has a pose that is no pose at tick " + std::to_string(index) + "; record it again"};
       recording.poses.push_back(pose);
     }
   }
@@ -163,7 +164,9 @@ void RecordingWriter::put_text(const std::string& text) {
   out_.write(text.data(), static_cast<std::streamsize>(text.size()));
 }
 
-void RecordingWriter::tick(std::uint64_t index) { put(index); }
+void RecordingWriter::tick(std::uint64_t index) {
+  put(index);
+}
 
 void RecordingWriter::pose(const RecordedPose& pose) {
   for (double value : {pose.position.x, pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x,

@@ -1,8 +1,8 @@
 // A recording: the pose of every probe at every tick, so that a run can be repeated to the bit on the same level.
 //
-// The file, little-endian: 8 bytes "pliantrc", u32 version, u32 probes, f64 rate [Hz], level name, a name per probe (u32
-// length and bytes each); then per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the
-// device was ready); last a u64 hash of all before it.
+// The file, little-endian: 8 bytes "pliantrc", u32 version, u32 probes, f64 rate [Hz], level name, a name per probe
+// (u32 length and bytes each); then per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1:
+// the device was ready); last a u64 hash of all before it.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ class RecordingWriter {
   static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header);
   RecordingWriter(RecordingWriter&&) = default;
   ~RecordingWriter();
-  void tick(std::uint64_t index);         // then one pose for each probe, in order
+  void tick(std::uint64_t index);  // then one pose for each probe, in order
   void pose(const RecordedPose& pose);
   Status finish();
 

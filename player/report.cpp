@@ -92,8 +92,8 @@ void print_summary(const RunFigures& figures, const std::filesystem::path& out) 
              figures.world.name, figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5),
              tick.percentile_us(0.99), figures.overruns, figures.hash);
   for (const ProbeSummary& probe : figures.keeper.summaries())
-    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm deep and {:.2f} N, net work {:.3g} mJ\n", probe.name,
-               probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
+    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm deep and {:.2f} N, net work {:.3g} mJ\n",
+               probe.name, probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
                probe.max_force, probe.net_work * 1e3);
   fmt::print("{}: report.json, forces.csv, forces.png", out.string());
   if (figures.pictures > 0) fmt::print(", {} pictures", figures.pictures);

@@ -21,9 +21,9 @@ struct RunFigures {
   const Keeper& keeper;
   const FrameFigures* frames = nullptr;  // of drawing; null: nothing was drawn
   std::size_t pictures = 0;              // that were written
-  std::string mode;                  // lockstep, realtime
-  std::string field;                 // cpu
-  double rate = 1000.0;              // [Hz]
+  std::string mode;                      // lockstep, realtime
+  std::string field;                     // cpu
+  double rate = 1000.0;                  // [Hz]
   std::uint64_t overruns = 0;
   std::vector<std::string> dropped;  // sentences
   std::string hash;                  // hex

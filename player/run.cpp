@@ -30,12 +30,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kDefaultSeconds = 4.0;    // [s] without a script
-constexpr double kLongestDefault = 60.0;   // [s] of a script, unless --seconds asks for more
-constexpr double kJournalSeconds = 8.0;    // [s] of rows that may wait while a picture is drawn and written
+constexpr double kDefaultSeconds = 4.0;   // [s] without a script
+constexpr double kLongestDefault = 60.0;  // [s] of a script, unless --seconds asks for more
+constexpr double kJournalSeconds = 8.0;   // [s] of rows that may wait while a picture is drawn and written
 constexpr int kDefaultFrames = 12;
 constexpr int kWindowWidth = 1280, kWindowHeight = 720;  // [pixel]
-constexpr double kEndless = 1e7;           // [s] a window stays open until it is closed
+constexpr double kEndless = 1e7;                         // [s] a window stays open until it is closed
 
 // What could not be done, and whether the arguments or the input are to blame.
 struct Failure {
@@ -44,8 +44,12 @@ struct Failure {
 };
 using Outcome = std::optional<Failure>;
 
-Outcome wrong_arguments(Error error) { return Failure{kUsage, std::move(error)}; }
-Outcome failed(Error error) { return Failure{kFailed, std::move(error)}; }
+Outcome wrong_arguments(Error error) {
+  return Failure{kUsage, std::move(error)};
+}
+Outcome failed(Error error) {
+  return Failure{kFailed, std::move(error)};
+}
 
 Outcome check(const RunOptions& options) {
   if (options.field == "gpu" && options.frames == 0)
@@ -93,7 +97,8 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
   return {};
 }
 
-// In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets one.
+// In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets
+// one.
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
     if (node.device && node.device->driver == Driver::kMouse) return {};
@@ -119,18 +124,20 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
   if (run.replay) {
     for (const std::string& name : run.replay->header.probes) {
       const auto has_name = [&](const LevelNode& node) { return node.name == name && node.probe.has_value(); };
-      if (std::none_of(level.nodes.begin(), level.nodes.end(), has_name)) added.push_back({name, Driver::kExternal, {}});
+      if (std::none_of(level.nodes.begin(), level.nodes.end(), has_name))
+        added.push_back({name, Driver::kExternal, {}});
     }
   } else if (bare && sources.empty()) {
-    say(run, "the file has no probe, so one named `probe` touches it on the path `orbit`; --probe NAME=SOURCE gives others");
+    say(run,
+        "the file has no probe, so one named `probe` touches it on the path `orbit`; --probe NAME=SOURCE gives others");
     sources = added = {{"probe", Driver::kOrbit, {}}};
   }
   if (const Status status = add_probes(level, added); !status) return wrong_arguments(status.error());
   return {};
 }
 
-// Where height fields live. `auto` goes by measured cost where there is a card and a display to refresh; lockstep stays on
-// the processor, so that the same input gives the same bits everywhere.
+// Where height fields live. `auto` goes by measured cost where there is a card and a display to refresh; lockstep stays
+// on the processor, so that the same input gives the same bits everywhere.
 FieldPlace choose_field(const RunOptions& options, bool windowed, const World& world) {
   if (options.field == "gpu") return FieldPlace::kCard;
   if (options.field == "cpu" || !windowed) return FieldPlace::kProcessor;
@@ -171,7 +178,8 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (run.replay) {
     if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
     if (run.replay->header.rate != run.world.simulation.touch_rate)
-      return wrong_arguments({"--rate", fmt::format("the recording was made at {} Hz; leave it out", run.replay->header.rate)});
+      return wrong_arguments(
+          {"--rate", fmt::format("the recording was made at {} Hz; leave it out", run.replay->header.rate)});
   }
   return {};
 }
@@ -190,7 +198,8 @@ double default_seconds(const World& world) {
 
 std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepared& run) {
   const double rate = run.world.simulation.touch_rate;
-  if (windowed) return static_cast<std::uint64_t>(std::llround((options.seconds > 0.0 ? options.seconds : kEndless) * rate));
+  if (windowed)
+    return static_cast<std::uint64_t>(std::llround((options.seconds > 0.0 ? options.seconds : kEndless) * rate));
   const bool all = run.replay && options.seconds <= 0.0;
   const double seconds = options.seconds > 0.0 ? options.seconds : default_seconds(run.world);
   const auto wanted = static_cast<std::uint64_t>(std::max<long long>(1, std::llround(seconds * rate)));
@@ -198,8 +207,8 @@ std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepar
   return all ? recorded : std::min(wanted, recorded);
 }
 
-// A window where there is a display, unless that was forbidden or what is asked for needs virtual time. Without one, only
-// an order to have one is a failure.
+// A window where there is a display, unless that was forbidden or what is asked for needs virtual time. Without one,
+// only an order to have one is a failure.
 Outcome open_window(const RunOptions& options, Shown& shown) {
   const bool possible = !options.headless && !options.lockstep && options.replay.empty();
   if (!options.window && (!possible || !Window::display_is_there())) {
@@ -211,7 +220,8 @@ Outcome open_window(const RunOptions& options, Shown& shown) {
     if (!script) return failed(script.error());
     shown.script = std::move(script).value();
   }
-  auto window = Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
+  auto window =
+      Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
   if (!window) {
     if (options.window) return failed(window.error());
     note(window.error().what + " (going on without a window)");
@@ -241,7 +251,8 @@ Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Fr
 Outcome write_reports(const RunFigures& figures, OutputFolder& out) {
   std::vector<PlotRow> rows;
   for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
-    rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source, &figures.keeper.traces()[i]});
+    rows.push_back(
+        {figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source, &figures.keeper.traces()[i]});
   const double dt = 1.0 / figures.rate;
   const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
   if (const Status plotted = plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds); !plotted)
@@ -324,7 +335,8 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
     sources.push_back(run.replay ? "replay:" + options.replay : describe_source(world, probe));
   auto keeper = Keeper::create(world, journal.probes(), sources, out->stage("forces.csv"));
   if (!keeper) return failed(keeper.error());
-  if (journal.probes().empty()) say(run, "the level has no probe, so nothing is touched; give one with --probe NAME=orbit");
+  if (journal.probes().empty())
+    say(run, "the level has no probe, so nothing is touched; give one with --probe NAME=orbit");
   if (!options.record.empty()) {
     RecordingHeader header{world.name, rate, {}};
     for (const ProbeSummary& probe : keeper->summaries()) header.probes.push_back(probe.name);
@@ -351,13 +363,23 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   release_devices(world);
   if (const Status kept = keeper->finish(); !kept) return failed(kept.error());
 
-  RunFigures figures{world, schedule, journal, *keeper, ran->drawn ? &*ran->drawn : nullptr, ran->pictures, ran->mode,
+  RunFigures figures{world,
+                     schedule,
+                     journal,
+                     *keeper,
+                     ran->drawn ? &*ran->drawn : nullptr,
+                     ran->pictures,
+                     ran->mode,
                      world.field_place == FieldPlace::kCard ? "gpu" : "cpu",
-                     rate, ran->overruns, explain_dropped(world.dropped), fmt::format("{:016x}", hash.value())};
+                     rate,
+                     ran->overruns,
+                     explain_dropped(world.dropped),
+                     fmt::format("{:016x}", hash.value())};
   if (journal.lost() > 0)
-    figures.dropped.push_back(fmt::format("{} rows of forces.csv were lost because writing fell behind: take fewer or "
-                                          "smaller pictures",
-                                          journal.lost()));
+    figures.dropped.push_back(
+        fmt::format("{} rows of forces.csv were lost because writing fell behind: take fewer or "
+                    "smaller pictures",
+                    journal.lost()));
   figures.dropped.insert(figures.dropped.end(), run.notes.begin(), run.notes.end());
   if (Outcome wrong = write_reports(figures, *out)) return wrong;
   print_summary(figures, options.out.empty() ? "out/" + world.name : options.out);

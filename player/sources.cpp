@@ -68,7 +68,8 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
       is_probe = is_probe || node.probe.has_value();
     }
     if (is_probe) continue;
-    if (taken) return Error{"--probe " + name, "the level has a node of that name that is no probe; choose another name"};
+    if (taken)
+      return Error{"--probe " + name, "the level has a node of that name that is no probe; choose another name"};
     LevelNode node;
     node.name = name;
     node.probe.emplace();
@@ -114,11 +115,16 @@ std::string describe_source(const World& world, Entity probe) {
   const HapticDevice* device = world.registry.find<HapticDevice>(world.registry.get<Probe>(probe).device);
   if (!device) return "null";
   switch (device->driver) {
-    case Driver::kScript: return "script:" + device->file;
-    case Driver::kOrbit: return "orbit";
-    case Driver::kMouse: return "mouse";
-    case Driver::kExternal: return "device:" + device->id;
-    case Driver::kNull: break;
+    case Driver::kScript:
+      return "script:" + device->file;
+    case Driver::kOrbit:
+      return "orbit";
+    case Driver::kMouse:
+      return "mouse";
+    case Driver::kExternal:
+      return "device:" + device->id;
+    case Driver::kNull:
+      break;
   }
   return "null";
 }

@@ -11,9 +11,9 @@
 namespace pliant {
 
 struct ProbeSource {
-  std::string name;           // of the probe
+  std::string name;  // of the probe
   Driver driver = Driver::kOrbit;
-  std::string file;           // of a script, relative to the working directory
+  std::string file;  // of a script, relative to the working directory
 };
 
 // NAME=script:FILE.csv, NAME=orbit or NAME=mouse. `device:ID` gets a sentence that says what it needs.

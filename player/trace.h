@@ -24,9 +24,9 @@ struct Range {
 };
 
 struct TraceColumn {
-  Range depth;                // [m]
-  Range normal, tangential;   // [N]
-  std::uint32_t ticks = 0;    // 0: nothing happened here (an overrun)
+  Range depth;               // [m]
+  Range normal, tangential;  // [N]
+  std::uint32_t ticks = 0;   // 0: nothing happened here (an overrun)
   bool contact = false;
 };
 

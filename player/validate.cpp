@@ -1,9 +1,10 @@
 // pliant validate: every finding of a level, each with its JSON pointer.
+#include "content/validate.h"
+
 #include <fmt/format.h>
 
 #include <string>
 
-#include "content/validate.h"
 #include "player/content_folder.h"
 #include "player/exit.h"
 #include "player/verbs.h"
@@ -13,9 +14,12 @@ namespace {
 
 const char* word(Severity severity) {
   switch (severity) {
-    case Severity::kError: return "error";
-    case Severity::kWarning: return "warning";
-    case Severity::kNote: break;
+    case Severity::kError:
+      return "error";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kNote:
+      break;
   }
   return "note";
 }
@@ -30,12 +34,13 @@ int validate(const std::string& argument) {
   for (const Finding& finding : findings) {
     errors += finding.severity == Severity::kError;
     warnings += finding.severity == Severity::kWarning;
-    fmt::print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity), finding.message);
+    fmt::print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity),
+               finding.message);
   }
   fmt::print("{}: {} errors, {} warnings\n", file->string(), errors, warnings);
   if (errors == 0) return kDone;
-  return fail(kFailed, {file->string(), fmt::format("{} error{}; see the finding{} above", errors, errors == 1 ? "" : "s",
-                                                    errors == 1 ? "" : "s")});
+  return fail(kFailed, {file->string(), fmt::format("{} error{}; see the finding{} above", errors,
+                                                    errors == 1 ? "" : "s", errors == 1 ? "" : "s")});
 }
 
 }  // namespace pliant

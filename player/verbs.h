@@ -14,17 +14,17 @@ struct RunOptions {
   double seconds = 0.0;             // [s] 0: as long as the longest script
   double rate = 0.0;                // [Hz] 0: the level's
   bool realtime = false;
-  bool lockstep = false;            // asked for, not only the default
+  bool lockstep = false;                  // asked for, not only the default
   bool window = false, headless = false;  // forced, forbidden; else a window where there is a display
   std::string field = "auto";
-  std::string out;                  // folder; empty: out/<level name>
-  int frames = -1;                  // -1: not said
-  double fps = 0.0;                 // [1/s] of simulated time; 0: not said
-  int width = 960, height = 540;    // [pixel]
-  bool sized = false;               // --size was given
-  std::string input;                // file of events for the window
+  std::string out;                // folder; empty: out/<level name>
+  int frames = -1;                // -1: not said
+  double fps = 0.0;               // [1/s] of simulated time; 0: not said
+  int width = 960, height = 540;  // [pixel]
+  bool sized = false;             // --size was given
+  std::string input;              // file of events for the window
   std::string record, replay;
-  unsigned threads = 0;             // 0: as many as the machine has
+  unsigned threads = 0;  // 0: as many as the machine has
 };
 int run(const RunOptions& options);
 

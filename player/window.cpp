@@ -10,7 +10,9 @@
 namespace pliant {
 namespace {
 
-Window& window_of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
+Window& window_of(GLFWwindow* handle) {
+  return *static_cast<Window*>(glfwGetWindowUserPointer(handle));
+}
 
 std::uint8_t modifiers_of(int mods) {
   return static_cast<std::uint8_t>((mods & GLFW_MOD_SHIFT ? kShift : 0) | (mods & GLFW_MOD_CONTROL ? kControl : 0) |
@@ -39,11 +41,14 @@ std::string reason() {
 
 }  // namespace
 
-bool Window::display_is_there() { return set("DISPLAY") || set("WAYLAND_DISPLAY"); }
+bool Window::display_is_there() {
+  return set("DISPLAY") || set("WAYLAND_DISPLAY");
+}
 
 Result<std::unique_ptr<Window>> Window::create(int width, int height) {
   if (!display_is_there())
-    return Error{"--window", "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set; set one, or use --headless"};
+    return Error{"--window",
+                 "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set; set one, or use --headless"};
   if (!glfwInit())
     return Error{"--window", "the display cannot be reached" + reason() + "; check DISPLAY, or use --headless"};
   std::unique_ptr<Window> window(new Window());
@@ -112,7 +117,9 @@ void Window::poll(std::vector<InputEvent>& events) {
   events_.clear();
 }
 
-void Window::present() { glfwSwapBuffers(handle_); }
+void Window::present() {
+  glfwSwapBuffers(handle_);
+}
 
 void Window::hide_cursor(bool hidden) {
   if (hidden == cursor_hidden_) return;

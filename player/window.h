@@ -27,8 +27,8 @@ class Window {
   void poll(std::vector<InputEvent>& events);  // appends what happened since
   void present();                              // shows what was drawn; waits for the display's next picture
   void hide_cursor(bool hidden);
-  int width() const;   // [pixel] of what is drawn into
-  int height() const;  // [pixel]
+  int width() const;    // [pixel] of what is drawn into
+  int height() const;   // [pixel]
   float scale() const;  // [1] of text, 1 on an ordinary display
 
  private:

@@ -39,13 +39,20 @@ std::optional<int> key_of(const std::string& name) {
 // The rest of the words are a button and modifiers.
 bool take_words(std::istringstream& words, InputEvent& event) {
   for (std::string word; words >> word;) {
-    if (word == "left") event.button = MouseButton::kLeft;
-    else if (word == "middle") event.button = MouseButton::kMiddle;
-    else if (word == "right") event.button = MouseButton::kRight;
-    else if (word == "shift") event.modifiers |= kShift;
-    else if (word == "control") event.modifiers |= kControl;
-    else if (word == "alt") event.modifiers |= kAlt;
-    else return false;
+    if (word == "left")
+      event.button = MouseButton::kLeft;
+    else if (word == "middle")
+      event.button = MouseButton::kMiddle;
+    else if (word == "right")
+      event.button = MouseButton::kRight;
+    else if (word == "shift")
+      event.modifiers |= kShift;
+    else if (word == "control")
+      event.modifiers |= kControl;
+    else if (word == "alt")
+      event.modifiers |= kAlt;
+    else
+      return false;
   }
   return true;
 }

@@ -24,9 +24,10 @@ struct InputEvent {
 };
 
 // Events from a file, for trying the window without a hand. Columns: time_s,event,args, where event and args are
-//   move X Y | press [BUTTON] [MODIFIER...] | release [BUTTON] | wheel CLICKS [MODIFIER...] | key NAME | drop FILE | close
-// BUTTON is left (default), middle or right; MODIFIER shift, control or alt; NAME a letter or digit, F1 to F12, Tab, Esc,
-// Space or Home. Times [s] ascend and count from the first picture.
+//   move X Y | press [BUTTON] [MODIFIER...] | release [BUTTON] | wheel CLICKS [MODIFIER...] | key NAME | drop FILE |
+//   close
+// BUTTON is left (default), middle or right; MODIFIER shift, control or alt; NAME a letter or digit, F1 to F12, Tab,
+// Esc, Space or Home. Times [s] ascend and count from the first picture.
 class InputScript {
  public:
   static Result<InputScript> load(const std::string& file);

@@ -216,8 +216,7 @@ Result<WindowFigures> WindowLoop::run() {
   keep();
   if (opening_.valid()) opening_.wait();
   s_.window.hide_cursor(false);
-  if (!touch_->has_priority())
-    note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
+  if (!touch_->has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
   figures_.overruns = touch_->overruns();
   if (!status) return status.error();
   return figures_;

@@ -1,4 +1,5 @@
-// The loop of a window: what it holds, what a hand does to it (window_loop_input.cpp), and a turn of it (window_loop.cpp).
+// The loop of a window: what it holds, what a hand does to it (window_loop_input.cpp), and a turn of it
+// (window_loop.cpp).
 #pragma once
 
 #include <future>
@@ -15,8 +16,8 @@ namespace pliant {
 // What a held button does.
 enum class Drag : std::uint8_t { kNone, kPress, kOrbit, kPan };
 
-// What one session holds while it runs. The touch clock owns the world meanwhile: this side reads only what never changes
-// (remembered before it started) and what comes by exchanges.
+// What one session holds while it runs. The touch clock owns the world meanwhile: this side reads only what never
+// changes (remembered before it started) and what comes by exchanges.
 class WindowLoop {
  public:
   WindowLoop(WindowSession& session, Renderer& renderer);
@@ -53,9 +54,9 @@ class WindowLoop {
   OverlayState state_;
   OverlayMouse mouse_;
   gpu::Framebuffer coarse_;  // the picture at less than full resolution
-  double share_ = 1.0;    // [1] of the window's resolution, each way
-  float tint_;            // [m] height that is coloured fully, where heights are
-  dvec3 probe_at_{0};     // [m] where the mouse has its probe
+  double share_ = 1.0;       // [1] of the window's resolution, each way
+  float tint_;               // [m] height that is coloured fully, where heights are
+  dvec3 probe_at_{0};        // [m] where the mouse has its probe
   std::optional<std::size_t> mouse_probe_;
   std::optional<TouchThread> touch_;
   Drag drag_ = Drag::kNone;

@@ -76,29 +76,67 @@ void WindowLoop::key(int key) {
       if (!overlay_.help) close_ = true;
       overlay_.help = false;
       break;
-    case GLFW_KEY_F1: overlay_.help = !overlay_.help; break;
-    case GLFW_KEY_TAB: overlay_.visible = !overlay_.visible; break;
-    case GLFW_KEY_F12: wants_screenshot_ = true; break;
-    case GLFW_KEY_F: camera_.frame(); break;
-    case GLFW_KEY_HOME: camera_.home(); break;
-    case GLFW_KEY_1: case GLFW_KEY_KP_1: camera_.look_from(0, 0); break;
-    case GLFW_KEY_3: case GLFW_KEY_KP_3: camera_.look_from(glm::half_pi<double>(), 0); break;
-    case GLFW_KEY_7: case GLFW_KEY_KP_7: camera_.look_from(0, glm::half_pi<double>()); break;
-    case GLFW_KEY_SPACE: touch_->pause(!touch_->paused()); break;
-    case GLFW_KEY_R: open(s_.level); break;
-    case GLFW_KEY_W: options.wireframe = !options.wireframe; break;
-    case GLFW_KEY_Z: options.zones = !options.zones; break;
-    case GLFW_KEY_H: options.tint_height = options.tint_height > 0 ? 0.0f : tint_; break;
-    case GLFW_KEY_C: options.contact_frames = !options.contact_frames; break;
-    case GLFW_KEY_A: options.forces = !options.forces; break;
-    case GLFW_KEY_S: options.shadows = !options.shadows; break;
-    default: break;
+    case GLFW_KEY_F1:
+      overlay_.help = !overlay_.help;
+      break;
+    case GLFW_KEY_TAB:
+      overlay_.visible = !overlay_.visible;
+      break;
+    case GLFW_KEY_F12:
+      wants_screenshot_ = true;
+      break;
+    case GLFW_KEY_F:
+      camera_.frame();
+      break;
+    case GLFW_KEY_HOME:
+      camera_.home();
+      break;
+    case GLFW_KEY_1:
+    case GLFW_KEY_KP_1:
+      camera_.look_from(0, 0);
+      break;
+    case GLFW_KEY_3:
+    case GLFW_KEY_KP_3:
+      camera_.look_from(glm::half_pi<double>(), 0);
+      break;
+    case GLFW_KEY_7:
+    case GLFW_KEY_KP_7:
+      camera_.look_from(0, glm::half_pi<double>());
+      break;
+    case GLFW_KEY_SPACE:
+      touch_->pause(!touch_->paused());
+      break;
+    case GLFW_KEY_R:
+      open(s_.level);
+      break;
+    case GLFW_KEY_W:
+      options.wireframe = !options.wireframe;
+      break;
+    case GLFW_KEY_Z:
+      options.zones = !options.zones;
+      break;
+    case GLFW_KEY_H:
+      options.tint_height = options.tint_height > 0 ? 0.0f : tint_;
+      break;
+    case GLFW_KEY_C:
+      options.contact_frames = !options.contact_frames;
+      break;
+    case GLFW_KEY_A:
+      options.forces = !options.forces;
+      break;
+    case GLFW_KEY_S:
+      options.shadows = !options.shadows;
+      break;
+    default:
+      break;
   }
 }
 
 void WindowLoop::handle(const InputEvent& event) {
   switch (event.kind) {
-    case InputKind::kMove: move(event); break;
+    case InputKind::kMove:
+      move(event);
+      break;
     case InputKind::kPress:
       mouse_.down[imgui_button(event.button)] = true;
       press(event);
@@ -110,10 +148,18 @@ void WindowLoop::handle(const InputEvent& event) {
         pointer_.hold(false);
       }
       break;
-    case InputKind::kWheel: wheel(event); break;
-    case InputKind::kKey: key(event.key); break;
-    case InputKind::kDrop: open(event.file); break;
-    case InputKind::kClose: close_ = true; break;
+    case InputKind::kWheel:
+      wheel(event);
+      break;
+    case InputKind::kKey:
+      key(event.key);
+      break;
+    case InputKind::kDrop:
+      open(event.file);
+      break;
+    case InputKind::kClose:
+      close_ = true;
+      break;
   }
 }
 

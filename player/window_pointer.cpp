@@ -8,12 +8,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kStep = 0.05;          // [1] of the reach: one click of the wheel
+constexpr double kStep = 0.05;  // [1] of the reach: one click of the wheel
 constexpr int kFirstSteps = 4, kMostSteps = 12;
-constexpr double kHover = 0.03;         // [1] of the scene's size: how high it hovers
-constexpr double kPressTime = 0.12;     // [s] time constant of the way in
-constexpr double kLiftTime = 0.05;      // [s] and out
-constexpr double kRejoinTime = 0.08;    // [s] of the cursor to the hand
+constexpr double kHover = 0.03;       // [1] of the scene's size: how high it hovers
+constexpr double kPressTime = 0.12;   // [s] time constant of the way in
+constexpr double kLiftTime = 0.05;    // [s] and out
+constexpr double kRejoinTime = 0.08;  // [s] of the cursor to the hand
 
 }  // namespace
 
@@ -58,10 +58,16 @@ Pointer::Pointer(const World& world, double radius) : radius_(radius), deep_(kFi
   reach_ = targets_.empty() ? 0.1 * size_ : targets_.front().reach;
 }
 
-void Pointer::deepen(int steps) { deep_ = std::clamp(deep_ + steps, 1, kMostSteps); }
-void Pointer::stand(int steps) { standing_ = std::clamp(standing_ + steps, 0, kMostSteps); }
+void Pointer::deepen(int steps) {
+  deep_ = std::clamp(deep_ + steps, 1, kMostSteps);
+}
+void Pointer::stand(int steps) {
+  standing_ = std::clamp(standing_ + steps, 0, kMostSteps);
+}
 
-double Pointer::depth_goal() const { return kStep * reach_ * (held_ ? std::max(deep_, standing_) : standing_); }
+double Pointer::depth_goal() const {
+  return kStep * reach_ * (held_ ? std::max(deep_, standing_) : standing_);
+}
 
 std::optional<Pointer::Hit> Pointer::cast(const Ray& ray) const {
   std::optional<Hit> best;

@@ -9,13 +9,15 @@
 
 namespace pliant {
 
-// Pseudo-haptics: while the probe presses, the cursor that is drawn goes slower than the hand, by a gain that falls with
-// the force, so that eyes feel a resistance that a mouse cannot give. Let go, it rejoins the hand.
+// Pseudo-haptics: while the probe presses, the cursor that is drawn goes slower than the hand, by a gain that falls
+// with the force, so that eyes feel a resistance that a mouse cannot give. Let go, it rejoins the hand.
 class HeavyCursor {
  public:
   static constexpr double kHalfForce = 1.0;  // [N] at which the cursor goes half as far as the hand
 
-  static double gain(double force) { return 1.0 / (1.0 + force / kHalfForce); }  // [1] drawn over true motion; force [N]
+  static double gain(double force) {
+    return 1.0 / (1.0 + force / kHalfForce);
+  }                                  // [1] drawn over true motion; force [N]
   void move_to(double x, double y);  // [pixel] where the hand is
   // `pressing`: the probe is pushed into something that answers with `force` [N].
   void update(bool pressing, double force, double dt);
@@ -29,16 +31,16 @@ class HeavyCursor {
 
 class Pointer {
  public:
-  // Remembers every deformable's mesh and place, so that pointing needs nothing that the touch clock writes. `radius` [m]
-  // of the probe. The world must outlive it and its deformables stay where they are.
+  // Remembers every deformable's mesh and place, so that pointing needs nothing that the touch clock writes. `radius`
+  // [m] of the probe. The world must outlive it and its deformables stay where they are.
   Pointer(const World& world, double radius);
 
   bool hits(const Ray& ray) const { return cast(ray).has_value(); }
   void hold(bool held) { held_ = held; }
-  void deepen(int steps);                 // while held: how deep this press and the next go
-  void stand(int steps);                  // without holding: the depth at which it stays
+  void deepen(int steps);  // while held: how deep this press and the next go
+  void stand(int steps);   // without holding: the depth at which it stays
   bool pressing() const { return held_ || standing_ > 0; }
-  double depth_goal() const;              // [m]
+  double depth_goal() const;                                      // [m]
   bool free() const { return !over_ || height_ > 0.2 * hover_; }  // clear of every surface
 
   // Where the probe should be now. `dt` [s] since the last call.
@@ -61,12 +63,12 @@ class Pointer {
 
   std::vector<Target> targets_;
   Box scene_;
-  double radius_, size_, hover_;  // [m]
-  double reach_ = 0;              // [m] of what was last pointed at
+  double radius_, size_, hover_;      // [m]
+  double reach_ = 0;                  // [m] of what was last pointed at
   bool held_ = false, over_ = false;  // over_: something is pointed at
-  int deep_, standing_ = 0;       // [1] steps
-  double height_;                 // [m] of the probe's lowest point above the surface at rest; < 0: pressed in
-  double away_;                   // [m] from the eye, where nothing is hit
+  int deep_, standing_ = 0;           // [1] steps
+  double height_;                     // [m] of the probe's lowest point above the surface at rest; < 0: pressed in
+  double away_;                       // [m] from the eye, where nothing is hit
 };
 
 }  // namespace pliant

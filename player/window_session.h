@@ -18,16 +18,16 @@ namespace pliant {
 
 struct WindowSession {
   Window& window;
-  InputScript& script;        // what a file says beside the hand; may be empty
-  World& world;               // prepared
+  InputScript& script;  // what a file says beside the hand; may be empty
+  World& world;         // prepared
   Schedule<World>& schedule;
   Journal& journal;
   Keeper& keeper;
   OutputFolder& out;
-  std::string level;          // what `R` opens again
-  double rate = 1000.0;       // [Hz]
-  std::uint64_t ticks = 0;    // at most
-  std::vector<std::uint64_t> frame_ticks;  // after which pictures are staged, ascending
+  std::string level;                          // what `R` opens again
+  double rate = 1000.0;                       // [Hz]
+  std::uint64_t ticks = 0;                    // at most
+  std::vector<std::uint64_t> frame_ticks;     // after which pictures are staged, ascending
   int frame_width = 960, frame_height = 540;  // [pixel] of those
   // Prepares another level on a thread of its own; nothing: it is ready, else why not.
   std::function<std::optional<Error>(const std::string& file)> open;

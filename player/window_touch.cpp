@@ -39,9 +39,9 @@ void TouchThread::run(double rate, std::uint64_t ticks) {
   granted_ = request_realtime_priority();
   RealtimeClock clock(rate);
   const auto tell_every = static_cast<std::uint64_t>(rate * kTellEvery) + 1;
-  std::uint64_t stood = 0, stood_overruns = 0;                     // periods that passed, and were missed, in pauses
-  std::uint64_t pause_index = 0, pause_overruns = 0;               // where the last pause began
-  std::uint64_t told_ns = now_ns(), told_count = 0, count = 0;     // for the rate
+  std::uint64_t stood = 0, stood_overruns = 0;                  // periods that passed, and were missed, in pauses
+  std::uint64_t pause_index = 0, pause_overruns = 0;            // where the last pause began
+  std::uint64_t told_ns = now_ns(), told_count = 0, count = 0;  // for the rate
   bool standing = false;
   Tick last{0, 1 / rate, 0};
   while (!stop_) {
@@ -68,8 +68,11 @@ void TouchThread::run(double rate, std::uint64_t ticks) {
     if (++count % tell_every == 0) {
       const std::uint64_t ns = now_ns();
       const Histogram& cost = schedule_.total();
-      figures_.write() = {last.time, static_cast<double>(count - told_count) * 1e9 / static_cast<double>(ns - told_ns),
-                          cost.percentile_us(0.5), cost.percentile_us(0.99), cost.max_us(),
+      figures_.write() = {last.time,
+                          static_cast<double>(count - told_count) * 1e9 / static_cast<double>(ns - told_ns),
+                          cost.percentile_us(0.5),
+                          cost.percentile_us(0.99),
+                          cost.max_us(),
                           clock.overruns() - stood_overruns};
       figures_.publish();
       told_ns = ns;

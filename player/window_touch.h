@@ -14,8 +14,8 @@
 namespace pliant {
 
 struct TouchFigures {
-  double time = 0.0;                     // [s] of the world
-  double rate = 0.0;                     // [Hz] ticks over the last tenth of a second
+  double time = 0.0;                       // [s] of the world
+  double rate = 0.0;                       // [Hz] ticks over the last tenth of a second
   double p50 = 0.0, p99 = 0.0, max = 0.0;  // [us] of a tick, since the start
   std::uint64_t overruns = 0;
 };

@@ -1,5 +1,5 @@
-// ASSERT: a promise the code makes to itself, checked in every build; a broken one stops the program and names the place.
-// VALIDATE: the same for checks that cost more than they guard; compiled only into debug and sanitizer builds.
+// ASSERT: a promise the code makes to itself, checked in every build; a broken one stops the program and names the
+// place. VALIDATE: the same for checks that cost more than they guard; compiled only into debug and sanitizer builds.
 #pragma once
 
 #include <cstdio>

@@ -7,8 +7,7 @@
 
 namespace pliant {
 
-RealtimeClock::RealtimeClock(double rate_hz)
-    : period_(static_cast<std::int64_t>(1e9 / rate_hz)) {}
+RealtimeClock::RealtimeClock(double rate_hz) : period_(static_cast<std::int64_t>(1e9 / rate_hz)) {}
 
 Tick RealtimeClock::next() {
   using clock = std::chrono::steady_clock;

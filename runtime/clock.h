@@ -30,7 +30,8 @@ class LockstepClock {
 };
 
 // Wall time, for the thread that owns the clock. An overrun is a period that had already passed when its tick was asked
-// for: it is counted, and the missed ticks are skipped (virtual time jumps with wall time, so the world never runs slow).
+// for: it is counted, and the missed ticks are skipped (virtual time jumps with wall time, so the world never runs
+// slow).
 class RealtimeClock {
  public:
   explicit RealtimeClock(double rate_hz);

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <cstring>
-#include <type_traits>
 #include <span>
+#include <type_traits>
 
 namespace pliant {
 

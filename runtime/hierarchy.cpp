@@ -69,7 +69,8 @@ bool Hierarchy::move(Entity entity, Entity parent) {
   ASSERT(parent == kNoEntity || new_parent >= 0);
   if (new_parent >= 0 && moving[static_cast<std::size_t>(new_parent)]) return false;
 
-  // What stays keeps its order and goes first; what moves follows, in its own order: parents still stand before children.
+  // What stays keeps its order and goes first; what moves follows, in its own order: parents still stand before
+  // children.
   std::vector<std::int32_t> moved_to(links_.size(), -1);
   std::vector<Link> ordered;
   for (const bool pass : {false, true}) {

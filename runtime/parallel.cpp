@@ -10,7 +10,9 @@ namespace {
 std::atomic<unsigned> g_thread_count{0};
 }
 
-void set_thread_count(unsigned count) { g_thread_count = count; }
+void set_thread_count(unsigned count) {
+  g_thread_count = count;
+}
 
 unsigned thread_count() {
   const unsigned wanted = g_thread_count;

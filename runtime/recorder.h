@@ -1,5 +1,6 @@
 // Rows written by one clock and kept by another: the writer pushes into a ring and never waits; whoever owns the file
-// drains the ring between ticks (lockstep) or from another thread (real time). A row that found the ring full is counted.
+// drains the ring between ticks (lockstep) or from another thread (real time). A row that found the ring full is
+// counted.
 #pragma once
 
 #include <cstdint>

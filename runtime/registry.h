@@ -27,7 +27,8 @@ class PoolBase {
   virtual void remove(Entity entity) = 0;
 
   bool contains(Entity entity) const {
-    return entity.index < sparse_.size() && sparse_[entity.index] != kAbsent && entities_[sparse_[entity.index]] == entity;
+    return entity.index < sparse_.size() && sparse_[entity.index] != kAbsent &&
+           entities_[sparse_[entity.index]] == entity;
   }
   std::size_t size() const { return entities_.size(); }
   Entity entity_at(std::size_t row) const { return entities_[row]; }

@@ -1,5 +1,5 @@
-// Errors at the border (files, devices, arguments): a value, or one sentence that says where, what is wrong and what to do.
-// Inside the house, broken promises are ASSERTs; nothing is thrown across a folder.
+// Errors at the border (files, devices, arguments): a value, or one sentence that says where, what is wrong and what to
+// do. Inside the house, broken promises are ASSERTs; nothing is thrown across a folder.
 #pragma once
 
 #include <string>

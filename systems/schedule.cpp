@@ -13,10 +13,10 @@ namespace pliant {
 // The touch tick (P1). Nothing in it allocates, locks, logs, throws or touches a file.
 std::vector<System<World>> touch_schedule() {
   return {
-      {"read_devices", read_devices},            // HapticDevice -> Probe pose and velocity
-      {"collision", collision},                  // Probe x Deformable -> Contact {triangle, barycentrics, normal, height}
-      {"force_field", force_field},              // Contacts -> amplitudes (small LCP); wakes the zones within reach
-      {"dynamics", dynamics},                    // awake zones: exact step, stream = targets + residual; rest sleeps
+      {"read_devices", read_devices},  // HapticDevice -> Probe pose and velocity
+      {"collision", collision},        // Probe x Deformable -> Contact {triangle, barycentrics, normal, height}
+      {"force_field", force_field},    // Contacts -> amplitudes (small LCP); wakes the zones within reach
+      {"dynamics", dynamics},          // awake zones: exact step, stream = targets + residual; rest sleeps
       {"friction_feedback", friction_feedback},  // local law at the virtual vertex, bristle friction -> Probe force
       {"write_devices", write_devices},          // safety: finite, clamp, slew, engage, passivity -> device
       {"publish", publish_paced},                // dirty zones, probe poses and forces -> TripleBuffer

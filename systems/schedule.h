@@ -8,6 +8,6 @@
 
 namespace pliant {
 
-std::vector<System<World>> touch_schedule();   // 1 kHz
+std::vector<System<World>> touch_schedule();  // 1 kHz
 
 }  // namespace pliant

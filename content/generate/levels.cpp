@@ -84,9 +84,12 @@ std::vector<NamedStroke> pad_strokes() {
 
 // Both lobes from the front, and the flank below them.
 std::vector<NamedStroke> heart_strokes() {
-  const Stroke a{8.0, 0.005, 0.030, 0.010, 0.4, 2.0, 5.4, 7.0, {{-0.046, 0.034, 0.04}, {-0.022, 0.012, 0.05}}, {2.0, 5.2}};
-  const Stroke b{8.0, 0.005, 0.030, 0.010, 1.0, 2.6, 5.8, 7.4, {{0.048, 0.012, 0.04}, {0.030, 0.036, 0.05}}, {2.6, 5.6}};
-  const Stroke c{8.0, 0.004, 0.030, 0.008, 1.8, 3.4, 6.2, 7.6, {{0.008, -0.040, 0.04}, {-0.006, -0.014, 0.05}}, {3.4, 6.0}};
+  const Stroke a{8.0,       0.005, 0.030, 0.010, 0.4, 2.0, 5.4, 7.0, {{-0.046, 0.034, 0.04}, {-0.022, 0.012, 0.05}},
+                 {2.0, 5.2}};
+  const Stroke b{8.0,       0.005, 0.030, 0.010, 1.0, 2.6, 5.8, 7.4, {{0.048, 0.012, 0.04}, {0.030, 0.036, 0.05}},
+                 {2.6, 5.6}};
+  const Stroke c{8.0,       0.004, 0.030, 0.008, 1.8, 3.4, 6.2, 7.6, {{0.008, -0.040, 0.04}, {-0.006, -0.014, 0.05}},
+                 {3.4, 6.0}};
   return {{"a", "presses 10 mm deep on the left lobe and slides down", a},
           {"b", "presses 10 mm deep on the right lobe and slides up", b},
           {"c", "presses 8 mm deep above the point and slides up between them", c}};
@@ -94,10 +97,26 @@ std::vector<NamedStroke> heart_strokes() {
 
 // Two balls that meet in the middle and part again.
 std::vector<NamedStroke> cushion_strokes() {
-  const Stroke a{8.0, 0.008, 0.030, 0.011, 0.4, 2.0, 5.6, 7.2,
-                 {{-0.060, 0.03, 0.030}, {-0.018, 0.03, 0.010}, {-0.050, 0.03, -0.030}}, {2.0, 3.8, 5.6}};
-  const Stroke b{8.0, 0.006, 0.030, 0.010, 0.9, 2.5, 5.8, 7.4,
-                 {{0.062, 0.03, -0.020}, {0.020, 0.03, 0.014}, {0.045, 0.03, 0.045}}, {2.5, 4.1, 5.8}};
+  const Stroke a{8.0,
+                 0.008,
+                 0.030,
+                 0.011,
+                 0.4,
+                 2.0,
+                 5.6,
+                 7.2,
+                 {{-0.060, 0.03, 0.030}, {-0.018, 0.03, 0.010}, {-0.050, 0.03, -0.030}},
+                 {2.0, 3.8, 5.6}};
+  const Stroke b{8.0,
+                 0.006,
+                 0.030,
+                 0.010,
+                 0.9,
+                 2.5,
+                 5.8,
+                 7.4,
+                 {{0.062, 0.03, -0.020}, {0.020, 0.03, 0.014}, {0.045, 0.03, 0.045}},
+                 {2.5, 4.1, 5.8}};
   return {{"a", "presses 11 mm deep on the left, slides to the middle and back", a},
           {"b", "presses 10 mm deep on the right, slides to the middle and forward", b}};
 }

@@ -1,4 +1,5 @@
-// Devices in and out of the touch tick. A driver's poses arrive in HapticDevice; only what passed the safety layer leaves.
+// Devices in and out of the touch tick. A driver's poses arrive in HapticDevice; only what passed the safety layer
+// leaves.
 #pragma once
 
 #include "components/world.h"

@@ -1,5 +1,5 @@
-// The mouse as a device: the visual clock says where the pointing hand is, some 60 times a second; the touch clock needs
-// it a thousand times a second and must notice when nobody speaks any more.
+// The mouse as a device: the visual clock says where the pointing hand is, some 60 times a second; the touch clock
+// needs it a thousand times a second and must notice when nobody speaks any more.
 #pragma once
 
 #include "components/world.h"
@@ -16,17 +16,18 @@ struct MouseSample {
   bool free = true;   // it hovers: it is put there, and does not travel through whatever lies on the way
 };
 
-// One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at most a frame late.
+// One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at
+// most a frame late.
 struct MouseInput {
   explicit MouseInput(dvec3 start) : from(start), position(start), to(start) {}
 
   TripleBuffer<MouseSample> samples;  // visual clock -> touch clock
   // Touch clock's.
   bool heard = false;
-  bool free = true;              // the newest pose hovers
-  double heard_at = 0.0;         // [s] when the newest pose came
-  double lasts = 1e-3;           // [s] how long the way to it takes
-  dvec3 from, position, to;      // [m] world
+  bool free = true;          // the newest pose hovers
+  double heard_at = 0.0;     // [s] when the newest pose came
+  double lasts = 1e-3;       // [s] how long the way to it takes
+  dvec3 from, position, to;  // [m] world
 };
 
 // Gives World::mouse to every device whose driver is `mouse`. Without one, those devices keep still and grow stale.

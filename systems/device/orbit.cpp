@@ -12,11 +12,11 @@ namespace {
 
 // One turn of the orbit, in seconds and in shares of the touched object's size.
 constexpr double kApproachTime = 0.8, kPressTime = 0.5, kSlideTime = 1.6, kLiftTime = 0.5, kReturnTime = 0.6;  // [s]
-constexpr double kPeriod = kApproachTime + kPressTime + kSlideTime + kLiftTime + kReturnTime;                // [s]
-constexpr double kStep = 0.005;          // [s] between rows
-constexpr double kClearance = 0.12;      // [1] of the diagonal: how far out the approach begins
-constexpr double kSlideLength = 0.15;    // [1] of the diagonal
-constexpr double kDepthShare = 0.2;      // [1] of the reach: how deep it presses
+constexpr double kPeriod = kApproachTime + kPressTime + kSlideTime + kLiftTime + kReturnTime;                  // [s]
+constexpr double kStep = 0.005;        // [s] between rows
+constexpr double kClearance = 0.12;    // [1] of the diagonal: how far out the approach begins
+constexpr double kSlideLength = 0.15;  // [1] of the diagonal
+constexpr double kDepthShare = 0.2;    // [1] of the reach: how deep it presses
 constexpr int kSlidePoints = 64;
 
 struct Hit {
@@ -40,7 +40,9 @@ std::optional<Hit> cast(const World& world, dvec3 from, dvec3 to) {
   return best;
 }
 
-double smooth(double s) { return s * s * s * (10 + s * (6 * s - 15)); }  // minimum jerk
+double smooth(double s) {
+  return s * s * s * (10 + s * (6 * s - 15));
+}  // minimum jerk
 
 // Points on the surface from the first hit along a tangent, as far as the surface goes on without a jump.
 std::vector<Hit> slide_line(const World& world, const Hit& first, double size) {
@@ -71,8 +73,8 @@ Path make_orbit(const World& world, unsigned index, double radius) {
   Path path;
   if (bounds.empty()) return path;
 
-  // The first direction, seen from the front and above, from which something can be entered; each probe begins its search
-  // elsewhere on the golden spiral, so that they take different places.
+  // The first direction, seen from the front and above, from which something can be entered; each probe begins its
+  // search elsewhere on the golden spiral, so that they take different places.
   const dvec3 center(bounds.center());
   const double out = bounds.diagonal();
   std::optional<Hit> first;

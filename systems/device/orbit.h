@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-// A path over the world's deformables for the `index`-th orbiting probe of radius `radius` [m] (each takes its own place
-// and phase). Call after prepare_touch; allocates. An empty path where nothing can be touched.
+// A path over the world's deformables for the `index`-th orbiting probe of radius `radius` [m] (each takes its own
+// place and phase). Call after prepare_touch; allocates. An empty path where nothing can be touched.
 Path make_orbit(const World& world, unsigned index, double radius);
 
 }  // namespace pliant

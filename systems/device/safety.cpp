@@ -6,7 +6,9 @@
 namespace pliant {
 namespace {
 
-bool finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(dvec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 // The norm, never each axis: the direction must stay.
 dvec3 clamp_norm(dvec3 v, double most) {
@@ -16,7 +18,8 @@ dvec3 clamp_norm(dvec3 v, double most) {
 
 // Only what senses a person can be stale; scripted motion has no age.
 bool stale(const HapticDevice& device, double now) {
-  return (device.driver == Driver::kExternal || device.driver == Driver::kMouse) && now - device.sensed_at > kStaleAfter;
+  return (device.driver == Driver::kExternal || device.driver == Driver::kMouse) &&
+         now - device.sensed_at > kStaleAfter;
 }
 
 // Scales the force so that the work done on the hand, counted over the whole history by the trapezoidal rule, cannot
@@ -31,9 +34,12 @@ dvec3 keep_passive(SafetyState& state, dvec3 force, dvec3 dx) {
 
 }  // namespace
 
-bool plausible_position(dvec3 position) { return finite(position) && length(position) < kFarthest; }
+bool plausible_position(dvec3 position) {
+  return finite(position) && length(position) < kFarthest;
+}
 
-SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now, double dt) {
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now,
+                       double dt) {
   SafetyResult result;
   if (!finite(wanted) || !plausible_position(position)) {
     result.event = SafetyEvent::kNonFinite;

@@ -7,21 +7,21 @@
 namespace pliant {
 
 // Tunables of the safety layer. Unit, usual value, and what changing it does.
-inline constexpr double kEngageForce = 0.2;      // [N] the gate opens once the computed force has been below this
-inline constexpr double kStaleAfter = 0.010;     // [s] a pose older than this counts as lost
+inline constexpr double kEngageForce = 0.2;        // [N] the gate opens once the computed force has been below this
+inline constexpr double kStaleAfter = 0.010;       // [s] a pose older than this counts as lost
 inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
 
-inline constexpr double kFarthest = 1e6;         // [m] a pose farther from the origin is a device's error
+inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
 
 // Finite and not absurdly far away: a position that means something.
 bool plausible_position(dvec3 position);
 
 struct SafetyState {
-  bool engaged = false;     // gate: closed at start and after every loss, opens on a small computed force
-  bool placed = false;      // `position` means something
-  dvec3 position{0};        // [m] last tick's
-  dvec3 force{0};           // [N] last tick's, as sent
-  double work = 0.0;        // [J] done on the hand so far: sum of (f0 + f1)/2 . dx; kept <= 0
+  bool engaged = false;  // gate: closed at start and after every loss, opens on a small computed force
+  bool placed = false;   // `position` means something
+  dvec3 position{0};     // [m] last tick's
+  dvec3 force{0};        // [N] last tick's, as sent
+  double work = 0.0;     // [J] done on the hand so far: sum of (f0 + f1)/2 . dx; kept <= 0
 };
 
 enum class SafetyEvent : std::uint8_t { kNone, kNonFinite, kStale };
@@ -32,6 +32,7 @@ struct SafetyResult {
 };
 
 // `wanted` [N] world, `position` [m] world, now [s], dt [s].
-SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now, double dt);
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now,
+                       double dt);
 
 }  // namespace pliant

@@ -9,8 +9,8 @@ namespace pliant {
 namespace {
 
 constexpr int kMaxSweeps = 100;
-constexpr double kTolerance = 1e-7;   // [1] of the largest depth: far below what a float field can show
-constexpr std::size_t kMost = 64;     // contacts: the working memory is on the stack
+constexpr double kTolerance = 1e-7;  // [1] of the largest depth: far below what a float field can show
+constexpr std::size_t kMost = 64;    // contacts: the working memory is on the stack
 
 // One row of a solve: how far the field at contact i falls short of its depth. [m]
 double shortfall(std::span<const double> A, std::span<const double> d, std::span<const double> alpha, std::size_t i) {
@@ -28,8 +28,8 @@ double worst_violation(std::span<const double> A, std::span<const double> d, std
   return worst;
 }
 
-// Sweeps converge slowly where probes almost coincide: solve for the pressing ones directly (Gauss with partial pivoting)
-// and keep the answer if it is the better one.
+// Sweeps converge slowly where probes almost coincide: solve for the pressing ones directly (Gauss with partial
+// pivoting) and keep the answer if it is the better one.
 void polish(std::span<const double> A, std::span<const double> d, std::span<double> alpha) {
   const std::size_t n = d.size();
   std::array<std::size_t, kMost> pressing;
@@ -62,7 +62,8 @@ void polish(std::span<const double> A, std::span<const double> d, std::span<doub
   std::array<double, kMost> candidate{};
   for (std::size_t i = 0; i < m; ++i) candidate[pressing[i]] = x[i];
   const std::span<const double> better(candidate.data(), n);
-  if (worst_violation(A, d, better) < worst_violation(A, d, alpha)) std::copy(better.begin(), better.end(), alpha.begin());
+  if (worst_violation(A, d, better) < worst_violation(A, d, alpha))
+    std::copy(better.begin(), better.end(), alpha.begin());
 }
 
 }  // namespace

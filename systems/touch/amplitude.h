@@ -1,5 +1,5 @@
-// How deep each contact's field must be so that every probe stands at its own depth (methods.md 1.3): fields overlap, so
-// the amplitudes solve a small linear complementarity problem
+// How deep each contact's field must be so that every probe stands at its own depth (methods.md 1.3): fields overlap,
+// so the amplitudes solve a small linear complementarity problem
 //   A alpha >= d,  alpha >= 0,  alpha . (A alpha - d) = 0,    A_ij = share of contact j's field at contact i.
 #pragma once
 

@@ -1,5 +1,6 @@
 // Where each probe is on each surface. A contact is found by sweeping the tick's segment (so nothing is tunnelled
-// through) and from then on followed from its last place, which keeps it on the side it came from however thin the part is.
+// through) and from then on followed from its last place, which keeps it on the side it came from however thin the part
+// is.
 #include "systems/touch/collision.h"
 
 #include <algorithm>
@@ -101,12 +102,13 @@ void find(Contact& contact, const Surface& surface, dvec3 from, dvec3 to, const 
     const double early = 1e-6 * box.diagonal() / length(d);
     const Entry entry = first_entry(surface.mesh, from - early * d, to);
     if (entry.valid()) {
-      const SurfacePoint at = surface_point(corners(surface.mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
+      const SurfacePoint at =
+          surface_point(corners(surface.mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
       const Tracked tracked = track(surface.mesh, at, to);
       if (!tracked.left_border) p = tracked.point;
     } else if (band > 0) {
-      // A sphere touches before its centre crosses, and a rim stands above rest: look around the segment's end, and for a
-      // fast sphere along it.
+      // A sphere touches before its centre crosses, and a rim stands above rest: look around the segment's end, and for
+      // a fast sphere along it.
       const int steps = radius > 0 ? std::clamp(int(std::ceil(2 * length(d) / radius)), 1, 16) : 1;
       for (int i = 1; i <= steps && !p.valid(); ++i) {
         const dvec3 x = from + d * (double(i) / steps);

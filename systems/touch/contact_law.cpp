@@ -2,7 +2,9 @@
 
 namespace pliant {
 
-double law_force(const RestoringLaw& law, double stiffness, double depth) { return -stiffness * law.force(-depth); }
+double law_force(const RestoringLaw& law, double stiffness, double depth) {
+  return -stiffness * law.force(-depth);
+}
 
 double advance_contact_law(Contact& contact, const Deformable& deformable, const Motion& motion, double stiffness,
                            double rest_height) {
@@ -20,7 +22,8 @@ double advance_contact_law(Contact& contact, const Deformable& deformable, const
   // On the tick of touch the spring has been pressed from y to t within the tick.
   const double from = contact.just_touched ? contact.free_height : contact.previous_height;
   const double pressed = from - contact.height;  // [m] > 0: deeper
-  double force = law_force(motion.law, stiffness, -contact.height) - law_force(motion.law, stiffness, -contact.free_height);
+  double force =
+      law_force(motion.law, stiffness, -contact.height) - law_force(motion.law, stiffness, -contact.free_height);
   if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
     // q' = k1 h' - q/tau, exact for a constant rate over the tick.
     const double k1 = motion.arm_stiffness * stiffness, E = motion.arm_decay;

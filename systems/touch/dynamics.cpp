@@ -46,7 +46,8 @@ void dynamics(World& world, Tick tick) {
     if (object.on_card) {  // the card draws it; what has to move here is the list
       list_terms(object, deformable, tick);
       std::uint32_t reached = 0;
-      for (const SourceState& source : object.sources) reached += static_cast<std::uint32_t>(source.zones.size()) * kZoneSize;
+      for (const SourceState& source : object.sources)
+        reached += static_cast<std::uint32_t>(source.zones.size()) * kZoneSize;
       field.awake_vertices = std::min(reached, world.meshes[deformable.mesh].vertex_count);
       continue;
     }
@@ -74,7 +75,8 @@ void dynamics(World& world, Tick tick) {
       // The residual moves; once at rest it is exactly zero.
       bool moving = lag || (field.zone_state[zone] & kZoneResidual);
       if (moving) {
-        const ZoneRest rest = lag ? step_lagging(object.motion, field, zone, targets) : step_residual(object.motion, field, zone);
+        const ZoneRest rest =
+            lag ? step_lagging(object.motion, field, zone, targets) : step_residual(object.motion, field, zone);
         if (rest.height < rest_height && rest.normal < kRest && !(lag && reached)) {
           set_to_rest(field, zone);
           moving = false;

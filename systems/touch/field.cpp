@@ -50,7 +50,8 @@ HeightState surface_at(const ObjectState& object, const Mesh& mesh, const Height
   return state;
 }
 
-double residual_after(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex, Tick tick) {
+double residual_after(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
+                      Tick tick) {
   if (object.on_card) return released_at(object, mesh, vertex, tick.time + tick.dt).height;
   const Motion& motion = object.motion;
   const double h = field.residual[vertex].w, r = field.rate[vertex].w;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-// Kernels are compiled twice, for plain x86-64 and for AVX2, and the loader picks. Without contraction both give the same
-// bits. Sanitizers do not mix with this mechanism, so they get the plain version.
+// Kernels are compiled twice, for plain x86-64 and for AVX2, and the loader picks. Without contraction both give the
+// same bits. Sanitizers do not mix with this mechanism, so they get the plain version.
 #if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
 #define PLIANT_KERNEL __attribute__((target_clones("avx2", "default")))
 #else
@@ -75,7 +75,8 @@ PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const Field
   const float* __restrict area = mesh.area.data() + begin;
   const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
   const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
-  alignas(32) float S0[kZoneSize], S1[kZoneSize], Q0[kZoneSize], Q1[kZoneSize], Q2[kZoneSize], bend[kZoneSize], spread[kZoneSize];
+  alignas(32) float S0[kZoneSize], S1[kZoneSize], Q0[kZoneSize], Q1[kZoneSize], Q2[kZoneSize], bend[kZoneSize],
+      spread[kZoneSize];
   for (std::uint32_t v = 0; v < kZoneSize; ++v) {
     const float dx = px[v] - cx, dy = py[v] - cy, dz = pz[v] - cz;
     const float r2 = dx * dx + dy * dy + dz * dz;
@@ -104,7 +105,8 @@ PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const Field
   sums.spread += sum_lanes(spread);
 }
 
-PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh, float vv) {
+PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh,
+                               float vv) {
   for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
     const float x = state[i], v = rate[i];
     state[i] = hh * x + hv * v;
@@ -112,7 +114,8 @@ PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, 
   }
 }
 
-PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm, const float (&m)[9]) {
+PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm,
+                              const float (&m)[9]) {
   const float m0 = m[0], m1 = m[1], m2 = m[2], m3 = m[3], m4 = m[4], m5 = m[5], m6 = m[6], m7 = m[7], m8 = m[8];
   for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
     const float x = state[i], v = rate[i], q = arm[i];
@@ -151,7 +154,8 @@ void step_nonlinear(const Motion& motion, vec4* state, vec4* rate, const ZoneTar
   }
 }
 
-PLIANT_KERNEL void largest(const float* __restrict state, const float* __restrict rate, float scale, float (&best)[kLanes]) {
+PLIANT_KERNEL void largest(const float* __restrict state, const float* __restrict rate, float scale,
+                           float (&best)[kLanes]) {
   for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes) {
     for (std::uint32_t l = 0; l < kLanes; ++l) {
       const float x = std::abs(state[i + l]), v = std::abs(rate[i + l]) * scale;
@@ -181,8 +185,7 @@ ZoneRest rest_of(const Motion& motion, const vec4* state, const vec4* rate) {
   float best[kLanes] = {};
   largest(&state->x, &rate->x, static_cast<float>(std::sqrt(motion.mass)), best);
   // Lanes 3 and 7 are heights, the others normal corrections.
-  return {std::max(best[3], best[7]),
-          std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
+  return {std::max(best[3], best[7]), std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
 }
 
 void solid_matrix(const Motion& motion, float (&m)[9]) {

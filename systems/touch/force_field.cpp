@@ -45,7 +45,8 @@ void aim(FieldSource& source, const Contact& contact, const Deformable& deformab
 }
 
 // Zones within reach that hang together with the contact's own, so that a neighbouring fold is not dented.
-void flood(const Mesh& mesh, const Contact& contact, double reach, ObjectState& object, std::vector<std::uint32_t>& zones) {
+void flood(const Mesh& mesh, const Contact& contact, double reach, ObjectState& object,
+           std::vector<std::uint32_t>& zones) {
   zones.clear();
   const std::uint32_t stamp = ++object.stamp;
   const vec3 center(contact.foot);
@@ -64,8 +65,8 @@ void flood(const Mesh& mesh, const Contact& contact, double reach, ObjectState& 
       offer(mesh.zone_neighbours[n]);
 }
 
-// Net volume of h = -alpha f, f = w (1 - c u), over the curved mesh to second order: sum A (h + H h^2). Solved for the c
-// that leaves 1 - chi of what w alone would displace.
+// Net volume of h = -alpha f, f = w (1 - c u), over the curved mesh to second order: sum A (h + H h^2). Solved for the
+// c that leaves 1 - chi of what w alone would displace.
 float volume_coefficient(const VolumeSums& s, double alpha, double chi) {
   if (!(s.S1 > 0)) return static_cast<float>(5 * chi);
   const double aH = s.spread > 0 ? alpha * s.bend / s.spread : 0.0;
@@ -86,8 +87,8 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
 }
 
 // The contact has ended, or the surface is left behind: what was held down is now on its own way back to rest.
-void fold(SourceState& source, ObjectState& object, const Contact& contact, const Deformable& deformable, const Mesh& mesh,
-          HeightField& field, Tick tick, std::uint32_t& dropped) {
+void fold(SourceState& source, ObjectState& object, const Contact& contact, const Deformable& deformable,
+          const Mesh& mesh, HeightField& field, Tick tick, std::uint32_t& dropped) {
   source.active = false;
   if (source.now.amplitude == 0.0f && source.before.amplitude == 0.0f) return;
   if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
@@ -108,8 +109,8 @@ void fold(SourceState& source, ObjectState& object, const Contact& contact, cons
   }
 }
 
-// A probe can press the surface down but not pull it up: when it lifts faster than the surface would rise by itself, the
-// surface is left behind, while the force goes on by the law of the depth until the probe is out.
+// A probe can press the surface down but not pull it up: when it lifts faster than the surface would rise by itself,
+// the surface is left behind, while the force goes on by the law of the depth until the probe is out.
 bool leaves_behind(const Contact& contact, const Motion& motion) {
   const double h = contact.previous_height, v = (contact.previous_height - contact.older_height) / motion.dt;
   if (contact.height <= h) return false;
@@ -137,7 +138,8 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
     for (std::size_t j = 0; j < n; ++j) A[i * n + j] = 0.0;
     for (int b = 0; b < 3; ++b) {
       const double weight = contact.barycentric[b];
-      if (deformable.response == Response::kFollow) residual += weight * residual_after(object, mesh, field, corner[b], tick);
+      if (deformable.response == Response::kFollow)
+        residual += weight * residual_after(object, mesh, field, corner[b], tick);
       for (std::size_t j = 0; j < n; ++j) {
         FieldSource unit = active[j].source->now;
         unit.amplitude = 1.0f;
@@ -145,8 +147,8 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
       }
     }
     A[i * n + i] = std::max(A[i * n + i], 0.1);  // a reach that hardly meets a vertex must not blow the amplitude up
-    // A bulge that earlier presses raised adds to what must be pressed down, but not without bound: else rims on a slowly
-    // recovering surface would drive each other up.
+    // A bulge that earlier presses raised adds to what must be pressed down, but not without bound: else rims on a
+    // slowly recovering surface would drive each other up.
     const double reach = 1 / std::sqrt(double(active[i].source->now.inv_reach2));
     d[i] = std::min(residual, kMostBulge * reach) - contact.height;
     alpha[i] = active[i].source->before.amplitude;
@@ -185,7 +187,8 @@ void force_field(World& world, Tick tick) {
       Contact& contact = world.registry.get<Contact>(source.contact);
       const bool touching = contact.state == ContactState::kTouching;
       const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, object.motion);
-      if (source.active && (!touching || left_behind)) fold(source, object, contact, deformable, mesh, field, tick, world.dropped);
+      if (source.active && (!touching || left_behind))
+        fold(source, object, contact, deformable, mesh, field, tick, world.dropped);
       if (!touching) {
         if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
         source.zones.clear();

@@ -12,7 +12,8 @@ namespace {
 double painted(const std::vector<float>& factor, const Mesh& mesh, const Contact& contact) {
   if (factor.empty()) return 1.0;
   const uvec3 t = mesh.triangles[contact.triangle];
-  return contact.barycentric.x * factor[t.x] + contact.barycentric.y * factor[t.y] + contact.barycentric.z * factor[t.z];
+  return contact.barycentric.x * factor[t.x] + contact.barycentric.y * factor[t.y] +
+         contact.barycentric.z * factor[t.z];
 }
 
 void release(Contact& contact) {

@@ -131,7 +131,8 @@ RestoringLaw restoring_law(const Deformable& deformable) {
   return {deformable.spring, deformable.cubic / deformable.stiffness, deformable.stiffening};
 }
 
-HeightState step_restoring(const RestoringLaw& law, HeightState state, double m, double b, double k, double f, double T) {
+HeightState step_restoring(const RestoringLaw& law, HeightState state, double m, double b, double k, double f,
+                           double T) {
   const auto [h0, v0] = state;
   const double slope = law.slope(h0);
   const bool stiff = k * slope * T * T > 2.25 * m;
@@ -145,7 +146,8 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
     }
     // dG/dh1 is (F(h1) - G) / d, close to half the slope when d is small.
     const double G = law.discrete_gradient(h0, h1);
-    const double dG = std::abs(d) > 1e-9 * (std::abs(h0) + std::abs(h1)) ? (law.force(h1) - G) / d : 0.5 * law.slope(h1);
+    const double dG =
+        std::abs(d) > 1e-9 * (std::abs(h0) + std::abs(h1)) ? (law.force(h1) - G) / d : 0.5 * law.slope(h1);
     derivative = 2 * m / (T * T) + b / T + k * dG;
     return m * (2 * d / T - 2 * v0) / T + b * d / T + k * G - f;
   };
@@ -188,17 +190,23 @@ Status check(const Deformable& d, const std::string& name) {
     double value, low, high;
   };
   const Range ranges[] = {
-      {"stiffness", d.stiffness, 1e-6, 1e7},       {"cubic", d.cubic, 0.0, 1e15},
-      {"stiffening", d.stiffening, 1e-6, 1e5},     {"relaxation.stiffness", d.relaxation_stiffness, 0.0, 1e7},
-      {"relaxation.time", d.relaxation_time, 1e-6, 1e6}, {"damping_ratio", d.damping_ratio, 0.0, 1000.0},
-      {"settling_time", d.settling_time, 1e-6, 1e4}, {"contact_damping", d.contact_damping, 0.0, 1e6},
-      {"reach", d.reach, 1e-9, 1e6},               {"volume", d.volume, 0.0, 1.0},
-      {"friction_static", d.friction_static, 0.0, 100.0}, {"friction_sliding", d.friction_sliding, 0.0, d.friction_static},
+      {"stiffness", d.stiffness, 1e-6, 1e7},
+      {"cubic", d.cubic, 0.0, 1e15},
+      {"stiffening", d.stiffening, 1e-6, 1e5},
+      {"relaxation.stiffness", d.relaxation_stiffness, 0.0, 1e7},
+      {"relaxation.time", d.relaxation_time, 1e-6, 1e6},
+      {"damping_ratio", d.damping_ratio, 0.0, 1000.0},
+      {"settling_time", d.settling_time, 1e-6, 1e4},
+      {"contact_damping", d.contact_damping, 0.0, 1e6},
+      {"reach", d.reach, 1e-9, 1e6},
+      {"volume", d.volume, 0.0, 1.0},
+      {"friction_static", d.friction_static, 0.0, 100.0},
+      {"friction_sliding", d.friction_sliding, 0.0, d.friction_static},
   };
   for (const Range& range : ranges) {
     if (range.value >= range.low && range.value <= range.high) continue;  // false for NaN
-    return Error{name, fmt::format("deformable.{} is {}; give a number from {} to {}", range.key, range.value, range.low,
-                                   range.high)};
+    return Error{name, fmt::format("deformable.{} is {}; give a number from {} to {}", range.key, range.value,
+                                   range.low, range.high)};
   }
   return Done{};
 }

@@ -54,16 +54,16 @@ struct RestoringLaw {
 };
 RestoringLaw restoring_law(const Deformable& deformable);
 
-// One passive step of m h'' = -b h' - k F(h) + f by the discrete gradient (energy identity dE = -T b vm^2 + f dh for any
-// T); backward Euler, which does not ring, where the step is long for the spring (w T > 1.5).
+// One passive step of m h'' = -b h' - k F(h) + f by the discrete gradient (energy identity dE = -T b vm^2 + f dh for
+// any T); backward Euler, which does not ring, where the step is long for the spring (w T > 1.5).
 HeightState step_restoring(const RestoringLaw& law, HeightState state, double mass, double damping, double stiffness,
                            double force, double dt);
 
 // A Deformable's parameters as a step of T needs them, k = 1.
 struct Motion {
-  double dt = 1e-3;          // [s]
-  double mass = 1.0;         // [s2]  m/k
-  double damping = 0.0;      // [s]   b/k
+  double dt = 1e-3;      // [s]
+  double mass = 1.0;     // [s2]  m/k
+  double damping = 0.0;  // [s]   b/k
   RestoringLaw law;
   StepCoefficients linear;   // of the linear law
   double arm_stiffness = 0;  // [1]   k1/k, standard linear solid

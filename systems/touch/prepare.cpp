@@ -106,8 +106,9 @@ Status prepare_touch(World& world) {
     }
     const std::size_t published = object.on_card ? 0 : std::min(mesh.zone_count(), kMaxPublishedZones);
     object.waiting.reserve(published);
-    snapshot.objects.push_back({entity, 0, std::vector<std::uint32_t>(published), std::vector<vec4>(published * kZoneSize), 0,
-                                object.on_card, 0, std::vector<FieldSource>(object.terms.capacity())});
+    snapshot.objects.push_back({entity, 0, std::vector<std::uint32_t>(published),
+                                std::vector<vec4>(published * kZoneSize), 0, object.on_card, 0,
+                                std::vector<FieldSource>(object.terms.capacity())});
     extent.add(object.world_box);
     touch->objects.push_back(std::move(object));
   }
@@ -139,10 +140,10 @@ Status prepare_touch(World& world) {
 
 std::size_t touch_bytes(const Mesh& mesh, const HeightField& field) {
   const auto bytes = [](const auto&... vectors) { return ((vectors.capacity() * sizeof(vectors[0])) + ...); };
-  std::size_t total = bytes(mesh.px, mesh.py, mesh.pz, mesh.nx, mesh.ny, mesh.nz, mesh.area, mesh.triangles, mesh.across,
-                            mesh.zone_box, mesh.zone_neighbour_first, mesh.zone_neighbours, mesh.stiffness_factor,
-                            mesh.friction_factor, field.stream, field.residual, field.rate, field.arm, field.zone_state,
-                            field.awake);
+  std::size_t total =
+      bytes(mesh.px, mesh.py, mesh.pz, mesh.nx, mesh.ny, mesh.nz, mesh.area, mesh.triangles, mesh.across, mesh.zone_box,
+            mesh.zone_neighbour_first, mesh.zone_neighbours, mesh.stiffness_factor, mesh.friction_factor, field.stream,
+            field.residual, field.rate, field.arm, field.zone_state, field.awake);
   for (const auto& level : mesh.tree.levels) total += bytes(level);
   return total;
 }

@@ -1,5 +1,5 @@
-// Between load and the first tick: sizes every buffer that the touch tick will need, makes one Contact per (probe, object)
-// pair, and refuses parameters that no step could survive.
+// Between load and the first tick: sizes every buffer that the touch tick will need, makes one Contact per (probe,
+// object) pair, and refuses parameters that no step could survive.
 #pragma once
 
 #include "components/world.h"

@@ -49,8 +49,13 @@ void publish(World& world, Tick tick) {
   for (std::size_t i = 0; i < touch.probes.size(); ++i) {
     const Probe& probe = world.registry.get<Probe>(touch.probes[i].entity);
     ProbeSnapshot& out = snapshot.probes[i];
-    out = {touch.probes[i].entity, probe.position, probe.rotation, world.registry.get<HapticDevice>(probe.device).force_sent,
-           false, 0.0, dvec3(0)};
+    out = {touch.probes[i].entity,
+           probe.position,
+           probe.rotation,
+           world.registry.get<HapticDevice>(probe.device).force_sent,
+           false,
+           0.0,
+           dvec3(0)};
     for (const Entity entity : touch.probes[i].contacts) {
       const Contact& contact = world.registry.get<Contact>(entity);
       if (contact.state != ContactState::kTouching) continue;
@@ -74,7 +79,8 @@ void publish(World& world, Tick tick) {
 }
 
 void publish_paced(World& world, Tick tick) {
-  const std::uint64_t every = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(1 / (tick.dt * kPublishRate))));
+  const std::uint64_t every =
+      std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(1 / (tick.dt * kPublishRate))));
   if (tick.index % every != 0) return;
   // What nobody takes only grows: every zone touched since would be copied again and again.
   if (world.touch->unseen > kPatience && world.snapshots->unseen()) return;

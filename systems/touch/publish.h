@@ -6,13 +6,13 @@
 
 namespace pliant {
 
-// Publishes now: up to kMaxPublishedZones dirty zones of each object. Snapshot::complete says whether that was all; call
-// again (after the reader acquired) until it is.
+// Publishes now: up to kMaxPublishedZones dirty zones of each object. Snapshot::complete says whether that was all;
+// call again (after the reader acquired) until it is.
 void publish(World& world, Tick tick);
 
-// The schedule's entry: publishes about kPublishRate times a second, so that the touch clock does not copy streams that no
-// display could show.
-inline constexpr double kPublishRate = 250.0;  // [Hz] display rates are 60 to 120; higher costs time, lower adds lag
+// The schedule's entry: publishes about kPublishRate times a second, so that the touch clock does not copy streams that
+// no display could show.
+inline constexpr double kPublishRate = 250.0;   // [Hz] display rates are 60 to 120; higher costs time, lower adds lag
 inline constexpr std::uint32_t kPatience = 25;  // unseen snapshots in a row after which nobody is thought to be looking
 void publish_paced(World& world, Tick tick);
 

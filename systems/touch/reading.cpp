@@ -30,7 +30,8 @@ ProbeReading reading(const World& world, Entity entity) {
     for (const Entity contact_entity : state.contacts) {
       const Contact& contact = world.registry.get<Contact>(contact_entity);
       if (contact.state == ContactState::kFree) continue;
-      const bool touching = contact.state == ContactState::kTouching, had = main && main->state == ContactState::kTouching;
+      const bool touching = contact.state == ContactState::kTouching,
+                 had = main && main->state == ContactState::kTouching;
       if (!main || touching > had || (touching == had && contact.normal_force > main->normal_force)) main = &contact;
     }
   }

@@ -10,6 +10,7 @@ namespace shared {
 using namespace glm;
 #define SHARED inline
 #include "shaders/shared/shape.glsl"
+// and, on top of it:
 #include "shaders/shared/field.glsl"
 #undef SHARED
 }  // namespace shared

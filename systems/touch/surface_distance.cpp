@@ -38,7 +38,9 @@ bool later(const MarchItem& x, const MarchItem& y) {
   return x.distance != y.distance ? x.distance > y.distance : x.vertex > y.vertex;
 }
 
-int corner_of(const uvec3& t, std::uint32_t v) { return t.x == v ? 0 : t.y == v ? 1 : 2; }
+int corner_of(const uvec3& t, std::uint32_t v) {
+  return t.x == v ? 0 : t.y == v ? 1 : 2;
+}
 
 // Calls visit(triangle) for the triangles around a vertex, starting at one of them: round by the left edges, and at a
 // border back by the right ones.
@@ -141,7 +143,8 @@ void add_volume_sums_at_offsets(const Mesh& mesh, std::uint32_t zone, const Fiel
   for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
     const vec3 o = offset[v];
     if (o.x == kFar) continue;
-    const double r2 = dot(o, o), u = std::min(1.0, r2 * source.inv_reach2), w = std::pow(1 - u, 3), aw = mesh.area[v] * w;
+    const double r2 = dot(o, o), u = std::min(1.0, r2 * source.inv_reach2), w = std::pow(1 - u, 3),
+                 aw = mesh.area[v] * w;
     const vec3 chord = mesh.position(v) - source.center;
     sums.S0 += aw;
     sums.S1 += aw * u;

@@ -3,9 +3,9 @@
 // the distance along the surface and whose direction is the way the shortest path arrives. The field is then the same
 // shape of that offset in place of the chord.
 //
-// Marching (Kimmel & Sethian 1998) with the source unfolded into each triangle's plane, so that a flat surface is exact:
-// given the distances of two corners, the source's image S in the plane of the triangle is where both circles meet, and
-// the third corner's distance is |v - S| if that line passes between the two.
+// Marching (Kimmel & Sethian 1998) with the source unfolded into each triangle's plane, so that a flat surface is
+// exact: given the distances of two corners, the source's image S in the plane of the triangle is where both circles
+// meet, and the third corner's distance is |v - S| if that line passes between the two.
 #pragma once
 
 #include <vector>

@@ -56,7 +56,8 @@ void visit_near(const Mesh& mesh, dvec3 x, Bound bound, Visit visit) {
       for (; place > 0 && found[place - 1].key < key; --place) found[place] = found[place - 1];
       found[place] = {node.level - 1, i, key};
     }
-    for (std::uint32_t i = 0; i < count; ++i) stack[top++] = found[i];  // farthest first, so the nearest is popped first
+    for (std::uint32_t i = 0; i < count; ++i)
+      stack[top++] = found[i];  // farthest first, so the nearest is popped first
   }
 }
 

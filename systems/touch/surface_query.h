@@ -1,5 +1,5 @@
-// Finding the place on a surface: globally (tree), locally (walk from the last place), along a segment, and by brute force
-// for tests. All at rest geometry: heights are applied on top by the caller. Object frame, double.
+// Finding the place on a surface: globally (tree), locally (walk from the last place), along a segment, and by brute
+// force for tests. All at rest geometry: heights are applied on top by the caller. Object frame, double.
 #pragma once
 
 #include "systems/touch/virtual_vertex.h"
@@ -19,7 +19,8 @@ struct Tracked {
 };
 Tracked track(const Mesh& mesh, const SurfacePoint& last, dvec3 x);
 
-// Where the segment first enters the surface (crosses a triangle from its outer side): fraction of the segment in [0, 1].
+// Where the segment first enters the surface (crosses a triangle from its outer side): fraction of the segment in [0,
+// 1].
 struct Entry {
   std::uint32_t triangle = SurfacePoint::kNone;
   double fraction = 2.0;

@@ -1,8 +1,8 @@
-// The interpolated contact vertex (P1 section 4; methods.md 1.5): the point of a triangle whose interpolated normal passes
-// through x,   P(u,v) + t N(u,v) = x,   with P and N linear over the triangle and N not normalised.
+// The interpolated contact vertex (P1 section 4; methods.md 1.5): the point of a triangle whose interpolated normal
+// passes through x,   P(u,v) + t N(u,v) = x,   with P and N linear over the triangle and N not normalised.
 //
-// The three vectors [(P1-P0) + t (N1-N0), (P2-P0) + t (N2-N0), (P0-x) + t N0] are then linearly dependent: a cubic in t.
-// Solved in double; object frame throughout.
+// The three vectors [(P1-P0) + t (N1-N0), (P2-P0) + t (N2-N0), (P0-x) + t N0] are then linearly dependent: a cubic in
+// t. Solved in double; object frame throughout.
 #pragma once
 
 #include <cstdint>
@@ -38,11 +38,12 @@ SurfacePoint surface_point(const Corner3& c, std::uint32_t triangle, dvec3 baryc
 // beside the triangle, or lies beyond the focal distance.
 SurfacePoint virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 
-// Barycentrics of the virtual vertex whose height continues `height`, which may lie outside the triangle (their signs say
-// which edge to cross). False where the normals meet (focal distance) or the iteration does not settle.
+// Barycentrics of the virtual vertex whose height continues `height`, which may lie outside the triangle (their signs
+// say which edge to cross). False where the normals meet (focal distance) or the iteration does not settle.
 bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, double& height);
 
-// The closest point of the triangle, with the interpolated normal there; its height is signed by the side of that normal.
+// The closest point of the triangle, with the interpolated normal there; its height is signed by the side of that
+// normal.
 SurfacePoint closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 
 }  // namespace pliant

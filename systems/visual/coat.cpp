@@ -16,7 +16,8 @@ vec2 coat_reflectance(double n_v, double roughness, int samples) {
     const dvec3 h(sin_h * std::cos(turn), sin_h * std::sin(turn), cos_h);
     const double v_h = dot(v, h), n_l = 2 * v_h * h.z - v.z;
     if (n_l <= 0 || v_h <= 0) continue;
-    const double shadow_v = n_l * std::sqrt(n_v * n_v * (1 - a2) + a2), shadow_l = n_v * std::sqrt(n_l * n_l * (1 - a2) + a2);
+    const double shadow_v = n_l * std::sqrt(n_v * n_v * (1 - a2) + a2),
+                 shadow_l = n_v * std::sqrt(n_l * n_l * (1 - a2) + a2);
     const double visibility = 0.5 / (shadow_v + shadow_l);
     const double weight = visibility * 4 * v_h * n_l / cos_h, f = std::pow(1 - v_h, 5.0);
     A += (1 - f) * weight;

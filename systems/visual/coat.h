@@ -1,5 +1,5 @@
-// How much of even surroundings a rough coat reflects: the second factor of the split sum (Karis, Real Shading in Unreal
-// Engine 4, SIGGRAPH 2013), as a table. A fit in closed form was up to 25 % too dark at middle roughness.
+// How much of even surroundings a rough coat reflects: the second factor of the split sum (Karis, Real Shading in
+// Unreal Engine 4, SIGGRAPH 2013), as a table. A fit in closed form was up to 25 % too dark at middle roughness.
 #pragma once
 
 #include <vector>

@@ -44,11 +44,15 @@ vec3 cube_at(const Level& level, vec3 d) {
   const vec3 a = glm::abs(d);
   unsigned face = 0;
   float s = 0, t = 0, m = 1;
-  if (a.x >= a.y && a.x >= a.z) face = d.x > 0 ? 0 : 1, m = a.x, s = d.x > 0 ? -d.z : d.z, t = -d.y;
-  else if (a.y >= a.z) face = d.y > 0 ? 2 : 3, m = a.y, s = d.x, t = d.y > 0 ? d.z : -d.z;
-  else face = d.z > 0 ? 4 : 5, m = a.z, s = d.z > 0 ? d.x : -d.x, t = -d.y;
+  if (a.x >= a.y && a.x >= a.z)
+    face = d.x > 0 ? 0 : 1, m = a.x, s = d.x > 0 ? -d.z : d.z, t = -d.y;
+  else if (a.y >= a.z)
+    face = d.y > 0 ? 2 : 3, m = a.y, s = d.x, t = d.y > 0 ? d.z : -d.z;
+  else
+    face = d.z > 0 ? 4 : 5, m = a.z, s = d.z > 0 ? d.x : -d.x, t = -d.y;
   const float last = static_cast<float>(level.size - 1), half = 0.5f * static_cast<float>(level.size);
-  const float x = glm::clamp((s / m + 1) * half - 0.5f, 0.0f, last), y = glm::clamp((t / m + 1) * half - 0.5f, 0.0f, last);
+  const float x = glm::clamp((s / m + 1) * half - 0.5f, 0.0f, last),
+              y = glm::clamp((t / m + 1) * half - 0.5f, 0.0f, last);
   const auto x0 = static_cast<std::uint32_t>(x), y0 = static_cast<std::uint32_t>(y);
   const std::uint32_t x1 = std::min(x0 + 1, level.size - 1), y1 = std::min(y0 + 1, level.size - 1);
   return glm::mix(glm::mix(level.at(face, x0, y0), level.at(face, x1, y0), x - static_cast<float>(x0)),
@@ -89,13 +93,14 @@ std::vector<Level> averaged(const Panorama& panorama, std::uint32_t face) {
 }
 
 struct Sample {
-  vec3 way;        // [1] in a frame whose z is the coat's normal and the mirror direction
-  float weight;    // [1]
-  std::size_t lod; // whose pixels are about as large as the sample's share of the sphere
+  vec3 way;         // [1] in a frame whose z is the coat's normal and the mirror direction
+  float weight;     // [1]
+  std::size_t lod;  // whose pixels are about as large as the sample's share of the sphere
 };
 
-// Directions in which the coat's microfacets mirror an eye right above it (Walter et al. 2007, eq. 35), low-discrepancy;
-// each reads a level as coarse as it is rare, which keeps a small sun from sparkling (Krivanek and Colbert, 2008).
+// Directions in which the coat's microfacets mirror an eye right above it (Walter et al. 2007, eq. 35),
+// low-discrepancy; each reads a level as coarse as it is rare, which keeps a small sun from sparkling (Krivanek and
+// Colbert, 2008).
 std::vector<Sample> gathered(float roughness, std::uint32_t face, std::size_t levels) {
   std::vector<Sample> samples;
   const float alpha2 = std::pow(roughness, 4.0f);
@@ -105,7 +110,8 @@ std::vector<Sample> gathered(float roughness, std::uint32_t face, std::size_t le
     float u = 0;
     for (float digit = 0.5f; bits; bits >>= 1, digit *= 0.5f) u += static_cast<float>(bits & 1u) * digit;
     const float phi = 2 * kPi * (static_cast<float>(i) + 0.5f) / static_cast<float>(kSamples);
-    const float cosine = std::sqrt((1 - u) / (1 + (alpha2 - 1) * u)), sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+    const float cosine = std::sqrt((1 - u) / (1 + (alpha2 - 1) * u)),
+                sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
     const vec3 h(sine * std::cos(phi), sine * std::sin(phi), cosine);
     const vec3 way = 2 * h.z * h - vec3(0, 0, 1);
     if (way.z <= 0) continue;

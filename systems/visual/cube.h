@@ -13,8 +13,8 @@ namespace pliant {
 inline constexpr std::uint32_t kCubeLevels = 6;
 
 struct Cube {
-  std::uint32_t face = 0;           // [pixels] an edge of level 0, a power of two of at least 2^(kCubeLevels - 1)
-  std::vector<std::uint16_t> rgb;   // [cd/m2, relative] half floats; level by level, face by face (+X -X +Y -Y +Z -Z)
+  std::uint32_t face = 0;          // [pixels] an edge of level 0, a power of two of at least 2^(kCubeLevels - 1)
+  std::vector<std::uint16_t> rgb;  // [cd/m2, relative] half floats; level by level, face by face (+X -X +Y -Y +Z -Z)
 };
 
 // How many numbers such a cube holds.

@@ -12,9 +12,9 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kWidest = 1024;             // [pixels] of the panorama: as sharp as the cube's faces
+constexpr std::uint32_t kWidest = 1024;              // [pixels] of the panorama: as sharp as the cube's faces
 constexpr std::uint32_t kWidestForIrradiance = 256;  // [pixels]
-constexpr float kSunClip = 20.0f;       // [1] a sun above this share of the mean would make nine coefficients ring
+constexpr float kSunClip = 20.0f;  // [1] a sun above this share of the mean would make nine coefficients ring
 constexpr float kPi = std::numbers::pi_v<float>;
 
 float luminance(vec3 c) {
@@ -152,7 +152,8 @@ Surroundings Surroundings::make(const World& world) {
   FrameConstants& frame = made.constants_;
   frame.irradiance = irradiance_of(scaled_down(panorama, kWidestForIrradiance));
   frame.surroundings = vec4(std::cos(rotation), std::sin(rotation), intensity, kCubeLevels - 1);
-  // A studio is dimmed and out of focus, so that the scene stands out; a level's own surroundings are shown as they are.
+  // A studio is dimmed and out of focus, so that the scene stands out; a level's own surroundings are shown as they
+  // are.
   frame.picture.y = own ? 1.0f : 0.6f;
   frame.picture.w = own ? 0.0f : 0.3f;
 

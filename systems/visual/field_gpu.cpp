@@ -6,7 +6,8 @@
 namespace pliant {
 
 CardSource card_source(const FieldSource& s) {
-  return {vec4(s.center, s.inv_reach2), vec4(s.normal, s.amplitude), vec4(s.parameter, static_cast<float>(s.shape), 0, 0)};
+  return {vec4(s.center, s.inv_reach2), vec4(s.normal, s.amplitude),
+          vec4(s.parameter, static_cast<float>(s.shape), 0, 0)};
 }
 
 Result<FieldProgram> FieldProgram::make() {
@@ -30,7 +31,8 @@ FieldOnCard::FieldOnCard(const Mesh& mesh) : vertices_(mesh.vertex_count) {
   rest_yz_ = gpu::Buffer::fixed(std::span<const vec2>(rest_yz));
 }
 
-std::size_t FieldOnCard::evaluate(const FieldProgram& program, std::span<const FieldSource> sources, const gpu::Buffer& stream) {
+std::size_t FieldOnCard::evaluate(const FieldProgram& program, std::span<const FieldSource> sources,
+                                  const gpu::Buffer& stream) {
   if (sources.empty() && at_rest_) return 0;
   at_rest_ = sources.empty();
   std::vector<CardSource> packed(std::max<std::size_t>(1, sources.size()));

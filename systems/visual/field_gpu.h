@@ -36,8 +36,8 @@ class FieldOnCard {
   FieldOnCard() = default;
   explicit FieldOnCard(const Mesh& mesh);
 
-  // Writes the whole stream of whole zones into `stream` (kZoneSize x zones vec4). Returns the bytes that travelled; when
-  // there was and is nothing to draw, nothing happens.
+  // Writes the whole stream of whole zones into `stream` (kZoneSize x zones vec4). Returns the bytes that travelled;
+  // when there was and is nothing to draw, nothing happens.
   std::size_t evaluate(const FieldProgram& program, std::span<const FieldSource> sources, const gpu::Buffer& stream);
 
  private:

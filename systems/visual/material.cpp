@@ -18,7 +18,8 @@ struct MaterialConstants {
 MaterialConstants constants_of(const Material& m) {
   const float straight_on = (m.ior - 1) / (m.ior + 1);
   const bool absorbs = m.attenuation_distance > 0;
-  const vec3 absorption = absorbs ? -glm::log(glm::max(m.attenuation_color, vec3(1e-4f))) / m.attenuation_distance : vec3(0);
+  const vec3 absorption =
+      absorbs ? -glm::log(glm::max(m.attenuation_color, vec3(1e-4f))) / m.attenuation_distance : vec3(0);
   const bool relief = m.height_texture >= 0;
   return {.base_color = m.base_color,
           .emissive = vec4(m.emissive, m.alpha == Material::Alpha::kMask ? m.alpha_cutoff : 0.0f),

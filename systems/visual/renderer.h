@@ -26,7 +26,8 @@ struct Viewpoint {
 // The level's first camera, else one that frames every deformable from the front, slightly above. Reads every vertex.
 Viewpoint default_viewpoint(const World& world);
 
-// How to draw, for looking closer; may change between any two pictures. Defaults are what a reader of a picture expects.
+// How to draw, for looking closer; may change between any two pictures. Defaults are what a reader of a picture
+// expects.
 struct RenderOptions {
   float tint_height = 0.0f;     // [m] height that is drawn fully blue (in) or red (out); 0: surfaces keep their colours
   bool markers = true;          // probes

@@ -7,14 +7,15 @@
 namespace pliant {
 namespace {
 
-constexpr int kMapSize = 1024;        // [pixels]
-constexpr float kRoom = 0.06f;        // [1] of the diagonal, around the scene at rest: rims and bulges stand out
+constexpr int kMapSize = 1024;  // [pixels]
+constexpr float kRoom = 0.06f;  // [1] of the diagonal, around the scene at rest: rims and bulges stand out
 
 // The scene in the lamp's view (looking along -Z).
 Box seen_from(const mat4& view, const Box& scene) {
   Box seen;
   for (int i = 0; i < 8; ++i) {
-    const vec3 corner(i & 1 ? scene.max.x : scene.min.x, i & 2 ? scene.max.y : scene.min.y, i & 4 ? scene.max.z : scene.min.z);
+    const vec3 corner(i & 1 ? scene.max.x : scene.min.x, i & 2 ? scene.max.y : scene.min.y,
+                      i & 4 ? scene.max.z : scene.min.z);
     seen.add(vec3(view * vec4(corner, 1)));
   }
   return seen;

@@ -148,7 +148,8 @@ void Surfaces::take(const ObjectSnapshot& object) {
 std::size_t Surfaces::upload() {
   std::size_t travelled = 0;
   for (Item& item : items_)
-    travelled += item.on_card ? item.field.evaluate(field_program_, item.sources, item.stream.buffer()) : item.stream.upload();
+    travelled +=
+        item.on_card ? item.field.evaluate(field_program_, item.sources, item.stream.buffer()) : item.stream.upload();
   return travelled;
 }
 

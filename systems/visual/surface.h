@@ -6,8 +6,8 @@
 
 #include "components/world.h"
 #include "runtime/result.h"
-#include "systems/visual/gpu/buffer.h"
 #include "systems/visual/field_gpu.h"
+#include "systems/visual/gpu/buffer.h"
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/material.h"
 #include "systems/visual/upload.h"

@@ -19,7 +19,8 @@ Result<Level> triangle_with(const std::string& extras) {
   std::ofstream(folder / "t.bin", std::ios::binary).write(reinterpret_cast<const char*>(corners), sizeof corners);
   std::ofstream(folder / "t.gltf") << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
-    "materials": [{"extras": )" << extras << R"(}],
+    "materials": [{"extras": )" << extras
+                                   << R"(}],
     "textures": [{"source": 0}],
     "images": [{"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="}],
     "buffers": [{"uri": "t.bin", "byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
@@ -52,7 +53,8 @@ TEST(Relief, IsReadFromAMaterialsExtrasAndComesBackFromASavedLevel) {
     ASSERT_TRUE(again.ok()) << again.error().message();
     ASSERT_EQ(again->materials.size(), 1u);
     ASSERT_GE(again->materials[0].height_texture, 0);
-    EXPECT_EQ(again->images.at(static_cast<std::size_t>(again->materials[0].height_texture)).rgba, level->images.at(0).rgba);
+    EXPECT_EQ(again->images.at(static_cast<std::size_t>(again->materials[0].height_texture)).rgba,
+              level->images.at(0).rgba);
     EXPECT_EQ(again->materials[0].height_scale, 0.0005f);
   }
   fs::remove(path);
@@ -63,7 +65,8 @@ TEST(Relief, ExtrasOfAnotherFormAreLeftAlone) {
        {"7", "[]", "{}", R"({"height_texture": 3})", R"({"height_texture": {"index": 9}, "height_scale": 1})",
         R"({"height_texture": {"index": -1}, "height_scale": 1})", R"({"height_texture": {"index": 0}})",
         R"({"height_texture": {"index": 0}, "height_scale": "tall"})",
-        R"({"height_texture": {"index": 0}, "height_scale": -1})", R"({"height_texture": {"index": 0.5}, "height_scale": 1})"}) {
+        R"({"height_texture": {"index": 0}, "height_scale": -1})",
+        R"({"height_texture": {"index": 0.5}, "height_scale": 1})"}) {
     Result<Level> level = triangle_with(extras);
     ASSERT_TRUE(level.ok()) << extras << ": " << level.error().message();
     EXPECT_EQ(level->materials.at(0).height_texture, -1) << extras;

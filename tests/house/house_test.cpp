@@ -88,9 +88,9 @@ TEST(House, EveryFileOpensWithWhatItIsFor) {
 
 // Written apart so that this file does not hold them.
 TEST(House, NoFileSpeaksOfAMachineOrOfUnfinishedWork) {
-  const std::vector<std::string> strangers{std::string("/ho") + "me/", std::string("/wo") + "rk/", std::string("/ro") + "ot/",
-                                           std::string("/mn") + "t/",  std::string("TO") + "DO",   std::string("FIX") + "ME",
-                                           std::string("XX") + "X"};
+  const std::vector<std::string> strangers{
+      std::string("/ho") + "me/", std::string("/wo") + "rk/", std::string("/ro") + "ot/", std::string("/mn") + "t/",
+      std::string("TO") + "DO",   std::string("FIX") + "ME",  std::string("XX") + "X"};
   for (const Source& source : sources())
     for (const std::string& stranger : strangers)
       EXPECT_EQ(source.text.find(stranger), std::string::npos) << source.path << " holds " << stranger;

@@ -24,7 +24,9 @@ inline std::string read_text(const fs::path& file) {
   text << in.rdbuf();
   return text.str();
 }
-inline void write_text(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+inline void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 struct Said {
   int status = -1;
@@ -132,9 +134,12 @@ inline ForcesTable read_forces(const fs::path& file) {
     std::vector<std::string> cells(1);
     bool quoted = false;
     for (char c : line) {
-      if (c == '"') quoted = !quoted;
-      else if (c == ',' && !quoted) cells.emplace_back();
-      else cells.back() += c;
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
     }
     return cells;
   };

@@ -15,8 +15,7 @@ class Files : public CommandTest {
 
 TEST_F(Files, InspectCountsWhatIsThereAndWhatIsWrong) {
   // A unit square of two triangles, then one of zero area, and the first again.
-  write_text(folder / "square.obj",
-             "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nf 1 2 3\nf 1 3 4\nf 1 2 2\nf 2 3 1\n");
+  write_text(folder / "square.obj", "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nf 1 2 3\nf 1 3 4\nf 1 2 2\nf 2 3 1\n");
   const Json json = inspect("square.obj");
   EXPECT_EQ(json["touchable"], true);
   EXPECT_EQ(json["bare_mesh"], true);
@@ -45,7 +44,8 @@ TEST_F(Files, InspectHintsAtAWrongUnitAndConvertMendsIt) {
 
 TEST_F(Files, ConvertWritesWhatTheLoaderReadsBack) {
   write_text(folder / "plate.obj", plate_obj(20));
-  const std::vector<std::vector<std::string>> ways{{"a.glb"}, {"b.gltf"}, {"c.glb", "--draco", "14"}, {"d.glb", "--reorder"}};
+  const std::vector<std::vector<std::string>> ways{
+      {"a.glb"}, {"b.gltf"}, {"c.glb", "--draco", "14"}, {"d.glb", "--reorder"}};
   for (const std::vector<std::string>& way : ways) {
     std::vector<std::string> arguments{"convert", "plate.obj"};
     arguments.insert(arguments.end(), way.begin(), way.end());
@@ -69,7 +69,8 @@ TEST_F(Files, ValidateNamesEveryErrorWithItsPointer) {
   EXPECT_NE(said.out.find("/scenes/0/nodes"), std::string::npos) << said.out;
   EXPECT_NE(said.out.find("/nodes/0/mesh"), std::string::npos) << said.out;
   EXPECT_NE(said.out.find(": error: "), std::string::npos) << said.out;
-  write_text(folder / "good.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"n"}]})");
+  write_text(folder / "good.gltf",
+             R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"n"}]})");
   EXPECT_EQ(pliant({"validate", "good.gltf"}).status, 0);
 }
 

@@ -12,7 +12,8 @@ std::vector<std::string> files_in(const fs::path& folder) {
   std::vector<std::string> found;
   std::error_code absent;
   for (const auto& entry : fs::directory_iterator(folder, absent))
-    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") found.push_back(entry.path().filename().string());
+    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
+      found.push_back(entry.path().filename().string());
   std::sort(found.begin(), found.end());
   if (found.empty()) found.push_back("absent.glb");
   return found;
@@ -60,8 +61,7 @@ TEST_P(ShippedLevel, IsValidAndCanBeTouched) {
   EXPECT_FALSE(json["probes"].empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Levels, ShippedLevel,
-                         ::testing::ValuesIn(files_in(kLevels)), test_name);
+INSTANTIATE_TEST_SUITE_P(Levels, ShippedLevel, ::testing::ValuesIn(files_in(kLevels)), test_name);
 
 class Organ : public CommandTest, public ::testing::WithParamInterface<std::string> {
  protected:
@@ -92,8 +92,7 @@ TEST_P(Organ, IsInspected) {
   EXPECT_GT(json["triangles"], 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, Organ,
-                         ::testing::ValuesIn(files_in(kOrgans)), test_name);
+INSTANTIATE_TEST_SUITE_P(Corpus, Organ, ::testing::ValuesIn(files_in(kOrgans)), test_name);
 
 }  // namespace
 }  // namespace pliant::testing

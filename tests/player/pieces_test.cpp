@@ -105,7 +105,8 @@ TEST(Plot, TicksAreRoundAndNeverTooMany) {
     EXPECT_LE(high / step, 5.0 + 1e-6) << high;
     EXPECT_GE(high / step, 1.0) << high << ": too few to read";
     const double mantissa = step / std::pow(10.0, std::floor(std::log10(step) + 1e-9));
-    EXPECT_TRUE(std::abs(mantissa - 1) < 1e-6 || std::abs(mantissa - 2) < 1e-6 || std::abs(mantissa - 5) < 1e-6) << step;
+    EXPECT_TRUE(std::abs(mantissa - 1) < 1e-6 || std::abs(mantissa - 2) < 1e-6 || std::abs(mantissa - 5) < 1e-6)
+        << step;
   }
 }
 

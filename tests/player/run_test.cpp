@@ -1,7 +1,7 @@
 // pliant run from the command line, on meshes small enough to know the answer.
-#include "tests/player/command.h"
-
 #include <cmath>
+
+#include "tests/player/command.h"
 
 namespace pliant::testing {
 namespace {
@@ -15,7 +15,8 @@ class Run : public CommandTest {
   }
   // Presses the plate by script, without pictures.
   Said press(const std::string& out, std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments{"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", out, "--frames", "0"};
+    std::vector<std::string> arguments{"run",   "plate.obj", "--probe",  "tip=script:press.csv",
+                                       "--out", out,         "--frames", "0"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return pliant(arguments);
   }
@@ -46,8 +47,9 @@ TEST_F(Run, WritesReportForcesAndPlotAsPromised) {
   EXPECT_TRUE(json["dropped"].is_array());
 
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
-  EXPECT_EQ(forces.columns, (std::vector<std::string>{"tick", "time_s", "probe", "x", "y", "z", "in_contact", "object", "depth_m",
-                                                      "height_m", "nx", "ny", "nz", "fx", "fy", "fz", "fn", "ft"}));
+  EXPECT_EQ(forces.columns,
+            (std::vector<std::string>{"tick", "time_s", "probe", "x", "y", "z", "in_contact", "object", "depth_m",
+                                      "height_m", "nx", "ny", "nz", "fx", "fy", "fz", "fn", "ft"}));
   EXPECT_EQ(forces.rows.size(), 1500u) << "one row per probe and tick";
   EXPECT_EQ(read_text(folder / "out" / "forces.png").substr(1, 3), "PNG");
 }
@@ -141,10 +143,10 @@ TEST_F(Run, ARecordingOfAnotherLevelOrADamagedOneIsRefused) {
 
 TEST_F(Run, BadScriptsAreRefusedWithTheirLine) {
   const std::map<std::string, std::string> bad{
-      {"header.csv", "t,x,y,z\n0,0,0,0\n"},      {"words.csv", "time_s,x,y,z\n0,zero,0,0\n"},
-      {"nan.csv", "time_s,x,y,z\n0,nan,0,0\n"},  {"back.csv", "time_s,x,y,z\n1,0,0,0\n0,0,0,0\n"},
-      {"short.csv", "time_s,x,y,z\n0,0,0\n"},    {"empty.csv", ""},
-      {"only_header.csv", "time_s,x,y,z\n"},     {"quaternion.csv", "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n"},
+      {"header.csv", "t,x,y,z\n0,0,0,0\n"},          {"words.csv", "time_s,x,y,z\n0,zero,0,0\n"},
+      {"nan.csv", "time_s,x,y,z\n0,nan,0,0\n"},      {"back.csv", "time_s,x,y,z\n1,0,0,0\n0,0,0,0\n"},
+      {"short.csv", "time_s,x,y,z\n0,0,0\n"},        {"empty.csv", ""},
+      {"only_header.csv", "time_s,x,y,z\n"},         {"quaternion.csv", "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n"},
       {"binary.csv", std::string("\0\xff\x80\n", 4)}};
   for (const auto& [name, text] : bad) {
     write_text(folder / name, text);
@@ -156,7 +158,8 @@ TEST_F(Run, BadScriptsAreRefusedWithTheirLine) {
 TEST_F(Run, NothingRemainsWhereTheOutputCannotBeWritten) {
   write_text(folder / "file", "in the way");
   expect_refused({"run", "plate.obj", "--out", "file/out", "--frames", "0"}, 1, "file/out");
-  expect_refused({"run", "plate.obj", "--out", "a/b/c", "--frames", "0", "--record", "no/such/folder.rec"}, 1, "no/such");
+  expect_refused({"run", "plate.obj", "--out", "a/b/c", "--frames", "0", "--record", "no/such/folder.rec"}, 1,
+                 "no/such");
 }
 
 TEST_F(Run, ABareMeshWithoutAProbeIsTouchedByOneAndSaysSo) {
@@ -204,9 +207,9 @@ TEST_F(Run, RealTimeAccountsForEveryTickAndItsRecordingReplaysToTheSameHash) {
 }
 
 TEST_F(Run, CtrlCEndsARealTimeRunCleanlyWithAReport) {
-  const Said said = pliant({"run", "plate.obj", "--probe", "p=orbit", "--realtime", "--seconds", "600", "--out", "out",
-                            "--frames", "0"},
-                           "timeout --preserve-status -s INT 2");
+  const Said said = pliant(
+      {"run", "plate.obj", "--probe", "p=orbit", "--realtime", "--seconds", "600", "--out", "out", "--frames", "0"},
+      "timeout --preserve-status -s INT 2");
   EXPECT_EQ(said.status, 0) << said.err;
   const Json json = report("out");
   EXPECT_GT(json["ticks"], 0);
@@ -215,8 +218,8 @@ TEST_F(Run, CtrlCEndsARealTimeRunCleanlyWithAReport) {
 
 TEST_F(Run, PicturesAreSpreadOverTheRunAndDoNotChangeIt) {
   ASSERT_EQ(press("without").status, 0);
-  const Said said = pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "3", "--size",
-                            "160x90"});
+  const Said said = pliant(
+      {"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "3", "--size", "160x90"});
   if (said.status != 0) GTEST_SKIP() << "no graphics here: " << said.err;
   EXPECT_EQ(report("with")["hash"], report("without")["hash"]);
   EXPECT_GT(report("with")["frame_ms"]["p50"], 0.0);
@@ -225,7 +228,8 @@ TEST_F(Run, PicturesAreSpreadOverTheRunAndDoNotChangeIt) {
     EXPECT_EQ(read_text(folder / "with" / name).substr(1, 3), "PNG") << name;
   EXPECT_FALSE(fs::exists(folder / "with" / "frame-0003.png"));
   // A shorter run into the same folder leaves no picture of the longer one behind.
-  ASSERT_EQ(pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1", "--size", "160x90"})
+  ASSERT_EQ(pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1", "--size",
+                    "160x90"})
                 .status,
             0);
   EXPECT_TRUE(fs::exists(folder / "with" / "frame-0000.png"));

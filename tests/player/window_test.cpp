@@ -118,7 +118,8 @@ TEST_F(WindowTest, EventsOfTheDisplayItselfMoveAndCloseIt) {
                                      "$id 120 80; xdotool key Tab; sleep 0.5\n"
                                      "xdotool mousedown 1; sleep 1; xdotool mouseup 1; sleep 0.2\n"
                                      "kill -INT $!; wait $!\n");
-  const std::string line = std::string("env -u WAYLAND_DISPLAY ") + kDriversLeak + "timeout 60 xvfb-run -a -s '-screen 0 400x300x24' sh " +
+  const std::string line = std::string("env -u WAYLAND_DISPLAY ") + kDriversLeak +
+                           "timeout 60 xvfb-run -a -s '-screen 0 400x300x24' sh " +
                            quoted((folder / "hand.sh").string()) + " >" + quoted((folder / "said").string()) + " 2>&1";
   ASSERT_EQ(std::system(line.c_str()), 0) << read_text(folder / "said");
   EXPECT_GT(probe("mouse")["contact_ticks"], 50);

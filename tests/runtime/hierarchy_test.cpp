@@ -40,7 +40,9 @@ TEST(Hierarchy, KeepsParentsBeforeChildrenUnderRandomAddMoveAndRemove) {
   std::uint32_t next = 0;
   int refused = 0, moved = 0, removed = 0;
   for (int step = 0; step < 3000; ++step) {
-    const auto pick = [&] { return std::next(parents.begin(), static_cast<std::ptrdiff_t>(random() % parents.size()))->first; };
+    const auto pick = [&] {
+      return std::next(parents.begin(), static_cast<std::ptrdiff_t>(random() % parents.size()))->first;
+    };
     const auto act = random() % 10;
     const std::uint32_t parent = parents.empty() || random() % 8 == 0 ? kRoot : pick();
     if (parents.empty() || act < 4) {

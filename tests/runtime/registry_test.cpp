@@ -27,7 +27,9 @@ struct NaiveRow {
   bool marked = false;
 };
 using Key = std::pair<std::uint32_t, std::uint32_t>;
-Key key(Entity entity) { return {entity.index, entity.version}; }
+Key key(Entity entity) {
+  return {entity.index, entity.version};
+}
 
 // Everything the registry answers must be what the map says.
 void compare(Registry& registry, const std::map<Key, NaiveRow>& naive) {

@@ -61,7 +61,8 @@ TEST(RealtimeClock, NeverGoesBackAndSkipsWhatItMissed) {
     last = tick;
   }
   const std::uint64_t begin = now_ns();
-  while (now_ns() - begin < 20'000'000) {}  // a tick that takes 20 ms: at least 18 periods are gone
+  while (now_ns() - begin < 20'000'000) {
+  }  // a tick that takes 20 ms: at least 18 periods are gone
   const Tick late = clock.next();
   ++asked;
   EXPECT_GE(late.index, last.index + 19);

@@ -33,13 +33,16 @@ Primitive sheet(int cells, double size) {
 
 Primitive sphere(int n, double radius) {
   Primitive p;
-  const dvec3 faces[6][3] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
-                             {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}},  {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
-                             {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}};
+  const dvec3 faces[6][3] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+                             {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
+                             {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}};
   for (const auto& [normal, across, up] : faces) {
     add_grid(p, n, [&, normal = normal, across = across, up = up](double u, double v) {
-      // Equal angles give nearly equal cells; the tangent is made odd about zero so that edges of two faces agree to the bit.
-      const auto tangent = [](double s) { return s == 0.5 ? 0.0 : s < 0.5 ? -std::tan((0.5 - s) * M_PI / 2) : std::tan((s - 0.5) * M_PI / 2); };
+      // Equal angles give nearly equal cells; the tangent is made odd about zero so that edges of two faces agree to
+      // the bit.
+      const auto tangent = [](double s) {
+        return s == 0.5 ? 0.0 : s < 0.5 ? -std::tan((0.5 - s) * M_PI / 2) : std::tan((s - 0.5) * M_PI / 2);
+      };
       const dvec3 cube = normal + tangent(u) * across + tangent(v) * up;
       const vec3 rounded(cube);
       return radius * normalize(dvec3(rounded));
@@ -83,7 +86,9 @@ Primitive valley(int cells, double size, double angle) {
   return p;
 }
 
-Stage::Stage(double rate_hz) : dt_(1 / rate_hz), schedule_(touch_schedule()) { world.simulation.touch_rate = rate_hz; }
+Stage::Stage(double rate_hz) : dt_(1 / rate_hz), schedule_(touch_schedule()) {
+  world.simulation.touch_rate = rate_hz;
+}
 
 Entity Stage::add(const Primitive& primitive, Deformable deformable, Pose pose) {
   Result<BuiltMesh> built = build_mesh("surface", std::span(&primitive, 1), mat4(1));
@@ -113,9 +118,13 @@ Entity Stage::add_probe(dvec3 position, double radius) {
   return entity;
 }
 
-void Stage::prepare() { ASSERT(prepare_touch(world).ok()); }
+void Stage::prepare() {
+  ASSERT(prepare_touch(world).ok());
+}
 
-void Stage::place(Entity probe, dvec3 position) { device(probe).position = position; }
+void Stage::place(Entity probe, dvec3 position) {
+  device(probe).position = position;
+}
 
 void Stage::tick() {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) device.sensed_at = time();

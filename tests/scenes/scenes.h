@@ -12,7 +12,8 @@
 
 namespace pliant::scenes {
 
-// A square sheet in the plane y = 0, normals up, `cells` x `cells` squares of two triangles each, `size` [m] wide, centred.
+// A square sheet in the plane y = 0, normals up, `cells` x `cells` squares of two triangles each, `size` [m] wide,
+// centred.
 Primitive sheet(int cells, double size);
 // A sphere about the origin: a cube sphere of 12 n^2 triangles. radius [m].
 Primitive sphere(int n, double radius);

@@ -18,7 +18,8 @@ class BruteForce {
       const Corner3 c = corners(mesh, t);
       const dvec3 center = (c.p[0] + c.p[1] + c.p[2]) / 3.0;
       centers_.push_back(center);
-      radii_.push_back(1.000001 * std::max({length(c.p[0] - center), length(c.p[1] - center), length(c.p[2] - center)}));
+      radii_.push_back(1.000001 *
+                       std::max({length(c.p[0] - center), length(c.p[1] - center), length(c.p[2] - center)}));
     }
   }
   SurfacePoint nearest(dvec3 x, double within) const {
@@ -26,13 +27,15 @@ class BruteForce {
     double best = within;
     each_near(x, best, [&](std::uint32_t t) {
       const SurfacePoint p = closest_point(mesh_, t, x);
-      if (p.distance() <= best && (!closest.valid() || p.distance() < closest.distance())) closest = p, best = p.distance();
+      if (p.distance() <= best && (!closest.valid() || p.distance() < closest.distance()))
+        closest = p, best = p.distance();
     });
     if (!closest.valid()) return closest;
     best = std::min(within, 2 * closest.distance());
     each_near(x, best, [&](std::uint32_t t) {
       const SurfacePoint p = virtual_vertex(mesh_, t, x);
-      if (p.valid() && p.distance() <= best && (!vertex.valid() || p.distance() < vertex.distance())) vertex = p, best = p.distance();
+      if (p.valid() && p.distance() <= best && (!vertex.valid() || p.distance() < vertex.distance()))
+        vertex = p, best = p.distance();
     });
     return vertex.valid() ? vertex : closest;
   }
@@ -59,7 +62,8 @@ TEST(CorpusQueries, NearestFindsWhatBruteForceFindsInAHundredThousandRandomQueri
 #else
   const int queries = 25000;
 #endif
-  for (const char* file : {"spot/spot_triangulated.obj", "pmndrs/bunny.glb", "webxr-hand/right.glb", "hra/VH_F_Kidney_L.glb"}) {
+  for (const char* file :
+       {"spot/spot_triangulated.obj", "pmndrs/bunny.glb", "webxr-hand/right.glb", "hra/VH_F_Kidney_L.glb"}) {
     Result<Level> level = load_level(corpus / file);
     ASSERT_TRUE(level.ok()) << level.error().message();
     make_touchable(*level);
@@ -78,13 +82,15 @@ TEST(CorpusQueries, NearestFindsWhatBruteForceFindsInAHundredThousandRandomQueri
     int mismatches = 0;
     for (int n = 0; n < queries; ++n) {
       // Mostly near the surface, where probes are; some anywhere in the box.
-      dvec3 x = dvec3(mesh->box.center()) + 0.6 * dvec3(mesh->box.size()) * dvec3(unit(random), unit(random), unit(random));
+      dvec3 x =
+          dvec3(mesh->box.center()) + 0.6 * dvec3(mesh->box.size()) * dvec3(unit(random), unit(random), unit(random));
       if (n % 5) {
         const uvec3 t = mesh->triangles[random() % mesh->triangles.size()];
         x = dvec3(mesh->position(t.x)) + (n % 5) * 0.01 * L * dvec3(unit(random), unit(random), unit(random));
       }
       const SurfacePoint fast = nearest(*mesh, x, L), slow = brute.nearest(x, L);
-      if (fast.valid() != slow.valid() || std::abs(fast.distance() - slow.distance()) > 1e-12 * L || fast.interpolated != slow.interpolated)
+      if (fast.valid() != slow.valid() || std::abs(fast.distance() - slow.distance()) > 1e-12 * L ||
+          fast.interpolated != slow.interpolated)
         ++mismatches;
     }
     EXPECT_EQ(mismatches, 0) << file;

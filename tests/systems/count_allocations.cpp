@@ -14,8 +14,12 @@ void* operator new(std::size_t size) {
   if (void* p = std::malloc(size ? size : 1)) return p;
   throw std::bad_alloc();
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
 
 namespace pliant {
 
@@ -23,7 +27,11 @@ CountAllocations::CountAllocations() {
   g_allocations = 0;
   g_counting = true;
 }
-CountAllocations::~CountAllocations() { g_counting = false; }
-std::uint64_t CountAllocations::count() const { return g_allocations; }
+CountAllocations::~CountAllocations() {
+  g_counting = false;
+}
+std::uint64_t CountAllocations::count() const {
+  return g_allocations;
+}
 
 }  // namespace pliant

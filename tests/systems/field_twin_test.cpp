@@ -36,7 +36,8 @@ struct Scene {
 
 TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSupports) {
   for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
-    for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
+    for (const Shape shape :
+         {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
       for (const int ticks : {200, 330, 360, 440}) {
         Deformable d;
         d.reach = 0.03;
@@ -56,13 +57,15 @@ TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSup
           const vec4 want = cpu.stage.field(cpu.surface).stream[v];
           largest = std::max<double>(largest, std::abs(want.w));
           height = std::max<double>(height, std::abs(sum.w - want.w));
-          const dvec3 n = normalize(dvec3(mesh.normal(v) + vec3(sum))), m = normalize(dvec3(mesh.normal(v) + vec3(want)));
+          const dvec3 n = normalize(dvec3(mesh.normal(v) + vec3(sum))),
+                      m = normalize(dvec3(mesh.normal(v) + vec3(want)));
           angle = std::max(angle, length(cross(n, m)) * 180 / M_PI);
         }
         EXPECT_LT(height, 1e-5 * largest) << int(law) << ' ' << int(shape) << ' ' << ticks;
         EXPECT_LT(angle, 0.1) << int(law) << ' ' << int(shape) << ' ' << ticks;
         for (auto [p, q] : {std::pair{cpu.a, card.a}, {cpu.b, card.b}}) {
-          EXPECT_LT(length(cpu.stage.read(p).force - card.stage.read(q).force), 1e-5) << int(law) << ' ' << int(shape) << ' ' << ticks;
+          EXPECT_LT(length(cpu.stage.read(p).force - card.stage.read(q).force), 1e-5)
+              << int(law) << ' ' << int(shape) << ' ' << ticks;
           EXPECT_NEAR(cpu.stage.read(p).height, card.stage.read(q).height, 1e-7);
         }
       }
@@ -85,8 +88,9 @@ TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
 }
 
 TEST(FieldTwins, WhatTheCardCannotDoFallsBackAndSaysWhy) {
-  for (auto change : {+[](Deformable& d) { d.spring = SpringLaw::kCubic; }, +[](Deformable& d) { d.response = Response::kLag; },
-                      +[](Deformable& d) { d.distance = Distance::kSurface; }}) {
+  for (auto change :
+       {+[](Deformable& d) { d.spring = SpringLaw::kCubic; }, +[](Deformable& d) { d.response = Response::kLag; },
+        +[](Deformable& d) { d.distance = Distance::kSurface; }}) {
     Deformable d;
     d.reach = 0.03;
     EXPECT_TRUE(card_obstacle(d).empty());
@@ -106,7 +110,8 @@ TEST(FieldTwins, MoreReleasesThanTheListHoldsAreCountedAndSurvived) {
   d.shape = Shape::kWendland;
   Scene card(d, FieldPlace::kCard);
   for (int i = 0; i < 400; ++i) {
-    card.stage.place(card.a, (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
+    card.stage.place(card.a,
+                     (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
     card.stage.tick();
     ASSERT_LE(card.stage.world.touch->objects[0].releases.size(), kMaxReleases);
     ASSERT_TRUE(std::isfinite(length(card.stage.read(card.a).force)));
@@ -121,7 +126,8 @@ TEST(FieldTwins, PressesThatOverlapOnASlowSurfaceDoNotDriveEachOthersRimsUp) {
     d.settling_time = 5.0;
     Scene scene(d, place);
     for (int i = 0; i < 400; ++i) {
-      scene.stage.place(scene.a, (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
+      scene.stage.place(scene.a,
+                        (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
       scene.stage.tick();
       ASSERT_LT(scene.stage.contact(scene.a).amplitude, 10 * (0.03 + 0.015)) << i;
       ASSERT_LE(scene.stage.read(scene.a).normal_force, 300 * 0.15) << i;

@@ -28,7 +28,8 @@ struct Closed {
     }
     const long double s1 = std::sqrt(D), r1 = -w2 / (s1 + a), r2 = -(s1 + a);
     const long double c1 = (v - r2 * x) / (r1 - r2), c2 = (r1 * x - v) / (r1 - r2);
-    return {double(c1 * std::exp(r1 * t) + c2 * std::exp(r2 * t)), double(c1 * r1 * std::exp(r1 * t) + c2 * r2 * std::exp(r2 * t))};
+    return {double(c1 * std::exp(r1 * t) + c2 * std::exp(r2 * t)),
+            double(c1 * r1 * std::exp(r1 * t) + c2 * r2 * std::exp(r2 * t))};
   }
 };
 
@@ -47,7 +48,8 @@ TEST(LocalModel, ExactStepEqualsTheClosedFormOverTheWholeRangeOfMaterialsAndStep
     const HeightState start{1e-3, 0.3 * 1e-3 * w};
     const HeightState got = step_oscillator(start, m, b, k, 0, T), want = Closed{m, b, k}.at(start, T);
     const double scale = std::hypot(start.height, start.velocity / w);
-    worst = std::max({worst, std::abs(got.height - want.height) / scale, std::abs(got.velocity - want.velocity) / (scale * w)});
+    worst = std::max(
+        {worst, std::abs(got.height - want.height) / scale, std::abs(got.velocity - want.velocity) / (scale * w)});
   }
   EXPECT_LT(worst, 1e-12);
 }
@@ -63,10 +65,10 @@ TEST(LocalModel, ExactStepNearCriticalDampingLosesNothing) {
 }
 
 TEST(LocalModel, DegenerateParametersHaveTheirLimits) {
-  EXPECT_DOUBLE_EQ(step_oscillator({1, 5}, 0, 0, 2, 4, 0.1).height, 2.0);                            // spring alone
-  EXPECT_DOUBLE_EQ(step_oscillator({1, 0}, 0, 3, 2, 0, 0.1).height, std::exp(-0.2 / 3));             // no mass
-  EXPECT_DOUBLE_EQ(step_oscillator({1, 2}, 4, 0, 0, 8, 0.5).height, 1 + 2 * 0.5 + 0.5 * 2 * 0.25);   // ballistic
-  const HeightState drag = step_oscillator({0, 1}, 2, 4, 0, 0, 0.25);                                // no spring
+  EXPECT_DOUBLE_EQ(step_oscillator({1, 5}, 0, 0, 2, 4, 0.1).height, 2.0);                           // spring alone
+  EXPECT_DOUBLE_EQ(step_oscillator({1, 0}, 0, 3, 2, 0, 0.1).height, std::exp(-0.2 / 3));            // no mass
+  EXPECT_DOUBLE_EQ(step_oscillator({1, 2}, 4, 0, 0, 8, 0.5).height, 1 + 2 * 0.5 + 0.5 * 2 * 0.25);  // ballistic
+  const HeightState drag = step_oscillator({0, 1}, 2, 4, 0, 0, 0.25);                               // no spring
   EXPECT_NEAR(drag.velocity, std::exp(-0.5), 1e-15);
   EXPECT_NEAR(drag.height, 0.5 * (1 - std::exp(-0.5)), 1e-15);
 }
@@ -127,9 +129,12 @@ TEST(LocalModel, DiscreteGradientKeepsTheEnergyIdentityForEveryLawAndStep) {
           s = n;
           continue;
         }
-        const auto energy = [&](HeightState x) { return 0.5 * m * x.velocity * x.velocity + k * law.potential(x.height); };
+        const auto energy = [&](HeightState x) {
+          return 0.5 * m * x.velocity * x.velocity + k * law.potential(x.height);
+        };
         const double vm = 0.5 * (s.velocity + n.velocity);
-        ASSERT_NEAR(energy(n) - energy(s), -T * b * vm * vm + f * (n.height - s.height), 1e-10) << int(kind) << ' ' << T << ' ' << i;
+        ASSERT_NEAR(energy(n) - energy(s), -T * b * vm * vm + f * (n.height - s.height), 1e-10)
+            << int(kind) << ' ' << T << ' ' << i;
         s = n;
       }
     }
@@ -141,7 +146,8 @@ TEST(LocalModel, RestoringForceIsTheDerivativeOfItsPotentialAndItsSlopeOfIt) {
     const RestoringLaw law{kind, 1e5, 200};
     for (const double h : {-9e-3, -1e-3, -1e-6, 1e-6, 1e-3, 5e-3}) {
       const double e = 1e-4 * std::abs(h);
-      EXPECT_NEAR((law.potential(h + e) - law.potential(h - e)) / (2 * e), law.force(h), 1e-6 * std::abs(law.force(h))) << h;
+      EXPECT_NEAR((law.potential(h + e) - law.potential(h - e)) / (2 * e), law.force(h), 1e-6 * std::abs(law.force(h)))
+          << h;
       EXPECT_NEAR((law.force(h + e) - law.force(h - e)) / (2 * e), law.slope(h), 1e-6 * law.slope(h)) << h;
     }
   }
@@ -152,7 +158,8 @@ TEST(LocalModel, StandardLinearSolidWithMassMatchesFineIntegration) {
   const auto M = solid_step(m, b, k, k1, tau, T);
   double s[3] = {-5e-3, 0.1, -0.7}, r[3] = {s[0], s[1], s[2]};
   for (int i = 0; i < 20; ++i) {
-    const double n[3] = {M[0][0] * s[0] + M[0][1] * s[1] + M[0][2] * s[2], M[1][0] * s[0] + M[1][1] * s[1] + M[1][2] * s[2],
+    const double n[3] = {M[0][0] * s[0] + M[0][1] * s[1] + M[0][2] * s[2],
+                         M[1][0] * s[0] + M[1][1] * s[1] + M[1][2] * s[2],
                          M[2][0] * s[0] + M[2][1] * s[1] + M[2][2] * s[2]};
     std::copy(n, n + 3, s);
     const auto rate = [&](const double* y, double* d) {
@@ -183,8 +190,10 @@ TEST(LocalModel, ParametersThatNoStepCouldSurviveAreRefusedByName) {
   Deformable d;
   d.reach = 0.02;
   EXPECT_TRUE(check(d, "x").ok());
-  for (auto [member, key] : {std::pair{&Deformable::stiffness, "stiffness"}, {&Deformable::damping_ratio, "damping_ratio"},
-                             {&Deformable::settling_time, "settling_time"}, {&Deformable::volume, "volume"}}) {
+  for (auto [member, key] : {std::pair{&Deformable::stiffness, "stiffness"},
+                             {&Deformable::damping_ratio, "damping_ratio"},
+                             {&Deformable::settling_time, "settling_time"},
+                             {&Deformable::volume, "volume"}}) {
     for (const double bad : {-1.0, std::nan(""), double(INFINITY)}) {
       Deformable broken = d;
       broken.*member = bad;

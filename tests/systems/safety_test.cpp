@@ -36,7 +36,8 @@ TEST(Safety, OnlyFiniteClampedSlewLimitedForceLeavesWhateverIsAsked) {
     ASSERT_TRUE(std::isfinite(length(r.force)));
     ASSERT_LE(length(r.force), device.max_force * (1 + 1e-12));
     // A fall to zero on unknown input may be abrupt; a rise never is.
-    if (length(r.force) > length(last)) ASSERT_LE(length(r.force - last), device.max_slew * 1e-3 + device.max_force * 1e-12);
+    if (length(r.force) > length(last))
+      ASSERT_LE(length(r.force - last), device.max_slew * 1e-3 + device.max_force * 1e-12);
     last = r.force;
   }
 }

@@ -59,7 +59,8 @@ void expect_nearest_matches_brute_force(const Mesh& mesh, int queries, double sp
 
 TEST(SurfaceQuery, NearestFindsWhatBruteForceFindsOnSheetSphereSlabAndValley) {
   Stage stage;
-  for (const Primitive& shape : {scenes::sheet(12, 0.2), scenes::sphere(8, 0.1), scenes::slab(10, 0.2, 0.004), scenes::valley(10, 0.2, 0.6)}) {
+  for (const Primitive& shape :
+       {scenes::sheet(12, 0.2), scenes::sphere(8, 0.1), scenes::slab(10, 0.2, 0.004), scenes::valley(10, 0.2, 0.6)}) {
     const Entity surface = stage.add(shape, {});
     expect_nearest_matches_brute_force(stage.mesh(surface), 1500, 0.05);
     expect_nearest_matches_brute_force(stage.mesh(surface), 300, 0.6);

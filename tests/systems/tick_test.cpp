@@ -19,7 +19,8 @@ namespace {
 using scenes::Stage;
 
 TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
-  for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid}) {
+  for (const SpringLaw law :
+       {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid}) {
     for (const Distance distance : {Distance::kChord, Distance::kSurface}) {
       for (const Response response : {Response::kFollow, Response::kLag}) {
         Stage stage;
@@ -114,7 +115,8 @@ TEST(Publish, AReaderOnAnotherThreadSeesWholeZonesOnly) {
       newest = s.tick;
       // Heights of one snapshot belong together: the deepest vertex is the probe's depth.
       float deepest = 0;
-      for (std::uint32_t i = 0; i < s.objects[0].zone_count * kZoneSize; ++i) deepest = std::min(deepest, s.objects[0].stream[i].w);
+      for (std::uint32_t i = 0; i < s.objects[0].zone_count * kZoneSize; ++i)
+        deepest = std::min(deepest, s.objects[0].stream[i].w);
       if (s.probes[0].touching && std::abs(-deepest - s.probes[0].depth) > 0.02 * s.probes[0].depth) ++torn;
     }
   });
@@ -155,7 +157,8 @@ TEST(Prepare, TouchStateStaysBelowTwoHundredBytesAVertex) {
   d.reach = 0.01;
   const Entity ball = stage.add(scenes::sphere(60, 0.1), d);
   stage.prepare();
-  EXPECT_LT(static_cast<double>(touch_bytes(stage.mesh(ball), stage.field(ball))) / stage.mesh(ball).vertex_count, 200.0);
+  EXPECT_LT(static_cast<double>(touch_bytes(stage.mesh(ball), stage.field(ball))) / stage.mesh(ball).vertex_count,
+            200.0);
 }
 
 }  // namespace

@@ -24,15 +24,21 @@ Deformable frictionless(SpringLaw law = SpringLaw::kLinear) {
 // The normal force at a given depth after everything has settled, written out from level-format.md.
 double law(const Deformable& d, double depth) {
   switch (d.spring) {
-    case SpringLaw::kLinear: case SpringLaw::kStandardLinearSolid: return d.stiffness * depth;
-    case SpringLaw::kCubic: return d.stiffness * depth + d.cubic * depth * depth * depth;
-    case SpringLaw::kExponential: return d.stiffness / d.stiffening * (std::exp(d.stiffening * depth) - 1);
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      return d.stiffness * depth;
+    case SpringLaw::kCubic:
+      return d.stiffness * depth + d.cubic * depth * depth * depth;
+    case SpringLaw::kExponential:
+      return d.stiffness / d.stiffening * (std::exp(d.stiffening * depth) - 1);
   }
   return 0;
 }
 
-constexpr SpringLaw kLaws[] = {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid};
-constexpr Shape kShapes[] = {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet};
+constexpr SpringLaw kLaws[] = {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential,
+                               SpringLaw::kStandardLinearSolid};
+constexpr Shape kShapes[] = {Shape::kPunch,    Shape::kHertz,  Shape::kGaussian,
+                             Shape::kWendland, Shape::kVolume, Shape::kKelvinlet};
 
 TEST(Touch, QuasiStaticForceIsTheLawOfTheDepthForEveryLaw) {
   for (const SpringLaw kind : kLaws) {
@@ -46,7 +52,9 @@ TEST(Touch, QuasiStaticForceIsTheLawOfTheDepthForEveryLaw) {
       if (r.position.y > -1e-4) return;
       ASSERT_TRUE(r.in_contact);
       ASSERT_NEAR(r.depth, -r.position.y, 1e-9);
-      ASSERT_NEAR(r.normal_force, law(d, r.depth), 1e-3 * law(d, r.depth) + (kind == SpringLaw::kStandardLinearSolid ? 1e-3 : 0.0)) << int(kind);
+      ASSERT_NEAR(r.normal_force, law(d, r.depth),
+                  1e-3 * law(d, r.depth) + (kind == SpringLaw::kStandardLinearSolid ? 1e-3 : 0.0))
+          << int(kind);
       ASSERT_NEAR(r.tangential_force, 0, 1e-9);
     });
   }
@@ -79,7 +87,8 @@ TEST(Touch, SurfaceStandsExactlyUnderEveryProbeForEveryShapeAndStaysFarAwayAtRes
     Deformable d = frictionless();
     d.shape = shape;
     const Entity sheet = stage.add(scenes::sheet(60, 0.2), d);
-    const Entity a = stage.add_probe({-0.008, 0.001, 0.003}), b = stage.add_probe({0.009, 0.001, -0.002}), c = stage.add_probe({0.03, 0.001, 0.02});
+    const Entity a = stage.add_probe({-0.008, 0.001, 0.003}), b = stage.add_probe({0.009, 0.001, -0.002}),
+                 c = stage.add_probe({0.03, 0.001, 0.02});
     stage.prepare();
     stage.tick();
     for (auto [probe, y] : {std::pair{a, -0.006}, {b, -0.004}, {c, -0.002}})
@@ -94,7 +103,8 @@ TEST(Touch, SurfaceStandsExactlyUnderEveryProbeForEveryShapeAndStaysFarAwayAtRes
     const Mesh& mesh = stage.mesh(sheet);
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
       double near = 1;
-      for (const Entity probe : {a, b, c}) near = std::min(near, length(dvec3(mesh.position(v)) - dvec3(1, 0, 1) * stage.read(probe).position));
+      for (const Entity probe : {a, b, c})
+        near = std::min(near, length(dvec3(mesh.position(v)) - dvec3(1, 0, 1) * stage.read(probe).position));
       if (near > 0.031) ASSERT_EQ(stage.field(sheet).stream[v], vec4(0)) << int(shape);
     }
   }
@@ -150,7 +160,8 @@ TEST(Touch, VolumeShapeLeavesNoNetVolumeOnFlatAndCurvedSurfaces) {
       indented = volume([&](std::uint32_t v) { return std::min(0.0f, field.stream[v].w); });
       // What the indentation alone would displace without a rim: (1-u)^3 of the same amplitude.
       const double bare = volume([&](std::uint32_t v) {
-        const double u = std::min(1.0, std::pow(length(dvec3(mesh.position(v)) - stage.contact(probe).foot) / d.reach, 2));
+        const double u =
+            std::min(1.0, std::pow(length(dvec3(mesh.position(v)) - stage.contact(probe).foot) / d.reach, 2));
         return -stage.contact(probe).amplitude * std::pow(1 - u, 3);
       });
       EXPECT_NEAR(net / bare, 1 - share, curved ? 0.004 : 0.002) << curved << ' ' << share;
@@ -225,7 +236,8 @@ TEST(Touch, CorrectedNormalsAgreeWithTheDeformedTriangles) {
 }
 
 TEST(Touch, FloatFieldFollowsTheDoublePrecisionRecoveryWithinOnePartIn1e5OfTheAmplitude) {
-  for (const SpringLaw kind : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid, SpringLaw::kExponential, SpringLaw::kCubic}) {
+  for (const SpringLaw kind :
+       {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid, SpringLaw::kExponential, SpringLaw::kCubic}) {
     for (const double zeta : {0.2, 1.0, 3.0}) {
       Stage stage;
       Deformable d = frictionless(kind);
@@ -239,7 +251,10 @@ TEST(Touch, FloatFieldFollowsTheDoublePrecisionRecoveryWithinOnePartIn1e5OfTheAm
       stage.tick();
       stage.tick();  // released: the field is now on its own
       const HeightField& field = stage.field(sheet);
-      struct Twin { std::uint32_t v; double h, r, q; };
+      struct Twin {
+        std::uint32_t v;
+        double h, r, q;
+      };
       std::vector<Twin> twins;
       double amplitude = 0;
       for (std::uint32_t v = 0; v < stage.mesh(sheet).vertex_count; ++v) {
@@ -258,7 +273,8 @@ TEST(Touch, FloatFieldFollowsTheDoublePrecisionRecoveryWithinOnePartIn1e5OfTheAm
             t.h = s.height, t.r = s.velocity;
           } else if (!field.arm.empty()) {
             const auto& M = m.solid;
-            const double h = M[0][0] * t.h + M[0][1] * t.r + M[0][2] * t.q, r = M[1][0] * t.h + M[1][1] * t.r + M[1][2] * t.q;
+            const double h = M[0][0] * t.h + M[0][1] * t.r + M[0][2] * t.q,
+                         r = M[1][0] * t.h + M[1][1] * t.r + M[1][2] * t.q;
             t.q = M[2][0] * t.h + M[2][1] * t.r + M[2][2] * t.q, t.h = h, t.r = r;
           } else {
             const HeightState s = step_oscillator({t.h, t.r}, m.mass, m.damping, 1, 0, m.dt);
@@ -443,7 +459,8 @@ TEST(Touch, SlidingNeverStepsTheForceByMoreThanTheSlopeTimesTheChangeOfDepth) {
   double depth = 0;
   bool had = false;
   for (int i = 0; i < 3000; ++i) {
-    const double a = 1.2 * std::sin(0.002 * i), b = 0.5 * std::cos(0.0011 * i), r = 0.1005 - 0.0055 * std::min(1.0, i / 300.0);
+    const double a = 1.2 * std::sin(0.002 * i), b = 0.5 * std::cos(0.0011 * i),
+                 r = 0.1005 - 0.0055 * std::min(1.0, i / 300.0);
     stage.place(probe, r * normalize(dvec3(std::sin(a), std::cos(a), std::sin(b))));
     stage.tick();
     const ProbeReading x = stage.read(probe);
@@ -458,7 +475,12 @@ TEST(Touch, SlidingNeverStepsTheForceByMoreThanTheSlopeTimesTheChangeOfDepth) {
 // --- hard places
 
 TEST(Touch, ProbesOnAVertexAnEdgeABorderAndACreaseFeelFiniteSteadyForces) {
-  struct Case { const char* name; Primitive surface; dvec3 above; dvec3 pressed; };
+  struct Case {
+    const char* name;
+    Primitive surface;
+    dvec3 above;
+    dvec3 pressed;
+  };
   const Case cases[] = {
       {"vertex", scenes::sheet(10, 0.1), {0.01, 0.005, 0.01}, {0.01, -0.003, 0.01}},
       {"edge", scenes::sheet(10, 0.1), {0.015, 0.005, 0.01}, {0.015, -0.003, 0.01}},
@@ -483,7 +505,10 @@ TEST(Touch, ProbesOnAVertexAnEdgeABorderAndACreaseFeelFiniteSteadyForces) {
     EXPECT_NEAR(stage.read(probe).normal_force, d.stiffness * 0.003, 0.12) << c.name;
     stage.wait(0.2);
     for (int i = 0; i < 200; ++i) {  // a hand trembles
-      stage.place(probe, c.pressed + 1e-5 * dvec3(std::sin(2.0 * i), std::sin(3.1 * i), std::cos(1.7 * i)) - (std::string(c.name) == "border" || std::string(c.name) == "corner" ? dvec3(2e-5, 0, std::string(c.name) == "corner" ? 2e-5 : 0) : dvec3(0)));
+      stage.place(probe, c.pressed + 1e-5 * dvec3(std::sin(2.0 * i), std::sin(3.1 * i), std::cos(1.7 * i)) -
+                             (std::string(c.name) == "border" || std::string(c.name) == "corner"
+                                  ? dvec3(2e-5, 0, std::string(c.name) == "corner" ? 2e-5 : 0)
+                                  : dvec3(0)));
       stage.tick();
       ASSERT_TRUE(stage.read(probe).in_contact) << c.name << ' ' << i;
       ASSERT_NEAR(stage.read(probe).normal_force, before, 0.1) << c.name << ' ' << i;

@@ -107,8 +107,10 @@ class CubeCache : public testing::Test {
     setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
   }
   ~CubeCache() override {
-    if (had_) setenv("XDG_CACHE_HOME", before_.c_str(), 1);
-    else unsetenv("XDG_CACHE_HOME");
+    if (had_)
+      setenv("XDG_CACHE_HOME", before_.c_str(), 1);
+    else
+      unsetenv("XDG_CACHE_HOME");
     fs::remove_all(folder_);
   }
   std::vector<fs::path> files() const {

@@ -1,6 +1,7 @@
-// One picture for each thing the renderer can do, beside a picture that somebody has looked at (golden/). Each test also
-// draws with that one thing switched off, and that picture must fail the same comparison: it is what the test is about.
-// To make the golden pictures anew: PLIANT_WRITE_GOLDEN=FOLDER test_visual --gtest_filter='Feature.*', look, then copy.
+// One picture for each thing the renderer can do, beside a picture that somebody has looked at (golden/). Each test
+// also draws with that one thing switched off, and that picture must fail the same comparison: it is what the test is
+// about. To make the golden pictures anew: PLIANT_WRITE_GOLDEN=FOLDER test_visual --gtest_filter='Feature.*', look,
+// then copy.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +34,8 @@ Panorama tiles() {
   for (std::uint32_t y = 0; y < p.height; ++y)
     for (std::uint32_t x = 0; x < p.width; ++x) {
       const float turn = (static_cast<float>(x) + 0.5f) / 256, fall = (static_cast<float>(y) + 0.5f) / 128;
-      const float wave = std::sin(24 * kPi * turn) * std::sin(12 * kPi * fall), edge = glm::smoothstep(-0.2f, 0.2f, wave);
+      const float wave = std::sin(24 * kPi * turn) * std::sin(12 * kPi * fall),
+                  edge = glm::smoothstep(-0.2f, 0.2f, wave);
       const vec3 above = glm::mix(vec3(0.25f, 0.45f, 0.9f), vec3(1.3f, 1.1f, 0.7f), edge);
       const vec3 below = glm::mix(vec3(0.05f, 0.04f, 0.04f), vec3(0.4f, 0.15f, 0.08f), edge);
       const vec3 c = glm::mix(above, below, glm::smoothstep(0.49f, 0.51f, fall));
@@ -222,7 +224,6 @@ TEST(Feature, WhatBlendsLetsTheSurroundingsThrough) {
   expect_feature("transparent", on, renderer_for(world)->picture(kFront, kWidth, kHeight));
 }
 
-
 TEST(Shadow, FallsWhereARayToTheLampMeetsTheDentAndNowhereElse) {
   NEEDS_A_CONTEXT();
   const World world = clay_sheet();
@@ -287,7 +288,8 @@ TEST(Option, ForcesAndContactFramesComeAndGoByThemselves) {
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
   Snapshot pushed;
-  pushed.probes.push_back({.probe = probe, .position = {0, 0.05, 0}, .force = {0, 2, 0}, .touching = true, .normal = {0, 1, 0}});
+  pushed.probes.push_back(
+      {.probe = probe, .position = {0, 0.05, 0}, .force = {0, 2, 0}, .touching = true, .normal = {0, 1, 0}});
   renderer->update(pushed);
   auto drawn = [&](bool forces, bool frames) {
     renderer->options().forces = forces;
@@ -311,7 +313,8 @@ TEST(Lamp, ASecondLampAddsItsLightWhereItReaches) {
   const Entity entity = world.registry.create();
   mat4 m(1);
   m[3] = vec4(0.7f, 0.2f, 0, 1);
-  world.registry.add<Light>(entity, {.kind = Light::Kind::kPoint, .color = {0, 0, 1}, .intensity = 0.3f, .range = 0.5f});
+  world.registry.add<Light>(entity,
+                            {.kind = Light::Kind::kPoint, .color = {0, 0, 1}, .intensity = 0.3f, .range = 0.5f});
   world.registry.add<WorldTransform>(entity, {m});
   const std::unique_ptr<Renderer> two = renderer_for(world);
   ASSERT_TRUE(one && two);

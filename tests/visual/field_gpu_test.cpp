@@ -26,7 +26,8 @@ TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
   Result<FieldProgram> program = FieldProgram::make();
   ASSERT_TRUE(program.ok()) << program.error().message();
   for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
-    for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
+    for (const Shape shape :
+         {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
       Deformable d;
       d.reach = 0.03;
       d.spring = law;
@@ -41,7 +42,8 @@ TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
         stage->prepare();
         for (int i = 0; i < 250; ++i) {  // press, slide, and one leaves
           stage->place(a, (0.1 - 0.005 * std::min(1.0, i / 60.0)) * normalize(dvec3(std::sin(0.004 * i), 1, 0.1)));
-          stage->place(b, (0.1 - 0.004 * std::min(1.0, i / 60.0) + (i > 230 ? 0.02 : 0)) * normalize(dvec3(std::sin(0.004 * i) + 0.25, 1, -0.1)));
+          stage->place(b, (0.1 - 0.004 * std::min(1.0, i / 60.0) + (i > 230 ? 0.02 : 0)) *
+                              normalize(dvec3(std::sin(0.004 * i) + 0.25, 1, -0.1)));
           stage->tick();
         }
       }
@@ -51,14 +53,16 @@ TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
       FieldOnCard field(mesh);
       const std::vector<FieldSource>& terms = card.world.touch->objects[0].terms;
       ASSERT_GE(terms.size(), 2u);
-      EXPECT_EQ(field.evaluate(*program, terms, stream), terms.size() * sizeof(CardSource)) << "what travels is the list";
+      EXPECT_EQ(field.evaluate(*program, terms, stream), terms.size() * sizeof(CardSource))
+          << "what travels is the list";
       const std::vector<vec4> got = read_back(stream, mesh.vertex_count);
       double largest = 0, height = 0, angle = 0;
       for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
         const vec4 want = cpu.field(surface[0]).stream[v];
         largest = std::max<double>(largest, std::abs(want.w));
         height = std::max<double>(height, std::abs(got[v].w - want.w));
-        const dvec3 p = normalize(dvec3(mesh.normal(v) + vec3(got[v]))), q = normalize(dvec3(mesh.normal(v) + vec3(want)));
+        const dvec3 p = normalize(dvec3(mesh.normal(v) + vec3(got[v]))),
+                    q = normalize(dvec3(mesh.normal(v) + vec3(want)));
         angle = std::max(angle, length(cross(p, q)) * 180 / M_PI);
       }
       EXPECT_GT(largest, 0.003);

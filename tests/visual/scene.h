@@ -36,5 +36,6 @@ StreamAt dent(vec3 center, float depth, float reach);
 }  // namespace pliant::test
 
 // First line of a test that draws: skips it, with a sentence, where nothing can.
-#define NEEDS_A_CONTEXT() \
-  if (!pliant::test::context()) GTEST_SKIP() << "there is no OpenGL 4.5 context here; install libegl-mesa0, libgl1-mesa-dri"
+#define NEEDS_A_CONTEXT()       \
+  if (!pliant::test::context()) \
+  GTEST_SKIP() << "there is no OpenGL 4.5 context here; install libegl-mesa0, libgl1-mesa-dri"
