@@ -67,7 +67,7 @@ function table(rows) {
 }
 
 if (!existsSync(options.pliant))
-  throw new Error(`${options.pliant}: not there; build it with ./dev build, or give --pliant`);
+  throw new Error(`${options.pliant}: not there; build it with ./dev run, or give --pliant`);
 mkdirSync(out, { recursive: true });
 mkdirSync(options.images, { recursive: true });
 const panorama = basename(options.environment);
