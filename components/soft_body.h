@@ -6,6 +6,8 @@
 #include <string>
 
 #include "components/math.h"
+#include "components/mesh.h"
+#include "components/tet_mesh.h"
 
 namespace pliant {
 
@@ -19,6 +21,9 @@ struct SoftBody {
   Box pinned;                            // [m] object frame; empty: nothing (or the attribute _PINNED)
   double friction_static = 0.4;          // [1]
   double friction_sliding = 0.3;         // [1]
+
+  Handle<TetMesh> tets;  // set at spawn
+  Handle<Mesh> skin;     // set at spawn: the embedded surface, which collides and is drawn
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };
@@ -38,6 +43,8 @@ struct RigidBody {
   double density = 1000.0;                               // [kg/m3]
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   bool fixed = false;
+
+  Handle<Mesh> skin;  // set at spawn
 };
 
 }  // namespace pliant

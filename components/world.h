@@ -14,6 +14,8 @@
 #include "components/name.h"
 #include "components/probe.h"
 #include "components/snapshot.h"
+#include "components/soft_snapshot.h"
+#include "components/tet_mesh.h"
 #include "components/transform.h"
 #include "runtime/clock.h"
 #include "runtime/exchange.h"
@@ -34,6 +36,7 @@ enum DroppedBit : std::uint32_t {
 };
 
 struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
+struct SoftState;   // systems/tool/soft_state.h: working memory of the soft step, made by prepare_soft
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
 
 // Keys of PLIANT_simulation.
@@ -56,6 +59,7 @@ struct World {
   Registry registry;
   Hierarchy hierarchy;
   Store<Mesh> meshes;
+  Store<TetMesh> tet_meshes;
   Store<DrawMesh> draw_meshes;
   Store<HeightField> fields;
   Store<Path> paths;
@@ -67,8 +71,10 @@ struct World {
       FieldPlace::kProcessor;         // kCard: of every object whose parameters allow it; read by prepare_touch
   std::uint32_t dropped = 0;          // DroppedBit
   std::shared_ptr<TouchState> touch;  // null until prepare_touch
+  std::shared_ptr<SoftState> soft;    // null where nothing is soft or rigid, and until prepare_soft
   std::shared_ptr<MouseInput> mouse;  // null unless a window drives a probe
-  std::unique_ptr<TripleBuffer<Snapshot>> snapshots;  // touch clock -> visual clock; null until prepare_touch
+  std::unique_ptr<TripleBuffer<Snapshot>> snapshots;           // touch clock -> visual clock; null until prepare_touch
+  std::unique_ptr<TripleBuffer<SoftSnapshot>> soft_snapshots;  // soft clock -> visual clock; null until prepare_soft
 };
 
 // The first entity with this name, or kNoEntity.

@@ -1,0 +1,48 @@
+// What the soft clock shows to the visual clock: where skins, tetrahedra, rigid bodies and contacts are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "components/math.h"
+#include "components/transform.h"
+#include "runtime/entity.h"
+
+namespace pliant {
+
+inline constexpr std::size_t kMaxShownContacts = 512;
+
+// One SoftBody or RigidBody that moves.
+struct SoftObjectSnapshot {
+  Entity object;
+  Pose pose;                   // RigidBody: world. SoftBody: of its handle, or identity
+  std::vector<vec3> position;  // [m] world, per skin vertex; empty: the rest shape under `pose`
+  std::vector<vec3> normal;    // [1] world, unit, per skin vertex
+  std::vector<vec3> nodes;     // [m] world, of the tetrahedra; empty for rigid bodies
+};
+
+struct ContactMark {
+  vec3 position{0};  // [m] world
+  vec3 normal{0};    // [1] world, from body b towards body a
+  vec3 force{0};     // [N] world, on body a
+  bool sliding = false;
+};
+
+// A tool, as the soft clock has it.
+struct HandleMark {
+  Entity tool;  // has a Handle6
+  Pose pose;
+  vec3 force{0}, torque{0};  // [N], [N m] world, that flesh and contacts put on the handle
+};
+
+struct SoftSnapshot {
+  std::uint64_t step = 0;
+  double time = 0.0;     // [s]
+  double step_ms = 0.0;  // what the last step cost
+  std::vector<SoftObjectSnapshot> objects;
+  std::uint32_t contact_count = 0;    // found; `contacts` holds the first kMaxShownContacts of them
+  std::vector<ContactMark> contacts;  // capacity kMaxShownContacts
+  std::vector<HandleMark> handles;
+};
+
+}  // namespace pliant

@@ -1,0 +1,63 @@
+// Whatever contacts can push, as the soft step sees it: a linear system A v = b over its own degrees of freedom, solved
+// by a black box, and a skin whose points move with those degrees of freedom (J).
+// Kinds: rigid (rigid_state.h), soft (soft_state.h), tool = soft with a handle (tool_state.h), fixed (no degrees of
+// freedom), yielding (a P1 surface: none either, but compliance).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "components/mesh.h"
+#include "components/soft_snapshot.h"
+#include "runtime/entity.h"
+#include "systems/tool/block_matrix.h"
+
+namespace pliant {
+
+struct SurfacePoint {
+  std::uint32_t triangle = 0;  // of the skin
+  dvec3 barycentric{1, 0, 0};  // [1]
+  dvec3 position{0};           // [m] world, at the beginning of the step
+};
+
+class Body {
+ public:
+  virtual ~Body() = default;
+
+  Entity entity;
+  const Mesh* skin = nullptr;        // topology and rest shape (object frame)
+  std::vector<dvec3> skin_position;  // [m] world, per skin vertex, now
+  std::vector<dvec3> skin_velocity;  // [m/s] world, of the free motion after free_step(); for predicting contacts
+  double friction_static = 0.4, friction_sliding = 0.3;  // [1]
+  bool self_collides = false;                            // its skin can touch itself
+
+  // Degrees of freedom; 0: contacts cannot move it.
+  virtual int size() const = 0;
+  // Assembles and factorises A for a step of T [s], and finds v* without contacts. Updates skin_velocity.
+  virtual void free_step(double T, dvec3 gravity) = 0;
+  // v: after free_step v*, after correct() the step's final velocity.
+  virtual const Vector& velocity() const = 0;
+  // columns.middleCols(first, 3) += sign * J^T(point) [a0 a1 a2], J^T of unit impulses along the axes' columns.
+  virtual void spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const = 0;
+  // out (3 x columns of x) += sign * axes^T J(point) x.
+  virtual void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
+                      Eigen::Ref<Rows> out) const = 0;
+  // columns = A^-1 columns.
+  virtual void solve(Rows& columns) const = 0;
+  // v = v* + dv, dv = A^-1 J^T lambda (already solved).
+  virtual void correct(const Vector& dv) = 0;
+  // x += T v; refreshes skin_position.
+  virtual void advance(double T) = 0;
+  // Yielding surfaces: w += compliance [m/(N s)... per T] between contacts on this body; rows 3 * contact.
+  struct Side {
+    int contact;  // which contact: rows 3 * contact ...
+    const SurfacePoint* point;
+  };
+  virtual void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
+    (void)sides, (void)T, (void)w;
+  }
+  // Fills the object's part of a snapshot; sizes were set by the first call, before the clocks start.
+  virtual void show(SoftObjectSnapshot& out) const = 0;
+};
+
+}  // namespace pliant

@@ -1,0 +1,37 @@
+// A pair of skin points that may touch during the step.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "systems/tool/body.h"
+
+namespace pliant {
+
+struct ContactPoint {
+  std::uint32_t body_a = 0, body_b = 0;  // into SoftState::bodies; equal: self-collision
+  SurfacePoint a, b;
+  dvec3 normal{0, 1, 0};                     // [1] world, unit, from b's outside towards a
+  double gap = 0.0;                          // [m] along the normal at the beginning of the step; < 0: penetrating
+  dmat3 axes{1};                             // columns: normal, two tangents (steady from step to step)
+  double mu_static = 0.4, mu_sliding = 0.3;  // [1] of the pair
+  std::uint64_t key = 0;                     // the same pair of features has the same key in the next step: warm start
+  dvec3 impulse{0};                          // [N s] along the axes, on a; of the last solve
+  bool sliding = false;
+};
+
+// Pairs whose gap may close within a step T [s], by the bodies' skin_velocity, at most `margin` [m] apart at the end:
+// broad phase over bodies and over each skin's boxes, then vertex-triangle and edge-edge pairs. Normals do not flip.
+class Proximity {
+ public:
+  explicit Proximity(const std::vector<std::unique_ptr<Body>>& bodies);
+  ~Proximity();
+  void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, double margin, std::vector<ContactPoint>& out);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace pliant

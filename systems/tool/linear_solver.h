@@ -1,0 +1,40 @@
+// The seam behind which linear systems are solved (P2: black boxes): factorise, then solve as often as you like.
+// Nothing above it knows which library or method does the work.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "systems/tool/block_matrix.h"
+
+namespace pliant {
+
+enum class SolverKind : std::uint8_t {
+  kAuto,           // by size, as measured (docs beside choose_solver)
+  kBlockCholesky,  // ours, sparse 3x3 blocks
+  kEigenCholesky,  // Eigen's SimplicialLDLT
+  kCholmod,        // SuiteSparse's, where the build has it
+  kConjugateGradient,
+  kDense,  // for tests
+};
+
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  virtual std::string_view name() const = 0;
+  // Once per pattern; `a` must outlive the solver's use.
+  virtual void analyse(const BlockMatrix& a) = 0;
+  // Numbers of an analysed pattern. False: not positive definite; solve() must not be called then.
+  [[nodiscard]] virtual bool factorise(const BlockMatrix& a) = 0;
+  // x = A^-1 b. x comes in as a guess (iterative methods start there; others ignore it).
+  virtual void solve(const Vector& b, Vector& x) const = 0;
+  // columns = A^-1 columns, in place, all right-hand sides at once.
+  virtual void solve_many(Rows& columns) const = 0;
+};
+
+// Null where the build does not have that kind.
+std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_rows);
+std::vector<SolverKind> available_solvers();
+
+}  // namespace pliant
