@@ -39,6 +39,7 @@ class Flesh {
   // each), where terms of K' and D on nodes outside `moving` stay on the left (they are unknowns of the handle).
   void assemble(double T, dvec3 gravity);
   const BlockMatrix& inner() const { return inner_; }
+  BlockMatrix& inner() { return inner_; }  // its owner adds what ties nodes to a handle; the next assemble() starts anew
   struct Entry {
     std::uint32_t row, column;  // nodes
     Block value;
