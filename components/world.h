@@ -37,6 +37,7 @@ enum DroppedBit : std::uint32_t {
 
 struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
 struct SoftState;   // systems/tool/soft_state.h: working memory of the soft step, made by prepare_soft
+struct ToolTouch;   // systems/tool/tool_touch_state.h: tools on the touch clock, made by prepare_tools
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
 
 // Keys of PLIANT_simulation.
@@ -72,6 +73,7 @@ struct World {
   std::uint32_t dropped = 0;          // DroppedBit
   std::shared_ptr<TouchState> touch;  // null until prepare_touch
   std::shared_ptr<SoftState> soft;    // null where nothing is soft or rigid, and until prepare_soft
+  std::shared_ptr<ToolTouch> tools;   // null where no level has a tool, and until prepare_tools
   std::shared_ptr<MouseInput> mouse;  // null unless a window drives a probe
   std::unique_ptr<TripleBuffer<Snapshot>> snapshots;           // touch clock -> visual clock; null until prepare_touch
   std::unique_ptr<TripleBuffer<SoftSnapshot>> soft_snapshots;  // soft clock -> visual clock; null until prepare_soft
