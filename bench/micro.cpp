@@ -85,7 +85,7 @@ void nearest_query(benchmark::State& state) {
   double error = 0;
   for (auto _ : state) {
     const dvec3 x = points[i++ % points.size()];
-    const SurfacePoint p = nearest(mesh, x, 1);
+    const SurfaceFoot p = nearest(mesh, x, 1);
     error = std::max(error, std::abs(p.height - (length(x) - 0.1)));  // the sphere itself: what the triangles leave out
   }
   state.counters["error_m"] = error;
@@ -96,7 +96,7 @@ void track_along(benchmark::State& state) {
   Stage stage;
   const Entity surface = stage.add(scenes::sphere(static_cast<int>(state.range(0)), 0.1), {});
   const Mesh& mesh = stage.mesh(surface);
-  SurfacePoint p = nearest(mesh, {0, 0.098, 0}, 1);
+  SurfaceFoot p = nearest(mesh, {0, 0.098, 0}, 1);
   double a = 0, error = 0;
   for (auto _ : state) {
     a += 0.3 * mesh.mean_edge / 0.1;

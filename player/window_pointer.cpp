@@ -76,7 +76,7 @@ std::optional<Pointer::Hit> Pointer::cast(const Ray& ray) const {
   for (const Target& target : targets_) {
     const Entry entry = first_entry(*target.mesh, target.pose.to_local(ray.from), target.pose.to_local(to));
     if (!entry.valid() || (best && entry.fraction * far >= best->distance)) continue;
-    const SurfacePoint p = surface_point(corners(*target.mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
+    const SurfaceFoot p = surface_point(corners(*target.mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
     best = Hit{target.pose.to_world(p.foot), target.pose.rotation * p.normal, entry.fraction * far, target.reach};
   }
   return best;

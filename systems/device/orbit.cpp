@@ -34,7 +34,7 @@ std::optional<Hit> cast(const World& world, dvec3 from, dvec3 to) {
     if (!entry.valid()) continue;
     const double distance = entry.fraction * length(to - from);
     if (best && distance >= best->distance) continue;
-    const SurfacePoint p = surface_point(corners(mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
+    const SurfaceFoot p = surface_point(corners(mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
     best = Hit{entity, pose.to_world(p.foot), pose.rotation * p.normal, distance};
   }
   return best;

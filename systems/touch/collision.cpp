@@ -18,7 +18,7 @@ struct Surface {
   const ObjectState& object;
 
   // The surface as it is now at a point: height [m], and the rate of its residual [m/s].
-  HeightState at(const SurfacePoint& p) const {
+  HeightState at(const SurfaceFoot& p) const {
     const uvec3 t = mesh.triangles[p.triangle];
     HeightState mean;
     for (int i = 0; i < 3; ++i) {
@@ -30,7 +30,7 @@ struct Surface {
   }
 };
 
-void place(Contact& contact, const SurfacePoint& p, double radius) {
+void place(Contact& contact, const SurfaceFoot& p, double radius) {
   contact.triangle = p.triangle;
   contact.barycentric = p.barycentric;
   contact.foot = p.foot;
@@ -39,8 +39,8 @@ void place(Contact& contact, const SurfacePoint& p, double radius) {
   contact.interpolated = p.interpolated;
 }
 
-SurfacePoint last_place(const Contact& contact, double radius) {
-  SurfacePoint p;
+SurfaceFoot last_place(const Contact& contact, double radius) {
+  SurfaceFoot p;
   p.triangle = contact.triangle;
   p.barycentric = contact.barycentric;
   p.foot = contact.foot;
@@ -50,7 +50,7 @@ SurfacePoint last_place(const Contact& contact, double radius) {
 }
 
 // Touching if the probe is below the surface as it is now; inside if only below where it was at rest.
-void settle(Contact& contact, const Surface& surface, const SurfacePoint& p) {
+void settle(Contact& contact, const Surface& surface, const SurfaceFoot& p) {
   const HeightState now = surface.at(p);
   contact.surface_height = now.height;
   contact.surface_velocity = now.velocity;
@@ -91,7 +91,7 @@ void find(Contact& contact, const Surface& surface, dvec3 from, dvec3 to, const 
       high.z < box.min.z)
     return;
 
-  SurfacePoint p;
+  SurfaceFoot p;
   if (probe.fresh) {
     // The first pose may lie inside a body; only a closed one has an inside.
     if (!surface.mesh.closed) return;
@@ -102,7 +102,7 @@ void find(Contact& contact, const Surface& surface, dvec3 from, dvec3 to, const 
     const double early = 1e-6 * box.diagonal() / length(d);
     const Entry entry = first_entry(surface.mesh, from - early * d, to);
     if (entry.valid()) {
-      const SurfacePoint at =
+      const SurfaceFoot at =
           surface_point(corners(surface.mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
       const Tracked tracked = track(surface.mesh, at, to);
       if (!tracked.left_border) p = tracked.point;

@@ -61,7 +61,7 @@ void visit_near(const Mesh& mesh, dvec3 x, Bound bound, Visit visit) {
   }
 }
 
-void keep_nearer(SurfacePoint& best, const SurfacePoint& candidate) {
+void keep_nearer(SurfaceFoot& best, const SurfaceFoot& candidate) {
   if (candidate.valid() && (!best.valid() || candidate.distance() < best.distance())) best = candidate;
 }
 
@@ -79,16 +79,16 @@ constexpr double kWalkInside = -1e-9;
 // A virtual vertex more than this many times as far as the closest point belongs to another part of the surface.
 constexpr double kSamePart = 2.0;
 
-SurfacePoint prefer_virtual(const SurfacePoint& vertex, const SurfacePoint& closest) {
+SurfaceFoot prefer_virtual(const SurfaceFoot& vertex, const SurfaceFoot& closest) {
   return vertex.valid() && vertex.distance() <= kSamePart * closest.distance() ? vertex : closest;
 }
 
-SurfacePoint nearest(const Mesh& mesh, dvec3 x, double within) {
-  SurfacePoint vertex, closest;
+SurfaceFoot nearest(const Mesh& mesh, dvec3 x, double within) {
+  SurfaceFoot vertex, closest;
   visit_near(
       mesh, x, [&] { return closest.valid() ? closest.distance() : within; },
       [&](std::uint32_t t) {
-        const SurfacePoint p = closest_point(mesh, t, x);
+        const SurfaceFoot p = closest_point(mesh, t, x);
         if (p.distance() <= within) keep_nearer(closest, p);
       });
   if (!closest.valid()) return closest;
@@ -97,23 +97,23 @@ SurfacePoint nearest(const Mesh& mesh, dvec3 x, double within) {
   visit_near(
       mesh, x, [&] { return vertex.valid() ? vertex.distance() : farthest; },
       [&](std::uint32_t t) {
-        const SurfacePoint p = virtual_vertex(mesh, t, x);
+        const SurfaceFoot p = virtual_vertex(mesh, t, x);
         if (p.valid() && p.distance() <= within) keep_nearer(vertex, p);
       });
   return prefer_virtual(vertex, closest);
 }
 
-SurfacePoint nearest_by_brute_force(const Mesh& mesh, dvec3 x, double within) {
-  SurfacePoint vertex, closest;
+SurfaceFoot nearest_by_brute_force(const Mesh& mesh, dvec3 x, double within) {
+  SurfaceFoot vertex, closest;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const SurfacePoint a = virtual_vertex(mesh, t, x), b = closest_point(mesh, t, x);
+    const SurfaceFoot a = virtual_vertex(mesh, t, x), b = closest_point(mesh, t, x);
     if (a.valid() && a.distance() <= within) keep_nearer(vertex, a);
     if (b.distance() <= within) keep_nearer(closest, b);
   }
   return prefer_virtual(vertex, closest);
 }
 
-Tracked track(const Mesh& mesh, const SurfacePoint& last, dvec3 x) {
+Tracked track(const Mesh& mesh, const SurfaceFoot& last, dvec3 x) {
   constexpr int kMaxWalk = 64;
   Tracked result;
   std::uint32_t triangle = last.triangle;
@@ -140,12 +140,12 @@ Tracked track(const Mesh& mesh, const SurfacePoint& last, dvec3 x) {
   // The walk stalled. Look at every triangle near the last foot; prefer the virtual vertex that continues it best, else
   // take the closest point.
   const double around = 4 * length(x - (last.foot + last.height * last.normal)) + 2 * mesh.mean_edge;
-  SurfacePoint closest;
+  SurfaceFoot closest;
   double best_step = around;
   visit_near(
       mesh, last.foot, [&] { return around; },
       [&](std::uint32_t t) {
-        const SurfacePoint p = virtual_vertex(mesh, t, x);
+        const SurfaceFoot p = virtual_vertex(mesh, t, x);
         if (p.valid()) {
           const double moved = length(p.foot - last.foot);
           if (moved < best_step) {

@@ -55,8 +55,8 @@ Corner3 corners(const Mesh& mesh, std::uint32_t triangle) {
           {dvec3(mesh.normal(t.x)), dvec3(mesh.normal(t.y)), dvec3(mesh.normal(t.z))}};
 }
 
-SurfacePoint surface_point(const Corner3& c, std::uint32_t triangle, dvec3 b, double height) {
-  SurfacePoint point;
+SurfaceFoot surface_point(const Corner3& c, std::uint32_t triangle, dvec3 b, double height) {
+  SurfaceFoot point;
   point.triangle = triangle;
   point.barycentric = b;
   point.foot = b.x * c.p[0] + b.y * c.p[1] + b.z * c.p[2];
@@ -67,7 +67,7 @@ SurfacePoint surface_point(const Corner3& c, std::uint32_t triangle, dvec3 b, do
   return point;
 }
 
-SurfacePoint virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
+SurfaceFoot virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
   const Corner3 c = corners(mesh, triangle);
   const dvec3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0], n0 = c.n[0], m1 = c.n[1] - n0, m2 = c.n[2] - n0;
   const dvec3 r = c.p[0] - x;
@@ -79,7 +79,7 @@ SurfacePoint virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
                           unit * unit * unit * dot(A2, n0)};
   double roots[3];
   const int count = real_roots(poly, roots);
-  SurfacePoint best;
+  SurfaceFoot best;
   for (int i = 0; i < count; ++i) {
     const double t = roots[i] * unit;
     const dvec3 a = e1 + t * m1, b = e2 + t * m2, q = -(r + t * n0), A = cross(a, b);
@@ -126,7 +126,7 @@ bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, doub
 }
 
 // Voronoi regions of the triangle, after Ericson, Real-Time Collision Detection 5.1.5.
-SurfacePoint closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
+SurfaceFoot closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
   const Corner3 c = corners(mesh, triangle);
   const dvec3 ab = c.p[1] - c.p[0], ac = c.p[2] - c.p[0], ap = x - c.p[0];
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -153,7 +153,7 @@ SurfacePoint closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
     const double sum = va + vb + vc;
     b = {va / sum, vb / sum, vc / sum};
   }
-  SurfacePoint point = surface_point(c, triangle, b, 0.0);
+  SurfaceFoot point = surface_point(c, triangle, b, 0.0);
   const dvec3 d = x - point.foot;
   point.height = std::copysign(length(d), dot(d, point.normal));
   return point;

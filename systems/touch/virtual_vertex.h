@@ -12,7 +12,8 @@
 
 namespace pliant {
 
-struct SurfacePoint {
+// Where x stands over the surface. (A point of a skin that contacts push is systems/tool/body.h.)
+struct SurfaceFoot {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::uint32_t triangle = kNone;
   dvec3 barycentric{1, 0, 0};  // [1] of the three corners
@@ -32,11 +33,11 @@ struct Corner3 {
 Corner3 corners(const Mesh& mesh, std::uint32_t triangle);
 
 // Foot, unit normal and height at given barycentrics.
-SurfacePoint surface_point(const Corner3& c, std::uint32_t triangle, dvec3 barycentric, double height);
+SurfaceFoot surface_point(const Corner3& c, std::uint32_t triangle, dvec3 barycentric, double height);
 
 // The virtual vertex with the smallest |height| on this triangle, or an invalid point where there is none: x projects
 // beside the triangle, or lies beyond the focal distance.
-SurfacePoint virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
+SurfaceFoot virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 
 // Barycentrics of the virtual vertex whose height continues `height`, which may lie outside the triangle (their signs
 // say which edge to cross). False where the normals meet (focal distance) or the iteration does not settle.
@@ -44,6 +45,6 @@ bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, doub
 
 // The closest point of the triangle, with the interpolated normal there; its height is signed by the side of that
 // normal.
-SurfacePoint closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
+SurfaceFoot closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 
 }  // namespace pliant

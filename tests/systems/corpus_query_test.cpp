@@ -22,18 +22,18 @@ class BruteForce {
                        std::max({length(c.p[0] - center), length(c.p[1] - center), length(c.p[2] - center)}));
     }
   }
-  SurfacePoint nearest(dvec3 x, double within) const {
-    SurfacePoint closest, vertex;
+  SurfaceFoot nearest(dvec3 x, double within) const {
+    SurfaceFoot closest, vertex;
     double best = within;
     each_near(x, best, [&](std::uint32_t t) {
-      const SurfacePoint p = closest_point(mesh_, t, x);
+      const SurfaceFoot p = closest_point(mesh_, t, x);
       if (p.distance() <= best && (!closest.valid() || p.distance() < closest.distance()))
         closest = p, best = p.distance();
     });
     if (!closest.valid()) return closest;
     best = std::min(within, 2 * closest.distance());
     each_near(x, best, [&](std::uint32_t t) {
-      const SurfacePoint p = virtual_vertex(mesh_, t, x);
+      const SurfaceFoot p = virtual_vertex(mesh_, t, x);
       if (p.valid() && p.distance() <= best && (!vertex.valid() || p.distance() < vertex.distance()))
         vertex = p, best = p.distance();
     });
@@ -88,7 +88,7 @@ TEST(CorpusQueries, NearestFindsWhatBruteForceFindsInAHundredThousandRandomQueri
         const uvec3 t = mesh->triangles[random() % mesh->triangles.size()];
         x = dvec3(mesh->position(t.x)) + (n % 5) * 0.01 * L * dvec3(unit(random), unit(random), unit(random));
       }
-      const SurfacePoint fast = nearest(*mesh, x, L), slow = brute.nearest(x, L);
+      const SurfaceFoot fast = nearest(*mesh, x, L), slow = brute.nearest(x, L);
       if (fast.valid() != slow.valid() || std::abs(fast.distance() - slow.distance()) > 1e-12 * L ||
           fast.interpolated != slow.interpolated)
         ++mismatches;

@@ -22,8 +22,8 @@ TEST(VirtualVertex, LiesOnTheInterpolatedNormalThroughThePoint) {
     double u = unit(random), v = unit(random);
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const double height = 0.08 * (unit(random) - 0.5);
-    const SurfacePoint truth = surface_point(corners(mesh, t), t, {1 - u - v, u, v}, height);
-    const SurfacePoint p = virtual_vertex(mesh, t, truth.foot + height * truth.normal);
+    const SurfaceFoot truth = surface_point(corners(mesh, t), t, {1 - u - v, u, v}, height);
+    const SurfaceFoot p = virtual_vertex(mesh, t, truth.foot + height * truth.normal);
     ASSERT_TRUE(p.valid());
     EXPECT_NEAR(p.height, height, 1e-12);
     EXPECT_LT(length(p.foot - truth.foot), 1e-11);
@@ -36,7 +36,7 @@ TEST(VirtualVertex, DoesNotExistBeyondTheFocalDistance) {
   const Entity ball = stage.add(scenes::sphere(8, 0.1), {});
   const Mesh& mesh = stage.mesh(ball);
   const Corner3 c = corners(mesh, 0);
-  const SurfacePoint middle = surface_point(c, 0, {0.3, 0.3, 0.4}, 0);
+  const SurfaceFoot middle = surface_point(c, 0, {0.3, 0.3, 0.4}, 0);
   EXPECT_TRUE(virtual_vertex(mesh, 0, middle.foot - 0.05 * middle.normal).valid());
   EXPECT_FALSE(virtual_vertex(mesh, 0, middle.foot - 0.15 * middle.normal).valid());  // the normals meet at 0.1
 }
@@ -49,7 +49,7 @@ void expect_nearest_matches_brute_force(const Mesh& mesh, int queries, double sp
   for (int n = 0; n < queries; ++n) {
     const uvec3 t = mesh.triangles[random() % mesh.triangles.size()];
     const dvec3 x = dvec3(mesh.position(t.x)) + spread * L * dvec3(unit(random), unit(random), unit(random));
-    const SurfacePoint fast = nearest(mesh, x, L), slow = nearest_by_brute_force(mesh, x, L);
+    const SurfaceFoot fast = nearest(mesh, x, L), slow = nearest_by_brute_force(mesh, x, L);
     if (fast.valid() != slow.valid() || fast.interpolated != slow.interpolated ||
         std::abs(fast.distance() - slow.distance()) > 1e-12 * L)
       ++mismatches;
@@ -70,12 +70,12 @@ TEST(SurfaceQuery, NearestFindsWhatBruteForceFindsOnSheetSphereSlabAndValley) {
 TEST(SurfaceQuery, TrackingAgreesWithTheGlobalSearchAlongASmoothBody) {
   Stage stage;
   const Mesh& mesh = stage.mesh(stage.add(scenes::sphere(24, 0.1), {}));
-  SurfacePoint p = nearest(mesh, {0.0953, 0.01, 0.01}, 1);
+  SurfaceFoot p = nearest(mesh, {0.0953, 0.01, 0.01}, 1);
   for (int i = 0; i < 2000; ++i) {
     const double a = 0.003 * i, r = 0.096 + 0.003 * std::sin(0.01 * i);
     const dvec3 x = r * normalize(dvec3(std::cos(a), 0.5 * std::sin(0.7 * a), std::sin(a)));
     p = track(mesh, p, x).point;
-    const SurfacePoint best = nearest(mesh, x, 1);
+    const SurfaceFoot best = nearest(mesh, x, 1);
     ASSERT_TRUE(p.valid());
     ASSERT_NEAR(p.height, best.height, 1e-10) << i;
   }
@@ -129,7 +129,7 @@ TEST(SurfaceQuery, FirstEntryIsTheEarliestOfAllCrossings) {
 TEST(SurfaceQuery, TrackingSaysWhenAProbeHasLeftTheRimOfASheet) {
   Stage stage;
   const Mesh& mesh = stage.mesh(stage.add(scenes::sheet(8, 0.08), {}));
-  SurfacePoint p = nearest(mesh, {0.035, -0.002, 0}, 1);
+  SurfaceFoot p = nearest(mesh, {0.035, -0.002, 0}, 1);
   Tracked on = track(mesh, p, {0.0399, -0.002, 0});
   EXPECT_FALSE(on.left_border);
   EXPECT_NEAR(on.point.height, -0.002, 1e-9);
