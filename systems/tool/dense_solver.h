@@ -13,7 +13,7 @@ class DenseSolver final : public LinearSolver {
   void analyse(const BlockMatrix&) override {}
   bool factorise(const BlockMatrix& a) override;
   void solve(const Vector& b, Vector& x) const override { x = factor_.solve(b); }
-  void solve_many(Rows& columns) const override { columns = factor_.solve(columns).eval(); }
+  void solve_many(Eigen::Ref<Rows> columns) const override { columns = factor_.solve(columns).eval(); }
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;

@@ -28,7 +28,7 @@ bool EigenCholesky::factorise(const BlockMatrix& a) {
   return (pivots > 0).all() && pivots.isFinite().all();
 }
 
-void EigenCholesky::solve_many(Rows& columns) const {
+void EigenCholesky::solve_many(Eigen::Ref<Rows> columns) const {
   const Eigen::MatrixXd right = columns;
   columns = factor_.solve(right);
 }

@@ -14,7 +14,7 @@ class EigenCholesky final : public LinearSolver {
   void analyse(const BlockMatrix& a) override;
   bool factorise(const BlockMatrix& a) override;
   void solve(const Vector& b, Vector& x) const override { x = factor_.solve(b); }
-  void solve_many(Rows& columns) const override;
+  void solve_many(Eigen::Ref<Rows> columns) const override;
 
  private:
   Eigen::SparseMatrix<double> lower_;  // the matrix without what stands above its diagonal blocks
