@@ -5,38 +5,13 @@
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/minimal.h"
 #include "content/generate/sky.h"
+#include "content/generate/stage.h"
 #include "content/generate/strokes.h"
 #include "content/generate/textures.h"
+#include "content/generate/tool_levels.h"
 
 namespace pliant::generate {
 namespace {
-
-constexpr vec3 kCoral{0.95f, 0.30f, 0.12f}, kTeal{0.05f, 0.55f, 0.60f}, kGold{0.95f, 0.70f, 0.10f};  // linear RGB
-
-LevelNode& add_node(Level& level, const std::string& name) {
-  level.nodes.emplace_back();
-  level.nodes.back().name = name;
-  return level.nodes.back();
-}
-
-// A frame at `eye` whose -Z looks at `target`, as cameras and lights want it.
-LocalTransform looking(dvec3 eye, dvec3 target) {
-  const dvec3 z = normalize(eye - target), x = normalize(cross(dvec3(0, 1, 0), z));
-  return {vec3(eye), quat(glm::normalize(glm::quat_cast(dmat3(x, cross(z, x), z)))), vec3(1)};
-}
-
-void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "sky.exr",
-              dvec3 to_light = {0.55, 0.62, 0.56}) {  // the sky's sun
-  LevelNode& camera = add_node(level, "camera");
-  camera.camera = Camera{0.55f, 0.01f, 10.0f};
-  camera.local = looking(eye, target);
-  LevelNode& key = add_node(level, "key_light");
-  key.light = Light{};
-  key.light->color = {1.0f, 0.95f, 0.88f};
-  key.light->intensity = 2.5f;
-  key.local = looking(target + to_light, target);
-  level.environment = LevelEnvironment{std::string("../environments/") + environment, 0.8, 0.0};
-}
 
 void add_probe(Level& level, const std::string& name, double radius, vec3 color) {
   LevelNode& node = add_node(level, name);
@@ -270,6 +245,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = save_strokes(heart_level, heart(), heart_strokes(), levels); !s) return s;
   if (Status s = save_level(cushion_level, levels / "chrome_cushion.glb", draco); !s) return s;
   if (Status s = save_strokes(cushion_level, cushion(), cushion_strokes(), levels); !s) return s;
+  if (Status s = write_tool_levels(levels); !s) return s;
   return write_minimal(levels);
 }
 

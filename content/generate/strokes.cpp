@@ -12,12 +12,6 @@ namespace {
 
 constexpr double kRate = 100.0;  // [Hz] of rows
 
-// 0 before `from`, 1 after `to`, C2 in between.
-double smooth_step(double from, double to, double t) {
-  const double s = std::clamp((t - from) / (to - from), 0.0, 1.0);
-  return s * s * s * (s * (s * 6.0 - 15.0) + 10.0);
-}
-
 dvec3 along(const Solid& solid, const Stroke& stroke, double t) {
   dvec3 p = stroke.through.front();
   for (std::size_t i = 1; i < stroke.through.size(); ++i)
@@ -26,6 +20,11 @@ dvec3 along(const Solid& solid, const Stroke& stroke, double t) {
 }
 
 }  // namespace
+
+double smooth_step(double from, double to, double t) {
+  const double s = std::clamp((t - from) / (to - from), 0.0, 1.0);
+  return s * s * s * (s * (s * 6.0 - 15.0) + 10.0);
+}
 
 Path trace(const Solid& solid, const Stroke& stroke) {
   Path path;
@@ -42,9 +41,15 @@ Path trace(const Solid& solid, const Stroke& stroke) {
 }
 
 Status save_script(const Path& path, const std::string& comment, const std::filesystem::path& file) {
-  std::string text = "# " + comment + "\ntime_s,x,y,z\n";
-  for (const PathRow& row : path.rows)
-    text += fmt::format("{:.2f},{:.7f},{:.7f},{:.7f}\n", row.time, row.position.x, row.position.y, row.position.z);
+  bool turns = false;
+  for (const PathRow& row : path.rows) turns = turns || row.rotation != dquat(1, 0, 0, 0);
+  std::string text = "# " + comment + (turns ? "\ntime_s,x,y,z,qw,qx,qy,qz\n" : "\ntime_s,x,y,z\n");
+  for (const PathRow& row : path.rows) {
+    const dvec3 p = row.position;
+    const dquat q = row.rotation;
+    text += fmt::format("{:.2f},{:.7f},{:.7f},{:.7f}", row.time, p.x, p.y, p.z);
+    text += turns ? fmt::format(",{:.8f},{:.8f},{:.8f},{:.8f}\n", q.w, q.x, q.y, q.z) : "\n";
+  }
   return write_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 

@@ -10,6 +10,9 @@
 
 namespace pliant::generate {
 
+// 0 before `from`, 1 after `to`, twice continuously differentiable. Times [s].
+double smooth_step(double from, double to, double t);
+
 struct Stroke {
   double duration = 8.0;                    // [s] of the whole script
   double radius = 0.0;                      // [m] of the probe; its lowest point is what is led

@@ -8,10 +8,12 @@
 #include <iterator>
 
 #include "content/exr.h"
+#include "content/generate/hand.h"
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/levels.h"
 #include "content/generate/sky.h"
 #include "content/generate/strokes.h"
+#include "content/generate/surface_nets.h"
 #include "content/generate/textures.h"
 #include "content/mesh_build.h"
 #include "content/script.h"
@@ -54,6 +56,31 @@ TEST(Generate, SurfaceIsClosedLiesOnItsSolidAndIsMadeOfEvenNearEquilateralTriang
   EXPECT_GT(quality[quality.size() / 100], 0.6);  // 1 is equilateral
   EXPECT_GT(quality[quality.size() / 2], 0.9);
   EXPECT_LT(area[area.size() * 99 / 100], 4.0 * area[area.size() / 2]);
+}
+
+TEST(Generate, HandIsOneClosedSurfaceOnItsSolidWithFiveSeparateDigits) {
+  const Solid solid = hand_solid();
+  const Net net = cover_by_net(solid, hand_box(), 0.0042);
+  double volume = 0.0, area = 0.0, facing = 0.0;
+  for (const dvec3& p : net.position) EXPECT_LT(std::abs(solid(p)), 1e-8);
+  for (const uvec3& t : net.triangles) {
+    const dvec3 &a = net.position[t.x], &b = net.position[t.y], &c = net.position[t.z];
+    const dvec3 spanned = 0.5 * cross(b - a, c - a);
+    volume += dot(a, spanned) / 3.0;
+    area += length(spanned);
+    facing += dot(normal_at(solid, (a + b + c) / 3.0), spanned);
+  }
+  EXPECT_GT(volume, 1.0e-4);
+  EXPECT_LT(volume, 3.0e-4);
+  EXPECT_GT(facing, 0.98 * area) << "triangles do not face outward";
+  const Primitive primitive = to_primitive(net, solid);
+  const Result<BuiltMesh> built = build_mesh("hand", {&primitive, 1}, mat4(1.0f));
+  ASSERT_TRUE(built.ok());
+  EXPECT_TRUE(built->mesh.closed);
+  EXPECT_EQ(built->mesh.triangles.size(), net.triangles.size());
+  // Euler's formula: one piece without handles, so no digit has joined another.
+  const std::size_t v = net.position.size(), f = net.triangles.size();
+  EXPECT_EQ(v + f - 3 * f / 2, 2u);
 }
 
 TEST(Generate, UnfoldedSquareAndSurfaceAreInversesOfEachOther) {

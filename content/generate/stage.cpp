@@ -1,0 +1,37 @@
+#include "content/generate/stage.h"
+
+namespace pliant::generate {
+
+LevelNode& add_node(Level& level, const std::string& name) {
+  level.nodes.emplace_back();
+  level.nodes.back().name = name;
+  return level.nodes.back();
+}
+
+LocalTransform looking(dvec3 eye, dvec3 target) {
+  const dvec3 z = normalize(eye - target), x = normalize(cross(dvec3(0, 1, 0), z));
+  return {vec3(eye), quat(glm::normalize(glm::quat_cast(dmat3(x, cross(z, x), z)))), vec3(1)};
+}
+
+void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment, dvec3 to_light) {
+  LevelNode& camera = add_node(level, "camera");
+  camera.camera = Camera{0.55f, 0.01f, 10.0f};
+  camera.local = looking(eye, target);
+  LevelNode& key = add_node(level, "key_light");
+  key.light = Light{};
+  key.light->color = {1.0f, 0.95f, 0.88f};
+  key.light->intensity = 2.5f;
+  key.local = looking(target + to_light, target);
+  level.environment = LevelEnvironment{std::string("../environments/") + environment, 0.8, 0.0};
+}
+
+std::int32_t add_material(Level& level, const std::string& name, vec3 color, float roughness) {
+  Material material;
+  material.name = name;
+  material.base_color = vec4(color, 1.0f);
+  material.roughness = roughness;
+  level.materials.push_back(material);
+  return static_cast<std::int32_t>(level.materials.size()) - 1;
+}
+
+}  // namespace pliant::generate

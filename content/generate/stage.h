@@ -1,0 +1,21 @@
+// What every level that ships is set up with: nodes, the view, lamps and surroundings.
+#pragma once
+
+#include <string>
+
+#include "content/level.h"
+
+namespace pliant::generate {
+
+inline constexpr vec3 kCoral{0.95f, 0.30f, 0.12f}, kTeal{0.05f, 0.55f, 0.60f}, kGold{0.95f, 0.70f, 0.10f};  // linear
+
+LevelNode& add_node(Level& level, const std::string& name);
+// A frame at `eye` whose -Z looks at `target`, as cameras and lights want it. [m]
+LocalTransform looking(dvec3 eye, dvec3 target);
+// A camera, a key light and the surroundings. `to_light` [m] from the target; the default is the sky's sun.
+void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "sky.exr",
+              dvec3 to_light = {0.55, 0.62, 0.56});
+// Of one colour. The material's index is returned.
+std::int32_t add_material(Level& level, const std::string& name, vec3 color, float roughness);
+
+}  // namespace pliant::generate
