@@ -1,12 +1,12 @@
 // Level -> World. Nodes become entities in order; meshes are built once for every way in which a node scales them.
 #include <cmath>
-#include <iostream>
 #include <unordered_map>
 
 #include "components/soft_body.h"
 #include "content/exr.h"
 #include "content/level.h"
 #include "content/mesh_build.h"
+#include "content/progress.h"
 #include "content/script.h"
 
 namespace pliant {
@@ -45,19 +45,6 @@ dmat4 inverse(const Pose& pose) {
   m[3] = glm::dvec4(back * -pose.position, 1.0);
   return m;
 }
-
-// Says on stderr that work goes on, once it has taken over a second; then at most once a second.
-class Progress {
- public:
-  void mesh(const std::string& name) {
-    if (now_ns() - last_ < 1'000'000'000) return;
-    last_ = now_ns();
-    std::cerr << "pliant: still preparing meshes, now `" << name << "`\n";
-  }
-
- private:
-  std::uint64_t last_ = now_ns();
-};
 
 // A mesh as some node wants it. Nodes that bake the same frame into the same mesh share what was built.
 struct Baked {
@@ -166,7 +153,7 @@ class Spawner {
       if (b.touchable == wanted.touchable && b.to_object == to_object) return b;
 
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
-    progress_.mesh(mesh.name.empty() ? node.name : mesh.name);
+    progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
     for (const Primitive& p : mesh.primitives) triangles_ += p.index.size() / 3;
     if (triangles_ > kMostTriangles)
       return at(
