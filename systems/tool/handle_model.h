@@ -1,33 +1,28 @@
 // What the soft clock and the touch clock tell each other about a tool (methods.md 2.6-2.9). Both travel by
 // TripleBuffer (tool_touch_state.h); everything has a fixed capacity, so that filling and copying allocate nothing.
 //
-// A twist or wrench is six numbers: linear first, then angular, world axes, about the handle's origin.
-// d: displacement of the handle since the model's pose, w: its twist, both six numbers.
+// A twist or wrench is six numbers: linear first, then angular, world axes, about the handle's centre (handle.h).
+// d: displacement of the handle since the model's pose; w: its twist; w0: the model's; w': its rate.
 //
 // Two descriptions of the wrench that flesh and contacts put on the handle:
-// - LinearModel, as P2 has it: F = force - K d - B (w - w0) - M w'. The matrices of the implicit step, C = M + T B +
-//   T^2 K, split exactly by the shape that one step gives to everything that moves with the handle.
-// - CondensedContacts, beyond P2: flesh and objects as a few vibration modes plus residual flexibility at the contacts,
-//   between handle and contacts; the touch tick solves Signorini and Coulomb again with them.
+// - LinearModel, as P2 has it: F = force - K d - B (w - w0) - M w'. One step's matrix C = M + T B + T^2 K is split by
+//   the shape that the step gives to everything that moves with the handle, so that M, B and K are what that shape has
+//   of each, and none of them can give out energy.
+// - CondensedContacts, beyond P2: flesh and objects as a few vibration modes, the rest of their flexibility without
+//   inertia, and the contacts between them; the touch tick solves Signorini and Coulomb again with them.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "components/haptic_device.h"
-#include "components/math.h"
-#include "systems/tool/block_matrix.h"
+#include "systems/tool/handle.h"
 
 namespace pliant {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+inline constexpr int kMaxCondensed = 64;  // contacts that the touch tick solves again
+inline constexpr int kMaxModes = 128;     // of flesh and objects together
 
-inline constexpr int kMaxCondensed = 64;        // contacts that the touch tick solves again, deepest first
-inline constexpr int kMaxModes = 128;           // of flesh and objects together
-inline constexpr std::size_t kHandlePast = 64;  // ticks of the handle's path that the soft clock gets to see
+using Rows6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 struct LinearModel {
   Vector6 force = Vector6::Zero();      // [N], [N m] at d = 0, w = w0, w' = 0
@@ -36,44 +31,55 @@ struct LinearModel {
   Matrix6 mass = Matrix6::Zero();       // M [kg ...] of flesh and of what sticks to it
 };
 
-// Rows of a contact: normal, first tangent, second tangent. Modes are mass-normalised: M = 1, D = damping, K =
-// frequency2, each with displacement q (0 at the model's time) and rate q'. Leading parts count.
+// Flesh moves as Phi w + modes q'; Phi is what one soft step gives it per unit of w. Modes are of one body each (the
+// flesh with the handle held, or an object), of mass 1: q'' + damping q' + frequency2 q = load + from_modes^T f + what
+// the handle does. q = 0 and d = 0 at the model's time. Rows of a contact: normal, first tangent, second tangent; all
+// arrays have room for more than `count` and `modes`, the leading parts count.
 struct CondensedContacts {
   int count = 0;  // contacts
   int modes = 0;
-  Eigen::MatrixXd from_handle;  // 3 count x 6: contact velocity per twist of the handle, modes held
-  Rows from_modes;              // 3 count x modes: contact velocity per mode rate
+  Vector6 flesh_force = Vector6::Zero();  // [N], [N m] on the handle at q = 0, d = 0: elasticity and weight alone
+  Matrix6 flesh_mass = Matrix6::Zero();   // of Phi
+  Matrix6 flesh_damping = Matrix6::Zero();
+  Matrix6 flesh_stiffness = Matrix6::Zero();
+
+  Vector frequency2;  // [1/s2]
+  Vector damping;     // [1/s]
+  Vector rate;        // q' at the model's time
+  Vector load;        // of elasticity and weight at q = 0, d = 0
+  Rows6 modal_mass;   // modes x 6: between mode and handle; zero for modes of objects
+  Rows6 modal_damping, modal_stiffness;
+
+  Rows6 from_handle;            // 3 count x 6: contact velocity per w, modes held
+  Rows from_modes;              // 3 count x modes: contact velocity per q'
   Eigen::MatrixXd flexibility;  // [m/N] 3 count x 3 count: what the modes leave out, without inertia
   Vector force;                 // [N] 3 count, at the model's time
-  Vector gap;                   // [m] count: >= 0, what is left to close; 0 where they touch
-  Vector push;                  // [m/s] count: <= 0, rate at which penetration is being undone
+  Vector gap;                   // [m] count: > 0: still open; < 0: penetration that is being undone
+  Vector push;                  // [m/s] count: <= 0: at this rate
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
 
-  Vector frequency2;                                     // [1/s2]
-  Vector damping;                                        // [1/s]
-  Vector rate;                                           // q' at the model's time
-  Vector load;                                           // q'' of flesh and gravity alone, at the model's time
-  Eigen::Matrix<double, 6, Eigen::Dynamic> handle_mass;  // 6 x modes: inertia between handle and mode
-  Eigen::Matrix<double, 6, Eigen::Dynamic> handle_damping, handle_stiffness;
+  // Of the above, for ticks of `tick` seconds, so that a tick need not make them (methods.md 2.4 with modes for flesh).
+  double tick = 1e-3;
+  Vector inverse;                     // modes: 1 / (1 + tick damping + tick^2 frequency2)
+  Rows6 border;                       // modes x 6: modal_mass + tick modal_damping + tick^2 modal_stiffness
+  Matrix6 reduced = Matrix6::Zero();  // flesh_mass + tick ... - border^T inverse border
+  Rows6 reduced_handle;               // 3 count x 6: contact velocity per w, modes following
+  Eigen::MatrixXd delassus;           // [1/kg] 3 count x 3 count, handle held
 
-  Vector6 flesh_force = Vector6::Zero();  // [N], [N m] on the handle at the model's time, without contacts and inertia
-  Matrix6 flesh_mass = Matrix6::Zero(), flesh_damping = Matrix6::Zero(), flesh_stiffness = Matrix6::Zero();
-
-  void resize(int most_contacts, int most_modes);  // before the clocks start
+  void resize(int most_contacts, int most_modes);  // room; before the clocks start
+  void prepare_tick(double seconds);               // fills what stands below `tick`
 };
 
 // Soft clock -> touch clock, per tool.
 struct HandleModel {
-  std::uint64_t step = 0;  // 0: nothing has been published yet
-  double time = 0.0;       // [s] that pose, twist and forces belong to
-  double soft_step = 0.0;  // [s] T
-  dvec3 position{0};       // [m] world, of the handle's origin
-  dquat rotation{1, 0, 0, 0};
-  Vector6 velocity = Vector6::Zero();     // w0
-  Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone, world axes, about its origin
-  Vector6 handle_load = Vector6::Zero();  // [N], [N m] gravity on the handle alone
-  Vector6 force = Vector6::Zero();        // [N], [N m] on the handle at `time`: for display
+  std::uint64_t step = 0;                 // 0: nothing has been published yet
+  double time = 0.0;                      // [s] that the motion and the forces belong to
+  double soft_step = 0.0;                 // [s] T
+  RigidMotion handle;                     // of its centre
+  dvec3 centre{0};                        // [m] of the handle, in the tool's object frame
+  Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone
+  Vector6 force = Vector6::Zero();  // [N], [N m] that flesh and contacts put on the handle, as the soft step saw it
   LinearModel linear;
   CondensedContacts contacts;
 };
@@ -81,13 +87,9 @@ struct HandleModel {
 // Touch clock -> soft clock, per tool.
 struct ToolInput {
   DeviceStatus status = DeviceStatus::kLost;
-  double time = 0.0;  // [s] that the poses belong to
-  double dt = 1e-3;   // [s] of a touch tick
-  dvec3 position{0};  // [m] world, device
-  dquat rotation{1, 0, 0, 0};
-  dvec3 velocity{0}, angular_velocity{0};    // [m/s], [rad/s] world, device
-  std::uint64_t ticks = 0;                   // past ticks: the twist of tick n stands at n % kHandlePast
-  std::array<Vector6, kHandlePast> twist{};  // of the 1 kHz handle
+  double time = 0.0;   // [s] that the motion belongs to
+  double tick = 1e-3;  // [s] length of a touch tick
+  RigidMotion device;  // of the device's own frame
 };
 
 }  // namespace pliant

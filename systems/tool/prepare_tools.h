@@ -6,7 +6,8 @@
 
 namespace pliant {
 
-// Call after spawn and before prepare_soft, whose first act per step is to read ToolInput. Allocates.
+// Makes World::tools anew from every Handle6. Call after spawn and before prepare_soft. Allocates. A tool without a
+// device gets one that never moves, where it stands; one whose device already moves something else is refused.
 Status prepare_tools(World& world);
 
 }  // namespace pliant

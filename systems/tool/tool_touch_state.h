@@ -1,4 +1,4 @@
-// A tool as the touch clock has it, and the two buffers between its clocks. Writer: the touch clock, but for `model`.
+// A tool as the touch clock has it, and what travels between its clocks. Writer: the touch clock, but for `model`.
 #pragma once
 
 #include <memory>
@@ -7,22 +7,57 @@
 #include "components/world.h"
 #include "systems/device/safety.h"
 #include "systems/tool/handle_model.h"
+#include "systems/tool/tool_tick.h"
 
 namespace pliant {
 
-// How the 1 kHz force is made. In rising order of truth and cost.
+// How the 1 kHz force is made, in rising order of truth and cost.
 enum class ToolForce : std::uint8_t {
   kHeld,      // the last soft step's force, unchanged
   kLinear,    // LinearModel
-  kContacts,  // CondensedContacts solved every tick; kLinear when late
+  kContacts,  // CondensedContacts, solved again every tick; kLinear when late
+};
+
+// Tunables of the touch tick. Unit, usual value, and what changing it does.
+inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: a jump between models fades with this time constant
+inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to nothing
+inline constexpr int kLateTicks = 3;              // ticks in a row over budget, then the linear model takes over
+inline constexpr std::size_t kPathLength = 1024;  // ticks of the handle's path that may wait for the soft clock
+
+// A tick of the handle's path, for the soft clock to bring its model up to date with.
+struct HandleStep {
+  double time = 0.0;  // [s] at its end
+  Vector6 velocity = Vector6::Zero();
 };
 
 struct ToolTouchState {
-  Entity entity;                    // has a Handle6 and a SoftBody
-  Entity device = kNoEntity;        // has a HapticDevice; kNoEntity: nobody moves the tool
-  TripleBuffer<ToolInput> input;    // touch -> soft
-  TripleBuffer<HandleModel> model;  // soft -> touch
-  SafetyState safety;
+  Entity entity;                       // has a Handle6 and a SoftBody
+  Entity device = kNoEntity;           // has a HapticDevice
+  TripleBuffer<ToolInput> input;       // touch -> soft
+  TripleBuffer<HandleModel> model;     // soft -> touch
+  Ring<HandleStep> path{kPathLength};  // touch -> soft
+
+  ToolForce wanted = ToolForce::kContacts;
+  SweepLimits limits;  // of a tick; in lockstep budget_ns is 0: never wall time, always the same bits
+
+  // Since the first model.
+  bool placed = false;
+  ToolForce used = ToolForce::kHeld;       // kContacts until late
+  int late = 0;                            // ticks in a row
+  RigidMotion handle;                      // of its centre
+  Vector6 displacement = Vector6::Zero();  // d, of the model in use
+  CondensedState contacts;
+  Vector6 fade = Vector6::Zero();   // [N], [N m] added to the model's wrench, fading
+  Vector6 plain = Vector6::Zero();  // [N], [N m] the model's wrench plus fade, without inertia, at the tick's end
+
+  // For display and devices.
+  RigidMotion sensed;                       // the device
+  bool sensing = false;                     // `sensed` means something
+  Vector6 wrench = Vector6::Zero();         // [N], [N m] flesh and contacts on the handle, over the last tick
+  Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its own origin
+  SafetyState force_safety, torque_safety;
+  dvec3 turned{0};  // [rad] sum of the device's small rotations
+  std::uint64_t ticks_late = 0;
 };
 
 // World::tools. Sized by prepare_tools.

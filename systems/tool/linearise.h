@@ -1,0 +1,19 @@
+// The soft clock's side of the exchange with the touch clock (methods.md 2.6, 2.8, 2.9). Three calls, in this order, in
+// a soft step of T [s]:
+//   take_inputs       before the bodies' free_step: where the hands are
+//   linearise         after apply_impulses and before the bodies advance: what the step says about each handle
+//   publish_models    last: brings what was found up to date with the handle's path since, and publishes it
+// A soft step that begins with an input of time t ends at t: the device is led back by T times its velocity, so that it
+// arrives at the step's end where it was sensed. What has happened since is in ToolTouchState::path.
+#pragma once
+
+#include "components/world.h"
+
+namespace pliant {
+
+// All do nothing where no tools are prepared.
+void take_inputs(World& world, double T);
+void linearise(World& world, double T);
+void publish_models(World& world);
+
+}  // namespace pliant

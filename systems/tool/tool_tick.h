@@ -1,0 +1,45 @@
+// A tick of the handle at 1 kHz (methods.md 2.7, 2.8), on plain numbers: everything about flesh and contacts is in the
+// model, everything about device and handle in TickHandle. Nothing here allocates.
+#pragma once
+
+#include "systems/tool/contact_problem.h"
+#include "systems/tool/handle_model.h"
+
+namespace pliant {
+
+// What else the handle obeys: (inertia) w = right + what the model adds. Or a handle that is moved as it is told.
+struct TickHandle {
+  Matrix6 inertia = Matrix6::Zero();   // [kg ...] M_h + tick B_c + tick^2 K_c
+  Vector6 right = Vector6::Zero();     // [N s ...] M_h w + coupling's
+  Vector6 velocity = Vector6::Zero();  // w: in: at the beginning of the tick; out: at its end
+  bool moved = false;                  // `next` is w at the end, whatever the forces
+  Vector6 next = Vector6::Zero();
+};
+
+// d: displacement of the handle since the model's pose. Both return the wrench on the handle over the tick, inertia of
+// the flesh included. [N], [N m]
+Vector6 linear_tick(const LinearModel& model, const Vector6& w0, const Vector6& d, double tick, TickHandle& handle);
+
+// What a CondensedContacts has become since its time. Sized once.
+struct CondensedState {
+  Vector q, rate;  // modes
+  Vector spring;   // [m] 3 count: stretch of `flexibility`
+  Vector gap;      // [m] count
+  Vector6 d = Vector6::Zero();
+  ContactProblem problem;  // its impulse and sliding flags are the warm start
+  SweepReport report;
+  Vector free_rate;  // working memory
+  Rows6 lever, levered;
+
+  void resize(int most_contacts, int most_modes);
+  void start(const CondensedContacts& model);
+};
+
+Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, const SweepLimits& limits,
+                       TickHandle& handle);
+
+// The wrench that the model gives right now, without inertia: what fading compares. [N], [N m]
+Vector6 linear_wrench(const LinearModel& model, const Vector6& w0, const Vector6& d, const Vector6& w);
+Vector6 condensed_wrench(const CondensedContacts& model, const CondensedState& state, const Vector6& w);
+
+}  // namespace pliant
