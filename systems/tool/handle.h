@@ -59,6 +59,8 @@ class RigidHandle {
   void advance(double T);
 
  private:
+  void turn_arms();
+
   dvec3 centre_{0};
   double mass_ = 0.0;           // [kg]
   dmat3 inertia_{1}, lent_{0};  // [kg m2] object axes; lent_ is contained in inertia_

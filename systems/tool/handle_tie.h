@@ -28,6 +28,11 @@ class HandleTie {
 
   // After flesh.assemble(T, gravity): what the handle adds to flesh.inner(), and border(), corner(), right().
   void assemble(Flesh& flesh, const RigidHandle& handle, double T, dvec3 gravity);
+  // What else acts on the handle: a diagonal of A_hh and its part of b_h.
+  void add_to_handle(const Vector6& diagonal, const Vector6& right) {
+    corner_.diagonal() += diagonal;
+    right_.tail<6>() += right;
+  }
 
   const std::vector<HandleRow>& border() const { return border_; }  // A_th
   const Matrix6& corner() const { return corner_; }                 // A_hh

@@ -40,6 +40,8 @@ class CoupledSolver {
   const LinearSolver& flesh_solver() const { return *flesh_; }
 
  private:
+  void solve_seven(const Matrix6& hh, const Vector& b, Vector& x);
+
   std::unique_ptr<LinearSolver> flesh_;
   Eigen::Index flesh_rows_ = 0, handle_rows_ = 0;
   bool solvable_ = false;

@@ -57,11 +57,12 @@ class SoftBodyState final : public Body {
   const Matrix6& reduced() const { return solver_.reduced(); }  // S = handle_mass + flesh_matrix + coupling [kg]
   const Rows& follow() const { return solver_.follow(); }       // [-Z; 1], size() x 6
   const Matrix6& handle_mass() const { return handle_mass_; }   // M_h [kg], [kg m2]
-  // What flesh does to the handle in this step as a linear function of the handle's velocity w over it:
+  const Vector6& handle_load() const { return handle_load_; }   // [N], [N m] M_h's weight, at the centre
+  // What flesh does to the handle in this step, as a linear function of the handle's velocity w over it:
   //   T F(w) = T flesh_wrench - flesh_matrix (w - w0),  w0 the velocity at the step's beginning,
-  // handle's own weight and mass-proportional damping included, coupling and contacts left out.
+  // mass-proportional damping of M_h included; its inertia and weight, coupling and contacts left out.
   const Matrix6& flesh_matrix() const { return flesh_matrix_; }  // [kg], [kg m2] symmetric, positive semidefinite
-  const Vector6& flesh_wrench() const { return flesh_wrench_; }  // [N], [N m] world, at the centre, at w = w0
+  const Vector6& flesh_wrench() const { return flesh_wrench_; }  // [N], [N m] world, at the centre, for w = w0
   bool held() const { return device_.has_value(); }              // a device holds the handle
   // Where the device wants the handle's own frame.
   RigidMotion device_target() const { return device_ ? device_->at(handle_->centre()) : handle_->motion(); }
@@ -70,13 +71,18 @@ class SoftBodyState final : public Body {
   Vector6 coupling_wrench() const;
 
  private:
-  dvec3 node_velocity(std::uint32_t node) const;
-  void refresh_skin_position();
-  void refresh_skin_velocity();
-  void linearise_handle(double T);
+  // Calls use(node, weight) for the nodes that a point of the skin rides on.
+  template <class Use>
+  void for_each_node(const SurfacePoint& point, Use use) const;
+  bool slaved(std::uint32_t node) const { return node >= flesh_.moving() && node < tets_.pinned_begin(); }
+  Eigen::Index handle_row() const { return 3 * static_cast<Eigen::Index>(flesh_.moving()); }
+  dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
+  dvec3 node_velocity(std::uint32_t node) const;  // [m/s] by velocity()
+  void couple(double T);
+  void separate_flesh(double T, dvec3 gravity);
+  void refresh_skin(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_skin) const;
 
   const TetMesh& tets_;
-  const Mesh& skin_mesh_;
   Handle6 settings_;
   Flesh flesh_;
   std::optional<RigidHandle> handle_;
@@ -84,12 +90,14 @@ class SoftBodyState final : public Body {
   CoupledSolver solver_;
   bool solvable_ = true;
   double T_ = 0.0;  // [s] of the last free_step
-  Vector right_, velocity_;
+  Vector velocity_;
+  std::vector<dvec3> node_velocity_;  // [m/s] by velocity_, of the free motion
   std::optional<RigidMotion> device_;
   CouplingForce coupling_;
   CouplingStep coupling_step_;
+  Vector6 start_ = Vector6::Zero();  // w0
   Matrix6 handle_mass_ = Matrix6::Zero(), flesh_matrix_ = Matrix6::Zero();
-  Vector6 flesh_wrench_ = Vector6::Zero();
+  Vector6 handle_load_ = Vector6::Zero(), flesh_wrench_ = Vector6::Zero();
 };
 
 }  // namespace pliant

@@ -1,0 +1,220 @@
+#include "systems/tool/soft_body_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/assert.h"
+
+namespace pliant {
+namespace {
+
+FleshMaterial material_of(const SoftBody& body) {
+  return {.young = body.young,
+          .poisson = body.poisson,
+          .density = body.density,
+          .alpha = body.rayleigh[0],
+          .beta = body.rayleigh[1]};
+}
+
+bool has_handle_nodes(const TetMesh& tets, const Handle6* handle) {
+  return handle != nullptr && tets.handle_count > 0;
+}
+
+// Slaved nodes have no rows of their own; tied ones, and those of a handle that nobody declared, do.
+std::uint32_t moving_nodes(const TetMesh& tets, const Handle6* handle) {
+  const bool slaved = has_handle_nodes(tets, handle) && handle->attachment == Attachment::kSlave;
+  return slaved ? tets.free_count : tets.pinned_begin();
+}
+
+dvec3 box_size(const TetMesh& tets) {
+  dvec3 least = tets.nodes.front(), most = least;
+  for (const dvec3 node : tets.nodes) least = glm::min(least, node), most = glm::max(most, node);
+  return most - least;
+}
+
+bool finite(const RigidMotion& motion) {
+  const dvec3 x = motion.pose.position;
+  const dquat q = motion.pose.rotation;
+  return std::isfinite(dot(x, x)) && std::isfinite(1.0 / glm::dot(q, q)) && motion.velocity.allFinite();
+}
+
+Block to_block(const dmat3& m) {
+  Block out;
+  for (int row = 0; row < 3; ++row)
+    for (int col = 0; col < 3; ++col) out(row, col) = m[col][row];
+  return out;
+}
+
+}  // namespace
+
+SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const SoftBody& body, const Handle6* handle,
+                             const Pose& placement, SolverKind solver)
+    : SoftBodyState(tets, skin_mesh, body, handle, placement, make_solver(solver, moving_nodes(tets, handle))) {}
+
+SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const SoftBody& body, const Handle6* handle,
+                             const Pose& placement, std::unique_ptr<LinearSolver> solver)
+    : tets_(tets),
+      flesh_(tets, material_of(body), moving_nodes(tets, handle)),
+      solver_(std::move(solver), flesh_.inner(), has_handle_nodes(tets, handle)) {
+  ASSERT(tets.skin.size() == skin_mesh.vertex_count);
+  skin = &skin_mesh;
+  friction_static = body.friction_static;
+  friction_sliding = body.friction_sliding;
+
+  if (has_handle_nodes(tets, handle)) {
+    const std::uint32_t first = tets.free_count, count = tets.handle_count;
+    settings_ = *handle;
+    handle_.emplace(std::span(tets.nodes).subspan(first, count), std::span(flesh_.mass()).subspan(first, count),
+                    box_size(tets), placement);
+    tie_.emplace(handle->attachment, material_of(body), flesh_, first);
+  }
+  for (std::size_t i = 0; i < tets.nodes.size(); ++i) {
+    flesh_.position()[i] = placement.to_world(tets.nodes[i]);
+    flesh_.velocity()[i] = dvec3(0);
+  }
+  velocity_ = Vector::Zero(size());
+  node_velocity_.assign(tets.nodes.size(), dvec3(0));
+  refresh_skin(flesh_.position(), skin_position);
+  refresh_skin(node_velocity_, skin_velocity);
+}
+
+void SoftBodyState::set_device(const Pose& pose, const Vector6& velocity) {
+  const RigidMotion device{{pose.position, glm::normalize(pose.rotation)}, velocity};
+  device_ = finite(device) ? std::optional(device) : std::nullopt;
+}
+
+void SoftBodyState::free_step(double T, dvec3 gravity) {
+  T_ = T;
+  flesh_.assemble(T, gravity);
+  if (handle_) {
+    tie_->assemble(flesh_, *handle_, T, gravity);
+    couple(T);
+    solvable_ = solver_.factorise(flesh_.inner(), tie_->border(), tie_->corner(), tie_->right(), velocity_);
+    separate_flesh(T, gravity);
+  } else {
+    solvable_ = solver_.factorise(flesh_.inner(), {}, Matrix6::Zero(), flesh_.right(), velocity_);
+  }
+  for (std::uint32_t i = 0; i < tets_.node_count(); ++i) node_velocity_[i] = node_velocity(i);
+  refresh_skin(node_velocity_, skin_velocity);
+}
+
+// The device's pull on the handle, implicit.
+void SoftBodyState::couple(double T) {
+  start_ = handle_->motion().velocity;
+  coupling_ = device_ ? coupling_force(settings_, handle_->motion(), device_target()) : CouplingForce{};
+  coupling_step_ = device_ ? coupling_step(coupling_, handle_->motion(), device_target(), T) : CouplingStep{};
+  tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right);
+}
+
+// S and its right-hand side, less what is not flesh.
+void SoftBodyState::separate_flesh(double T, dvec3 gravity) {
+  handle_mass_ = handle_->mass_matrix();
+  handle_load_ = handle_mass_ * join(gravity, dvec3(0));
+  if (!solvable_) {
+    flesh_matrix_.setZero();
+    flesh_wrench_.setZero();
+    return;
+  }
+  flesh_matrix_ = solver_.reduced() - handle_mass_;
+  flesh_matrix_.diagonal() -= coupling_step_.matrix;
+  flesh_wrench_ =
+      (solver_.reduced_right() - coupling_step_.right - (handle_mass_ + flesh_matrix_) * start_) / T - handle_load_;
+}
+
+Vector6 SoftBodyState::coupling_wrench() const {
+  return (coupling_step_.right - coupling_step_.matrix.cwiseProduct(velocity_.tail<6>())) / T_;
+}
+
+void SoftBodyState::advance(double T) {
+  std::vector<dvec3>&x = flesh_.position(), &v = flesh_.velocity();
+  for (std::uint32_t i = 0; i < flesh_.moving(); ++i) {
+    v[i] = node_velocity(i);
+    x[i] += T * v[i];
+  }
+  if (handle_) {
+    handle_->set_velocity(velocity_.tail<6>());
+    handle_->advance(T);
+    velocity_.tail<6>() = handle_->motion().velocity;
+    for (std::uint32_t i = flesh_.moving(); i < tets_.pinned_begin(); ++i) {
+      x[i] = handle_->motion().pose.position + arm(i);
+      v[i] = node_velocity(i);
+    }
+  }
+  refresh_skin(x, skin_position);
+}
+
+dvec3 SoftBodyState::node_velocity(std::uint32_t node) const {
+  if (node < flesh_.moving()) {
+    const double* v = velocity_.data() + 3 * node;
+    return {v[0], v[1], v[2]};
+  }
+  if (!slaved(node)) return dvec3(0);
+  const Vector6 w = velocity_.tail<6>();
+  return linear(w) + cross(angular(w), arm(node));
+}
+
+void SoftBodyState::refresh_skin(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_skin) const {
+  of_skin.resize(tets_.skin.size());
+  for (std::size_t s = 0; s < of_skin.size(); ++s) {
+    const Embedding& place = tets_.skin[s];
+    const Tet& tet = tets_.tets[place.tet];
+    of_skin[s] = place.weight[0] * of_nodes[tet[0]] + place.weight[1] * of_nodes[tet[1]] +
+                 place.weight[2] * of_nodes[tet[2]] + place.weight[3] * of_nodes[tet[3]];
+  }
+}
+
+template <class Use>
+void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
+  for (int corner = 0; corner < 3; ++corner) {
+    const Embedding& place = tets_.skin[skin->triangles[point.triangle][corner]];
+    for (std::size_t k = 0; k < 4; ++k) use(tets_.tets[place.tet][k], point.barycentric[corner] * place.weight[k]);
+  }
+}
+
+void SoftBodyState::spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const {
+  const Block impulse = to_block(axes);
+  for_each_node(point, [&](std::uint32_t node, double weight) {
+    if (node < flesh_.moving())
+      columns.block<3, 3>(3 * node, first) += sign * weight * impulse;
+    else if (slaved(node))
+      columns.block<6, 3>(handle_row(), first) += sign * weight * grip_matrix(arm(node)).transpose() * impulse;
+  });
+}
+
+void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
+                           Eigen::Ref<Rows> out) const {
+  const Block along = to_block(axes).transpose();
+  for_each_node(point, [&](std::uint32_t node, double weight) {
+    if (node < flesh_.moving())
+      out.noalias() += (sign * weight * along) * x.middleRows<3>(3 * node);
+    else if (slaved(node))
+      out.noalias() += (sign * weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
+  });
+}
+
+void SoftBodyState::handle_rows(const SurfacePoint& point, const dmat3& axes, double sign, Eigen::Ref<Rows> out) const {
+  gather(point, axes, sign, follow(), out);
+}
+
+void SoftBodyState::show(SoftObjectSnapshot& out) const {
+  out.object = entity;
+  out.pose = handle_ ? handle_->object_pose() : Pose{};
+  out.position.resize(skin_position.size());
+  out.normal.assign(skin_position.size(), vec3(0));
+  out.nodes.resize(flesh_.position().size());
+  std::transform(skin_position.begin(), skin_position.end(), out.position.begin(), [](dvec3 x) { return vec3(x); });
+  std::transform(flesh_.position().begin(), flesh_.position().end(), out.nodes.begin(),
+                 [](dvec3 x) { return vec3(x); });
+
+  // Weighted by area; in double, for the cross product of a small triangle's edges.
+  for (const uvec3 t : skin->triangles) {
+    const dvec3 area = cross(skin_position[t.y] - skin_position[t.x], skin_position[t.z] - skin_position[t.x]);
+    for (int corner = 0; corner < 3; ++corner) out.normal[t[corner]] += vec3(area);
+  }
+  for (vec3& normal : out.normal) {
+    const float size = length(normal);
+    normal = size > 0 ? normal / size : vec3(0, 1, 0);
+  }
+}
+
+}  // namespace pliant
