@@ -1,0 +1,217 @@
+#include "systems/tool/contact_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/math.h"
+#include "runtime/assert.h"
+#include "runtime/clock.h"
+
+// Compiled twice, for plain x86-64 and for AVX2; without contraction both give the same bits. Sanitizers do not mix
+// with this mechanism, so they get the plain version.
+#if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
+#define PLIANT_KERNEL __attribute__((target_clones("avx2", "default")))
+#else
+#define PLIANT_KERNEL
+#endif
+
+namespace pliant {
+namespace {
+
+// A diagonal smaller than this share of the largest one cannot be pushed: such contacts are left alone.
+constexpr double kImmovable = 1e-14;
+
+// u += [w0 w1 w2] d: three neighbouring columns of W. Keeping u whole costs the same as forming each contact's three
+// rows anew (W is symmetric), vectorises without reordering a sum, and contacts that do not change cost nothing.
+PLIANT_KERNEL void add_columns(double* __restrict u, const double* __restrict w, std::ptrdiff_t stride, int rows,
+                               double d0, double d1, double d2) {
+  const double* __restrict w0 = w;
+  const double* __restrict w1 = w + stride;
+  const double* __restrict w2 = w + 2 * stride;
+  for (int i = 0; i < rows; ++i) u[i] += (w0[i] * d0 + w1[i] * d1) + w2[i] * d2;
+}
+
+double length2(double x, double y) {
+  return std::sqrt(x * x + y * y);
+}
+
+// The largest point of the segment from 0 to (x, y) inside the disc.
+void clamp_to_disc(double& x, double& y, double radius) {
+  const double l = length2(x, y);
+  if (l <= radius) return;
+  const double s = l > 0.0 ? radius / l : 0.0;
+  x *= s, y *= s;
+}
+
+// One contact with all others held: u = w lambda + c.
+struct Local {
+  dmat3 w;       // symmetric
+  dvec3 c;       // [m/s]
+  double mu;     // [1]
+  dvec3 lambda;  // [N s] guess in, answer out
+
+  bool stick() {
+    const double det = glm::determinant(w);
+    if (!(det > 1e-12 * w[0][0] * w[1][1] * w[2][2])) return false;
+    const dvec3 held = -(glm::inverse(w) * c);
+    if (!(held.x > 0.0) || length2(held.y, held.z) > mu * held.x) return false;
+    lambda = held;
+    return true;
+  }
+  // methods.md 2.5, a few times over: the normal impulse that stops the approach, then a step of friction against the
+  // slip, scaled back to the cone. It ends where Coulomb holds; what is left is left to the next sweep.
+  void slide() {
+    const double trace = w[1][1] + w[2][2];
+    const double step = trace > 0.0 ? 2.0 / trace : 0.0;
+    for (int k = 0; k < 4; ++k) {
+      lambda.x = std::max(0.0, -(c.x + w[0][1] * lambda.y + w[0][2] * lambda.z) / w[0][0]);
+      const dvec3 u = w * lambda + c;
+      lambda.y -= step * u.y;
+      lambda.z -= step * u.z;
+      clamp_to_disc(lambda.y, lambda.z, mu * lambda.x);
+    }
+  }
+};
+
+class Sweeper {
+ public:
+  explicit Sweeper(ContactProblem& problem) : p_(problem), rows_(3 * problem.count), stride_(problem.W.outerStride()) {
+    double largest = 0.0;
+    for (int i = 0; i < rows_; ++i) largest = std::max(largest, p_.W(i, i));
+    immovable_ = kImmovable * largest;
+  }
+
+  // A guess may come from another problem: whatever cannot be is dropped. Then u = W lambda + bias.
+  void start() {
+    double* u = p_.velocity.data();
+    for (int i = 0; i < rows_; ++i) u[i] = p_.bias[i];
+    for (int i = 0; i < p_.count; ++i) {
+      double* l = &p_.impulse[3 * i];
+      if (!(l[0] > 0.0) || !std::isfinite(l[0] + l[1] + l[2]) || !movable(i)) l[0] = l[1] = l[2] = 0.0;
+      if (l[0] > 0.0) add_columns(u, column(i), stride_, rows_, l[0], l[1], l[2]);
+    }
+  }
+
+  void sweep() {
+    for (int i = 0; i < p_.count; ++i) relax(i);
+  }
+
+  double residual() const {
+    double worst = 0.0;
+    for (int i = 0; i < p_.count; ++i)
+      if (movable(i)) worst = std::max(worst, residual_of(i));
+    return worst;
+  }
+
+  // Contacts that have come to the border of the static cone and slip go on with the sliding coefficient. Decided only
+  // on settled impulses: on the way there every contact with a small normal impulse seems to slip. How many changed?
+  int begin_slips(double slowest) {
+    int begun = 0;
+    for (int i = 0; i < p_.count; ++i) {
+      const double* u = &p_.velocity[3 * i];
+      const double* l = &p_.impulse[3 * i];
+      if (p_.sliding[i] || l[0] <= 0.0 || length2(u[1], u[2]) <= slowest) continue;
+      if (length2(l[1], l[2]) < (1.0 - 1e-9) * p_.mu_static[i] * l[0]) continue;
+      p_.sliding[i] = 1;
+      begun += p_.mu_sliding[i] < p_.mu_static[i];
+    }
+    return begun;
+  }
+  // Those that slipped and now lie inside the sliding cone hold again.
+  void end_slips() {
+    for (int i = 0; i < p_.count; ++i) {
+      const double* l = &p_.impulse[3 * i];
+      if (l[0] <= 0.0 || length2(l[1], l[2]) < (1.0 - 1e-6) * mu(i) * l[0]) p_.sliding[i] = 0;
+    }
+  }
+
+ private:
+  double mu(int i) const { return p_.sliding[i] ? p_.mu_sliding[i] : p_.mu_static[i]; }
+  const double* column(int i) const { return p_.W.data() + 3 * i * stride_; }
+  bool movable(int i) const { return p_.W(3 * i, 3 * i) > immovable_; }
+
+  void relax(int i) {
+    double* u = &p_.velocity[3 * i];
+    double* l = &p_.impulse[3 * i];
+    if (l[0] == 0.0 && u[0] >= 0.0) return;
+    if (!movable(i)) return;
+    Local local;
+    const double* w = column(i) + 3 * i;
+    for (int k = 0; k < 3; ++k) local.w[k] = dvec3(w[k * stride_], w[k * stride_ + 1], w[k * stride_ + 2]);
+    local.lambda = dvec3(l[0], l[1], l[2]);
+    local.c = dvec3(u[0], u[1], u[2]) - local.w * local.lambda;
+    local.mu = mu(i);
+    if (local.c.x >= 0.0)
+      local.lambda = dvec3(0.0);
+    else if (!local.stick())
+      local.slide();
+    const dvec3 d = local.lambda - dvec3(l[0], l[1], l[2]);
+    if (d == dvec3(0.0)) return;
+    for (int k = 0; k < 3; ++k) l[k] = local.lambda[k];
+    add_columns(p_.velocity.data(), column(i), stride_, rows_, d.x, d.y, d.z);
+  }
+
+  double residual_of(int i) const {
+    const double* u = &p_.velocity[3 * i];
+    const double* l = &p_.impulse[3 * i];
+    const double wn = p_.W(3 * i, 3 * i), wt = 0.5 * (p_.W(3 * i + 1, 3 * i + 1) + p_.W(3 * i + 2, 3 * i + 2));
+    double y = wt * l[1] - u[1], z = wt * l[2] - u[2];
+    clamp_to_disc(y, z, mu(i) * wt * l[0]);
+    return std::max(std::abs(std::min(wn * l[0], u[0])), length2(wt * l[1] - y, wt * l[2] - z));
+  }
+
+  ContactProblem& p_;
+  int rows_;
+  std::ptrdiff_t stride_;
+  double immovable_ = 0.0;  // [1/kg]
+};
+
+}  // namespace
+
+void ContactProblem::resize(int contacts) {
+  count = contacts;
+  const Eigen::Index rows = 3 * contacts;
+  if (W.rows() < rows) W.resize(rows, rows);
+  for (Vector* v : {&bias, &impulse, &velocity})
+    if (v->size() < rows) v->resize(rows);
+  const std::size_t size = static_cast<std::size_t>(contacts);
+  if (mu_static.size() < size) mu_static.resize(size);
+  if (mu_sliding.size() < size) mu_sliding.resize(size);
+  if (sliding.size() < size) sliding.resize(size);
+}
+
+SweepReport solve(ContactProblem& problem, const SweepLimits& limits) {
+  const Eigen::Index rows = 3 * problem.count;
+  const std::size_t count = static_cast<std::size_t>(problem.count);
+  ASSERT(problem.W.rows() >= rows && problem.W.cols() >= rows && problem.bias.size() >= rows);
+  ASSERT(problem.impulse.size() >= rows && problem.sliding.size() >= count && problem.mu_static.size() >= count &&
+         problem.mu_sliding.size() >= count);
+  if (problem.velocity.size() < rows) problem.velocity.resize(rows);
+  SweepReport report;
+  if (problem.count == 0) return report;
+
+  const std::uint64_t begin = limits.budget_ns ? now_ns() : 0;
+  const double enough = limits.tolerance * problem.bias.head(rows).cwiseAbs().maxCoeff();
+  Sweeper sweeper(problem);
+  sweeper.start();
+  report.residual = sweeper.residual();
+  const int half = (limits.sweeps + 1) / 2;
+  while (true) {
+    const bool settled = report.residual <= enough;
+    const int begun = settled || report.sweeps == half ? sweeper.begin_slips(10.0 * report.residual + enough) : 0;
+    if (settled && begun == 0) break;
+    if (report.sweeps == limits.sweeps) break;
+    if (limits.budget_ns && now_ns() - begin >= limits.budget_ns) {
+      report.in_time = false;
+      break;
+    }
+    sweeper.sweep();
+    ++report.sweeps;
+    report.residual = sweeper.residual();
+  }
+  sweeper.begin_slips(10.0 * report.residual + enough);
+  sweeper.end_slips();
+  return report;
+}
+
+}  // namespace pliant

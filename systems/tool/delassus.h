@@ -1,0 +1,37 @@
+// From bodies and contacts to the contact problem and back (methods.md 2.5):
+//   W = sum over bodies J A^-1 J^T + compliance,  bias = J v* + g0/T,  v = v* + A^-1 J^T lambda.
+// Bodies are black boxes: all that is asked of them is to spread, solve and gather.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "systems/tool/body.h"
+#include "systems/tool/contact_point.h"
+#include "systems/tool/contact_problem.h"
+
+namespace pliant {
+
+// How one body answers unit impulses at its contacts.
+struct BodyResponse {
+  std::vector<int> contacts;  // those it takes part in, ascending
+  Rows z;                     // A^-1 J^T: size() x 3 contacts, three columns each in the order of `contacts`
+};
+
+// Kept from step to step for its memory. Valid from build_problem to the bodies' next free_step.
+struct Delassus {
+  std::vector<BodyResponse> of;  // per body
+  Eigen::MatrixXd compliance;    // of yielding bodies
+};
+
+// After every body's free_step. Penetrations are worked off by the share `beta` [1] a step (0.1-0.2), so that they add
+// no energy worth the name; what a yielding body gives is its own law and is asked for whole. Warm impulses, sliding
+// flags and friction come from the contacts.
+void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
+                   double T, double beta, Delassus& delassus, ContactProblem& problem);
+
+// Corrects every body that can move and writes impulse and `sliding` into the contacts.
+void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
+                    const ContactProblem& problem, std::vector<ContactPoint>& contacts);
+
+}  // namespace pliant

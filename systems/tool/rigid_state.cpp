@@ -1,0 +1,178 @@
+#include "systems/tool/rigid_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/assert.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kTurnPerPart = 0.1;  // [rad] a free turn is followed in parts no larger than this
+constexpr int kMostParts = 256;
+
+// exp: a turn by |w| about w.
+dquat turn(dvec3 w) {
+  const double angle = length(w);
+  const double s = angle > 1e-12 ? std::sin(0.5 * angle) / angle : 0.5;
+  return {std::cos(0.5 * angle), s * w.x, s * w.y, s * w.z};
+}
+// log, for turns below pi.
+dvec3 turn_of(dquat q) {
+  if (q.w < 0.0) q = -q;
+  const dvec3 v(q.x, q.y, q.z);
+  const double s = length(v);
+  return s > 1e-12 ? v * (2.0 * std::atan2(s, q.w) / s) : 2.0 * v;
+}
+
+void place_skin(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& skin_position) {
+  const dmat3 r = glm::mat3_cast(pose.rotation);
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) skin_position[v] = pose.position + r * dvec3(mesh.position(v));
+}
+
+// Of points that turn with `angular` about `centre`, which moves with `linear`.
+void move_skin(dvec3 centre, dvec3 linear, dvec3 angular, Body& body) {
+  for (std::size_t v = 0; v < body.skin_position.size(); ++v)
+    body.skin_velocity[v] = linear + cross(angular, body.skin_position[v] - centre);
+}
+
+}  // namespace
+
+RigidState::RigidState(const Mesh& mesh, const Pose& pose, const RigidMass& mass)
+    : mass_(mass), centre_(pose.to_world(mass.centre)), rotation_(normalize(pose.rotation)) {
+  ASSERT(mass.mass > 0.0 && glm::determinant(mass.inertia) > 0.0);
+  skin = &mesh;
+  skin_position.resize(mesh.vertex_count);
+  skin_velocity.resize(mesh.vertex_count, dvec3(0));
+  inverse_inertia_ = inverse_inertia(rotation_);
+  refresh_skin();
+}
+
+dmat3 RigidState::inertia(const dquat& rotation) const {
+  const dmat3 r = glm::mat3_cast(rotation);
+  return r * mass_.inertia * glm::transpose(r);
+}
+dmat3 RigidState::inverse_inertia(const dquat& rotation) const {
+  return glm::inverse(inertia(rotation));
+}
+
+void RigidState::set_velocity(dvec3 linear, dvec3 angular) {
+  linear_ = linear;
+  angular_momentum_ = inertia(rotation_) * angular;
+}
+
+double RigidState::kinetic_energy() const {
+  return 0.5 * mass_.mass * dot(linear_, linear_) +
+         0.5 * dot(angular_momentum_, inverse_inertia(rotation_) * angular_momentum_);
+}
+
+dvec3 RigidState::free_turn(double T) const {
+  const double spin = length(inverse_inertia_ * angular_momentum_);
+  const int parts = std::clamp(static_cast<int>(std::ceil(spin * T / kTurnPerPart)), 1, kMostParts);
+  const double h = T / parts;
+  dquat q = rotation_;
+  for (int i = 0; i < parts; ++i) {
+    dvec3 w = inverse_inertia(q) * angular_momentum_;
+    // A contraction by about h |w| < 0.1: eight times leave rounding.
+    for (int k = 0; k < 8; ++k) w = inverse_inertia(turn(0.5 * h * w) * q) * angular_momentum_;
+    q = turn(h * w) * q;
+  }
+  return turn_of(q * glm::conjugate(rotation_)) / T;
+}
+
+void RigidState::free_step(double T, dvec3 gravity) {
+  inverse_inertia_ = inverse_inertia(rotation_);
+  const dvec3 v = linear_ + T * gravity, w = free_turn(T);
+  velocity_ << v.x, v.y, v.z, w.x, w.y, w.z;
+  move_skin(centre_, v, w, *this);
+}
+
+void RigidState::spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const {
+  const dvec3 r = point.position - centre_;
+  for (int c = 0; c < 3; ++c) {
+    const dvec3 f = sign * axes[c], m = cross(r, f);
+    for (int k = 0; k < 3; ++k) {
+      columns(k, first + c) += f[k];
+      columns(3 + k, first + c) += m[k];
+    }
+  }
+}
+
+void RigidState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
+                        Eigen::Ref<Rows> out) const {
+  const dvec3 r = point.position - centre_;
+  for (int c = 0; c < 3; ++c) {
+    const dvec3 f = sign * axes[c], m = cross(r, f);
+    for (int k = 0; k < 3; ++k) out.row(c) += f[k] * x.row(k) + m[k] * x.row(3 + k);
+  }
+}
+
+void RigidState::solve(Rows& columns) const {
+  columns.topRows(3) /= mass_.mass;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    const dvec3 w = inverse_inertia_ * dvec3(columns(3, c), columns(4, c), columns(5, c));
+    for (int k = 0; k < 3; ++k) columns(3 + k, c) = w[k];
+  }
+}
+
+void RigidState::correct(const Vector& dv) {
+  velocity_ += dv;
+  angular_momentum_ += inertia(rotation_) * dvec3(dv[3], dv[4], dv[5]);
+}
+
+void RigidState::advance(double T) {
+  linear_ = {velocity_[0], velocity_[1], velocity_[2]};
+  centre_ += T * linear_;
+  rotation_ = normalize(turn(T * dvec3(velocity_[3], velocity_[4], velocity_[5])) * rotation_);
+  refresh_skin();
+}
+
+void RigidState::refresh_skin() {
+  place_skin(*skin, pose(), skin_position);
+}
+
+void RigidState::show(SoftObjectSnapshot& out) const {
+  out.object = entity;
+  out.pose = pose();
+}
+
+FixedBody::FixedBody(const Mesh& mesh, const Pose& pose) : pose_{pose.position, normalize(pose.rotation)} {
+  skin = &mesh;
+  skin_position.resize(mesh.vertex_count);
+  skin_velocity.resize(mesh.vertex_count, dvec3(0));
+  refresh_skin();
+}
+
+void FixedBody::set_velocity(dvec3 linear, dvec3 angular) {
+  linear_ = linear;
+  angular_ = angular;
+}
+
+void FixedBody::free_step(double, dvec3) {
+  move_skin(pose_.position, linear_, angular_, *this);
+}
+
+void FixedBody::advance(double T) {
+  if (linear_ == dvec3(0) && angular_ == dvec3(0)) return;
+  pose_.position += T * linear_;
+  pose_.rotation = normalize(turn(T * angular_) * pose_.rotation);
+  refresh_skin();
+}
+
+// A spring under each contact: gap = g0 + T u + compliance lambda / T, all of it along every axis.
+void FixedBody::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
+  if (compliance <= 0.0) return;
+  for (const Side& side : sides)
+    for (int k = 0; k < 3; ++k) w(3 * side.contact + k, 3 * side.contact + k) += compliance / (T * T);
+}
+
+void FixedBody::refresh_skin() {
+  place_skin(*skin, pose_, skin_position);
+}
+
+void FixedBody::show(SoftObjectSnapshot& out) const {
+  out.object = entity;
+  out.pose = pose_;
+}
+
+}  // namespace pliant
