@@ -1,6 +1,7 @@
 #include "player/window_input.h"
 
 #define GLFW_INCLUDE_NONE
+#include <algorithm>
 #include <GLFW/glfw3.h>
 
 #include <cctype>
@@ -123,8 +124,9 @@ Result<InputScript> InputScript::load(const std::string& file) {
 }
 
 void InputScript::take(double now, std::vector<InputEvent>& events) {
-  if (!start_) start_ = now;
-  for (; next_ < rows_.size() && rows_[next_].time <= now - *start_; ++next_) events.push_back(rows_[next_].event);
+  time_ += std::min(now - last_.value_or(now), kLongestPause);
+  last_ = now;
+  for (; next_ < rows_.size() && rows_[next_].time <= time_; ++next_) events.push_back(rows_[next_].event);
 }
 
 }  // namespace pliant

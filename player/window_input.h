@@ -30,8 +30,10 @@ struct InputEvent {
 // Esc, Space or Home. Times [s] ascend and count from the first picture.
 class InputScript {
  public:
+  static constexpr double kLongestPause = 0.5;  // [s]
   static Result<InputScript> load(const std::string& file);
-  // Appends what is due at `now` [s] and was not given yet. Time begins with the first call.
+  // Appends what is due at `now` [s] and was not given yet. Time begins with the first call, and a pause between two
+  // calls counts for at most kLongestPause: while a level opens, a hand would wait too.
   void take(double now, std::vector<InputEvent>& events);
 
  private:
@@ -41,7 +43,8 @@ class InputScript {
   };
   std::vector<Row> rows_;
   std::size_t next_ = 0;
-  std::optional<double> start_;  // [s]
+  std::optional<double> last_;  // [s] `now` of the last call
+  double time_ = 0.0;           // [s] of the script
 };
 
 }  // namespace pliant
