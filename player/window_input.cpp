@@ -1,9 +1,9 @@
 #include "player/window_input.h"
 
 #define GLFW_INCLUDE_NONE
-#include <algorithm>
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
