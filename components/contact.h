@@ -18,7 +18,7 @@ enum class ContactState : std::uint8_t {
 };
 
 struct Contact {
-  Entity probe;                   // has a Probe
+  Entity probe;                   // has a Probe; kNoEntity: flesh presses here (systems/touch/press.h)
   Entity object;                  // has a Deformable
   std::uint32_t object_slot = 0;  // its place in TouchState::objects
   ContactState state = ContactState::kFree;

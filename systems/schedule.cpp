@@ -6,6 +6,7 @@
 #include "systems/touch/dynamics.h"
 #include "systems/touch/force_field.h"
 #include "systems/touch/friction_feedback.h"
+#include "systems/touch/press.h"
 #include "systems/touch/publish.h"
 
 namespace pliant {
@@ -15,6 +16,7 @@ std::vector<System<World>> touch_schedule() {
   return {
       {"read_devices", read_devices},  // HapticDevice -> Probe pose and velocity
       {"collision", collision},        // Probe x Deformable -> Contact {triangle, barycentrics, normal, height}
+      {"press", press},                // flesh of tools x Deformable -> Contact
       {"force_field", force_field},    // Contacts -> amplitudes (small LCP); wakes the zones within reach
       {"dynamics", dynamics},          // awake zones: exact step, stream = targets + residual; rest sleeps
       {"friction_feedback", friction_feedback},  // local law at the virtual vertex, bristle friction -> Probe force

@@ -127,6 +127,7 @@ void find(Contact& contact, const Surface& surface, dvec3 from, dvec3 to, const 
 
 void collision(World& world, Tick) {
   for (auto [entity, contact] : world.registry.view<Contact>()) {
+    if (contact.probe == kNoEntity) continue;  // `press` places it
     const Probe& probe = world.registry.get<Probe>(contact.probe);
     if (!probe.placed) continue;
     const Pose& pose = world.registry.get<Pose>(contact.object);

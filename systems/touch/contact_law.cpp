@@ -6,6 +6,12 @@ double law_force(const RestoringLaw& law, double stiffness, double depth) {
   return -stiffness * law.force(-depth);
 }
 
+double painted(const std::vector<float>& factor, const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric) {
+  if (factor.empty()) return 1.0;
+  const uvec3 t = mesh.triangles[triangle];
+  return barycentric.x * factor[t.x] + barycentric.y * factor[t.y] + barycentric.z * factor[t.z];
+}
+
 double advance_contact_law(Contact& contact, const Deformable& deformable, const Motion& motion, double stiffness,
                            double rest_height) {
   if (!contact.just_touched) {

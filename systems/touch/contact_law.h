@@ -12,6 +12,9 @@ namespace pliant {
 // law(depth) [N]; odd where the restoring law is. `stiffness` [N/m] is the local one (painted factor included).
 double law_force(const RestoringLaw& law, double stiffness, double depth);
 
+// A painted factor (Mesh::stiffness_factor, friction_factor) at a place on the surface. [1]
+double painted(const std::vector<float>& factor, const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
+
 // Advances y and q by one tick and returns the unclamped force [N]. `rest_height` [m] is where the free surface would
 // come to rest: 0, or the rim that other probes hold up.
 double advance_contact_law(Contact& contact, const Deformable& deformable, const Motion& motion, double stiffness,

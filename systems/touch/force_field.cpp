@@ -29,21 +29,6 @@ constexpr double kLeastReach = 1.5;  // mean edges
 // How much of the reach a bulge may count for under a probe.
 constexpr double kMostBulge = 0.25;
 
-// Everything about the source but its amplitude and the volume coefficient.
-void aim(FieldSource& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, double radius) {
-  const double depth = std::max(0.0, -contact.height);
-  const double circle = radius > 0 ? std::sqrt(2 * radius * depth) : 0.0;
-  const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge) + circle;
-  const double inner = kInnerShare * reach + circle;
-  source.center = vec3(contact.foot);
-  source.normal = vec3(contact.normal);
-  source.inv_reach2 = static_cast<float>(1 / (reach * reach));
-  source.shape = deformable.shape;
-  source.parameter = deformable.shape == Shape::kKelvinlet ? static_cast<float>(inner)
-                     : deformable.shape == Shape::kVolume  ? static_cast<float>(5 * deformable.volume)
-                                                           : static_cast<float>(inner * inner / (reach * reach));
-}
-
 // Zones within reach that hang together with the contact's own, so that a neighbouring fold is not dented.
 void flood(const Mesh& mesh, const Contact& contact, double reach, ObjectState& object,
            std::vector<std::uint32_t>& zones) {
@@ -170,6 +155,20 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
 
 }  // namespace
 
+void aim(FieldSource& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, double radius) {
+  const double depth = std::max(0.0, -contact.height);
+  const double circle = radius > 0 ? std::sqrt(2 * radius * depth) : 0.0;
+  const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge) + circle;
+  const double inner = kInnerShare * reach + circle;
+  source.center = vec3(contact.foot);
+  source.normal = vec3(contact.normal);
+  source.inv_reach2 = static_cast<float>(1 / (reach * reach));
+  source.shape = deformable.shape;
+  source.parameter = deformable.shape == Shape::kKelvinlet ? static_cast<float>(inner)
+                     : deformable.shape == Shape::kVolume  ? static_cast<float>(5 * deformable.volume)
+                                                           : static_cast<float>(inner * inner / (reach * reach));
+}
+
 void force_field(World& world, Tick tick) {
   for (ObjectState& object : world.touch->objects) {
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
@@ -204,7 +203,8 @@ void force_field(World& world, Tick tick) {
       SourceState& source = *active[i].source;
       const Contact& contact = *active[i].contact;
       source.before = source.now;
-      aim(source.now, contact, deformable, mesh, world.registry.get<Probe>(contact.probe).radius);
+      const double radius = contact.probe == kNoEntity ? 0.0 : world.registry.get<Probe>(contact.probe).radius;
+      aim(source.now, contact, deformable, mesh, radius);
       if (!source.active) {  // before the first tick of the touch there was the same field, of no depth
         source.before = source.now;
         source.before.amplitude = 0.0f;

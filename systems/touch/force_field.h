@@ -8,4 +8,8 @@ namespace pliant {
 
 void force_field(World& world, Tick tick);
 
+// The field around a contact of a probe of `radius` [m]: everything but its amplitude and the volume coefficient that
+// fits this very mesh (the flat surface's stands there). Reads foot, normal and height of the contact.
+void aim(FieldSource& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, double radius);
+
 }  // namespace pliant

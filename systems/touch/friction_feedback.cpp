@@ -9,13 +9,6 @@
 namespace pliant {
 namespace {
 
-double painted(const std::vector<float>& factor, const Mesh& mesh, const Contact& contact) {
-  if (factor.empty()) return 1.0;
-  const uvec3 t = mesh.triangles[contact.triangle];
-  return contact.barycentric.x * factor[t.x] + contact.barycentric.y * factor[t.y] +
-         contact.barycentric.z * factor[t.z];
-}
-
 void release(Contact& contact) {
   contact.state = contact.height < 0 ? ContactState::kInside : ContactState::kFree;
   contact.normal_force = 0.0;
@@ -31,11 +24,12 @@ void friction_feedback(World& world, Tick tick) {
   Registry& registry = world.registry;
   for (auto [entity, probe] : registry.view<Probe>()) probe.force = dvec3(0);
   for (auto [entity, contact] : registry.view<Contact>()) {
-    if (contact.state != ContactState::kTouching) continue;
+    if (contact.state != ContactState::kTouching || contact.probe == kNoEntity) continue;
     const Deformable& deformable = registry.get<Deformable>(contact.object);
     const Mesh& mesh = world.meshes[deformable.mesh];
     const ObjectState& object = world.touch->objects[contact.object_slot];
-    const double stiffness = deformable.stiffness * painted(mesh.stiffness_factor, mesh, contact);
+    const double stiffness =
+        deformable.stiffness * painted(mesh.stiffness_factor, mesh, contact.triangle, contact.barycentric);
 
     const double pushed = advance_contact_law(contact, deformable, object.motion, stiffness, contact.rim_height);
     if (pushed <= 0 && !contact.just_touched) {  // it would pull
@@ -49,7 +43,7 @@ void friction_feedback(World& world, Tick tick) {
     Probe& probe = registry.get<Probe>(contact.probe);
     const Pose& pose = registry.get<Pose>(contact.object);
     const dvec3 velocity = glm::conjugate(pose.rotation) * probe.velocity;
-    const double factor = painted(mesh.friction_factor, mesh, contact);
+    const double factor = painted(mesh.friction_factor, mesh, contact.triangle, contact.barycentric);
     const double K = kBristleStiffness * stiffness, B = K * kBristleDampingTime;
     Bristle bristle{contact.bristle - dot(contact.bristle, contact.normal) * contact.normal, contact.sliding};
     const dvec3 f = step_bristle(bristle, velocity - dot(velocity, contact.normal) * contact.normal, K, B,

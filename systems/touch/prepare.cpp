@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "components/soft_body.h"
 #include "systems/touch/field.h"
 
 namespace pliant {
@@ -60,6 +61,38 @@ SourceState make_source(Entity contact, const Mesh& mesh, const Deformable& defo
     source.heap.reserve(std::size_t{8} * mesh.vertex_count);
   }
   return source;
+}
+
+Entity make_contact(Registry& registry, Entity probe, Entity object, std::size_t slot) {
+  const Entity entity = registry.create();
+  Contact contact;
+  contact.probe = probe;
+  contact.object = object;
+  contact.object_slot = static_cast<std::uint32_t>(slot);
+  registry.add(entity, contact);
+  return entity;
+}
+
+bool something_presses(Registry& registry) {
+  for (auto [entity, body] : registry.view<const RigidBody>())
+    if (!body.fixed) return true;
+  const auto soft = registry.view<const SoftBody>();
+  return soft.begin() != soft.end();
+}
+
+// Contacts that flesh may drive, as many as probes have left room for.
+void make_presses(World& world, TouchState& touch) {
+  for (ObjectState& object : touch.objects) {
+    const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+    while (object.presses.size() < kMaxPresses && object.sources.size() < kMaxContactsPerObject) {
+      const Entity contact =
+          make_contact(world.registry, kNoEntity, object.entity, std::size_t(&object - touch.objects.data()));
+      object.sources.push_back(make_source(contact, world.meshes[deformable.mesh], deformable));
+      object.presses.push_back({contact, false, {}});
+    }
+  }
+  touch.presses =
+      std::make_unique<TripleBuffer<Presses>>(Presses{0.0, std::vector<ObjectPresses>(touch.objects.size())});
 }
 
 }  // namespace
@@ -122,16 +155,13 @@ Status prepare_touch(World& world) {
         world.dropped |= kDroppedContacts;
         break;
       }
-      const Entity entity = registry.create();
-      Contact contact;
-      contact.probe = probe.entity;
-      contact.object = object.entity;
-      contact.object_slot = static_cast<std::uint32_t>(&object - touch->objects.data());
-      registry.add(entity, contact);
+      const Entity entity =
+          make_contact(registry, probe.entity, object.entity, std::size_t(&object - touch->objects.data()));
       object.sources.push_back(make_source(entity, world.meshes[deformable.mesh], deformable));
       probe.contacts.push_back(entity);
     }
   }
+  if (something_presses(registry)) make_presses(world, *touch);
   snapshot.probes.resize(touch->probes.size());
   world.snapshots = std::make_unique<TripleBuffer<Snapshot>>(snapshot);
   world.touch = std::move(touch);

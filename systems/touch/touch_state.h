@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "components/world.h"
 #include "systems/device/safety.h"
 #include "systems/touch/local_model.h"
+#include "systems/touch/press.h"
 #include "systems/touch/shape.h"
 #include "systems/touch/surface_distance.h"
 
@@ -17,7 +19,7 @@ inline constexpr std::uint32_t kMaxContactsPerObject = 64;  // one bit each in O
 
 // A contact's share in its object's field.
 struct SourceState {
-  Entity contact;                    // has a Contact
+  Entity contact;                    // has a Contact; one without a probe is a press
   bool active = false;               // the contact touched in the last tick
   FieldSource now, before;           // this tick's and the last tick's: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
@@ -33,6 +35,13 @@ struct Release {
 };
 inline constexpr std::size_t kMaxReleases = 64;
 
+// A contact without a probe: flesh of a tool presses here.
+struct PressState {
+  Entity contact;  // has a Contact
+  bool used = false;
+  PressPoint point;
+};
+
 // At rest: heights below this share of the reach, normals turned by less than this angle [rad]. Nobody sees or feels
 // it.
 inline constexpr float kRest = 1e-6f;
@@ -47,7 +56,8 @@ struct ObjectState {
   std::vector<FieldSource> terms;           // card only: the whole field at `time`
   double time = 0.0;                        // [s] end of the last tick
   float peak = 0.0f;                        // [m] how high any part of the field stands above rest, last tick
-  std::vector<SourceState> sources;         // one per probe, capacity kMaxContactsPerObject
+  std::vector<SourceState> sources;         // one per probe, then one per press; capacity kMaxContactsPerObject
+  std::vector<PressState> presses;          // empty unless the level has something soft or rigid that moves
   std::vector<std::uint64_t> zone_sources;  // per zone: which sources reach it this tick
   std::vector<std::uint32_t> visited;       // per zone: stamp of the last flood that came by
   std::uint32_t stamp = 0;
@@ -64,9 +74,11 @@ struct ProbeState {
 struct TouchState {
   std::vector<ObjectState> objects;
   std::vector<ProbeState> probes;
-  std::uint32_t unseen = 0;  // snapshots in a row that nobody took
-  double extent = 1.0;       // [m] diagonal of everything that can be touched
-  double dt = 1e-3;          // [s] the step that `motion` was computed for
+  std::uint32_t unseen = 0;                        // snapshots in a row that nobody took
+  double extent = 1.0;                             // [m] diagonal of everything that can be touched
+  double dt = 1e-3;                                // [s] the step that `motion` was computed for
+  std::unique_ptr<TripleBuffer<Presses>> presses;  // soft clock -> touch clock; null where nothing could press
+  double pressed_at = 0.0;                         // [s] when the newest of them came
 };
 
 }  // namespace pliant
