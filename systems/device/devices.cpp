@@ -1,7 +1,11 @@
 #include "systems/device/devices.h"
 
+#include <algorithm>
+
+#include "components/soft_body.h"
 #include "systems/device/mouse.h"
 #include "systems/device/path.h"
+#include "systems/tool/tool_touch_state.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
@@ -15,6 +19,25 @@ void sense(const World& world, HapticDevice& device, double time) {
   device.position = row.position;
   device.rotation = row.rotation;
   device.sensed_at = time;
+}
+
+// A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned.
+void write_tool(World& world, ToolTouchState& tool, Tick tick) {
+  HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
+  const SafetyResult force =
+      make_safe(tool.force_safety, device, linear(tool.device_wrench), device.position, tick.time, tick.dt);
+  const Handle6& handle = world.registry.get<Handle6>(tool.entity);
+  const SafetyLimits torque_limits{handle.max_torque, 0.0,
+                                   device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9)};
+  const SafetyResult torque = make_safe(tool.torque_safety, device, torque_limits, angular(tool.device_wrench),
+                                        tool.turned, tick.time, tick.dt);
+  for (const SafetyResult& result : {force, torque}) {
+    if (result.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
+    if (result.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
+  }
+  const bool whole = force.event == SafetyEvent::kNone && torque.event == SafetyEvent::kNone;
+  device.force_sent = whole ? force.force : dvec3(0);
+  device.torque_sent = whole ? torque.force : dvec3(0);
 }
 
 }  // namespace
@@ -48,6 +71,8 @@ void write_devices(World& world, Tick tick) {
     if (safe.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
     device.force_sent = safe.force;
   }
+  if (!world.tools) return;
+  for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools) write_tool(world, *tool, tick);
 }
 
 }  // namespace pliant

@@ -8,6 +8,6 @@
 namespace pliant {
 
 void read_devices(World& world, Tick tick);   // HapticDevice -> Probe pose and velocity
-void write_devices(World& world, Tick tick);  // Probe force -> safety -> HapticDevice::force_sent
+void write_devices(World& world, Tick tick);  // Probe force, tool wrench -> safety -> HapticDevice
 
 }  // namespace pliant

@@ -40,6 +40,11 @@ bool plausible_position(dvec3 position) {
 
 SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now,
                        double dt) {
+  return make_safe(state, device, {device.max_force, device.max_stiffness, device.max_slew}, wanted, position, now, dt);
+}
+
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 wanted,
+                       dvec3 position, double now, double dt) {
   SafetyResult result;
   if (!finite(wanted) || !plausible_position(position)) {
     result.event = SafetyEvent::kNonFinite;
@@ -48,11 +53,11 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wan
   } else {
     const dvec3 dx = state.placed ? position - state.position : dvec3(0);
     if (!state.engaged) state.engaged = length(wanted) < kEngageForce;
-    dvec3 force = state.engaged ? clamp_norm(wanted, device.max_force) : dvec3(0);
-    double most = device.max_slew * dt;
-    if (device.max_stiffness > 0) {
+    dvec3 force = state.engaged ? clamp_norm(wanted, limits.force) : dvec3(0);
+    double most = limits.slew * dt;
+    if (limits.stiffness > 0) {
       // The force may grow no faster with displacement than the device can render stably; it may always fall.
-      const double rise = device.max_stiffness * length(dx);
+      const double rise = limits.stiffness * length(dx);
       if (length(force) > length(state.force)) most = std::min(most, rise);
     }
     force = state.force + clamp_norm(force - state.force, most);

@@ -31,7 +31,16 @@ struct SafetyResult {
   SafetyEvent event = SafetyEvent::kNone;
 };
 
-// `wanted` [N] world, `position` [m] world, now [s], dt [s].
+// What the layer holds to. A torque has the same three, in [N m], [N m/rad] and [N m/s].
+struct SafetyLimits {
+  double force = 0.0;      // [N]
+  double stiffness = 0.0;  // [N/m] 0: none
+  double slew = 0.0;       // [N/s]
+};
+
+// `wanted` [N] world, `position` [m] world, now [s], dt [s]. Without limits: the device's for forces.
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 wanted,
+                       dvec3 position, double now, double dt);
 SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now,
                        double dt);
 

@@ -1,0 +1,156 @@
+#include "systems/tool/tool_tick.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace pliant {
+namespace {
+
+// w = A^-1 b, or as the handle is told. A: what one tick resists a change of w with.
+Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, const Vector6& flesh_right) {
+  return handle.moved ? handle.next : Vector6(factor.solve(handle.right + flesh_right));
+}
+
+// Contact velocities without new impulses, plus what is left of each gap.
+void fill_bias(const CondensedContacts& model, const CondensedState& state, const Vector6& w, Vector& bias) {
+  const Eigen::Index rows = 3 * model.count;
+  const double tick = model.tick;
+  bias.head(rows).noalias() = model.from_modes.topLeftCorner(rows, model.modes) * state.free_rate.head(model.modes);
+  bias.head(rows).noalias() += model.reduced_handle.topRows(rows) * w;
+  bias.head(rows) -= state.spring.head(rows) / tick;
+  for (int i = 0; i < model.count; ++i) {
+    const double rate = state.gap[i] / tick;
+    bias[3 * i] += state.gap[i] >= 0.0 ? rate : std::max(rate, model.push[i]);
+  }
+}
+
+// W = held + R S^-1 R^T, R = reduced_handle: how the handle itself gives way.
+void fill_delassus(const CondensedContacts& model, const Eigen::LLT<Matrix6>& factor, const TickHandle& handle,
+                   CondensedState& state) {
+  const Eigen::Index rows = 3 * model.count;
+  auto W = state.problem.W.topLeftCorner(rows, rows);
+  W = model.delassus.topLeftCorner(rows, rows);
+  if (handle.moved) return;
+  const Matrix6 lower = factor.matrixL().solve(Matrix6::Identity());
+  state.lever.topRows(rows).noalias() = model.reduced_handle.topRows(rows).lazyProduct(lower.transpose());
+  W.noalias() += state.lever.topRows(rows).lazyProduct(state.lever.topRows(rows).transpose());
+}
+
+// x += T v of everything that moved. `u`: contact velocities with what was added to them for the gaps.
+void advance(const CondensedContacts& model, CondensedState& state, const TickHandle& handle, const Vector& lambda) {
+  const Eigen::Index rows = 3 * model.count, modes = model.modes;
+  const double tick = model.tick;
+  state.q.head(modes) += tick * state.rate.head(modes);
+  state.d += tick * handle.velocity;
+  auto moved = state.free_rate.head(rows);  // of the contacts, modes and handle only; then with their springs
+  moved.noalias() = model.from_modes.topLeftCorner(rows, modes).lazyProduct(state.rate.head(modes));
+  moved.noalias() += model.from_handle.topRows(rows).lazyProduct(handle.velocity);
+  moved -= state.spring.head(rows) / tick;
+  state.spring.head(rows).noalias() = model.flexibility.topLeftCorner(rows, rows).lazyProduct(lambda.head(rows)) / tick;
+  moved += state.spring.head(rows) / tick;
+  for (int i = 0; i < model.count; ++i) {
+    const double before = state.gap[i], after = before + tick * moved[3 * i];
+    state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // what rounding left closed is closed
+  }
+}
+
+}  // namespace
+
+Vector6 linear_wrench(const LinearModel& model, const Vector6& w0, const Vector6& d, const Vector6& w) {
+  return model.force - model.stiffness * d - model.damping * (w - w0);
+}
+
+Vector6 linear_tick(const LinearModel& model, const Vector6& w0, const Vector6& d, double tick, TickHandle& handle) {
+  // (M_h + M + tick B + tick^2 K) w = right + M w_before + tick (force - K d + B w0): methods.md 2.7.
+  const Vector6 before = handle.velocity;
+  const Matrix6 flesh = model.mass + tick * model.damping + tick * tick * model.stiffness;
+  const Vector6 right = model.mass * before + tick * (model.force - model.stiffness * d + model.damping * w0);
+  Eigen::LLT<Matrix6> factor;
+  if (!handle.moved) factor.compute(handle.inertia + flesh);
+  handle.velocity = free_twist(factor, handle, right);
+  return (right - flesh * handle.velocity) / tick;
+}
+
+void CondensedState::resize(int most_contacts, int most_modes) {
+  const Eigen::Index rows = 3 * most_contacts;
+  q.setZero(most_modes);
+  rate.setZero(most_modes);
+  free_rate.setZero(std::max<Eigen::Index>(most_modes, rows));
+  spring.setZero(rows);
+  gap.setZero(most_contacts);
+  lever.setZero(rows, 6);
+  problem.resize(most_contacts);
+}
+
+void CondensedState::start(const CondensedContacts& model) {
+  const Eigen::Index rows = 3 * model.count, modes = model.modes;
+  q.head(modes).setZero();
+  rate.head(modes) = model.rate.head(modes);
+  d.setZero();
+  spring.head(rows).noalias() = model.flexibility.topLeftCorner(rows, rows).lazyProduct(model.force.head(rows));
+  gap.head(model.count) = model.gap.head(model.count);
+  problem.count = model.count;
+  problem.impulse.head(rows) = model.tick * model.force.head(rows);
+  std::copy_n(model.mu_static.begin(), model.count, problem.mu_static.begin());
+  std::copy_n(model.mu_sliding.begin(), model.count, problem.mu_sliding.begin());
+  std::copy_n(model.sliding.begin(), model.count, problem.sliding.begin());
+}
+
+Vector6 condensed_wrench(const CondensedContacts& model, const CondensedState& state, const Vector6& w) {
+  const Eigen::Index rows = 3 * model.count, modes = model.modes;
+  Vector6 wrench = model.flesh_force - model.flesh_stiffness * state.d - model.flesh_damping * w;
+  wrench.noalias() -= model.modal_stiffness.topRows(modes).transpose().lazyProduct(state.q.head(modes));
+  wrench.noalias() -= model.modal_damping.topRows(modes).transpose().lazyProduct(state.rate.head(modes));
+  wrench.noalias() +=
+      model.from_handle.topRows(rows).transpose().lazyProduct(state.problem.impulse.head(rows)) / model.tick;
+  return wrench;
+}
+
+Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, const SweepLimits& limits,
+                       TickHandle& handle) {
+  const Eigen::Index rows = 3 * model.count, modes = model.modes;
+  const double tick = model.tick;
+  const Vector6 before = handle.velocity;
+  auto rate = state.rate.head(modes), free = state.free_rate.head(modes);
+
+  // Right-hand sides of modes and handle: momentum and forces at the tick's beginning.
+  Vector6 right = model.flesh_mass * before + tick * (model.flesh_force - model.flesh_stiffness * state.d);
+  right.noalias() += model.modal_mass.topRows(modes).transpose().lazyProduct(rate);
+  right.noalias() -= tick * model.modal_stiffness.topRows(modes).transpose().lazyProduct(state.q.head(modes));
+  free = rate + tick * (model.load.head(modes) - model.frequency2.head(modes).cwiseProduct(state.q.head(modes)));
+  free.noalias() += model.modal_mass.topRows(modes).lazyProduct(before);
+  free.noalias() -= tick * model.modal_stiffness.topRows(modes).lazyProduct(state.d);
+  free.array() *= model.inverse.head(modes).array();
+
+  // The handle without new impulses, modes eliminated.
+  const Vector6 reduced_right = right - model.border.topRows(modes).transpose().lazyProduct(free);
+  Eigen::LLT<Matrix6> factor;
+  if (!handle.moved) factor.compute(handle.inertia + model.reduced);
+  const Vector6 free_w = free_twist(factor, handle, reduced_right);
+
+  // Signorini and Coulomb again.
+  fill_delassus(model, factor, handle, state);
+  fill_bias(model, state, free_w, state.problem.bias);
+  state.report = solve(state.problem, limits);
+  const Vector& lambda = state.problem.impulse;
+
+  // What the impulses do to handle and modes.
+  handle.velocity = free_w;
+  if (!handle.moved)
+    handle.velocity +=
+        factor.solve(Vector6(model.reduced_handle.topRows(rows).transpose().lazyProduct(lambda.head(rows))));
+  rate.noalias() = model.from_modes.topLeftCorner(rows, modes).transpose().lazyProduct(lambda.head(rows));
+  rate.noalias() -= model.border.topRows(modes).lazyProduct(handle.velocity);
+  rate.array() *= model.inverse.head(modes).array();
+  rate += free;
+
+  Vector6 impulse = right;
+  const double tick2 = tick * tick;
+  impulse -= (model.flesh_mass + tick * model.flesh_damping + tick2 * model.flesh_stiffness) * handle.velocity;
+  impulse.noalias() -= model.border.topRows(modes).transpose().lazyProduct(rate);
+  impulse.noalias() += model.from_handle.topRows(rows).transpose().lazyProduct(lambda.head(rows));
+  advance(model, state, handle, lambda);
+  return impulse / tick;
+}
+
+}  // namespace pliant
