@@ -11,6 +11,7 @@
 #include "components/soft_snapshot.h"
 #include "runtime/entity.h"
 #include "systems/tool/block_matrix.h"
+#include "systems/tool/modal.h"
 
 namespace pliant {
 
@@ -56,6 +57,10 @@ class Body {
   virtual void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
     (void)sides, (void)T, (void)w;
   }
+  // --- For the touch clock's reduced copy (modal.h): of A, what is inertia, and how the step began. After free_step.
+  virtual void weigh(const Rows& x, Rows& out) const { out.setZero(x.rows(), x.cols()); }  // out = M x
+  virtual RayleighDamping damping() const { return {}; }
+  virtual Vector starting_velocity() const { return Vector::Zero(size()); }
   // Fills the object's part of a snapshot; sizes were set by the first call, before the clocks start.
   virtual void show(SoftObjectSnapshot& out) const = 0;
 };

@@ -82,6 +82,8 @@ dvec3 RigidState::free_turn(double T) const {
 
 void RigidState::free_step(double T, dvec3 gravity) {
   inverse_inertia_ = inverse_inertia(rotation_);
+  const dvec3 spin = inverse_inertia_ * angular_momentum_;
+  start_ << linear_.x, linear_.y, linear_.z, spin.x, spin.y, spin.z;
   const dvec3 v = linear_ + T * gravity, w = free_turn(T);
   velocity_ << v.x, v.y, v.z, w.x, w.y, w.z;
   move_skin(centre_, v, w, *this);
@@ -113,6 +115,14 @@ void RigidState::solve(Rows& columns) const {
     const dvec3 w = inverse_inertia_ * dvec3(columns(3, c), columns(4, c), columns(5, c));
     for (int k = 0; k < 3; ++k) columns(3 + k, c) = w[k];
   }
+}
+
+void RigidState::weigh(const Rows& x, Rows& out) const {
+  out.resize(6, x.cols());
+  out.topRows(3) = mass_.mass * x.topRows(3);
+  const dmat3 turning = inertia(rotation_);
+  for (int row = 0; row < 3; ++row)
+    out.row(3 + row) = turning[0][row] * x.row(3) + turning[1][row] * x.row(4) + turning[2][row] * x.row(5);
 }
 
 void RigidState::correct(const Vector& dv) {

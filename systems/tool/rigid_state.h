@@ -30,6 +30,8 @@ class RigidState : public Body {
   void solve(Rows& columns) const override;
   void correct(const Vector& dv) override;
   void advance(double T) override;
+  void weigh(const Rows& x, Rows& out) const override;
+  Vector starting_velocity() const override { return start_; }
   void show(SoftObjectSnapshot& out) const override;
 
   const RigidMass& mass() const { return mass_; }
@@ -53,7 +55,7 @@ class RigidState : public Body {
   dvec3 linear_{0};            // [m/s]
   dvec3 angular_momentum_{0};  // [kg m2/s]
   dmat3 inverse_inertia_{1};   // of the step's beginning
-  Vector velocity_ = Vector::Zero(6);
+  Vector velocity_ = Vector::Zero(6), start_ = Vector::Zero(6);
 };
 
 // Ground, walls, and fingers that follow a script: contacts cannot move it.

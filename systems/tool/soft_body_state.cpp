@@ -54,6 +54,7 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const S
 SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const SoftBody& body, const Handle6* handle,
                              const Pose& placement, std::unique_ptr<LinearSolver> solver)
     : tets_(tets),
+      damping_{body.rayleigh[0], body.rayleigh[1]},
       flesh_(tets, material_of(body), moving_nodes(tets, handle)),
       solver_(std::move(solver), flesh_.inner(), has_handle_nodes(tets, handle)) {
   ASSERT(tets.skin.size() == skin_mesh.vertex_count);
@@ -190,6 +191,23 @@ void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double 
     else if (slaved(node))
       out.noalias() += (sign * weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
   });
+}
+
+// Lumped masses; those of the handle's nodes are the handle's, however they are attached.
+void SoftBodyState::weigh(const Rows& x, Rows& out) const {
+  out.resize(x.rows(), x.cols());
+  const std::uint32_t flesh_only = handle_ ? tets_.free_count : flesh_.moving();
+  for (std::uint32_t i = 0; i < flesh_.moving(); ++i)
+    out.middleRows<3>(3 * i) = (i < flesh_only ? flesh_.mass()[i] : 0.0) * x.middleRows<3>(3 * i);
+  if (handle_) out.bottomRows<6>().noalias() = handle_mass_ * x.bottomRows<6>();
+}
+
+Vector SoftBodyState::starting_velocity() const {
+  Vector out(size());
+  for (std::uint32_t i = 0; i < flesh_.moving(); ++i)
+    for (int k = 0; k < 3; ++k) out[3 * i + k] = flesh_.velocity()[i][k];
+  if (handle_) out.tail<6>() = start_;
+  return out;
 }
 
 void SoftBodyState::handle_rows(const SurfacePoint& point, const dmat3& axes, double sign, Eigen::Ref<Rows> out) const {

@@ -35,6 +35,9 @@ class SoftBodyState final : public Body {
   void solve(Rows& columns) const override { solver_.solve(columns); }
   void correct(const Vector& dv) override { velocity_ += dv; }
   void advance(double T) override;
+  void weigh(const Rows& x, Rows& out) const override;
+  RayleighDamping damping() const override { return damping_; }
+  Vector starting_velocity() const override;
   void show(SoftObjectSnapshot& out) const override;
 
   const Flesh& flesh() const { return flesh_; }
@@ -84,6 +87,7 @@ class SoftBodyState final : public Body {
 
   const TetMesh& tets_;
   Handle6 settings_;
+  RayleighDamping damping_;
   Flesh flesh_;
   std::optional<RigidHandle> handle_;
   std::optional<HandleTie> tie_;

@@ -5,7 +5,7 @@
 
 #include "components/soft_body.h"
 #include "systems/tool/coupling.h"
-#include "systems/tool/rotation.h"
+#include "systems/tool/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
