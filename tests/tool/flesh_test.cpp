@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "systems/tool/flesh_step.h"
-#include "systems/tool/rotation.h"
+#include "systems/tool/rotation_vector.h"
 #include "tests/scenes/tet_shapes.h"
 
 namespace pliant {

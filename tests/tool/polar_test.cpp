@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "systems/tool/rotation.h"
+#include "systems/tool/rotation_vector.h"
 
 namespace pliant {
 namespace {
