@@ -59,7 +59,12 @@ Status prepare_tools(World& world) {
     tool->device = wanted.empty() ? resting_device(world, entity) : named;
     if (Status status = check_free(world, entity, tool->device); !status) return status.error();
     for (HandleModel& slot : tool->model.slots()) slot = empty;
+    tool->pending = empty;
     tool->contacts.resize(kMaxCondensed, kMaxModes);
+    tool->replay.resize(kMaxCondensed, kMaxModes);
+    // Until the device has been sensed, the tool is held where it stands.
+    if (const Pose* pose = world.registry.find<Pose>(entity)) tool->sensed.pose = *pose;
+    for (ToolInput& slot : tool->input.slots()) slot.device = tool->sensed;
     tool->limits = {kTickSweeps, kTickTolerance, 0};
     world.tools->tools.push_back(std::move(tool));
   }

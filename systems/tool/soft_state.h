@@ -9,6 +9,7 @@
 #include "systems/tool/body.h"
 #include "systems/tool/contact_point.h"
 #include "systems/tool/contact_problem.h"
+#include "systems/tool/delassus.h"
 
 namespace pliant {
 
@@ -21,6 +22,7 @@ struct SoftState {
   std::vector<std::unique_ptr<Body>> bodies;  // fixed ones too
   std::unique_ptr<Proximity> proximity;
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
+  Delassus delassus;
   ContactProblem problem;
   SweepReport report;
   SoftTimes times;

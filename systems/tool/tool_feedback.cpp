@@ -82,7 +82,7 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   handle.velocity = tool.handle.velocity;
   handle.inertia = model.handle_mass;
   handle.inertia.diagonal() += bond.matrix;
-  handle.right = model.handle_mass * tool.handle.velocity + bond.right + tick.dt * tool.fade;
+  handle.right = model.handle_mass * tool.handle.velocity + bond.right + tick.dt * (model.handle_load + tool.fade);
 
   const double believed = trust(model, tick.time);
   if (believed < 1.0 && tool.used != ToolForce::kLinear) use(tool, model, ToolForce::kLinear);

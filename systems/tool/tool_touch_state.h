@@ -1,4 +1,5 @@
-// A tool as the touch clock has it, and what travels between its clocks. Writer: the touch clock, but for `model`.
+// A tool as the touch clock has it, and what travels between its clocks. Writer: the touch clock, but for
+// what is marked as the soft clock's.
 #pragma once
 
 #include <memory>
@@ -38,6 +39,10 @@ struct ToolTouchState {
   TripleBuffer<ToolInput> input;       // touch -> soft
   TripleBuffer<HandleModel> model;     // soft -> touch
   Ring<HandleStep> path{kPathLength};  // touch -> soft
+
+  // The soft clock's: the model it is making, and its working memory.
+  HandleModel pending;
+  CondensedState replay;
 
   ToolForce wanted = ToolForce::kContacts;
   SweepLimits limits;  // of a tick; in lockstep budget_ns is 0: never wall time, always the same bits

@@ -1,0 +1,106 @@
+#include "systems/tool/linearise.h"
+
+#include <cmath>
+
+#include "systems/tool/reduce_tool.h"
+#include "systems/tool/rotation_vector.h"
+#include "systems/tool/soft_body_state.h"
+#include "systems/tool/soft_state.h"
+#include "systems/tool/tool_touch_state.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kUndone = 0.15;  // [1] share of a penetration that the soft step undoes
+
+// The tool's body in the soft step, or its count of bodies.
+std::uint32_t body_of(const SoftState& soft, Entity tool) {
+  std::uint32_t index = 0;
+  while (index < soft.bodies.size() && !(soft.bodies[index]->entity == tool)) ++index;
+  return index;
+}
+
+// One tick of a path that has been gone: the model moves on with it.
+void follow(HandleModel& model, CondensedState& state, const HandleStep& step, double tick, const SweepLimits& limits) {
+  TickHandle handle;
+  handle.velocity = model.handle.velocity;
+  handle.moved = true;
+  handle.next = step.velocity;
+  model.force = condensed_tick(model.contacts, state, limits, handle);
+  model.handle.velocity = step.velocity;
+  model.handle.pose.position += tick * linear(step.velocity);
+  model.handle.pose.rotation = glm::normalize(rotation_of(tick * angular(step.velocity)) * model.handle.pose.rotation);
+  model.time = step.time;
+}
+
+// The model's displacements become zero again, where it is now.
+void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) {
+  CondensedContacts& c = model.contacts;
+  const Eigen::Index rows = 3 * c.count, modes = c.modes;
+  model.linear.force -= model.linear.stiffness * state.d + model.linear.damping * (model.handle.velocity - w0);
+  c.flesh_force -= c.flesh_stiffness * state.d + c.modal_stiffness.topRows(modes).transpose() * state.q.head(modes);
+  c.load.head(modes) -=
+      c.frequency2.head(modes).cwiseProduct(state.q.head(modes)) + c.modal_stiffness.topRows(modes) * state.d;
+  c.rate.head(modes) = state.rate.head(modes);
+  c.force.head(rows) = state.problem.impulse.head(rows) / c.tick;
+  c.gap.head(c.count) = state.gap.head(c.count);
+  std::copy_n(state.problem.sliding.begin(), c.count, c.sliding.begin());
+}
+
+// What the handle has done since the model's time.
+void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& state) {
+  state.start(model.contacts);
+  const Vector6 w0 = model.handle.velocity;
+  bool moved = false;
+  for (HandleStep step; tool.path.pop(step);) {
+    if (step.time <= model.time + 0.5 * model.contacts.tick) continue;
+    follow(model, state, step, model.contacts.tick, {kTickSweeps, kTickTolerance, 0});
+    moved = true;
+  }
+  if (moved) rebase(model, state, w0);
+}
+
+}  // namespace
+
+void take_inputs(World& world, double T) {
+  if (!world.tools || !world.soft) return;
+  for (const auto& tool : world.tools->tools) {
+    const std::uint32_t index = body_of(*world.soft, tool->entity);
+    auto* body =
+        index < world.soft->bodies.size() ? dynamic_cast<SoftBodyState*>(world.soft->bodies[index].get()) : nullptr;
+    if (body == nullptr || !body->has_handle()) continue;
+    tool->input.acquire();
+    const ToolInput& input = tool->input.read();
+    Pose before = input.device.pose;
+    before.position -= T * linear(input.device.velocity);
+    before.rotation = glm::normalize(rotation_of(-T * angular(input.device.velocity)) * before.rotation);
+    body->set_device(before, input.device.velocity);
+    tool->pending.time = input.time;
+  }
+}
+
+void linearise(World& world, double T) {
+  if (!world.tools || !world.soft) return;
+  SoftState& soft = *world.soft;
+  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, kUndone};
+  for (const auto& tool : world.tools->tools) {
+    const std::uint32_t index = body_of(soft, tool->entity);
+    if (index == soft.bodies.size()) continue;
+    const auto* body = dynamic_cast<const SoftBodyState*>(soft.bodies[index].get());
+    if (body == nullptr || !body->has_handle() || !body->solvable()) continue;
+    reduce_tool(step, index, 1.0 / world.simulation.touch_rate, tool->pending);
+    ++tool->pending.step;
+  }
+}
+
+void publish_models(World& world) {
+  if (!world.tools) return;
+  for (const auto& tool : world.tools->tools) {
+    if (tool->pending.step == 0) continue;
+    bring_up_to_date(*tool, tool->pending, tool->replay);
+    tool->model.write() = tool->pending;
+    tool->model.publish();
+  }
+}
+
+}  // namespace pliant
