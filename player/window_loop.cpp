@@ -117,6 +117,7 @@ void WindowLoop::take_snapshots() {
     state_.awake_vertices = 0;
     for (const ObjectSnapshot& object : snapshot.objects) state_.awake_vertices += object.awake_vertices;
   }
+  if (s_.world.soft_snapshots && s_.world.soft_snapshots->acquire()) renderer_.update(s_.world.soft_snapshots->read());
 }
 
 // Pictures that were asked for; a slow card takes fewer.

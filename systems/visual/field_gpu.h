@@ -39,10 +39,11 @@ class FieldOnCard {
   // Writes the whole stream of whole zones into `stream` (kZoneSize x zones vec4). Returns the bytes that travelled;
   // when there was and is nothing to draw, nothing happens.
   std::size_t evaluate(const FieldProgram& program, std::span<const FieldSource> sources, const gpu::Buffer& stream);
+  bool at_rest() const { return at_rest_; }  // the stream is all zeros
 
  private:
   std::uint32_t vertices_ = 0;
-  bool at_rest_ = true;  // the stream is all zeros
+  bool at_rest_ = true;
   gpu::Buffer rest_, rest_yz_, sources_;
   std::size_t capacity_ = 0;  // sources
 };

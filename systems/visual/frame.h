@@ -41,7 +41,7 @@ static_assert(sizeof(FrameConstants) == 3 * 64 + 16 + 9 * 16 + 3 * 16 + kMaxLamp
 
 // Binding points, as written in the shaders.
 enum UniformBinding : unsigned { kFrameBinding = 0, kPlacementBinding = 1, kMaterialBinding = 2 };
-enum StorageBinding : unsigned { kStreamBinding = 0 };
+enum StorageBinding : unsigned { kStreamBinding = 0, kSkinBinding = 1 };
 enum TextureUnit : unsigned {
   kSurroundingsUnit = 0,
   kBaseColorUnit = 1,

@@ -31,6 +31,9 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   Result<gpu::Program> program = gpu::Program::load({"marker.vert", "marker.frag"});
   if (!program) return program.error();
   made.program_ = *std::move(program);
+  Result<gpu::Program> shadow = gpu::Program::load({"marker_shadow.vert"});
+  if (!shadow) return shadow.error();
+  made.shadow_ = *std::move(shadow);
   Box scene;
   for (const Box& box : boxes)
     if (!box.empty()) scene.add(box);
@@ -149,10 +152,18 @@ std::size_t Markers::upload(const Viewpoint& viewpoint, const RenderOptions& opt
     if (options.markers && options.forces) lay_out_force(probe, ball, radius);
     if (options.contact_frames) lay_out_frame(probe);
   }
+  changed_ = placed_[kBall] != balls_before_;
+  balls_before_ = placed_[kBall];
   std::size_t travelled = 0;
   for (const std::vector<Instance>& kind : placed_)
     travelled += instances_.write(travelled, kind.data(), kind.size() * sizeof(Instance));
   return travelled;
+}
+
+void Markers::draw_kind(Kind kind, GLuint first_instance) const {
+  glDrawElementsInstancedBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(shapes_[kind].index_count), GL_UNSIGNED_INT,
+                                      reinterpret_cast<const void*>(shapes_[kind].first_index * sizeof(std::uint32_t)),
+                                      static_cast<GLsizei>(placed_[kind].size()), first_instance);
 }
 
 void Markers::draw() const {
@@ -162,12 +173,15 @@ void Markers::draw() const {
   glEnable(GL_CULL_FACE);
   GLuint first = 0;
   for (unsigned kind = 0; kind < kKinds; ++kind) {
-    const GLsizei count = static_cast<GLsizei>(placed_[kind].size());
-    glDrawElementsInstancedBaseInstance(
-        GL_TRIANGLES, static_cast<GLsizei>(shapes_[kind].index_count), GL_UNSIGNED_INT,
-        reinterpret_cast<const void*>(shapes_[kind].first_index * sizeof(std::uint32_t)), count, first);
-    first += static_cast<GLuint>(count);
+    draw_kind(static_cast<Kind>(kind), first);
+    first += static_cast<GLuint>(placed_[kind].size());
   }
+}
+
+void Markers::draw_shadow() const {
+  shadow_.use();
+  glBindVertexArray(layout_.id());
+  draw_kind(kBall, 0);
 }
 
 }  // namespace pliant

@@ -22,6 +22,9 @@ class Markers {
   // Lays out and sends every marker; returns the bytes that travelled.
   std::size_t upload(const Viewpoint& viewpoint, const RenderOptions& options);
   void draw() const;
+  // The balls alone, into the shadow map that is current: a stylus leans with the eye, and an arrow is no thing.
+  void draw_shadow() const;
+  bool changed() const { return changed_; }  // a ball moved since the upload before
 
  private:
   struct Known {  // a probe of the level
@@ -35,6 +38,7 @@ class Markers {
   };
   struct Instance {  // as shaders/marker.vert reads it
     vec4 row_x, row_y, row_z, tint;
+    bool operator==(const Instance&) const = default;
   };
   struct Shape {
     std::uint32_t first_index = 0, index_count = 0;
@@ -45,6 +49,7 @@ class Markers {
   void lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint);
   void lay_out_force(const Known& probe, vec3 ball, float radius);
   void lay_out_frame(const Known& probe);
+  void draw_kind(Kind kind, GLuint first_instance) const;
   void place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, float roughness);
 
   std::vector<Known> probes_;
@@ -54,7 +59,9 @@ class Markers {
   gpu::VertexArray layout_;
   Shape shapes_[kKinds];
   std::vector<Instance> placed_[kKinds];
-  gpu::Program program_;
+  std::vector<Instance> balls_before_;
+  bool changed_ = true;
+  gpu::Program program_, shadow_;
 };
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 #include "systems/visual/gpu/framebuffer.h"
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/marker.h"
+#include "systems/visual/picking.h"
 #include "systems/visual/shadow.h"
 #include "systems/visual/surface.h"
 #include "systems/visual/viewpoint.h"
@@ -26,7 +27,7 @@ std::uint32_t modes_of(const RenderOptions& options) {
 
 struct Renderer::Parts {
   RenderOptions options;
-  Box scene;  // [m] world, at rest
+  Box scene;  // [m] world
   Surroundings surroundings;
   Surfaces surfaces;
   Markers markers;
@@ -35,16 +36,28 @@ struct Renderer::Parts {
   gpu::Buffer frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
   gpu::Framebuffer samples, picture;
   Shadow shadow;
-  bool shaded = false;  // this picture has a shadow
+  bool shaded = false;     // this picture has a shadow
+  bool shadow_old = true;  // and the map does not show it yet
+  mat4 lamp_view{0};       // of the newest picture, like clip_from_world
+  mat4 clip_from_world{1};
+  Picking picking;
+  std::optional<PickQuestion> question;
 
+  void measure_scene();
   std::size_t upload(const Viewpoint& viewpoint, int width, int height);
-  void draw_shadow();
-  void draw_scene();
-  std::size_t render(const Viewpoint& viewpoint, int width, int height);
+  bool draw_shadow();
+  void draw_scene(vec3 eye);
+  FrameStats render(const Viewpoint& viewpoint, int width, int height);
 };
+
+void Renderer::Parts::measure_scene() {
+  scene = surfaces.box();
+  if (scene.empty()) scene.add(Box{vec3(-0.5f), vec3(0.5f)});
+}
 
 // What this picture needs and the card does not have yet; returns the bytes that travelled.
 std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int height) {
+  measure_scene();
   FrameConstants constants;
   const mat4 projection = projection_of(viewpoint, scene, static_cast<float>(width) / static_cast<float>(height));
   constants.view_projection = projection * view_of(viewpoint);
@@ -55,19 +68,27 @@ std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int h
   constants.modes.y = modes_of(options);
   if (shadow.place(constants.lamps[0], scene, constants) && options.shadows) constants.modes.y |= kShadowMode;
   shaded = constants.modes.y & kShadowMode;
-  return frame.write(0, &constants, sizeof constants) + surfaces.upload() + markers.upload(viewpoint, options);
+  const std::size_t travelled =
+      frame.write(0, &constants, sizeof constants) + surfaces.upload() + markers.upload(viewpoint, options);
+  shadow_old = shadow_old || surfaces.changed() || markers.changed() || constants.shadow_from_world != lamp_view;
+  lamp_view = constants.shadow_from_world;
+  clip_from_world = constants.view_projection;
+  return travelled;
 }
 
-// What the first lamp sees. Drawn for every picture: a dent moves its shadow.
-void Renderer::Parts::draw_shadow() {
+// What the first lamp sees; nothing is drawn as long as it sees the same. Returns whether it was.
+bool Renderer::Parts::draw_shadow() {
   shadow.bind(kShadowUnit);
-  if (!shaded) return;
+  if (!shaded || !shadow_old) return false;
   shadow.begin();
   surfaces.draw_shadow();
+  markers.draw_shadow();
+  shadow_old = false;
+  return true;
 }
 
 // What the eye sees, in order.
-void Renderer::Parts::draw_scene() {
+void Renderer::Parts::draw_scene(vec3 eye) {
   glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
   surfaces.draw_opaque();
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
@@ -82,17 +103,18 @@ void Renderer::Parts::draw_scene() {
 
   glEnable(GL_BLEND);
   glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
-  surfaces.draw_blended();
+  surfaces.draw_blended(eye);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glDisable(GL_BLEND);
 }
 
-std::size_t Renderer::Parts::render(const Viewpoint& viewpoint, int width, int height) {
+FrameStats Renderer::Parts::render(const Viewpoint& viewpoint, int width, int height) {
   if (!samples.has_size(width, height)) {
     samples = gpu::Framebuffer(width, height, kSamples);
     picture = gpu::Framebuffer(width, height, 0);
   }
-  const std::size_t travelled = upload(viewpoint, width, height);
+  FrameStats stats;
+  stats.upload_bytes = upload(viewpoint, width, height);
   glEnable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glEnable(GL_DEPTH_TEST);
@@ -102,14 +124,16 @@ std::size_t Renderer::Parts::render(const Viewpoint& viewpoint, int width, int h
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame.id());
   surroundings.bind();
-  draw_shadow();
+  if (question) picking.draw(surfaces, clip_from_world, *question);
+  question.reset();
+  stats.shadow_drawn = draw_shadow();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, samples.id());
   glViewport(0, 0, width, height);
   glClearColor(kPlain, kPlain, kPlain, 1.0f);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  draw_scene();
+  draw_scene(vec3(viewpoint.eye));
   samples.resolve_into(picture);
-  return travelled;
+  return stats;
 }
 
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
@@ -121,10 +145,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   Result<Surfaces> surfaces = Surfaces::make(world);
   if (!surfaces) return surfaces.error();
   parts.surfaces = *std::move(surfaces);
-  for (const Box& box : parts.surfaces.boxes())
-    if (!box.empty()) parts.scene.add(box);
-  if (parts.scene.empty()) parts.scene.add(Box{vec3(-0.5f), vec3(0.5f)});
-
+  Result<Picking> picking = Picking::make();
+  if (!picking) return picking.error();
+  parts.picking = *std::move(picking);
   Result<Markers> markers = Markers::make(world, parts.surfaces.boxes());
   if (!markers) return markers.error();
   parts.markers = *std::move(markers);
@@ -145,14 +168,25 @@ void Renderer::update(const Snapshot& snapshot) {
   parts_->markers.take(snapshot.probes);
 }
 
+void Renderer::update(const SoftSnapshot& snapshot) {
+  for (const SoftObjectSnapshot& object : snapshot.objects) parts_->surfaces.take(object);
+}
+
+void Renderer::pick(const PickQuestion& question) {
+  parts_->question = question;
+}
+
+std::optional<PickAnswer> Renderer::picked(bool wait) {
+  return parts_->picking.take(parts_->surfaces, wait);
+}
+
 RenderOptions& Renderer::options() {
   return parts_->options;
 }
 
 FrameStats Renderer::draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height) {
   const std::uint64_t start = now_ns();
-  FrameStats stats;
-  stats.upload_bytes = parts_->render(viewpoint, width, height);
+  FrameStats stats = parts_->render(viewpoint, width, height);
   parts_->picture.copy_into(target);
   glFinish();
   stats.draw_ms = static_cast<double>(now_ns() - start) * 1e-6;
@@ -161,9 +195,10 @@ FrameStats Renderer::draw(const Viewpoint& viewpoint, std::uint32_t target, int 
 
 Image Renderer::picture(const Viewpoint& viewpoint, int width, int height, FrameStats* stats) {
   const std::uint64_t start = now_ns();
-  const std::size_t travelled = parts_->render(viewpoint, width, height);
+  FrameStats drawn = parts_->render(viewpoint, width, height);
   glFinish();
-  if (stats) *stats = {static_cast<double>(now_ns() - start) * 1e-6, travelled};
+  drawn.draw_ms = static_cast<double>(now_ns() - start) * 1e-6;
+  if (stats) *stats = drawn;
   return {.name = "picture",
           .width = static_cast<std::uint32_t>(width),
           .height = static_cast<std::uint32_t>(height),

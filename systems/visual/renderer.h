@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "components/appearance.h"
 #include "components/snapshot.h"
+#include "components/soft_snapshot.h"
 #include "components/world.h"
 #include "runtime/result.h"
 
@@ -13,7 +15,28 @@ namespace pliant {
 
 struct FrameStats {
   double draw_ms = 0.0;            // upload and draw until the picture is complete
-  std::uint64_t upload_bytes = 0;  // that travelled for this frame (awake zones, probes, constants)
+  std::uint64_t upload_bytes = 0;  // that travelled for this frame (awake zones, skins, probes, constants)
+  bool shadow_drawn = false;       // what the lamp sees had changed
+};
+
+// What stands at a place of a picture?
+struct PickQuestion {
+  double x = 0, y = 0;        // [pixel] from the upper left corner
+  int width = 1, height = 1;  // [pixel] of the picture
+  std::uint64_t number = 0;   // to know the answer by
+};
+
+// A place on a surface.
+struct Picked {
+  Entity object;
+  dvec3 point{0};         // [m] world, as drawn: dented, moved
+  dvec3 rest{0};          // [m] world, of the same place at rest (of a soft body: as drawn)
+  dvec3 normal{0, 1, 0};  // [1] world, outward, at rest (of a soft body: as drawn)
+};
+
+struct PickAnswer {
+  PickQuestion question;
+  std::optional<Picked> seen;  // nothing: the surroundings
 };
 
 // Where the picture is taken from. Chosen from the level's camera or its bounds.
@@ -51,11 +74,17 @@ class Renderer {
 
   // Takes the newest zones and probes; call for every snapshot that was acquired, before draw.
   void update(const Snapshot& snapshot);
+  void update(const SoftSnapshot& snapshot);
   RenderOptions& options();
   // Draws into the framebuffer `target` of width x height pixels.
   FrameStats draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height);
   // Draws into an own framebuffer and reads it back, rows top to bottom.
   Image picture(const Viewpoint& viewpoint, int width, int height, FrameStats* stats = nullptr);
+
+  // Asks along with the next picture, whose viewpoint counts; of several questions the last.
+  void pick(const PickQuestion& question);
+  // The answer, once. Never waits for the card, unless told to: then the next picture's answer is there after it.
+  std::optional<PickAnswer> picked(bool wait = false);
 
  private:
   Renderer();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "components/soft_body.h"
 #include "runtime/assert.h"
 #include "systems/touch/field.h"
 #include "systems/visual/frame.h"
@@ -24,16 +25,30 @@ struct Vertex {
 // Block Placement of shaders/placement.glsl.
 struct Placement {
   mat4 to_world, normal_to_world;
+  glm::uvec4 object;
 };
 
-// A surface that does not give way has no touch mesh: every vertex then reads the one entry of a stream of zeros.
-std::vector<Vertex> vertices_of(const DrawMesh& draw, const Mesh* touch) {
+Placement placement_block(const mat4& to_world, std::uint32_t number, bool rides) {
+  return {to_world, mat4(glm::transpose(glm::inverse(mat3(to_world)))), {number, rides ? 1u : 0u, 0u, 0u}};
+}
+
+// What an entity's drawn vertices refer to by touch_vertex, if anything.
+const Mesh* touch_mesh_of(const World& world, Entity entity) {
+  Handle<Mesh> mesh;
+  if (const Deformable* deformable = world.registry.find<Deformable>(entity)) mesh = deformable->mesh;
+  if (const SoftBody* soft = world.registry.find<SoftBody>(entity)) mesh = soft->skin;
+  if (const RigidBody* rigid = world.registry.find<RigidBody>(entity)) mesh = rigid->skin;
+  return mesh.valid() ? &world.meshes[mesh] : nullptr;
+}
+
+// Every vertex of a surface that neither gives way nor has a skin reads the one entry of a stream of zeros.
+std::vector<Vertex> vertices_of(const DrawMesh& draw, const Mesh* touch, bool by_touch_vertex) {
   std::vector<Vertex> vertices;
   vertices.reserve(draw.vertices.size());
   for (const DrawVertex& v : draw.vertices) {
     ASSERT(!touch || v.touch_vertex < touch->vertex_count);
     vertices.push_back({v.position, touch ? touch->normal(v.touch_vertex) : v.normal, v.normal, v.tangent, v.uv,
-                        touch ? v.touch_vertex : 0});
+                        by_touch_vertex ? v.touch_vertex : 0});
   }
   return vertices;
 }
@@ -59,14 +74,23 @@ bool encloses_volume(const Mesh& mesh) {
   return mesh.closed && volume > 0;
 }
 
-void draw_part(const DrawPart& part) {
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.index_count), GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(std::size_t{part.first_index} * sizeof(std::uint32_t)));
+Box box_of(const DrawMesh& draw) {
+  Box box;
+  for (const DrawVertex& v : draw.vertices) box.add(v.position);
+  return box;
 }
 
-Box world_box(const std::vector<Vertex>& vertices, const mat4& to_world) {
+Box moved_box(const Box& box, const mat4& to_world) {
+  Box moved;
+  for (int i = 0; i < 8 && !box.empty(); ++i)
+    moved.add(vec3(to_world * vec4(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                                   i & 4 ? box.max.z : box.min.z, 1)));
+  return moved;
+}
+
+Box world_box(const DrawMesh& draw, const mat4& to_world) {
   Box box;
-  for (const Vertex& v : vertices) box.add(vec3(to_world * vec4(v.position, 1)));
+  for (const DrawVertex& v : draw.vertices) box.add(vec3(to_world * vec4(v.position, 1)));
   return box;
 }
 
@@ -93,8 +117,10 @@ Result<Surfaces> Surfaces::make(const World& world) {
                    fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}; "
                                "use a card, or a coarser mesh",
                                item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20)};
-    made.boxes_.push_back(
-        world_box(vertices_of(world.draw_meshes[drawable.mesh], nullptr), placement_of(world, entity)));
+    made.boxes_.push_back(world_box(world.draw_meshes[drawable.mesh], item.to_world));
+    item.number = static_cast<std::uint32_t>(made.items_.size()) + 1;
+    const Placement block = placement_block(item.to_world, item.number, false);
+    item.placement = gpu::Buffer::writable(&block, sizeof block);
     made.items_.push_back(std::move(item));
   }
   if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.on_card; })) {
@@ -107,91 +133,97 @@ Result<Surfaces> Surfaces::make(const World& world) {
 
 Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const DrawMesh& draw) {
   const Deformable* deformable = world.registry.find<Deformable>(entity);
-  const Mesh* touch = deformable && deformable->mesh.valid() ? &world.meshes[deformable->mesh] : nullptr;
+  const SoftBody* soft = world.registry.find<SoftBody>(entity);
+  const Mesh* touch = touch_mesh_of(world, entity);
 
   Item item;
   item.entity = entity;
-  item.gives_way = touch != nullptr;
+  item.gives_way = touch && deformable && !soft;
   item.encloses = touch && encloses_volume(*touch);
-  item.vertices = gpu::Buffer::fixed<Vertex>(vertices_of(draw, touch));
+  item.vertices = gpu::Buffer::fixed<Vertex>(vertices_of(draw, touch, item.gives_way || soft));
   item.indices = gpu::Buffer::fixed<std::uint32_t>(draw.indices);
   item.layout = layout_of(item.vertices, item.indices);
-  item.parts = draw.parts;
+  item.rest = box_of(draw);
+  for (const DrawPart& run : draw.parts) {
+    Box box;
+    for (std::uint32_t i = 0; i < run.index_count; ++i)
+      box.add(draw.vertices[draw.indices[run.first_index + i]].position);
+    item.parts.push_back({run, box.empty() ? vec3(0) : box.center()});
+  }
 
-  // A field that does not exist yet, or has another size than its mesh, counts as at rest.
-  const std::size_t padded = touch ? std::size_t{touch->zone_count()} * kZoneSize : 0;
+  // A field that does not exist yet, or has another size than its mesh, counts as at rest. Whatever has none reads
+  // zeros.
+  const std::size_t padded = touch && (item.gives_way || soft) ? std::size_t{touch->zone_count()} * kZoneSize : 0;
   std::vector<vec4> stream(padded, vec4(0));
-  if (touch && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
+  if (item.gives_way && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
     stream = world.fields[deformable->field].stream;
   item.stream = StreamCopies(stream);
-  item.on_card = touch && world.field_place == FieldPlace::kCard && card_obstacle(*deformable).empty();
+  item.on_card = item.gives_way && world.field_place == FieldPlace::kCard && card_obstacle(*deformable).empty();
   if (item.on_card) item.field = FieldOnCard(*touch);
+  if (touch && soft) item.skin = Skin(touch->vertex_count);
 
-  const mat4 to_world = placement_of(world, entity);
-  const Placement placement{to_world, mat4(glm::transpose(glm::inverse(mat3(to_world))))};
-  item.placement = gpu::Buffer::fixed(&placement, sizeof placement);
-  item.mirrored = glm::determinant(mat3(to_world)) < 0;
+  item.to_world = placement_of(world, entity);
+  item.mirrored = glm::determinant(mat3(item.to_world)) < 0;
   return item;
 }
 
+Surfaces::Item* Surfaces::find(Entity entity) {
+  const auto found = std::find_if(items_.begin(), items_.end(), [=](const Item& i) { return i.entity == entity; });
+  return found == items_.end() ? nullptr : &*found;
+}
+
 void Surfaces::take(const ObjectSnapshot& object) {
-  for (Item& item : items_) {
-    if (!item.gives_way || item.entity != object.object) continue;
-    if (item.on_card) {
-      item.sources.assign(object.terms.begin(), object.terms.begin() + object.term_count);
-    } else {
-      item.stream.take({object.zones.data(), object.zone_count}, object.stream);
-    }
+  Item* item = find(object.object);
+  if (!item || !item->gives_way) return;
+  if (item->on_card) {
+    item->sources.assign(object.terms.begin(), object.terms.begin() + object.term_count);
+  } else {
+    item->stream.take({object.zones.data(), object.zone_count}, object.stream);
   }
+}
+
+// A body that says nothing of its skin moves as one piece.
+void Surfaces::take(const SoftObjectSnapshot& object) {
+  Item* item = find(object.object);
+  if (!item || item->gives_way) return;
+  const bool rides = item->skin.take(object.position, object.normal);
+  const mat4 to_world = rides ? item->to_world : matrix_of(object.pose);
+  item->moved = item->moved || rides != item->rides || to_world != item->to_world;
+  item->rides = rides;
+  item->moves = true;
+  item->to_world = to_world;
 }
 
 std::size_t Surfaces::upload() {
   std::size_t travelled = 0;
-  for (Item& item : items_)
+  changed_ = false;
+  for (Item& item : items_) {
+    if (item.moved) {
+      const Placement block = placement_block(item.to_world, item.number, item.rides);
+      travelled += item.placement.write(0, &block, sizeof block);
+      item.moved = false;
+    }
+    travelled += item.skin.upload();
+    changed_ = changed_ || (item.on_card && !item.field.at_rest());
     travelled +=
         item.on_card ? item.field.evaluate(field_program_, item.sources, item.stream.buffer()) : item.stream.upload();
+  }
+  changed_ = changed_ || travelled > 0;
   return travelled;
 }
 
-void Surfaces::bind(const Item& item) const {
-  glBindVertexArray(item.layout.id());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kStreamBinding, item.stream.buffer().id());
-  glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, item.placement.id());
+Box Surfaces::box() const {
+  Box all;
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    const Item& item = items_[i];
+    if (boxes_[i].empty()) continue;
+    all.add(item.rides ? item.skin.box() : item.moves ? moved_box(item.rest, item.to_world) : boxes_[i]);
+  }
+  return all;
 }
 
-// Both sides of everything: a sheet, or the rim of a dent, blocks light whichever way it faces.
-void Surfaces::draw_shadow() const {
-  shadow_.use();
-  glDisable(GL_CULL_FACE);
-  for (const Item& item : items_) {
-    bind(item);
-    for (const DrawPart& part : item.parts) {
-      if (!materials_.casts_shadow(part.material)) continue;
-      materials_.bind(part.material);
-      draw_part(part);
-    }
-  }
-}
-
-void Surfaces::draw(bool blended) const {
-  program_.use();
-  for (const Item& item : items_) {
-    bind(item);
-    glFrontFace(item.mirrored ? GL_CW : GL_CCW);
-    for (const DrawPart& part : item.parts) {
-      if (materials_.blends(part.material) != blended) continue;
-      materials_.bind(part.material);
-      const bool back_is_seen = materials_.double_sided(part.material) && (blended || !item.encloses);
-      (back_is_seen && !blended ? glDisable : glEnable)(GL_CULL_FACE);
-      // What blends shows its far side through its near side: back first, and depth keeps the front in order.
-      if (blended && back_is_seen) {
-        glCullFace(GL_FRONT);
-        draw_part(part);
-        glCullFace(GL_BACK);
-      }
-      draw_part(part);
-    }
-  }
+Entity Surfaces::object(std::uint32_t number) const {
+  return number == 0 || number > items_.size() ? kNoEntity : items_[number - 1].entity;
 }
 
 }  // namespace pliant

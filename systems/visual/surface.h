@@ -1,7 +1,9 @@
-// Every Drawable on the card: what never changes in static buffers, and the stream that makes it give way.
+// Every Drawable on the card: what never changes in static buffers, and what makes it give way or move: the stream of a
+// deformable, the skin of a soft body, the pose of a rigid one.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "components/world.h"
@@ -10,50 +12,77 @@
 #include "systems/visual/gpu/buffer.h"
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/material.h"
+#include "systems/visual/skin.h"
 #include "systems/visual/upload.h"
 
 namespace pliant {
 
 class Surfaces {
  public:
-  // Uploads meshes, materials and placements. Streams begin as the height fields stand, or at rest.
+  // Uploads meshes, materials and placements. Streams begin as the height fields stand, or at rest; what moves begins
+  // where its level puts it.
   static Result<Surfaces> make(const World& world);
 
-  // Takes an object's changed zones; upload() sends them. Objects that are not drawn are ignored.
+  // Takes an object's changed zones, or where a soft or rigid body is; upload() sends them. Objects that are not drawn
+  // are ignored.
   void take(const ObjectSnapshot& object);
-  std::size_t upload();  // returns the bytes that travelled
+  void take(const SoftObjectSnapshot& object);
+  std::size_t upload();                      // returns the bytes that travelled
+  bool changed() const { return changed_; }  // something looks different since the upload before
 
-  // Draws with materials: what is opaque first, what blends only in the second call.
-  void draw_opaque() const { draw(false); }
-  void draw_blended() const { draw(true); }
+  // Draws with materials: what is opaque first, what blends only in the second call, from the back to the front as seen
+  // from `eye` [m].
+  void draw_opaque() const;
+  void draw_blended(vec3 eye) const;
   // Depth alone, into the shadow map that is current.
   void draw_shadow() const;
+  // Everything that can be seen, for the program that is in use.
+  void draw_all() const;
+
   // World boxes of the surfaces, at rest, in no order. [m]
   const std::vector<Box>& boxes() const { return boxes_; }
+  // All of them as they were last taken; dents are left out. [m]
+  Box box() const;
+  // The object with this number (block Placement), or kNoEntity.
+  Entity object(std::uint32_t number) const;
 
  private:
+  struct Part {
+    DrawPart run;
+    vec3 center{0};  // [m] of its vertices' box, object frame
+  };
   struct Item {
     Entity entity;
     gpu::Buffer vertices, indices, placement;
     gpu::VertexArray layout;
-    std::vector<DrawPart> parts;
+    std::vector<Part> parts;
     StreamCopies stream;
     FieldOnCard field;                 // only where the field lives on the card
     std::vector<FieldSource> sources;  // its newest list
+    Skin skin;                         // of a soft body, else of no vertex
+    Box rest;                          // [m] object frame
+    mat4 to_world{1};
+    bool moves = false;  // a soft or rigid body
+    std::uint32_t number = 0;
+    bool rides = false;  // its vertices are where the skin says
+    bool moved = false;  // its placement is newer here
     bool on_card = false;
     bool gives_way = false;
     bool encloses = false;  // its back is never seen from outside, whatever its materials say
     bool mirrored = false;  // its placement turns triangles inside out
   };
   static Item make_item(const World& world, Entity entity, const DrawMesh& draw);
-  void draw(bool blended) const;
+  Item* find(Entity entity);
   void bind(const Item& item) const;
+  void draw_part(const Part& part) const;
+  void draw_one(const Item& item, const Part& part) const;
 
   std::vector<Item> items_;
   std::vector<Box> boxes_;
   Materials materials_;
   gpu::Program program_, shadow_;
   FieldProgram field_program_;  // compiled only if some field lives on the card
+  bool changed_ = true;
 };
 
 }  // namespace pliant

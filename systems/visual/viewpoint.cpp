@@ -4,14 +4,16 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "components/soft_body.h"
+
 namespace pliant {
 namespace {
 
 // Calls visit(point) for every drawn vertex at rest, world frame.
 template <class Visit>
-void each_point(const World& world, bool only_deformables, Visit visit) {
+void each_point(const World& world, bool only_soft, Visit visit) {
   for (auto [entity, drawable] : world.registry.view<Drawable>()) {
-    if (only_deformables && !world.registry.has<Deformable>(entity)) continue;
+    if (only_soft && !world.registry.has<Deformable>(entity) && !world.registry.has<SoftBody>(entity)) continue;
     const mat4 to_world = placement_of(world, entity);
     for (const DrawVertex& v : world.draw_meshes[drawable.mesh].vertices) visit(vec3(to_world * vec4(v.position, 1)));
   }
@@ -26,26 +28,28 @@ Viewpoint from_camera(const Camera& camera, const mat4& m, const Box& scene) {
 
 }  // namespace
 
+mat4 matrix_of(const Pose& pose) {
+  mat4 m(glm::mat4_cast(quat(pose.rotation)));
+  m[3] = vec4(vec3(pose.position), 1.0f);
+  return m;
+}
+
 mat4 placement_of(const World& world, Entity entity) {
-  if (const Pose* pose = world.registry.find<Pose>(entity)) {
-    mat4 m(glm::mat4_cast(quat(pose->rotation)));
-    m[3] = vec4(vec3(pose->position), 1.0f);
-    return m;
-  }
+  if (const Pose* pose = world.registry.find<Pose>(entity)) return matrix_of(*pose);
   const WorldTransform* transform = world.registry.find<WorldTransform>(entity);
   return transform ? transform->matrix : mat4(1);
 }
 
-Box drawn_box(const World& world, bool only_deformables) {
+Box drawn_box(const World& world, bool only_soft) {
   Box all;
-  each_point(world, only_deformables, [&](vec3 point) { all.add(point); });
+  each_point(world, only_soft, [&](vec3 point) { all.add(point); });
   return all;
 }
 
 Viewpoint default_viewpoint(const World& world) {
   Box scene = drawn_box(world, true);
-  const bool only_deformables = !scene.empty();
-  if (!only_deformables) scene = drawn_box(world, false);
+  const bool only_soft = !scene.empty();
+  if (!only_soft) scene = drawn_box(world, false);
   for (auto [entity, camera] : world.registry.view<Camera>())
     if (const WorldTransform* transform = world.registry.find<WorldTransform>(entity))
       return from_camera(camera, transform->matrix, scene);
@@ -64,7 +68,7 @@ Viewpoint default_viewpoint(const World& world) {
     const vec3 p = point - scene.center();
     away = std::max(away, dot(p, backward) + std::max(std::abs(dot(p, up)), std::abs(dot(p, right)) / kAspect) / slope);
   };
-  each_point(world, only_deformables, keep_in_sight);
+  each_point(world, only_soft, keep_in_sight);
   view.target = scene.center();
   view.eye = view.target + dvec3(away * backward);
   return view;

@@ -9,8 +9,10 @@ namespace pliant {
 // Object frame to world for what is drawn: the Pose where there is one, else the WorldTransform, else the identity.
 mat4 placement_of(const World& world, Entity entity);
 
-// World box of everything drawn, at rest; of deformables alone where `only_deformables`. [m]
-Box drawn_box(const World& world, bool only_deformables);
+mat4 matrix_of(const Pose& pose);
+
+// World box of everything drawn, at rest; of what gives way alone where `only_soft`. [m]
+Box drawn_box(const World& world, bool only_soft);
 
 // View and projection matrices, with clip planes that hold a scene of this box. `aspect` is width / height.
 mat4 view_of(const Viewpoint& viewpoint);

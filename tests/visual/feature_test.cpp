@@ -1,27 +1,25 @@
 // One picture for each thing the renderer can do, beside a picture that somebody has looked at (golden/). Each test
 // also draws with that one thing switched off, and that picture must fail the same comparison: it is what the test is
-// about. To make the golden pictures anew: PLIANT_WRITE_GOLDEN=FOLDER test_visual --gtest_filter='Feature.*', look,
-// then copy.
+// about.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
-#include "systems/visual/png.h"
 #include "systems/visual/renderer.h"
 #include "tests/visual/compare.h"
+#include "tests/visual/golden.h"
 #include "tests/visual/scene.h"
 
 namespace pliant {
 namespace {
 
 using test::dent;
+using test::kTolerance;
 using test::perceived_difference;
 using test::snapshot_of;
 
 constexpr int kWidth = 192, kHeight = 144;
-constexpr double kTolerance = 1.0;  // [of 255] see perceived_difference
 
 const Viewpoint kFront{.eye = {0, 0.8, 4}, .target = {0, 0, 0}};
 const Viewpoint kNear{.eye = {0.2, 1.0, 0.6}, .target = {-0.12, -0.1, 0}};
@@ -119,28 +117,6 @@ std::unique_ptr<Renderer> renderer_for(const World& world) {
   return made ? *std::move(made) : nullptr;
 }
 
-// The picture `on` against golden/NAME.png, and `off` against both.
-void expect_feature(const std::string& name, const Image& on, const Image& off) {
-  if (const char* folder = std::getenv("PLIANT_WRITE_GOLDEN")) {
-    ASSERT_TRUE(write_png(on, std::filesystem::path(folder) / (name + ".png")));
-    ASSERT_TRUE(write_png(off, std::filesystem::path(folder) / (name + "_off.png")));
-  }
-  EXPECT_GT(perceived_difference(on, off), kTolerance) << name << " looks the same when it is switched off";
-  if (test::context()->renderer_name().find("llvmpipe") == std::string::npos)
-    GTEST_SKIP() << "golden pictures are llvmpipe's; this is " << test::context()->renderer_name()
-                 << ", where only on against off was compared";
-  const std::filesystem::path path = std::filesystem::path(PLIANT_SOURCE_DIR) / "tests/visual/golden" / (name + ".png");
-  const std::optional<Image> golden = test::read_png(path);
-  ASSERT_TRUE(golden) << path << " cannot be read";
-  const double now = perceived_difference(on, *golden), without = perceived_difference(off, *golden);
-  if (now > kTolerance) {
-    const std::filesystem::path seen = std::filesystem::path(testing::TempDir()) / (name + "_seen.png");
-    EXPECT_TRUE(write_png(on, seen));
-    ADD_FAILURE() << name << " differs from its golden picture by " << now << " of 255; see " << seen;
-  }
-  EXPECT_GT(without, kTolerance) << name << " switched off passes for switched on";
-}
-
 // Draws `world` twice, with and without what `switch_off` takes away.
 template <class SwitchOff>
 void expect_option(const std::string& name, const World& world, const Snapshot& pressed, const Viewpoint& view,
@@ -150,7 +126,7 @@ void expect_option(const std::string& name, const World& world, const Snapshot& 
   renderer->update(pressed);
   const Image on = renderer->picture(view, kWidth, kHeight);
   switch_off(renderer->options());
-  expect_feature(name, on, renderer->picture(view, kWidth, kHeight));
+  test::expect_golden(name, on, renderer->picture(view, kWidth, kHeight));
 }
 
 TEST(Feature, TheSurroundingsStandBehindEverything) {
@@ -221,7 +197,7 @@ TEST(Feature, WhatBlendsLetsTheSurroundingsThrough) {
   World world = ball_of(film);
   const Image on = renderer_for(world)->picture(kFront, kWidth, kHeight);
   world.materials[0].alpha = Material::Alpha::kOpaque;
-  expect_feature("transparent", on, renderer_for(world)->picture(kFront, kWidth, kHeight));
+  test::expect_golden("transparent", on, renderer_for(world)->picture(kFront, kWidth, kHeight));
 }
 
 TEST(Shadow, FallsWhereARayToTheLampMeetsTheDentAndNowhereElse) {

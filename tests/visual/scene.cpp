@@ -84,6 +84,65 @@ World sphere(std::uint32_t rows) {
   return world_of("sphere", std::move(vertices), grid_indices(2 * rows, rows));
 }
 
+World soft_block(std::uint32_t n) {
+  std::vector<DrawVertex> vertices;
+  std::vector<std::uint32_t> indices;
+  for (const vec3 out : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1)}) {
+    // Columns go along u, rows along -v, and u x v points out.
+    const vec3 u = out.y != 0 ? vec3(1, 0, 0) : cross(vec3(0, 1, 0), out), v = cross(out, u);
+    const std::uint32_t base = static_cast<std::uint32_t>(vertices.size());
+    for (std::uint32_t j = 0; j <= n; ++j)
+      for (std::uint32_t i = 0; i <= n; ++i) {
+        const vec2 uv = vec2(i, j) / static_cast<float>(n);
+        const vec3 p = 0.5f * out + (uv.x - 0.5f) * u + (0.5f - uv.y) * v + vec3(0, 0.5f, 0);
+        vertices.push_back({.position = p, .normal = out, .tangent = vec4(u, 1), .uv = uv});
+      }
+    for (const std::uint32_t index : grid_indices(n, n)) indices.push_back(base + index);
+  }
+  World world = world_of("block", std::move(vertices), std::move(indices));
+  const Entity entity = object_of(world);
+  TetMesh tets;
+  for (int i = 0; i < 27; ++i) tets.nodes.push_back(dvec3(i % 3, i / 3 % 3, i / 9) * 0.5 - dvec3(0.5, 0, 0.5));
+  tets.free_count = 27;
+  // Each cell in six, around its diagonal from corner 0 to corner 7 (Kuhn).
+  const int paths[6][2] = {{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}};
+  for (int cell = 0; cell < 8; ++cell)
+    for (const auto& path : paths) {
+      auto node = [&](int corner) {
+        const int x = (cell & 1) + (corner & 1), y = (cell >> 1 & 1) + (corner >> 1 & 1),
+                  z = (cell >> 2) + (corner >> 2);
+        return static_cast<std::uint32_t>(x + 3 * y + 9 * z);
+      };
+      tets.tets.push_back({node(0), node(path[0]), node(path[1]), node(7)});
+    }
+  SoftBody soft;
+  soft.skin = world.registry.get<Deformable>(entity).mesh;
+  soft.tets = world.tet_meshes.add(std::move(tets));
+  world.registry.remove<Deformable>(entity);
+  world.registry.add<SoftBody>(entity, soft);
+  return world;
+}
+
+SoftSnapshot soft_snapshot_of(const World& world, const Where& where) {
+  SoftSnapshot snapshot;
+  for (auto [entity, soft] : world.registry.view<SoftBody>()) {
+    const Mesh& mesh = world.meshes[soft.skin];
+    SoftObjectSnapshot object;
+    object.object = entity;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) object.position.push_back(where(mesh.position(v)));
+    object.normal.resize(mesh.vertex_count, vec3(0));
+    for (const uvec3 t : mesh.triangles) {
+      const vec3 a = object.position[t.x];
+      const vec3 n = cross(object.position[t.y] - a, object.position[t.z] - a);
+      for (const std::uint32_t corner : {t.x, t.y, t.z}) object.normal[corner] += n;
+    }
+    for (vec3& n : object.normal) n = normalize(n);
+    for (const dvec3 node : world.tet_meshes[soft.tets].nodes) object.nodes.push_back(where(vec3(node)));
+    snapshot.objects.push_back(std::move(object));
+  }
+  return snapshot;
+}
+
 Entity add_probe(World& world, dvec3 position, double radius) {
   const Entity entity = world.registry.create();
   Probe probe;

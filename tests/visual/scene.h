@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "components/soft_body.h"
 #include "components/world.h"
 #include "systems/visual/gpu/context.h"
 
@@ -18,6 +19,13 @@ World sheet(std::uint32_t n);
 World sphere(std::uint32_t rows);
 // A probe at `position`, in the colour red; returns it.
 Entity add_probe(World& world, dvec3 position, double radius = 0.0);
+
+// A cube of soft matter, 1 m wide, standing on y = 0 with its middle over the origin, of n x n squares a face; inside,
+// 2 x 2 x 2 cells of six tetrahedra.
+World soft_block(std::uint32_t n);
+// Where its skin and its nodes are when every point p of it has gone to `where(p)`.
+using Where = std::function<vec3(vec3 rest)>;
+SoftSnapshot soft_snapshot_of(const World& world, const Where& where);
 
 // The only deformable of such a world, and its mesh.
 Entity object_of(const World& world);

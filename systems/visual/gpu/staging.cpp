@@ -31,13 +31,11 @@ std::size_t Staging::send(const Buffer& target, std::size_t offset, const void* 
 
 void Staging::finish() {
   if (used_ == 0) return;
-  Fence written;
-  written.sync = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  copied_[part_] = std::move(written);
+  copied_[part_] = Fence::here();
   part_ = (part_ + 1) % kParts;
   used_ = 0;
   // Two pictures ago: nearly always over.
-  if (copied_[part_].sync) glClientWaitSync(copied_[part_].sync, GL_SYNC_FLUSH_COMMANDS_BIT, GL_TIMEOUT_IGNORED);
+  if (copied_[part_].set()) copied_[part_].wait();
 }
 
 }  // namespace pliant::gpu

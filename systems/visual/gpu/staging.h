@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 
 #include "systems/visual/gpu/buffer.h"
+#include "systems/visual/gpu/fence.h"
 
 namespace pliant::gpu {
 
@@ -21,19 +21,6 @@ class Staging {
 
  private:
   static constexpr std::size_t kParts = 3;
-  struct Fence {
-    GLsync sync = nullptr;
-    Fence() = default;
-    Fence(Fence&& other) noexcept : sync(std::exchange(other.sync, nullptr)) {}
-    Fence& operator=(Fence&& other) noexcept {
-      std::swap(sync, other.sync);
-      return *this;
-    }
-    ~Fence() {
-      if (sync) glDeleteSync(sync);
-    }
-  };
-
   Object<DestroyBuffer> buffer_;  // unmapped as it is deleted
   std::byte* mapped_ = nullptr;
   std::size_t part_size_ = 0, part_ = 0, used_ = 0;

@@ -1,0 +1,89 @@
+#include "systems/visual/picking.h"
+
+#include <bit>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "systems/visual/surface.h"
+
+namespace pliant {
+namespace {
+
+using Pixel = glm::uvec4;
+
+gpu::Object<gpu::DestroyRenderbuffer> plane_of_one_pixel(GLenum format) {
+  GLuint id = 0;
+  glCreateRenderbuffers(1, &id);
+  glNamedRenderbufferStorage(id, format, 1, 1);
+  return gpu::Object<gpu::DestroyRenderbuffer>(id);
+}
+
+// The pixel's middle goes to the middle of the clip cube, and the pixel fills it.
+mat4 narrowed(const PickQuestion& q) {
+  const float wide = static_cast<float>(q.width), high = static_cast<float>(q.height);
+  const float x = 2 * static_cast<float>(q.x) / wide - 1, y = 1 - 2 * static_cast<float>(q.y) / high;
+  return glm::scale(mat4(1), vec3(wide, high, 1)) * glm::translate(mat4(1), vec3(-x, -y, 0));
+}
+
+dvec3 place_of(const Pixel& p) {
+  return dvec3(std::bit_cast<float>(p.y), std::bit_cast<float>(p.z), std::bit_cast<float>(p.w));
+}
+
+}  // namespace
+
+Result<Picking> Picking::make() {
+  Picking made;
+  Result<gpu::Program> program = gpu::Program::load({"pick.vert", "pick.frag"});
+  if (!program) return program.error();
+  made.program_ = *std::move(program);
+  made.clip_from_world_ = glGetUniformLocation(made.program_.id(), "clip_from_world");
+  GLuint id = 0;
+  glCreateFramebuffers(1, &id);
+  made.framebuffer_ = gpu::Object<gpu::DestroyFramebuffer>(id);
+  GLenum targets[kPlanes];
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    targets[i] = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i);
+    made.planes_[i] = plane_of_one_pixel(GL_RGBA32UI);
+    glNamedFramebufferRenderbuffer(id, targets[i], GL_RENDERBUFFER, made.planes_[i].id());
+  }
+  made.depth_ = plane_of_one_pixel(GL_DEPTH_COMPONENT32F);
+  glNamedFramebufferRenderbuffer(id, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made.depth_.id());
+  glNamedFramebufferDrawBuffers(id, kPlanes, targets);
+  made.answer_ = gpu::Buffer::writable(nullptr, kPlanes * sizeof(Pixel));
+  return made;
+}
+
+void Picking::draw(const Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question) {
+  question_ = question;
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glViewport(0, 0, 1, 1);
+  const GLuint nothing[4] = {};
+  for (GLint i = 0; i < static_cast<GLint>(kPlanes); ++i)
+    glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, i, nothing);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  program_.use();
+  const mat4 through_pixel = narrowed(question) * clip_from_world;
+  glUniformMatrix4fv(clip_from_world_, 1, GL_FALSE, &through_pixel[0][0]);
+  surfaces.draw_all();
+
+  // Into memory of the card's own; it is only fetched once it is there.
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, answer_.id());
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+    glReadPixels(0, 0, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, reinterpret_cast<void*>(i * sizeof(Pixel)));
+  }
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  written_ = gpu::Fence::here();
+}
+
+std::optional<PickAnswer> Picking::take(const Surfaces& surfaces, bool wait) {
+  if (!written_.set() || !(wait ? written_.wait() : written_.passed())) return std::nullopt;
+  written_ = gpu::Fence();
+  Pixel pixels[kPlanes];
+  glGetNamedBufferSubData(answer_.id(), 0, sizeof pixels, pixels);
+  PickAnswer answer{question_, std::nullopt};
+  if (const Entity object = surfaces.object(pixels[0].x); object != kNoEntity)
+    answer.seen = Picked{object, place_of(pixels[0]), place_of(pixels[1]), normalize(place_of(pixels[2]))};
+  return answer;
+}
+
+}  // namespace pliant

@@ -1,0 +1,86 @@
+// The passes over every surface: colour, shadow, and whatever program is in use.
+#include <algorithm>
+
+#include "systems/visual/frame.h"
+#include "systems/visual/surface.h"
+
+namespace pliant {
+
+void Surfaces::bind(const Item& item) const {
+  glBindVertexArray(item.layout.id());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kStreamBinding, item.stream.buffer().id());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSkinBinding, item.skin.buffer().id());
+  glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, item.placement.id());
+  glFrontFace(item.mirrored ? GL_CW : GL_CCW);
+}
+
+void Surfaces::draw_part(const Part& part) const {
+  materials_.bind(part.run.material);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.run.index_count), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::size_t{part.run.first_index} * sizeof(std::uint32_t)));
+}
+
+// Both sides of everything: a sheet, or the rim of a dent, blocks light whichever way it faces.
+void Surfaces::draw_shadow() const {
+  shadow_.use();
+  glDisable(GL_CULL_FACE);
+  for (const Item& item : items_) {
+    bind(item);
+    for (const Part& part : item.parts)
+      if (materials_.casts_shadow(part.run.material)) draw_part(part);
+  }
+}
+
+void Surfaces::draw_one(const Item& item, const Part& part) const {
+  const bool back_is_seen = materials_.double_sided(part.run.material) && !item.encloses;
+  (back_is_seen ? glDisable : glEnable)(GL_CULL_FACE);
+  draw_part(part);
+}
+
+void Surfaces::draw_all() const {
+  for (const Item& item : items_) {
+    bind(item);
+    for (const Part& part : item.parts) draw_one(item, part);
+  }
+}
+
+void Surfaces::draw_opaque() const {
+  program_.use();
+  for (const Item& item : items_) {
+    bind(item);
+    for (const Part& part : item.parts)
+      if (!materials_.blends(part.run.material)) draw_one(item, part);
+  }
+}
+
+// What blends shows its far side through its near side: the farthest part first, of each the back first, and depth
+// keeps the front in order.
+void Surfaces::draw_blended(vec3 eye) const {
+  struct Far {
+    float away;  // [m]
+    const Item* item;
+    const Part* part;
+  };
+  std::vector<Far> parts;
+  for (const Item& item : items_)
+    for (const Part& part : item.parts) {
+      if (!materials_.blends(part.run.material)) continue;
+      const vec3 center = item.rides ? item.skin.box().center() : vec3(item.to_world * vec4(part.center, 1));
+      parts.push_back({length(center - eye), &item, &part});
+    }
+  std::stable_sort(parts.begin(), parts.end(), [](const Far& a, const Far& b) { return a.away > b.away; });
+
+  program_.use();
+  glEnable(GL_CULL_FACE);
+  for (const Far& far : parts) {
+    bind(*far.item);
+    if (materials_.double_sided(far.part->run.material)) {
+      glCullFace(GL_FRONT);
+      draw_part(*far.part);
+      glCullFace(GL_BACK);
+    }
+    draw_part(*far.part);
+  }
+}
+
+}  // namespace pliant
