@@ -1,5 +1,6 @@
 #include "systems/tool/linear_solver.h"
 
+#include "systems/tool/block_cholesky.h"
 #include "systems/tool/dense_solver.h"
 #include "systems/tool/eigen_cholesky.h"
 
@@ -10,6 +11,8 @@ std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t) {
     case SolverKind::kDense:
       return std::make_unique<DenseSolver>();
     case SolverKind::kAuto:
+    case SolverKind::kBlockCholesky:
+      return std::make_unique<BlockCholesky>();
     case SolverKind::kEigenCholesky:
       return std::make_unique<EigenCholesky>();
     default:

@@ -29,8 +29,8 @@ class LinearSolver {
   [[nodiscard]] virtual bool factorise(const BlockMatrix& a) = 0;
   // x = A^-1 b. x comes in as a guess (iterative methods start there; others ignore it).
   virtual void solve(const Vector& b, Vector& x) const = 0;
-  // columns = A^-1 columns, in place, all right-hand sides at once. The upper rows of a larger matrix will do: a coupled
-  // solve hands over the flesh's part of its columns without copying them.
+  // columns = A^-1 columns, in place, all right-hand sides at once. The upper rows of a larger matrix will do: a
+  // coupled solve hands over the flesh's part of its columns without copying them.
   virtual void solve_many(Eigen::Ref<Rows> columns) const = 0;
 };
 

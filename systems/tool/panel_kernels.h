@@ -1,0 +1,39 @@
+// Dense arithmetic on the panels of a sparse Cholesky factor (block_cholesky.h). A panel has `strips` strips of 8 rows,
+// each stored column after column: element (r, c) stands at panel[(r / 8) * 8 * columns + c * 8 + r % 8]. Its first
+// `columns` rows are the lower triangle of a diagonal block. What is solved for stands in packs of 8 right-hand sides.
+// Every number is summed in the same order whatever the width of the machine's registers: same bits everywhere.
+#pragma once
+
+namespace pliant {
+
+constexpr int kStrip = 8;
+
+struct Panel {
+  const double* data = nullptr;  // 64-byte aligned, strips * columns * 8
+  int columns = 0, strips = 0;
+};
+
+// Doubles in a triangle of strips: strip i holds columns 0 .. 8 i + 7.
+constexpr long triangle_size(int strips) {
+  return 32L * strips * (strips + 1);
+}
+
+// data (the panel's) = its Cholesky factor, rows under the diagonal block included. reciprocal: 1 / diagonal, `columns`
+// of them. False: a pivot is not positive and finite.
+[[nodiscard]] bool factorise_panel(double* data, Panel panel, double* reciprocal);
+
+// triangle -= L L^T over the strips from columns / 8 on, L the panel. Rows and columns that belong to the diagonal
+// block get junk, and so does what stands above the diagonal.
+void update_triangle(Panel panel, double* triangle);
+
+// One right-hand side. forward: x (rows of the panel) holds the diagonal block's part of the right-hand side, then its
+// solution, then what is to be added to the rows below. backward: x holds solutions below, right-hand side above;
+// sums: scratch of 8 * columns.
+void forward(Panel panel, const double* reciprocal, double* x);
+void backward(Panel panel, const double* reciprocal, double* x, double* sums);
+
+// The same for packs of 8 right-hand sides: x[8 * row + which].
+void forward_many(Panel panel, const double* reciprocal, double* x);
+void backward_many(Panel panel, const double* reciprocal, double* x);
+
+}  // namespace pliant
