@@ -8,7 +8,8 @@
 // Two linearisations. The tangents are the force's derivatives. The secants g = |s(f)| / |f| freeze the factor by which
 // saturation weakens spring and damper: the quadratic they belong to touches the coupling's energy from above (tanh is
 // concave, and rotations close faster than their vectors), so that a step which is implicit in the secants never gains
-// energy, whatever T. A step implicit in the tangents does when it crosses from the saturated side into the slope.
+// energy, whatever T. A step implicit in the tangents may, crossing from the saturated side into the slope: from 0.1 m
+// away, with T = 0.1 s, seven times the energy there was (measured).
 #pragma once
 
 #include "components/soft_body.h"

@@ -61,8 +61,9 @@ void HandleTie::spring(Flesh& flesh, const RigidHandle& handle, double T, dvec3 
     const auto node = static_cast<std::uint32_t>(first_ + i);
     const double mass = flesh.mass()[node], size = std::cbrt(mass / material_.density);
     const double k = stiffness * material_.young * size, b = 2.0 * std::sqrt(k * mass), s = T * b + T * T * k;
-    const Grip G = grip_matrix(handle.arm(i));
-    const Eigen::Vector3d pull = T * k * to_eigen(flesh.position()[node] - (centre + handle.arm(i)));
+    const dvec3 arm = flesh.position()[node] - centre;
+    const Grip G = grip_matrix(arm);
+    const Eigen::Vector3d pull = T * k * to_eigen(arm - handle.arm(i));
     const Eigen::Vector3d carried = mass * to_eigen(flesh.velocity()[node] + T * gravity);
 
     BlockMatrix& inner = flesh.inner();

@@ -3,6 +3,7 @@
 //           A_th = A_ij G_j, A_hh = G_i^T A_ij G_j, b_h = G_i^T b_i.
 //   spring  the handle's nodes are flesh, tied to where they ride by springs k, b, s = T b + T^2 k, with stretch e_i:
 //           A_ii += s I, A_th = -s G_i, A_hh += s G_i^T G_i, b_i -= T k e_i, b_h += T k G_i^T e_i.
+//           G_i at the node itself, not at where it rides: pulls and damping then have no torque of their own.
 // Both ways the nodes' mass is the handle's: with springs it is taken off the nodes, so that both are the same tool and
 // the first tends to the second as the springs stiffen. Slaved nodes are exact, fewer unknowns and better conditioned;
 // springs are P2's own.

@@ -49,6 +49,7 @@ void CoupledSolver::solve_seven(const Matrix6& hh, const Vector& b, Vector& x) {
 
 void CoupledSolver::solve(Rows& columns) const {
   ASSERT(columns.rows() == size());
+  if (!solvable_) columns.setZero();
   solve_held(columns.topRows(flesh_rows_));
   if (handle_rows_ == 0 || !solvable_) return;
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> w = columns.bottomRows<6>();

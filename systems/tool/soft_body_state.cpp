@@ -80,8 +80,10 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const S
 }
 
 void SoftBodyState::set_device(const Pose& pose, const Vector6& velocity) {
-  const RigidMotion device{{pose.position, glm::normalize(pose.rotation)}, velocity};
-  device_ = finite(device) ? std::optional(device) : std::nullopt;
+  RigidMotion device{pose, velocity};
+  if (!finite(device)) return release_device();
+  device.pose.rotation = glm::normalize(pose.rotation);
+  device_ = device;
 }
 
 void SoftBodyState::free_step(double T, dvec3 gravity) {
