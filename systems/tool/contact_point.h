@@ -21,6 +21,7 @@ struct ContactPoint {
   bool sliding = false;
 };
 
+// `out` comes in with the last contacts and their impulses: side, axes, impulse and sliding carry over by key.
 // Pairs whose gap may close within a step T [s], by the bodies' skin_velocity, at most `margin` [m] apart at the end:
 // broad phase over bodies and over each skin's boxes, then vertex-triangle and edge-edge pairs. Normals do not flip.
 class Proximity {

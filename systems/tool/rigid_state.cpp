@@ -169,11 +169,11 @@ void FixedBody::advance(double T) {
   refresh_skin();
 }
 
-// A spring under each contact: gap = g0 + T u + compliance lambda / T, all of it along every axis.
+// A spring under each contact: gap = g0 + T u + compliance lambda / T. Along the normal only: sideways it would need a
+// memory of where it was stretched from, and without one it creeps.
 void FixedBody::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
   if (compliance <= 0.0) return;
-  for (const Side& side : sides)
-    for (int k = 0; k < 3; ++k) w(3 * side.contact + k, 3 * side.contact + k) += compliance / (T * T);
+  for (const Side& side : sides) w(3 * side.contact, 3 * side.contact) += compliance / (T * T);
 }
 
 void FixedBody::refresh_skin() {

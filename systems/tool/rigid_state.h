@@ -65,7 +65,7 @@ class FixedBody : public Body {
 
   // From now on it moves so: of its origin [m/s], and turning about it [rad/s], world.
   void set_velocity(dvec3 linear, dvec3 angular);
-  // [m/N] > 0: contacts give way by so much per newton (pads of a rigid gripper); 0: rigid.
+  // [m/N] > 0: contacts give way along their normals by so much per newton (pads of a gripper); 0: rigid.
   double compliance = 0.0;
 
   int size() const override { return 0; }

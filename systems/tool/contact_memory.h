@@ -1,0 +1,33 @@
+// What the last step knew of a pair of features: side, tangents, impulse. Keys do not name the triangle that a vertex
+// stands on, so a sliding contact keeps its memory from triangle to triangle.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "systems/tool/contact_point.h"
+
+namespace pliant {
+
+// A vertex of body a on body b. It may have several contacts there (in a corner): `ordinal` 0, 1, 2.
+std::uint64_t vertex_key(std::uint32_t body_a, std::uint32_t body_b, std::uint32_t vertex, std::uint32_t ordinal);
+std::uint64_t edge_key(std::uint32_t body_a, std::uint32_t body_b, std::uint32_t edge_a, std::uint32_t edge_b);
+
+class ContactMemory {
+ public:
+  void take(const std::vector<ContactPoint>& contacts);
+  // Null where the last step had no such contact.
+  const ContactPoint* find(std::uint64_t key) const;
+  double deepest() const { return deepest_; }  // [m] >= 0
+
+ private:
+  std::vector<ContactPoint> contacts_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
+  double deepest_ = 0.0;
+};
+
+// Axes, impulse and sliding of a contact: those of the last step turned onto the new normal, or fresh ones.
+void carry_over(const ContactPoint* last, ContactPoint& contact);
+
+}  // namespace pliant

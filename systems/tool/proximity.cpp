@@ -1,0 +1,257 @@
+// From skins to contacts: pairs of features that meet (meeting.h), which of them to believe, and how few are enough.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "runtime/assert.h"
+#include "systems/tool/contact_memory.h"
+#include "systems/tool/contact_point.h"
+#include "systems/tool/contact_thinning.h"
+#include "systems/tool/skin.h"
+#include "systems/tool/skin_pairs.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kFacing = 0.3;     // [1] cosine: outward normals of what touches are opposed, or nearly
+constexpr double kSameSide = 0.5;   // [1] cosine: a normal that is still the one of the last step
+constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a further contact (in a corner)
+constexpr std::uint32_t kMostOfVertex = 3;
+constexpr double kDeepestInMargins = 10.0;  // [1] no penetration is followed farther than this
+
+// A vertex of one skin that meets a triangle of another (or of its own).
+struct VertexMeeting {
+  std::uint32_t vertex, triangle;
+  Meeting meeting;
+};
+
+struct Side {
+  std::uint32_t index;  // of the body
+  const Body& body;
+  const Skin& skin;
+};
+
+bool boxes_meet(const Box& a, const Box& b, const RelativeSweep& sweep, float reach) {
+  Box wide = b;
+  wide.min -= vec3(reach);
+  wide.max += vec3(reach);
+  return sweep.meet(a, wide);
+}
+
+}  // namespace
+
+struct Proximity::Parts {
+  std::vector<Skin> skins;
+  std::vector<double> mean_edge;  // [m] per body
+  ContactMemory memory;
+  Reach reach;
+  double margin = 0.0;
+  std::vector<VertexMeeting> of_a, of_b;  // vertices of the pair's first body, of its second
+  std::vector<Candidate> candidates;
+
+  // --- Features of two triangles
+  void try_vertex(const Side& a, std::uint32_t vertex, const Side& b, std::uint32_t triangle,
+                  const RelativeSweep& sweep, std::vector<VertexMeeting>& out) const {
+    if (dot(a.skin.vertex_normal(vertex), b.skin.normal(triangle)) > kFacing) return;
+    if (a.index == b.index) {
+      const uvec3 c = b.skin.mesh().triangles[triangle];
+      if (a.skin.near(vertex, c.x) || a.skin.near(vertex, c.y) || a.skin.near(vertex, c.z)) return;
+    }
+    if (!boxes_meet(a.skin.vertex_box(vertex), b.skin.box(triangle), sweep, box_reach())) return;
+    if (const auto m = meet_triangle(a.skin.vertex(vertex), b.skin.triangle(triangle), reach))
+      out.push_back({vertex, triangle, *m});
+  }
+
+  void try_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const RelativeSweep& sweep) {
+    const SkinEdge& ea = a.skin.edges()[edge_a];
+    const SkinEdge& eb = b.skin.edges()[edge_b];
+    const dvec3 out_a = a.skin.normal(ea.triangle[0]) + a.skin.normal(ea.triangle[1]);
+    const dvec3 out_b = b.skin.normal(eb.triangle[0]) + b.skin.normal(eb.triangle[1]);
+    if (dot(out_a, out_b) > 2.0 * kFacing) return;
+    if (a.index == b.index && (a.skin.near(ea.from, eb.from) || a.skin.near(ea.from, eb.to) ||
+                               a.skin.near(ea.to, eb.from) || a.skin.near(ea.to, eb.to)))
+      return;
+    Box box_a = a.skin.vertex_box(ea.from), box_b = b.skin.vertex_box(eb.from);
+    box_a.add(a.skin.vertex_box(ea.to));
+    box_b.add(b.skin.vertex_box(eb.to));
+    if (!boxes_meet(box_a, box_b, sweep, 2.0f * box_reach())) return;
+    const auto m = meet_edge(a.skin.edge(edge_a), a.skin.edge_shape(edge_a), b.skin.edge(edge_b),
+                             b.skin.edge_shape(edge_b), reach);
+    if (m) take_edges(a, edge_a, b, edge_b, *m);
+  }
+
+  void try_triangles(const Side& a, std::uint32_t s, const Side& b, std::uint32_t t, const RelativeSweep& sweep) {
+    const std::uint8_t own_s = a.skin.owned(s), own_t = b.skin.owned(t);
+    const RelativeSweep back = sweep.reversed();
+    for (int i = 0; i < 3; ++i) {
+      if (own_s & 1u << i) try_vertex(a, a.skin.mesh().triangles[s][i], b, t, sweep, of_a);
+      if (own_t & 1u << i) try_vertex(b, b.skin.mesh().triangles[t][i], a, s, back, a.index == b.index ? of_a : of_b);
+    }
+    for (int i = 0; i < 3; ++i) {
+      if (!(own_s & 8u << i)) continue;
+      for (int k = 0; k < 3; ++k)
+        if (own_t & 8u << k) try_edges(a, a.skin.edge_of(s, i), b, b.skin.edge_of(t, k), sweep);
+    }
+  }
+
+  float box_reach() const { return static_cast<float>(0.5 * std::max(reach.front, reach.behind)); }
+
+  // --- Which meetings to believe
+  void take_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
+    const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
+    const ContactPoint* last = memory.find(key);
+    if (!last && m.gap < -margin) return;  // edges deep below each other that never met: others hold those bodies
+    ContactPoint c;
+    c.a = a.skin.point_on_edge(edge_a, m.along_a);
+    c.b = b.skin.point_on_edge(edge_b, m.along_b);
+    keep(a, b, m, key, last, c);
+  }
+
+  // Meetings of every vertex of body a with body b. In front, a vertex touches what it meets; behind, it touches what
+  // it came from: the side of the last step, or, where there is none, the nearest if it really is inside.
+  void take_vertices(const Side& a, const Side& b, std::vector<VertexMeeting>& found) {
+    std::sort(found.begin(), found.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
+      return x.vertex != y.vertex ? x.vertex < y.vertex : x.triangle < y.triangle;
+    });
+    for (auto first = found.begin(); first != found.end();) {
+      const auto last = std::find_if(first, found.end(), [&](const auto& m) { return m.vertex != first->vertex; });
+      take_vertex(a, b, {first, last});
+      first = last;
+    }
+  }
+
+  void take_vertex(const Side& a, const Side& b, std::span<VertexMeeting> found) {
+    const std::uint32_t vertex = found.front().vertex;
+    std::array<const ContactPoint*, kMostOfVertex> past;
+    for (std::uint32_t k = 0; k < kMostOfVertex; ++k) past[k] = memory.find(vertex_key(a.index, b.index, vertex, k));
+    const std::optional<VertexMeeting> behind = side_to_return_to(a, b, found, past);
+
+    std::array<const VertexMeeting*, kMostOfVertex> kept{};
+    std::uint32_t count = 0;
+    if (behind) kept[count++] = &*behind;
+    std::sort(found.begin(), found.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
+      return x.meeting.end_gap != y.meeting.end_gap ? x.meeting.end_gap < y.meeting.end_gap : x.triangle < y.triangle;
+    });
+    for (const VertexMeeting& m : found) {
+      if (m.meeting.gap < 0.0 || count == kMostOfVertex) continue;
+      if (behind && dot(behind->meeting.normal, m.meeting.normal) < 0.0) continue;  // a thin body's far side
+      const bool alike = std::any_of(kept.begin(), kept.begin() + count, [&](const VertexMeeting* k) {
+        return dot(k->meeting.normal, m.meeting.normal) > kOtherFace;
+      });
+      if (!alike) kept[count++] = &m;
+    }
+
+    // Each takes on the past contact whose normal is the most alike; the others take the ordinals that are left.
+    std::array<bool, kMostOfVertex> used{};
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::uint32_t best = kMostOfVertex;
+      double alike = kSameSide;
+      for (std::uint32_t k = 0; k < kMostOfVertex; ++k) {
+        if (!past[k] || used[k] || dot(past[k]->normal, kept[i]->meeting.normal) <= alike) continue;
+        alike = dot(past[k]->normal, kept[i]->meeting.normal);
+        best = k;
+      }
+      const ContactPoint* last = best < kMostOfVertex ? past[best] : nullptr;
+      if (!last) best = static_cast<std::uint32_t>(std::find(used.begin(), used.end(), false) - used.begin());
+      used[best] = true;
+      ContactPoint c;
+      c.a = a.skin.point_at_vertex(vertex);
+      c.b = b.skin.point_on_triangle(kept[i]->triangle, kept[i]->meeting.barycentric);
+      keep(a, b, kept[i]->meeting, vertex_key(a.index, b.index, vertex, best), last, c);
+    }
+  }
+
+  // Of the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
+  std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b, std::span<const VertexMeeting> found,
+                                                 const std::array<const ContactPoint*, kMostOfVertex>& past) const {
+    const VertexMeeting* behind = nullptr;
+    bool known = false;
+    double in_front = 1e300;
+    for (const VertexMeeting& m : found) {
+      if (m.meeting.gap >= 0.0) {
+        in_front = std::min(in_front, m.meeting.gap);
+        continue;
+      }
+      const bool came = std::any_of(past.begin(), past.end(), [&](const ContactPoint* p) {
+        return p && dot(p->normal, m.meeting.normal) > kSameSide;
+      });
+      if (!behind || (came && !known) || (came == known && m.meeting.gap > behind->meeting.gap)) behind = &m;
+      known |= came;
+    }
+    if (!behind) return {};
+    if (!known && (in_front < -behind->meeting.gap || !inside(a, b, *behind))) return {};
+    return *behind;
+  }
+
+  bool inside(const Side& a, const Side& b, const VertexMeeting& m) const {
+    const double depth = -m.meeting.gap;
+    if (a.index == b.index) return depth <= margin && in_front_at_rest(b.skin.mesh(), m);
+    if (!b.skin.mesh().closed) return depth <= margin;  // a sheet has one side; far behind it is the open
+    return b.skin.contains(a.skin.vertex(m.vertex).x, reach.behind);
+  }
+  // Through a thin part of a body its own far side looks like something that was entered.
+  static bool in_front_at_rest(const Mesh& mesh, const VertexMeeting& m) {
+    const uvec3 c = mesh.triangles[m.triangle];
+    const vec3 n = cross(mesh.position(c.y) - mesh.position(c.x), mesh.position(c.z) - mesh.position(c.x));
+    return dot(n, mesh.position(m.vertex) - mesh.position(c.x)) >= 0.0f;
+  }
+
+  void keep(const Side& a, const Side& b, const Meeting& m, std::uint64_t key, const ContactPoint* last,
+            ContactPoint c) {
+    c.body_a = a.index;
+    c.body_b = b.index;
+    c.normal = m.normal;
+    c.gap = m.gap;
+    c.key = key;
+    c.mu_static = std::sqrt(a.body.friction_static * b.body.friction_static);
+    c.mu_sliding = std::sqrt(a.body.friction_sliding * b.body.friction_sliding);
+    carry_over(last, c);
+    candidates.push_back({c, m.end_gap, last != nullptr});
+  }
+
+  // --- Bodies
+  void find_between(const Side& a, const Side& b) {
+    of_a.clear();
+    of_b.clear();
+    const RelativeSweep sweep(a.skin, b.skin);
+    for_each_pair(a.skin, b.skin, [&](std::uint32_t s, std::uint32_t t) { try_triangles(a, s, b, t, sweep); });
+    take_vertices(a, b, of_a);
+    take_vertices(b, a, of_b);
+  }
+  void find_within(const Side& a) {
+    of_a.clear();
+    for_each_pair_within(a.skin, [&](std::uint32_t s, std::uint32_t t) { try_triangles(a, s, a, t, {}); });
+    take_vertices(a, a, of_a);
+  }
+};
+
+Proximity::Proximity(const std::vector<std::unique_ptr<Body>>& bodies) : parts_(std::make_unique<Parts>()) {
+  for (const auto& body : bodies) {
+    parts_->skins.emplace_back(*body);
+    parts_->mean_edge.push_back(static_cast<double>(body->skin->mean_edge));
+  }
+}
+Proximity::~Proximity() = default;
+
+void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T, double margin,
+                     std::vector<ContactPoint>& out) {
+  Parts& p = *parts_;
+  ASSERT(bodies.size() == p.skins.size() && margin > 0.0);
+  p.memory.take(out);
+  p.margin = margin;
+  p.reach = {margin, std::clamp(1.5 * p.memory.deepest(), margin, kDeepestInMargins * margin)};
+  p.candidates.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) p.skins[i].refit(*bodies[i], T, static_cast<double>(p.box_reach()));
+
+  const auto side = [&](std::size_t i) { return Side{static_cast<std::uint32_t>(i), *bodies[i], p.skins[i]}; };
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i]->self_collides) p.find_within(side(i));
+    for (std::size_t k = i + 1; k < bodies.size(); ++k)
+      if (bodies[i]->size() > 0 || bodies[k]->size() > 0) p.find_between(side(i), side(k));
+  }
+  out.clear();
+  thin_contacts(p.candidates, p.mean_edge, {}, out);
+}
+
+}  // namespace pliant

@@ -1,0 +1,215 @@
+#include "systems/tool/skin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "runtime/assert.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kNearEdges = 2.5;  // [mean edges] along the surface: such neighbours never collide
+constexpr float kRounding = 4e-7f;  // [1] of coordinates: boxes are single precision
+
+Box grown(const Box& box, float by) {
+  Box b = box;
+  const float far = std::max({std::abs(b.min.x), std::abs(b.min.y), std::abs(b.min.z), std::abs(b.max.x),
+                              std::abs(b.max.y), std::abs(b.max.z)});
+  b.min -= vec3(by + kRounding * far);
+  b.max += vec3(by + kRounding * far);
+  return b;
+}
+
+dvec3 unit_or_zero(dvec3 n) {
+  const double l = length(n);
+  return l > 0.0 ? n / l : dvec3(0.0);
+}
+
+}  // namespace
+
+Skin::Skin(const Body& body) : mesh_(body.skin) {
+  ASSERT(body.skin && body.skin_position.size() >= body.skin->vertex_count);
+  find_edges();
+  if (body.self_collides) find_neighbours(kNearEdges * static_cast<double>(mesh_->mean_edge));
+  position_.resize(mesh_->vertex_count, dvec3(0));
+  displacement_.resize(mesh_->vertex_count, dvec3(0));
+  vertex_normal_.resize(mesh_->vertex_count);
+  normal_.resize(mesh_->triangles.size());
+  triangle_box_.resize(mesh_->triangles.size());
+  for (const std::vector<Box>& level : mesh_->tree.levels) boxes_.emplace_back(level.size());
+}
+
+void Skin::find_edges() {
+  const std::vector<uvec3>& triangles = mesh_->triangles;
+  edge_of_.assign(triangles.size(), {});
+  owned_.assign(triangles.size(), 0);
+  owner_.assign(mesh_->vertex_count, kBorder);
+  triangles_first_.assign(mesh_->vertex_count + 1, 0);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t from = triangles[t][i], to = triangles[t][(i + 1) % 3], other = mesh_->across[t][i];
+      ++triangles_first_[from + 1];
+      if (owner_[from] == kBorder) {
+        owner_[from] = t;
+        owned_[t] |= static_cast<std::uint8_t>(1u << i);
+      }
+      std::uint32_t known = kBorder;
+      if (other < t)
+        for (int k = 0; k < 3; ++k)
+          if (mesh_->across[other][k] == t && triangles[other][k] == to && triangles[other][(k + 1) % 3] == from)
+            known = edge_of_[other][k];
+      if (known == kBorder) {
+        known = static_cast<std::uint32_t>(edges_.size());
+        owned_[t] |= static_cast<std::uint8_t>(8u << i);
+        edges_.push_back({from, to, {t, t}, {triangles[t][(i + 2) % 3], triangles[t][(i + 2) % 3]}});
+      } else {
+        edges_[known].triangle[1] = t;
+        edges_[known].opposite[1] = triangles[t][(i + 2) % 3];
+      }
+      edge_of_[t][i] = known;
+    }
+  }
+  for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) triangles_first_[v + 1] += triangles_first_[v];
+  triangles_of_.resize(3 * triangles.size());
+  std::vector<std::uint32_t> next(triangles_first_.begin(), triangles_first_.end() - 1);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    for (int i = 0; i < 3; ++i) triangles_of_[next[triangles[t][i]]++] = t;
+}
+
+// Dijkstra along edges from every vertex, at rest.
+void Skin::find_neighbours(double distance) {
+  std::vector<double> best(mesh_->vertex_count, 1e300);
+  std::vector<std::uint32_t> reached;
+  using Item = std::pair<double, std::uint32_t>;
+  near_first_.assign(1, 0);
+  for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) {
+    std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
+    const auto offer = [&](std::uint32_t w, double d) {
+      if (d > distance && w != v) return;
+      if (d >= best[w]) return;
+      if (best[w] == 1e300) reached.push_back(w);
+      best[w] = d;
+      open.push({d, w});
+    };
+    offer(v, 0.0);
+    while (!open.empty()) {
+      const auto [d, w] = open.top();
+      open.pop();
+      if (d > best[w]) continue;
+      for (std::uint32_t k = triangles_first_[w]; k < triangles_first_[w + 1]; ++k)
+        for (int i = 0; i < 3; ++i) {
+          const std::uint32_t x = mesh_->triangles[triangles_of_[k]][i];
+          // Whatever shares a triangle is a neighbour, however long its edges are.
+          const double step = static_cast<double>(length(mesh_->position(x) - mesh_->position(w)));
+          offer(x, w == v ? std::min(step, distance) : d + step);
+        }
+    }
+    std::sort(reached.begin(), reached.end());
+    for (const std::uint32_t w : reached) best[w] = 1e300;
+    near_.insert(near_.end(), reached.begin(), reached.end());
+    near_first_.push_back(static_cast<std::uint32_t>(near_.size()));
+    reached.clear();
+  }
+}
+
+bool Skin::near(std::uint32_t a, std::uint32_t b) const {
+  return std::binary_search(near_.begin() + near_first_[a], near_.begin() + near_first_[a + 1], b);
+}
+
+SurfacePoint Skin::point_at_vertex(std::uint32_t v) const {
+  SurfacePoint p{owner_[v], dvec3(0), position_[v]};
+  for (int i = 0; i < 3; ++i)
+    if (mesh_->triangles[p.triangle][i] == v) p.barycentric[i] = 1.0;
+  return p;
+}
+SurfacePoint Skin::point_on_edge(std::uint32_t e, double along) const {
+  const SkinEdge& edge = edges_[e];
+  SurfacePoint p{edge.triangle[0], dvec3(0), (1.0 - along) * position_[edge.from] + along * position_[edge.to]};
+  for (int i = 0; i < 3; ++i) {
+    if (mesh_->triangles[p.triangle][i] == edge.from) p.barycentric[i] = 1.0 - along;
+    if (mesh_->triangles[p.triangle][i] == edge.to) p.barycentric[i] = along;
+  }
+  return p;
+}
+SurfacePoint Skin::point_on_triangle(std::uint32_t t, dvec3 w) const {
+  const uvec3 c = mesh_->triangles[t];
+  return {t, w, w.x * position_[c.x] + w.y * position_[c.y] + w.z * position_[c.z]};
+}
+
+std::array<Moving, 3> Skin::triangle(std::uint32_t t) const {
+  const uvec3 c = mesh_->triangles[t];
+  return {vertex(c.x), vertex(c.y), vertex(c.z)};
+}
+
+EdgeShape Skin::edge_shape(std::uint32_t e) const {
+  const SkinEdge& edge = edges_[e];
+  const dvec3 along = unit_or_zero(position_[edge.to] - position_[edge.from]);
+  EdgeShape shape;
+  for (int i = 0; i < 2; ++i) {
+    const dvec3 side = position_[edge.opposite[i]] - position_[edge.from];
+    shape.inward[i] = unit_or_zero(side - dot(side, along) * along);
+    shape.outward += normal_[edge.triangle[i]];
+  }
+  return shape;
+}
+
+Box Skin::vertex_box(std::uint32_t v) const {
+  Box box;
+  box.add(vec3(position_[v]));
+  box.add(vec3(position_[v] + displacement_[v] - drift_));
+  return box;
+}
+
+void Skin::refit(const Body& body, double T, double reach) {
+  const std::uint32_t count = mesh_->vertex_count;
+  const bool still = body.size() == 0 && std::all_of(body.skin_velocity.begin(), body.skin_velocity.end(),
+                                                     [](const dvec3& v) { return v == dvec3(0); });
+  const bool same = std::equal(position_.begin(), position_.end(), body.skin_position.begin());
+  if (still && still_ && same && reach == reach_) return;
+  still_ = still;
+  drift_ = dvec3(0.0);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    position_[v] = body.skin_position[v];
+    displacement_[v] = T * body.skin_velocity[v];
+    drift_ += displacement_[v];
+  }
+  drift_ /= static_cast<double>(std::max(count, 1u));
+  find_normals();
+  fit_boxes(reach);
+}
+
+void Skin::find_normals() {
+  std::fill(vertex_normal_.begin(), vertex_normal_.end(), dvec3(0.0));
+  for (std::uint32_t t = 0; t < normal_.size(); ++t) {
+    const uvec3 c = mesh_->triangles[t];
+    const dvec3 n = cross(position_[c.y] - position_[c.x], position_[c.z] - position_[c.x]);
+    for (int i = 0; i < 3; ++i) vertex_normal_[c[i]] += n;
+    normal_[t] = unit_or_zero(n);
+  }
+  for (dvec3& n : vertex_normal_) n = unit_or_zero(n);
+}
+
+void Skin::fit_boxes(double reach) {
+  reach_ = reach;
+  if (boxes_.empty()) return;
+  for (std::uint32_t t = 0; t < triangle_box_.size(); ++t) {
+    Box box;
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t v = mesh_->triangles[t][i];
+      box.add(vec3(position_[v]));
+      box.add(vec3(position_[v] + displacement_[v] - drift_));
+    }
+    triangle_box_[t] = grown(box, static_cast<float>(reach));
+  }
+  const auto gather = [](const std::vector<Box>& from, std::vector<Box>& to, std::uint32_t width) {
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      to[i] = Box();
+      for (std::size_t k = i * width; k < std::min(from.size(), (i + 1) * width); ++k) to[i].add(from[k]);
+    }
+  };
+  gather(triangle_box_, boxes_[0], kLeafSize);
+  for (std::size_t level = 1; level < boxes_.size(); ++level) gather(boxes_[level - 1], boxes_[level], kTreeWidth);
+}
+
+}  // namespace pliant

@@ -1,0 +1,78 @@
+// A body's surface as the search for contacts sees it: its edges, who its neighbours are, and for every step the boxes
+// of what its triangles sweep. The tree is the mesh's own (components/mesh.h): only boxes are fitted anew.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "systems/tool/body.h"
+#include "systems/tool/meeting.h"
+
+namespace pliant {
+
+struct SkinEdge {
+  std::uint32_t from = 0, to = 0;           // vertices
+  std::array<std::uint32_t, 2> triangle{};  // beside it; the same twice at a border
+  std::array<std::uint32_t, 2> opposite{};  // their third vertices
+};
+
+class Skin {
+ public:
+  explicit Skin(const Body& body);
+
+  // Takes over the body's skin for a step of T [s]; boxes grow by `reach` [m]. Fixed skins that have not moved keep
+  // what they have.
+  void refit(const Body& body, double T, double reach);
+
+  // --- Topology
+  const Mesh& mesh() const { return *mesh_; }
+  const std::vector<SkinEdge>& edges() const { return edges_; }
+  // Every vertex and every edge is looked at with one triangle only: bits 0-2 of its corners, 3-5 of its edges (edge i
+  // goes from corner i to corner i+1).
+  std::uint8_t owned(std::uint32_t triangle) const { return owned_[triangle]; }
+  std::uint32_t edge_of(std::uint32_t triangle, int i) const { return edge_of_[triangle][i]; }
+  SurfacePoint point_at_vertex(std::uint32_t vertex) const;
+  SurfacePoint point_on_edge(std::uint32_t edge, double along) const;
+  SurfacePoint point_on_triangle(std::uint32_t triangle, dvec3 barycentric) const;
+  // Within a few edges of each other along the surface; only of skins that collide with themselves.
+  bool near(std::uint32_t vertex_a, std::uint32_t vertex_b) const;
+
+  // --- This step
+  Moving vertex(std::uint32_t v) const { return {position_[v], displacement_[v]}; }
+  std::array<Moving, 3> triangle(std::uint32_t t) const;
+  std::array<Moving, 2> edge(std::uint32_t e) const { return {vertex(edges_[e].from), vertex(edges_[e].to)}; }
+  EdgeShape edge_shape(std::uint32_t e) const;
+  dvec3 normal(std::uint32_t t) const { return normal_[t]; }                // [1] unit (zero where it has no area)
+  dvec3 vertex_normal(std::uint32_t v) const { return vertex_normal_[v]; }  // [1] unit
+  dvec3 drift() const { return drift_; }  // [m] mean displacement; boxes hold what moves besides
+  // Of triangle runs as in Mesh::tree, level 0 the leaves.
+  const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
+  const Box& box(std::uint32_t t) const { return triangle_box_[t]; }
+  Box vertex_box(std::uint32_t v) const;  // without reach
+  // Is a point inside? By the nearest feature within `reach` [m] of it and its pseudonormal (Baerentzen & Aanaes 2005).
+  bool contains(dvec3 p, double reach) const;
+
+ private:
+  void find_edges();
+  void find_neighbours(double distance);
+  void fit_boxes(double reach);
+  void find_normals();
+
+  const Mesh* mesh_;
+  std::vector<SkinEdge> edges_;
+  std::vector<std::array<std::uint32_t, 3>> edge_of_;
+  std::vector<std::uint8_t> owned_;
+  std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
+  std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
+  std::vector<std::uint32_t> near_first_, near_;               // ascending runs per vertex
+  std::vector<dvec3> position_, displacement_;
+  std::vector<dvec3> normal_, vertex_normal_;
+  dvec3 drift_{0};
+  double reach_ = -1.0;
+  bool still_ = false;  // nothing moved in the last step
+  std::vector<Box> triangle_box_;
+  std::vector<std::vector<Box>> boxes_;
+};
+
+}  // namespace pliant

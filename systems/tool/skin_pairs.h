@@ -1,0 +1,95 @@
+// Pairs of triangles whose swept boxes meet: both trees descended together (Gottschalk, Lin & Manocha 1996), the larger
+// level first, in an order that depends on nothing but the boxes.
+#pragma once
+
+#include "systems/tool/skin.h"
+
+namespace pliant {
+
+// Box a, swept by what the one body drifts relative to the other, against box b.
+struct RelativeSweep {
+  vec3 low{0}, high{0};  // [m]
+  RelativeSweep() = default;
+  RelativeSweep(const Skin& a, const Skin& b) {
+    const vec3 d(a.drift() - b.drift());
+    low = glm::min(d, vec3(0.0f));
+    high = glm::max(d, vec3(0.0f));
+  }
+  RelativeSweep reversed() const {
+    RelativeSweep r;
+    r.low = -high;
+    r.high = -low;
+    return r;
+  }
+  bool meet(const Box& a, const Box& b) const {
+    return a.min.x + low.x <= b.max.x && a.max.x + high.x >= b.min.x &&  //
+           a.min.y + low.y <= b.max.y && a.max.y + high.y >= b.min.y &&  //
+           a.min.z + low.z <= b.max.z && a.max.z + high.z >= b.min.z;
+  }
+};
+
+namespace detail {
+
+template <class Use>
+struct PairWalk {
+  const Skin& a;
+  const Skin& b;
+  const RelativeSweep sweep;
+  Use& use;
+
+  static std::uint32_t width(std::size_t level) { return level == 0 ? kLeafSize : kTreeWidth; }
+  static std::uint32_t size(const Skin& skin, std::size_t level) {  // of what stands below `level`
+    return static_cast<std::uint32_t>(level == 0 ? skin.mesh().triangles.size() : skin.boxes()[level - 1].size());
+  }
+  static std::uint32_t end(const Skin& skin, std::size_t level, std::uint32_t i) {
+    return std::min((i + 1) * width(level), size(skin, level));
+  }
+  const Box& box(const Skin& skin, std::size_t level, std::uint32_t i) const { return skin.boxes()[level][i]; }
+
+  void across(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
+    if (!sweep.meet(box(a, la, ia), box(b, lb, ib))) return;
+    if (la == 0 && lb == 0) return leaves(ia, ib);
+    if (la >= lb) {
+      for (std::uint32_t k = ia * kTreeWidth; k < end(a, la, ia); ++k) across(la - 1, k, lb, ib);
+    } else {
+      for (std::uint32_t k = ib * kTreeWidth; k < end(b, lb, ib); ++k) across(la, ia, lb - 1, k);
+    }
+  }
+  void leaves(std::uint32_t ia, std::uint32_t ib) const {
+    for (std::uint32_t s = ia * kLeafSize; s < end(a, 0, ia); ++s)
+      for (std::uint32_t t = ib * kLeafSize; t < end(b, 0, ib); ++t)
+        if (sweep.meet(a.box(s), b.box(t))) use(s, t);
+  }
+  // Of one skin with itself: every unordered pair of different triangles once.
+  void within(std::size_t level, std::uint32_t i) const {
+    if (level == 0) {
+      for (std::uint32_t s = i * kLeafSize; s < end(a, 0, i); ++s)
+        for (std::uint32_t t = s + 1; t < end(a, 0, i); ++t)
+          if (sweep.meet(a.box(s), a.box(t))) use(s, t);
+      return;
+    }
+    for (std::uint32_t k = i * kTreeWidth; k < end(a, level, i); ++k) {
+      within(level - 1, k);
+      for (std::uint32_t m = k + 1; m < end(a, level, i); ++m) across(level - 1, k, level - 1, m);
+    }
+  }
+};
+
+}  // namespace detail
+
+// use(triangle of a, triangle of b)
+template <class Use>
+void for_each_pair(const Skin& a, const Skin& b, Use use) {
+  if (a.boxes().empty() || b.boxes().empty()) return;
+  const detail::PairWalk<Use> walk{a, b, RelativeSweep(a, b), use};
+  walk.across(a.boxes().size() - 1, 0, b.boxes().size() - 1, 0);
+}
+// use(triangle, other triangle), each unordered pair once
+template <class Use>
+void for_each_pair_within(const Skin& skin, Use use) {
+  if (skin.boxes().empty()) return;
+  const detail::PairWalk<Use> walk{skin, skin, RelativeSweep(), use};
+  walk.within(skin.boxes().size() - 1, 0);
+}
+
+}  // namespace pliant

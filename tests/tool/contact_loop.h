@@ -1,0 +1,55 @@
+// The soft step's order of things for tests of contact alone: free motion, contacts, impulses, motion.
+#pragma once
+
+#include "systems/tool/delassus.h"
+#include "systems/tool/rigid_state.h"
+
+namespace pliant::test {
+
+struct ContactLoop {
+  std::vector<std::unique_ptr<Body>> bodies;
+  std::unique_ptr<Proximity> proximity;
+  std::vector<ContactPoint> contacts;
+  Delassus delassus;
+  ContactProblem problem;
+  SweepReport report;
+  SweepLimits limits{.sweeps = 200, .tolerance = 1e-8};
+  dvec3 gravity{0, -9.81, 0};  // [m/s2]
+  double margin = 1e-3;        // [m]
+  double beta = 0.15;          // [1]
+
+  template <class Kind, class... Args>
+  Kind& add(Args&&... args) {
+    bodies.push_back(std::make_unique<Kind>(std::forward<Args>(args)...));
+    return static_cast<Kind&>(*bodies.back());
+  }
+  void set_friction(double mu_static, double mu_sliding) {
+    for (auto& body : bodies) body->friction_static = mu_static, body->friction_sliding = mu_sliding;
+  }
+  void step(double T) {
+    if (!proximity) proximity = std::make_unique<Proximity>(bodies);
+    for (auto& body : bodies) body->free_step(T, gravity);
+    proximity->find(bodies, T, margin, contacts);
+    build_problem(bodies, contacts, T, beta, delassus, problem);
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, problem, contacts);
+    for (auto& body : bodies) body->advance(T);
+  }
+};
+
+inline RigidMass block_mass(dvec3 size, double mass) {
+  const dvec3 s = size * size;
+  RigidMass m{.mass = mass};
+  m.inertia = dmat3(0.0);
+  m.inertia[0][0] = mass / 12.0 * (s.y + s.z);
+  m.inertia[1][1] = mass / 12.0 * (s.z + s.x);
+  m.inertia[2][2] = mass / 12.0 * (s.x + s.y);
+  return m;
+}
+inline RigidMass sphere_mass(double radius, double mass) {
+  RigidMass m{.mass = mass};
+  m.inertia = dmat3(0.4 * mass * radius * radius);
+  return m;
+}
+
+}  // namespace pliant::test
