@@ -30,7 +30,7 @@ void CondensedContacts::prepare_tick(double seconds) {
   reduced = flesh_mass + tick * flesh_damping + tick2 * flesh_stiffness;
   reduced_handle.topRows(rows) = from_handle.topRows(rows);
   auto w = delassus.topLeftCorner(rows, rows);
-  w = flexibility.topLeftCorner(rows, rows) / tick2;
+  w = flexibility.topLeftCorner(rows, rows) / (tick * (tick + flexibility_lag));
   if (modes == 0) return;
   const Rows6 followed = inverse.head(modes).asDiagonal() * border.topRows(modes);
   reduced -= border.topRows(modes).transpose() * followed;

@@ -50,12 +50,13 @@ struct CondensedContacts {
   Rows6 modal_mass;   // modes x 6: between mode and handle; zero for modes of objects
   Rows6 modal_damping, modal_stiffness;
 
-  Rows6 from_handle;            // 3 count x 6: contact velocity per w, modes held
-  Rows from_modes;              // 3 count x modes: contact velocity per q'
-  Eigen::MatrixXd flexibility;  // [m/N] 3 count x 3 count: what the modes leave out, without inertia
-  Vector force;                 // [N] 3 count, at the model's time
-  Vector gap;                   // [m] count: > 0: still open; < 0: penetration that is being undone
-  Vector push;                  // [m/s] count: <= 0: at this rate
+  Rows6 from_handle;             // 3 count x 6: contact velocity per w, modes held
+  Rows from_modes;               // 3 count x modes: contact velocity per q'
+  Eigen::MatrixXd flexibility;   // [m/N] 3 count x 3 count: what the modes leave out, without inertia
+  double flexibility_lag = 0.0;  // [s] its damping: stretch + lag stretch' = flexibility f
+  Vector force;                  // [N] 3 count, at the model's time
+  Vector gap;                    // [m] count: > 0: still open; < 0: penetration that is being undone
+  Vector push;                   // [m/s] count: <= 0: at this rate
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
 

@@ -46,8 +46,11 @@ class Reduction {
     describe_handle();
     highest_ = kHighestPerTick / tick;
     c_.modes = 0;
+    lag_ = 0.0;
     for (std::uint32_t b = 0; b < step_.bodies.size(); ++b)
       if (step_.bodies[b]->size() > 0) add_body(b);
+    const double trace = c_.flexibility.topLeftCorner(rows(), rows()).trace();
+    c_.flexibility_lag = trace > 0.0 ? lag_ / trace : 0.0;
     describe_flesh();
     c_.prepare_tick(tick);
     describe_linear();
@@ -181,6 +184,7 @@ class Reduction {
 
   void scatter(const Share& share) {
     const Eigen::MatrixXd left = left_flexibility(share.gram, share.modes, share.split);
+    lag_ += share.split.damping.beta * left.trace();
     c_.from_modes.block(0, c_.modes, rows(), share.modes.count()).setZero();
     for (std::size_t i = 0; i < share.local.size(); ++i) {
       const Eigen::Index from = 3 * static_cast<Eigen::Index>(i), to = 3 * share.local[i];
@@ -315,7 +319,8 @@ class Reduction {
   std::vector<int> chosen_;
   HandleModel& out_;
   CondensedContacts& c_;
-  double highest_ = 0.0;  // [rad/s]
+  double highest_ = 0.0;   // [rad/s]
+  double lag_ = 0.0;       // [s m/N] sum of damping times flexibility: one lag for all, by how much each gives way
   Eigen::MatrixXd gram_;  // W_a: of tool flesh, objects and yielding surfaces, the handle held
   Vector6 start_ = Vector6::Zero(), flesh_force_ = Vector6::Zero();
 };

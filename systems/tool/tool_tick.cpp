@@ -17,7 +17,7 @@ void fill_bias(const CondensedContacts& model, const CondensedState& state, cons
   const double tick = model.tick;
   bias.head(rows).noalias() = model.from_modes.topLeftCorner(rows, model.modes) * state.free_rate.head(model.modes);
   bias.head(rows).noalias() += model.reduced_handle.topRows(rows) * w;
-  bias.head(rows) -= state.spring.head(rows) / tick;
+  bias.head(rows) -= state.spring.head(rows) / (tick + model.flexibility_lag);
   for (int i = 0; i < model.count; ++i) {
     const double rate = state.gap[i] / tick;
     bias[3 * i] += state.gap[i] >= 0.0 ? rate : std::max(rate, model.push[i]);
@@ -36,18 +36,18 @@ void fill_delassus(const CondensedContacts& model, const Eigen::LLT<Matrix6>& fa
   W.noalias() += state.lever.topRows(rows).lazyProduct(state.lever.topRows(rows).transpose());
 }
 
-// x += T v of everything that moved. `u`: contact velocities with what was added to them for the gaps.
+// x += T v of everything that moved.
 void advance(const CondensedContacts& model, CondensedState& state, const TickHandle& handle, const Vector& lambda) {
   const Eigen::Index rows = 3 * model.count, modes = model.modes;
   const double tick = model.tick;
   state.q.head(modes) += tick * state.rate.head(modes);
   state.d += tick * handle.velocity;
-  auto moved = state.free_rate.head(rows);  // of the contacts, modes and handle only; then with their springs
-  moved.noalias() = model.from_modes.topLeftCorner(rows, modes).lazyProduct(state.rate.head(modes));
+  auto moved = state.free_rate.head(rows);  // of the contacts: first the springs', then modes and handle too
+  moved.noalias() = model.flexibility.topLeftCorner(rows, rows).lazyProduct(lambda.head(rows)) / tick;
+  moved = (moved - state.spring.head(rows)) / (tick + model.flexibility_lag);
+  state.spring.head(rows) += tick * moved;
+  moved.noalias() += model.from_modes.topLeftCorner(rows, modes).lazyProduct(state.rate.head(modes));
   moved.noalias() += model.from_handle.topRows(rows).lazyProduct(handle.velocity);
-  moved -= state.spring.head(rows) / tick;
-  state.spring.head(rows).noalias() = model.flexibility.topLeftCorner(rows, rows).lazyProduct(lambda.head(rows)) / tick;
-  moved += state.spring.head(rows) / tick;
   for (int i = 0; i < model.count; ++i) {
     const double before = state.gap[i], after = before + tick * moved[3 * i];
     state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // what rounding left closed is closed
