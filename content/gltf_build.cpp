@@ -130,7 +130,7 @@ class Builder {
       const std::size_t count = primitive.position.size();
       const auto fits = [&](const auto& values) { return values.empty() || values.size() == count; };
       if (!fits(primitive.normal) || !fits(primitive.tangent) || !fits(primitive.uv) || !fits(primitive.stiffness) ||
-          !fits(primitive.friction))
+          !fits(primitive.friction) || !fits(primitive.pinned) || !fits(primitive.handle))
         return Error{mesh.name, "has attributes of different lengths and cannot be saved"};
       Box box;
       for (const vec3 p : primitive.position) {
@@ -151,6 +151,8 @@ class Builder {
         attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), "VEC2");
       if (!primitive.stiffness.empty()) attributes["_STIFFNESS"] = add_attribute(primitive.stiffness, "SCALAR");
       if (!primitive.friction.empty()) attributes["_FRICTION"] = add_attribute(primitive.friction, "SCALAR");
+      if (!primitive.pinned.empty()) attributes["_PINNED"] = add_attribute(primitive.pinned, "SCALAR");
+      if (!primitive.handle.empty()) attributes["_HANDLE"] = add_attribute(primitive.handle, "SCALAR");
       if (count < 65535) {
         const std::vector<std::uint16_t> small(primitive.index.begin(), primitive.index.end());
         json["indices"] = add_accessor(small.data(), small.size(), 2, kUnsignedShort, "SCALAR", 34963);

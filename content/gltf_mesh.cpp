@@ -155,8 +155,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     std::uint64_t corners = source.vertices;
     if (json.contains("indices"))
       corners = document_.json["accessors"][json["indices"].get<std::size_t>()]["count"].get<std::uint64_t>();
-    // What is decoded is 56 bytes a vertex at most, and three indices a corner of a strip.
-    if (const Status status = spend(source.vertices * 56 + corners * 16, pointer); !status) return status.error();
+    // What is decoded is 64 bytes a vertex at most, and three indices a corner of a strip.
+    if (const Status status = spend(source.vertices * 64 + corners * 16, pointer); !status) return status.error();
     if (json.contains("indices")) {
       source.index = read_integers(document_, json["indices"].get<std::size_t>());
     } else {
@@ -171,7 +171,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     if (index >= source.vertices)
       return Error{pointer, fmt::format("refers to vertex {} of {}; export the mesh again", index, source.vertices)};
   out.index = as_triangles(source.draco ? static_cast<int>(kTriangles) : mode, std::move(source.index));
-  for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "_STIFFNESS", "_FRICTION"}) {
+  for (const char* name :
+       {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "_STIFFNESS", "_FRICTION", "_PINNED", "_HANDLE"}) {
     const std::vector<float> values = attribute(source, name);
     if (!all_finite(values)) return Error{pointer, fmt::format("has a number in {} that is not finite", name)};
     const std::string_view which = name;
@@ -189,6 +190,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     if (which == "TEXCOORD_0") out.uv = as_vectors<vec2>(values);
     if (which == "_STIFFNESS") out.stiffness = values;
     if (which == "_FRICTION") out.friction = values;
+    if (which == "_PINNED") out.pinned = values;
+    if (which == "_HANDLE") out.handle = values;
   }
   return out;
 }

@@ -28,6 +28,8 @@ struct Primitive {
   std::vector<vec2> uv;
   std::vector<float> stiffness;      // _STIFFNESS
   std::vector<float> friction;       // _FRICTION
+  std::vector<float> pinned;         // _PINNED
+  std::vector<float> handle;         // _HANDLE
   std::vector<std::uint32_t> index;  // three per triangle
   std::int32_t material = -1;
 };

@@ -31,11 +31,11 @@ void lay_out(const Welded& welded, Mesh& mesh) {
   mesh.triangles = welded.triangle;
 }
 
-// The mean of a painted factor over the painted copies of each vertex; 1 where no copy is painted. Empty: painted
-// nowhere.
+// The mean of a painted factor over the painted copies of each vertex; `unpainted` where no copy is painted. Empty:
+// painted nowhere.
 Result<std::vector<float>> paint(const std::string& name, const char* attribute, std::span<const Primitive> primitives,
                                  std::vector<float> Primitive::*factor, const Gathered& gathered, const Welded& welded,
-                                 std::size_t padded) {
+                                 std::size_t padded, float unpainted = 1.0f) {
   std::vector<double> sum;
   std::vector<std::uint32_t> count;
   for (std::size_t n = 0; n < primitives.size(); ++n) {
@@ -54,7 +54,7 @@ Result<std::vector<float>> paint(const std::string& name, const char* attribute,
       ++count[v];
     }
   }
-  std::vector<float> mean(sum.size(), 1.0f);
+  std::vector<float> mean(sum.size(), unpainted);
   for (std::size_t v = 0; v < sum.size(); ++v)
     if (count[v] != 0) mean[v] = static_cast<float>(sum[v] / count[v]);
   return mean;
@@ -96,6 +96,12 @@ Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive>
   if (!friction) return friction.error();
   mesh.stiffness_factor = std::move(*stiffness);
   mesh.friction_factor = std::move(*friction);
+  auto pinned = paint(name, "_PINNED", primitives, &Primitive::pinned, *gathered, welded, mesh.px.size(), 0.0f);
+  if (!pinned) return pinned.error();
+  auto handle = paint(name, "_HANDLE", primitives, &Primitive::handle, *gathered, welded, mesh.px.size(), 0.0f);
+  if (!handle) return handle.error();
+  built.pinned = std::move(*pinned);
+  built.handle = std::move(*handle);
 
   built.draw = build_draw_mesh(primitives, to_object, *gathered, welded, mesh, built.report);
   return built;

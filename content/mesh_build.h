@@ -29,6 +29,7 @@ struct BuiltMesh {
   Mesh mesh;
   DrawMesh draw;
   MeshReport report;
+  std::vector<float> pinned, handle;  // [1] per touch vertex, painted (_PINNED, _HANDLE); empty: 0 everywhere
 };
 
 // `to_object` takes the primitives' mesh frame to the object frame (scale, shear; a mirroring one flips the winding).

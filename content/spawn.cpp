@@ -2,17 +2,20 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "components/mass_properties.h"
 #include "components/soft_body.h"
 #include "content/exr.h"
 #include "content/level.h"
 #include "content/mesh_build.h"
 #include "content/progress.h"
 #include "content/script.h"
+#include "content/spawn_soft.h"
 
 namespace pliant {
 namespace {
 
 constexpr double kDefaultReach = 0.08;                        // [1] of the object's diagonal
+constexpr double kFlat = 1e-9;                                // [1] of the diagonal cubed: no volume
 constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // over all instances: a small file can name a mesh often
 
 dmat4 matrix(const LocalTransform& local) {
@@ -71,6 +74,8 @@ class Spawner {
       if (Status s = node(n); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = link_probe(n); !s) return s;
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n)
+      if (Status s = check_handle(n); !s) return s;
     return Done{};
   }
   World take() { return std::move(world_); }
@@ -107,9 +112,8 @@ class Spawner {
     if (!by_name_.count(node.name)) by_name_[node.name] = n;
     if (node.light) registry.add<Light>(entity, *node.light);
     if (node.camera) registry.add<Camera>(entity, *node.camera);
-    if (node.soft_body) registry.add<SoftBody>(entity, *node.soft_body);
+    if (const std::string fault = soft_fault(node); !fault.empty()) return at(n, fault);
     if (node.handle) registry.add<Handle6>(entity, *node.handle);
-    if (node.rigid_body) registry.add<RigidBody>(entity, *node.rigid_body);
     if (Status s = surface(n); !s) return s;
     if (Status s = device(n); !s) return s;
     if (node.probe) {
@@ -121,15 +125,16 @@ class Spawner {
     return Done{};
   }
 
-  // Drawable, and Deformable where the node gives way.
+  // Drawable, and Deformable, SoftBody or RigidBody where the node is one.
   Status surface(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
+    if (node.soft_body) return soft_body(n);
     if (node.mesh < 0) {
       if (node.deformable)
         return at(n, "has PLIANT_deformable but no mesh; give the node a mesh, or remove the extension");
       return Done{};
     }
-    if (!node.deformable && level_.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty()) return Done{};
+    if (!is_touched(node) && level_.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty()) return Done{};
     const Pose pose = rigid_part(matrices_[n]);
     Result<Baked> baked = bake(n, mat4(inverse(pose) * matrices_[n]));
     if (!baked) return baked.error();
@@ -142,22 +147,56 @@ class Spawner {
       if (deformable.reach <= 0.0)
         deformable.reach = kDefaultReach * static_cast<double>(world_.meshes[deformable.mesh].box.diagonal());
     }
+    if (node.rigid_body) return rigid_body(n, baked->touch);
     return Done{};
+  }
+
+  Status rigid_body(std::size_t n, Handle<Mesh> skin) {
+    RigidBody& body = world_.registry.add<RigidBody>(entities_[n], *level_.nodes[n].rigid_body);
+    body.skin = skin;
+    const Mesh& mesh = world_.meshes[skin];
+    const double box = std::pow(static_cast<double>(mesh.box.diagonal()), 3.0);
+    if (body.fixed || mass_properties(mesh).volume > kFlat * box) return Done{};
+    return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
+  }
+
+  static bool is_touched(const LevelNode& node) { return node.deformable || node.rigid_body; }
+
+  // Flesh is never shared: which of its nodes are held is the node's own.
+  Status soft_body(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    const LevelMesh* mesh = node.mesh < 0 ? nullptr : &level_.meshes[static_cast<std::size_t>(node.mesh)];
+    if (mesh)
+      if (Status s = count_triangles(n, *mesh); !s) return s;
+    const Pose pose = rigid_part(matrices_[n]);
+    progress_.say("preparing meshes, now `" + node.name + "`");
+    Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * matrices_[n]), folder_);
+    if (!parts) return at(n, parts.error().message());
+    world_.registry.add<Pose>(entities_[n], pose);
+    SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
+    body.tets = world_.tet_meshes.add(std::move(parts->tets));
+    body.skin = world_.meshes.add(std::move(parts->surface.mesh));
+    world_.registry.add<Drawable>(entities_[n], {world_.draw_meshes.add(std::move(parts->surface.draw))});
+    return Done{};
+  }
+
+  Status count_triangles(std::size_t n, const LevelMesh& mesh) {
+    for (const Primitive& p : mesh.primitives) triangles_ += p.index.size() / 3;
+    if (triangles_ <= kMostTriangles) return Done{};
+    return at(n,
+              "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
   }
 
   Result<Baked> bake(std::size_t n, const mat4& to_object) {
     const LevelNode& node = level_.nodes[n];
-    Baked wanted{node.deformable.has_value(), to_object, {}, {}};
+    Baked wanted{is_touched(node), to_object, {}, {}};
     std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)];
     for (const Baked& b : known)
       if (b.touchable == wanted.touchable && b.to_object == to_object) return b;
 
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
     progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
-    for (const Primitive& p : mesh.primitives) triangles_ += p.index.size() / 3;
-    if (triangles_ > kMostTriangles)
-      return at(
-          n, "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
+    if (Status s = count_triangles(n, mesh); !s) return s.error();
     Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, to_object);
     if (!built) return at(n, built.error().message());
     if (wanted.touchable)
@@ -200,6 +239,17 @@ class Spawner {
                     "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
     probe.device = entities_[found->second];
     return Done{};
+  }
+
+  // Who reads a handle finds its device by name; it must be there.
+  Status check_handle(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    if (!node.handle || !node.in_scene || node.handle->device.empty()) return Done{};
+    const auto found = by_name_.find(node.handle->device);
+    if (found != by_name_.end() && level_.nodes[found->second].device) return Done{};
+    return at(n,
+              "PLIANT_handle/device names `" + node.handle->device +
+                  "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
   }
 
   const Level& level_;

@@ -58,6 +58,8 @@ LevelMesh from_built(const BuiltMesh& built, const LevelMesh& source) {
         out.uv.push_back(v.uv);
         if (!built.mesh.stiffness_factor.empty()) out.stiffness.push_back(built.mesh.stiffness_factor[v.touch_vertex]);
         if (!built.mesh.friction_factor.empty()) out.friction.push_back(built.mesh.friction_factor[v.touch_vertex]);
+        if (!built.pinned.empty()) out.pinned.push_back(built.pinned[v.touch_vertex]);
+        if (!built.handle.empty()) out.handle.push_back(built.handle[v.touch_vertex]);
       }
       out.index.push_back(number[old]);
     }

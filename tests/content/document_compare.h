@@ -145,6 +145,8 @@ class Difference {
       array(at + " uv", p.uv, q.uv);
       array(at + " stiffness", p.stiffness, q.stiffness);
       array(at + " friction", p.friction, q.friction);
+      array(at + " pinned", p.pinned, q.pinned);
+      array(at + " handle", p.handle, q.handle);
       array(at + " indices", p.index, q.index);
       same(at + " material", p.material, q.material);
     }

@@ -1,0 +1,217 @@
+// From a level to flesh: what spawn makes of PLIANT_soft_body, PLIANT_handle and PLIANT_rigid_body, and what it
+// refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "components/mass_properties.h"
+#include "content/gltf_save.h"
+#include "content/tet_quality.h"
+#include "tests/content/gltf_builder.h"
+#include "tests/content/mesh_shapes.h"
+
+namespace pliant {
+namespace {
+
+using test::icosphere;
+using test::level_of;
+using test::sheet;
+using testing::HasSubstr;
+
+// A ball of flesh of radius 0.05 m.
+Level ball(const LocalTransform& local = {}) {
+  Primitive sphere = icosphere(3);
+  for (vec3& p : sphere.position) p *= 0.05f;
+  Level level = level_of(sphere, local);
+  level.nodes[0].deformable.reset();
+  level.nodes[0].soft_body = SoftBody{};
+  level.nodes[0].soft_body->cell = 0.02;
+  return level;
+}
+
+World spawned(const Level& level) {
+  Result<World> world = spawn(level);
+  EXPECT_TRUE(world.ok()) << world.error().message();
+  return world ? std::move(*world) : World{};
+}
+std::string refusal(const Level& level) {
+  const Result<World> world = spawn(level);
+  return world ? "" : world.error().message();
+}
+
+// A file that is gone with the test.
+struct Temporary {
+  explicit Temporary(const std::string& name, const std::string& text)
+      : path(std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + name)) {
+    std::ofstream(path) << text;
+  }
+  ~Temporary() { std::filesystem::remove(path); }
+  std::filesystem::path path;
+};
+
+const char* const kBlock =
+    "# vtk DataFile Version 3.0\ncube of one metre, five tetrahedra\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+    "POINTS 8 double\n0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1\n"
+    "CELLS 5 25\n4 0 1 2 4\n4 3 2 1 7\n4 5 4 7 1\n4 6 7 4 2\n4 1 2 4 7\nCELL_TYPES 5\n10 10 10 10 10\n";
+
+TEST(SpawnSoft, FleshHasTetrahedraASkinADrawableAndAPose) {
+  LocalTransform local;
+  local.translation = {1, 2, 3};
+  local.rotation = glm::angleAxis(0.7f, normalize(vec3(1, 2, -1)));
+  local.scale = {2, 1, 1};
+  const World world = spawned(ball(local));
+  const Entity thing = find_by_name(world, "thing");
+  const SoftBody& body = world.registry.get<SoftBody>(thing);
+  const TetMesh& tets = world.tet_meshes[body.tets];
+  const Mesh& skin = world.meshes[body.skin];
+  EXPECT_EQ(world.registry.get<Pose>(thing).position, dvec3(1, 2, 3));
+  EXPECT_FALSE(world.registry.has<Deformable>(thing));
+  ASSERT_EQ(tets.skin.size(), skin.vertex_count);
+  EXPECT_EQ(tets.free_count, tets.node_count());
+  // The scale is baked in: an ellipsoid of half axes 0.1, 0.05, 0.05 m.
+  EXPECT_NEAR(skin.box.size().x, 0.2f, 1e-6f);
+  EXPECT_NEAR(total_volume(tets), mass_properties(skin).volume, 0.05 * total_volume(tets));
+  for (const DrawVertex& v : world.draw_meshes[world.registry.get<Drawable>(thing).mesh].vertices)
+    EXPECT_EQ(skin.position(v.touch_vertex), v.position);
+}
+
+TEST(SpawnSoft, NodesStandInTheOrderFreeHandlePinnedByTheirBoxes) {
+  Level level = ball();
+  level.nodes[0].soft_body->pinned = {{-1, -1, -1}, {1, -0.023f, 1}};
+  level.nodes[0].handle = Handle6{};
+  level.nodes[0].handle->box = {{-1, 0.023f, -1}, {1, 1, 1}};
+  const World world = spawned(level);
+  const TetMesh& tets = world.tet_meshes[world.registry.get<SoftBody>(find_by_name(world, "thing")).tets];
+  EXPECT_GT(tets.free_count, 0u);
+  EXPECT_GT(tets.handle_count, 0u);
+  EXPECT_LT(tets.pinned_begin(), tets.node_count());
+  for (std::uint32_t n = 0; n < tets.node_count(); ++n) {
+    const double y = tets.nodes[n].y;
+    EXPECT_EQ(n < tets.free_count, std::abs(y) < 0.023) << y;
+    EXPECT_EQ(n >= tets.pinned_begin(), y < -0.023) << y;
+  }
+  EXPECT_TRUE(world.registry.has<Handle6>(find_by_name(world, "thing")));
+}
+
+TEST(SpawnSoft, PaintHoldsTheNodesBeneathIt) {
+  Level level = ball();
+  Primitive& skin = level.meshes[0].primitives[0];
+  for (const vec3& p : skin.position) {
+    skin.pinned.push_back(p.y < -0.02f ? 1.0f : 0.0f);
+    skin.handle.push_back(p.y > 0.02f ? 0.7f : 0.3f);
+  }
+  level.nodes[0].handle = Handle6{};
+  const World world = spawned(level);
+  const TetMesh& tets = world.tet_meshes[world.registry.get<SoftBody>(find_by_name(world, "thing")).tets];
+  EXPECT_GT(tets.handle_count, 0u);
+  for (std::uint32_t n = 0; n < tets.node_count(); ++n) {
+    if (length(tets.nodes[n]) < 0.04) continue;  // deep inside, which vertex is nearest is a matter of chance
+    const double y = tets.nodes[n].y * 0.05 / length(tets.nodes[n]);
+    if (std::abs(std::abs(y) - 0.02) < 0.006) continue;  // within an edge of the paint's border
+    EXPECT_EQ(n < tets.free_count, std::abs(y) < 0.02) << y;
+    EXPECT_EQ(n >= tets.pinned_begin(), y < -0.02) << y;
+  }
+}
+
+TEST(SpawnSoft, PaintIsReadFromAndWrittenToFiles) {
+  Level level = ball();
+  Primitive& skin = level.meshes[0].primitives[0];
+  skin.pinned.assign(skin.position.size(), 0.25f);
+  skin.handle.assign(skin.position.size(), 0.75f);
+  const Result<Bytes> glb = level_as_glb(level);
+  ASSERT_TRUE(glb.ok());
+  const Result<Level> back = load_gltf(*glb, true, {});
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_EQ(back->meshes[0].primitives[0].pinned, skin.pinned);
+  EXPECT_EQ(back->meshes[0].primitives[0].handle, skin.handle);
+}
+
+TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesMeshAsSkin) {
+  const Temporary file("block.vtk", kBlock);
+  Level level = ball();
+  level.path = file.path.parent_path() / "level.gltf";
+  level.nodes[0].soft_body->mesh = file.path.filename().string();
+  level.nodes[0].local.scale = vec3(-0.1f, 0.1f, 0.1f);  // mirrored: elements are turned
+  level.nodes[0].mesh = -1;
+  const World world = spawned(level);
+  const SoftBody& body = world.registry.get<SoftBody>(find_by_name(world, "thing"));
+  const TetMesh& tets = world.tet_meshes[body.tets];
+  EXPECT_EQ(tets.node_count(), 8u);
+  EXPECT_EQ(tets.tets.size(), 5u);
+  for (const Tet& t : tets.tets) EXPECT_GT(tet_volume(tets.nodes, t), 0.0);
+  EXPECT_NEAR(total_volume(tets), 1e-3, 1e-10);
+  const Mesh& skin = world.meshes[body.skin];
+  EXPECT_TRUE(skin.closed);
+  EXPECT_EQ(skin.triangles.size(), 12u);
+  EXPECT_NEAR(mass_properties(skin).volume, 1e-3, 1e-9);
+  for (std::uint32_t v = 0; v < skin.vertex_count; ++v)
+    EXPECT_GT(dot(skin.normal(v), skin.position(v) - skin.box.center()), 0.0f);
+
+  // With a mesh on the node, that surface rides on the block.
+  level.nodes[0].mesh = 0;
+  level.nodes[0].local.scale = vec3(1);
+  for (vec3& p : level.meshes[0].primitives[0].position) p += vec3(0.5f);
+  const World ridden = spawned(level);
+  const SoftBody& rider = ridden.registry.get<SoftBody>(find_by_name(ridden, "thing"));
+  EXPECT_EQ(ridden.meshes[rider.skin].vertex_count, 642u);
+  for (const Embedding& e : ridden.tet_meshes[rider.tets].skin)
+    for (const double w : e.weight) EXPECT_GE(w, -1e-9);
+}
+
+TEST(SpawnSoft, ARigidBodyHasASkinAndIsDrawn) {
+  Level level = ball();
+  level.nodes[0].soft_body.reset();
+  level.nodes[0].rigid_body = RigidBody{};
+  const World world = spawned(level);
+  const Entity thing = find_by_name(world, "thing");
+  const Mesh& skin = world.meshes[world.registry.get<RigidBody>(thing).skin];
+  EXPECT_EQ(skin.vertex_count, 642u);
+  EXPECT_TRUE(world.registry.has<Pose>(thing) && world.registry.has<Drawable>(thing));
+}
+
+TEST(SpawnSoft, WhatCannotBeIsRefusedInOneSentenceThatNamesTheNode) {
+  const auto expect = [](const char* part, auto change) {
+    Level level = ball();
+    change(level, level.nodes[0]);
+    EXPECT_THAT(refusal(level), testing::AllOf(HasSubstr("`thing`"), HasSubstr(part)));
+  };
+  expect("PLIANT_soft_body and PLIANT_deformable", [](Level&, LevelNode& n) { n.deformable = Deformable{}; });
+  expect("PLIANT_soft_body and PLIANT_rigid_body", [](Level&, LevelNode& n) { n.rigid_body = RigidBody{}; });
+  expect("no PLIANT_soft_body", [](Level&, LevelNode& n) {
+    n.soft_body.reset();
+    n.handle = Handle6{};
+  });
+  expect("neither a mesh nor a tetrahedra file", [](Level&, LevelNode& n) { n.mesh = -1; });
+  expect("PLIANT_rigid_body but no mesh", [](Level&, LevelNode& n) {
+    n.soft_body.reset();
+    n.rigid_body = RigidBody{};
+    n.mesh = -1;
+  });
+  expect("encloses no volume", [](Level& level, LevelNode& n) {
+    n.soft_body.reset();
+    n.rigid_body = RigidBody{};
+    level.meshes[0].primitives = {sheet(4)};
+  });
+  expect("encloses nothing", [](Level& level, LevelNode&) { level.meshes[0].primitives = {sheet(4)}; });
+  expect("says nowhere which part is rigid", [](Level&, LevelNode& n) { n.handle = Handle6{}; });
+  expect("PLIANT_handle/box: holds no node", [](Level&, LevelNode& n) {
+    n.handle = Handle6{};
+    n.handle->box = {{1, 1, 1}, {2, 2, 2}};
+  });
+  expect("pinned: holds no node", [](Level&, LevelNode& n) { n.soft_body->pinned = {{1, 1, 1}, {2, 2, 2}}; });
+  expect("no node left", [](Level&, LevelNode& n) { n.soft_body->pinned = {{-1, -1, -1}, {1, 1, 1}}; });
+  expect("`nobody`", [](Level&, LevelNode& n) {
+    n.handle = Handle6{};
+    n.handle->box = {{-1, 0, -1}, {1, 1, 1}};
+    n.handle->device = "nobody";
+  });
+  expect("no such file", [](Level&, LevelNode& n) { n.soft_body->mesh = "no_such.msh"; });
+  expect("outside the level's folder", [](Level&, LevelNode& n) { n.soft_body->mesh = "../no_such.msh"; });
+  expect("choose a larger one", [](Level&, LevelNode& n) { n.soft_body->cell = 1e-7; });
+}
+
+}  // namespace
+}  // namespace pliant
