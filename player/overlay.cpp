@@ -20,6 +20,7 @@ constexpr const char* kKeys[][2] = {
     {"Left button on a surface", "press; hold it down, drag to slide"},
     {"Wheel while pressing", "deeper or shallower"},
     {"Ctrl + wheel", "stay pressed at a depth"},
+    {"Left button on a tool", "carry it; wheel: away or near"},
     {"Left on nothing, right, Alt + left", "turn the view"},
     {"Middle, Shift + left", "shift the view"},
     {"Wheel", "nearer or farther"},
@@ -287,8 +288,8 @@ void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint
   io.MouseWheel = static_cast<float>(mouse.wheel);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
-  if (visible) draw_panel(state, options, tint);
-  if (help) draw_help(scale_);
+  if (state.figures) draw_panel(state, options, tint);
+  if (state.help) draw_help(scale_);
   if (!state.message.empty()) draw_message(state, scale_);
   if (state.cursor && !io.WantCaptureMouse) draw_cursor(state, scale_);
   ImGui::Render();

@@ -42,6 +42,7 @@ struct ProbeLine {
 
 // Everything that is shown; whoever draws keeps it up to date.
 struct OverlayState {
+  bool figures = true, help = false;  // what is shown
   std::string title;
   TouchFigures touch;
   double rate_wanted = 1000.0;     // [Hz]
@@ -73,8 +74,6 @@ class Overlay {
   ~Overlay();
   Overlay(const Overlay&) = delete;
   Overlay& operator=(const Overlay&) = delete;
-
-  bool visible = true, help = false;
 
   // The mouse is over a panel: it is not for the scene.
   bool wants_mouse() const;

@@ -111,10 +111,22 @@ void Window::show(const std::string& title) {
   glfwShowWindow(handle_);
 }
 
-void Window::poll(std::vector<InputEvent>& events) {
-  glfwPollEvents();
+void Window::poll(std::vector<InputEvent>& events, double longest) {
+  glfwWaitEventsTimeout(longest);
   events.insert(events.end(), events_.begin(), events_.end());
   events_.clear();
+}
+
+void Window::wake() {
+  glfwPostEmptyEvent();
+}
+
+void Window::give_context() {
+  glfwMakeContextCurrent(nullptr);
+}
+
+void Window::take_context() {
+  glfwMakeContextCurrent(handle_);
 }
 
 void Window::present() {

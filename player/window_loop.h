@@ -1,5 +1,5 @@
 // The loop of a window: what it holds, what a hand does to it (window_loop_input.cpp), and a turn of it
-// (window_loop.cpp).
+// (window_loop.cpp). It hears the hand some 250 times a second; pictures are made meanwhile (window_picture.h).
 #pragma once
 
 #include <future>
@@ -7,14 +7,15 @@
 
 #include "player/camera_control.h"
 #include "player/overlay.h"
+#include "player/window_carrier.h"
+#include "player/window_picture.h"
 #include "player/window_pointer.h"
 #include "player/window_session.h"
-#include "systems/visual/gpu/framebuffer.h"
 
 namespace pliant {
 
-// What a held button does.
-enum class Drag : std::uint8_t { kNone, kPress, kOrbit, kPan };
+// What a held button does. kAsked: that hangs on what a picture shows under it, which is not known yet.
+enum class Drag : std::uint8_t { kNone, kAsked, kPress, kCarry, kOrbit, kPan };
 
 // What one session holds while it runs. The touch clock owns the world meanwhile: this side reads only what never
 // changes (remembered before it started) and what comes by exchanges.
@@ -29,44 +30,50 @@ class WindowLoop {
   void handle(const InputEvent& event);
   void key(int key);
   void press(const InputEvent& event);
+  void decide(const std::optional<Picked>& seen);
+  void release();
   void move(const InputEvent& event);
   void wheel(const InputEvent& event);
   void open(const std::string& file);  // on a thread of its own
   void look_for_opened();
   void say(std::string sentence, bool error);
-  void screenshot();
   void point(double dt);
-  void keep();            // rows of the journal
-  void take_snapshots();  // of the touch clock
-  Status draw(double dt);
-  FrameStats draw_scene(double share);
-  void choose_share(double draw_ms);
-  Status stage_frames();
+  void keep();  // rows of the journal
+  PictureOrder order(bool shown);
+  Status learn(const PictureDone& done);
+  std::filesystem::path next_frame();
+  std::filesystem::path next_screenshot() const;
   Ray ray() const;
+  bool looks_around() const { return drag_ == Drag::kOrbit || drag_ == Drag::kPan; }
 
   WindowSession& s_;
-  Renderer& renderer_;
   CameraControl camera_;
   std::optional<double> radius_;  // [m] of the probe at the mouse
   Pointer pointer_;
+  std::optional<Carrier> carrier_;
   HeavyCursor cursor_;
-  Overlay overlay_;
+  RenderOptions options_, ordered_options_;  // as wanted now, and for the picture under way
   OverlayState state_;
   OverlayMouse mouse_;
-  gpu::Framebuffer coarse_;  // the picture at less than full resolution
-  double share_ = 1.0;       // [1] of the window's resolution, each way
-  float tint_;               // [m] height that is coloured fully, where heights are
-  dvec3 probe_at_{0};        // [m] where the mouse has its probe
+  std::array<bool, 3> down_{};  // buttons now; a click between two pictures is in mouse_ alone
+  float tint_;                  // [m] height that is coloured fully, where heights are
+  dvec3 probe_at_{0};           // [m] where the mouse has its probe or its tool
   std::optional<std::size_t> mouse_probe_;
   std::optional<TouchThread> touch_;
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
-  bool pointed_ = false, close_ = false, wants_screenshot_ = false;
-  double frame_time_ = 0.0;               // [s] smoothed
-  double seconds_ = 0.0, said_at_ = 0.0;  // [s] since the first picture
+  double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed
+  Ray asked_ray_;                              // of the question under way
+  std::uint64_t questions_ = 0, decides_ = 0;  // asked so far; the one whose answer decides a press
+  bool pointed_ = false, close_ = false, wants_mouse_ = false;
+  std::filesystem::path screenshot_, shooting_;  // wanted, and of the picture under way
+  double frame_time_ = 0.0;                      // [s] smoothed
+  double seconds_ = 0.0, said_at_ = 0.0;         // [s] since the first picture
+  double ordered_at_ = 0.0;                      // [s] when the picture under way was
   std::size_t next_frame_ = 0;
   std::future<std::optional<Error>> opening_;
   WindowFigures figures_;
+  WindowPictures pictures_;  // last: it has the context from its beginning to its end
 };
 
 }  // namespace pliant

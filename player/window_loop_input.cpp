@@ -34,16 +34,39 @@ void WindowLoop::look_for_opened() {
 }
 
 void WindowLoop::press(const InputEvent& event) {
-  if (overlay_.wants_mouse() || drag_ != Drag::kNone) return;
+  if (drag_ != Drag::kNone) return;
   dragging_ = event.button;
   if (event.button == MouseButton::kMiddle || (event.button == MouseButton::kLeft && (event.modifiers & kShift))) {
-    drag_ = Drag::kPan;
-  } else if (event.button == MouseButton::kRight || (event.modifiers & kAlt) || !radius_ || !pointer_.hits(ray())) {
-    drag_ = Drag::kOrbit;
+    drag_ = wants_mouse_ ? Drag::kNone : Drag::kPan;
+  } else if (event.button == MouseButton::kRight || (event.modifiers & kAlt)) {
+    drag_ = wants_mouse_ ? Drag::kNone : Drag::kOrbit;
   } else {
+    drag_ = Drag::kAsked;
+    decides_ = questions_ + 1;
+    pressed_x_ = cursor_.x();
+    pressed_y_ = cursor_.y();
+  }
+}
+
+// What was pressed: a panel, something to touch, the tool, or nothing, which turns the view.
+void WindowLoop::decide(const std::optional<Picked>& seen) {
+  if (wants_mouse_) {
+    drag_ = Drag::kNone;
+  } else if (radius_ && pointer_.over_touchable()) {
     drag_ = Drag::kPress;
     pointer_.hold(true);
+  } else if (carrier_ && seen && seen->object == carrier_->tool()) {
+    drag_ = Drag::kCarry;
+    carrier_->grab(seen->point);
+  } else {
+    drag_ = Drag::kOrbit;
   }
+}
+
+void WindowLoop::release() {
+  drag_ = Drag::kNone;
+  pointer_.hold(false);
+  if (carrier_) carrier_->release();
 }
 
 void WindowLoop::move(const InputEvent& event) {
@@ -57,11 +80,13 @@ void WindowLoop::move(const InputEvent& event) {
 }
 
 void WindowLoop::wheel(const InputEvent& event) {
-  mouse_.wheel = event.y;
-  if (overlay_.wants_mouse()) return;
+  mouse_.wheel += event.y;
+  if (wants_mouse_) return;
   const int steps = event.y > 0 ? 1 : -1;
   if (drag_ == Drag::kPress) {
     pointer_.deepen(steps);
+  } else if (drag_ == Drag::kCarry) {
+    carrier_->push(event.y, camera_.viewpoint());
   } else if ((event.modifiers & kControl) && radius_) {
     pointer_.stand(steps);
   } else {
@@ -70,20 +95,20 @@ void WindowLoop::wheel(const InputEvent& event) {
 }
 
 void WindowLoop::key(int key) {
-  RenderOptions& options = renderer_.options();
+  RenderOptions& options = options_;
   switch (key) {
     case GLFW_KEY_ESCAPE:
-      if (!overlay_.help) close_ = true;
-      overlay_.help = false;
+      if (!state_.help) close_ = true;
+      state_.help = false;
       break;
     case GLFW_KEY_F1:
-      overlay_.help = !overlay_.help;
+      state_.help = !state_.help;
       break;
     case GLFW_KEY_TAB:
-      overlay_.visible = !overlay_.visible;
+      state_.figures = !state_.figures;
       break;
     case GLFW_KEY_F12:
-      wants_screenshot_ = true;
+      screenshot_ = next_screenshot();
       break;
     case GLFW_KEY_F:
       camera_.frame();
@@ -138,15 +163,12 @@ void WindowLoop::handle(const InputEvent& event) {
       move(event);
       break;
     case InputKind::kPress:
-      mouse_.down[imgui_button(event.button)] = true;
+      mouse_.down[imgui_button(event.button)] = down_[imgui_button(event.button)] = true;
       press(event);
       break;
     case InputKind::kRelease:
-      mouse_.down[imgui_button(event.button)] = false;
-      if (event.button == dragging_) {
-        drag_ = Drag::kNone;
-        pointer_.hold(false);
-      }
+      down_[imgui_button(event.button)] = false;  // mouse_.down: once a picture has seen that it was down
+      if (event.button == dragging_) release();
       break;
     case InputKind::kWheel:
       wheel(event);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/touch/surface_query.h"
+#include "systems/visual/viewpoint.h"
 
 namespace pliant {
 namespace {
@@ -14,6 +14,8 @@ constexpr double kHover = 0.03;       // [1] of the scene's size: how high it ho
 constexpr double kPressTime = 0.12;   // [s] time constant of the way in
 constexpr double kLiftTime = 0.05;    // [s] and out
 constexpr double kRejoinTime = 0.08;  // [s] of the cursor to the hand
+constexpr double kFromBehind = 0.5;   // [1] cosine between sight and normal beyond which a sheet's back is looked at
+constexpr double kFirstAway = 0.55;   // [1] of the scene's size, from its middle: outside of everything
 
 }  // namespace
 
@@ -41,21 +43,17 @@ void HeavyCursor::update(bool pressing, double force, double dt) {
   y_ += rejoin * (hand_y_ - y_);
 }
 
-Pointer::Pointer(const World& world, double radius) : radius_(radius), deep_(kFirstSteps) {
-  for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
-    const Mesh& mesh = world.meshes[deformable.mesh];
-    targets_.push_back({&mesh, pose, deformable.reach});
-    for (int corner = 0; corner < 8; ++corner) {
-      const vec3 local(corner & 1 ? mesh.box.max.x : mesh.box.min.x, corner & 2 ? mesh.box.max.y : mesh.box.min.y,
-                       corner & 4 ? mesh.box.max.z : mesh.box.min.z);
-      scene_.add(vec3(pose.to_world(dvec3(local))));
-    }
-  }
-  size_ = scene_.empty() ? 1.0 : static_cast<double>(scene_.diagonal());
+Pointer::Pointer(const World& world, double radius, const Viewpoint& view) : radius_(radius), deep_(kFirstSteps) {
+  for (auto [entity, deformable] : world.registry.view<Deformable>()) targets_.push_back({entity, deformable.reach});
+  const Box scene = drawn_box(world, true);
+  if (!scene.empty()) size_ = static_cast<double>(scene.diagonal());
   hover_ = kHover * size_;
   height_ = hover_;
-  away_ = 2 * size_;
   reach_ = targets_.empty() ? 0.1 * size_ : targets_.front().reach;
+  // On the side of the eye.
+  const dvec3 center = scene.empty() ? view.target : dvec3(scene.center()), back = view.eye - center;
+  aside_ = center + (kFirstAway * size_ + radius_) * (length(back) > 0 ? normalize(back) : dvec3(0, 0, 1));
+  away_ = length(view.eye - aside_);
 }
 
 void Pointer::deepen(int steps) {
@@ -69,35 +67,25 @@ double Pointer::depth_goal() const {
   return kStep * reach_ * (held_ ? std::max(deep_, standing_) : standing_);
 }
 
-std::optional<Pointer::Hit> Pointer::cast(const Ray& ray) const {
-  std::optional<Hit> best;
-  const double far = scene_.empty() ? 0.0 : length(dvec3(scene_.center()) - ray.from) + size_;
-  const dvec3 to = ray.from + far * ray.along;
-  for (const Target& target : targets_) {
-    const Entry entry = first_entry(*target.mesh, target.pose.to_local(ray.from), target.pose.to_local(to));
-    if (!entry.valid() || (best && entry.fraction * far >= best->distance)) continue;
-    const SurfaceFoot p = surface_point(corners(*target.mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
-    best = Hit{target.pose.to_world(p.foot), target.pose.rotation * p.normal, entry.fraction * far, target.reach};
+void Pointer::see(const std::optional<Picked>& seen, const Ray& ray) {
+  if (!seen) {
+    hit_.reset();
+    aside_ = ray.from + away_ * ray.along;  // this ray passes everything, so all of it is outside
+    return;
   }
-  return best;
+  const bool behind = dot(seen->normal, ray.along) > kFromBehind;
+  hit_ = Hit{seen->rest, behind ? -seen->normal : seen->normal, 0.0};
+  for (const Target& target : targets_)
+    if (target.object == seen->object && !behind) hit_->reach = target.reach;
+  if (hit_->reach > 0) reach_ = hit_->reach;
+  away_ = std::max(0.0, length(seen->rest - ray.from) - radius_ - hover_);
 }
 
-dvec3 Pointer::update(const Ray& ray, double dt) {
-  const std::optional<Hit> hit = cast(ray);
-  over_ = hit.has_value();
-  if (hit) reach_ = hit->reach;
-  const double goal = hit && pressing() ? -depth_goal() : hover_;
+dvec3 Pointer::update(double dt) {
+  const double goal = over_touchable() && pressing() ? -depth_goal() : hover_;
   const double time = goal < height_ ? kPressTime : kLiftTime;
   height_ += (1 - std::exp(-dt / time)) * (goal - height_);
-  if (!hit) return ray.from + away_ * ray.along;  // the ray passes everything, so all of it is outside
-  away_ = std::max(0.0, hit->distance - radius_ - hover_);
-  return hit->point + (radius_ + height_) * hit->normal;
-}
-
-dvec3 Pointer::start(const Viewpoint& view) const {
-  const dvec3 center = scene_.empty() ? view.target : dvec3(scene_.center());
-  const dvec3 back = view.eye - center;
-  return center + (0.55 * size_ + radius_) * (length(back) > 0 ? normalize(back) : dvec3(0, 0, 1));
+  return hit_ ? hit_->point + (radius_ + height_) * hit_->normal : aside_;
 }
 
 }  // namespace pliant

@@ -29,46 +29,47 @@ class HeavyCursor {
   double hand_x_ = 0, hand_y_ = 0, moved_x_ = 0, moved_y_ = 0, x_ = 0, y_ = 0;
 };
 
+// What is pointed at is what the picture shows there, dents and all (Renderer::pick). How deep the probe goes counts
+// from where that very place is at rest: counted from the dent itself, every press would run away from its own dent.
 class Pointer {
  public:
-  // Remembers every deformable's mesh and place, so that pointing needs nothing that the touch clock writes. `radius`
-  // [m] of the probe. The world must outlive it and its deformables stay where they are.
-  Pointer(const World& world, double radius);
+  // Remembers what gives way, so that pointing needs nothing that the touch clock writes. `radius` [m] of the probe;
+  // `view` is where it is looked at from at first.
+  Pointer(const World& world, double radius, const Viewpoint& view);
 
-  bool hits(const Ray& ray) const { return cast(ray).has_value(); }
+  // What the picture shows along a ray; nothing: the surroundings.
+  void see(const std::optional<Picked>& seen, const Ray& ray);
+  bool over_touchable() const { return hit_ && hit_->reach > 0; }  // of the deformables, from outside
+
   void hold(bool held) { held_ = held; }
   void deepen(int steps);  // while held: how deep this press and the next go
   void stand(int steps);   // without holding: the depth at which it stays
   bool pressing() const { return held_ || standing_ > 0; }
-  double depth_goal() const;                                      // [m]
-  bool free() const { return !over_ || height_ > 0.2 * hover_; }  // clear of every surface
+  double depth_goal() const;                                     // [m]
+  bool free() const { return !hit_ || height_ > 0.2 * hover_; }  // clear of every surface
 
-  // Where the probe should be now. `dt` [s] since the last call.
-  dvec3 update(const Ray& ray, double dt);
-  // A place outside of everything, on the side of the eye.
-  dvec3 start(const Viewpoint& view) const;
+  // Where the probe should be now [m] world. `dt` [s] since the last call.
+  dvec3 update(double dt);
 
  private:
   struct Target {
-    const Mesh* mesh;
-    Pose pose;
+    Entity object;
     double reach;  // [m]
   };
   struct Hit {
-    dvec3 point{0}, normal{0};  // [m], [1] world
-    double distance = 0;        // [m] along the ray
-    double reach = 0;           // [m]
+    dvec3 point{0}, normal{0};  // [m], [1] world, at rest
+    double reach = 0;           // [m] 0: it does not give way
   };
-  std::optional<Hit> cast(const Ray& ray) const;
 
   std::vector<Target> targets_;
-  Box scene_;
-  double radius_, size_, hover_;      // [m]
-  double reach_ = 0;                  // [m] of what was last pointed at
-  bool held_ = false, over_ = false;  // over_: something is pointed at
-  int deep_, standing_ = 0;           // [1] steps
-  double height_;                     // [m] of the probe's lowest point above the surface at rest; < 0: pressed in
-  double away_;                       // [m] from the eye, where nothing is hit
+  double radius_, size_ = 1.0, hover_;  // [m]
+  double reach_;                        // [m] of what was last pointed at
+  std::optional<Hit> hit_;
+  dvec3 aside_;  // [m] where the probe is while nothing is pointed at
+  double away_;  // [m] from the eye, where something was hit last
+  bool held_ = false;
+  int deep_, standing_ = 0;  // [1] steps
+  double height_;            // [m] of the probe's lowest point above the surface at rest; < 0: pressed in
 };
 
 }  // namespace pliant

@@ -63,6 +63,8 @@ struct RenderOptions {
   bool shadows = true;          // of the key light
   bool wireframe = false;       // surfaces as lines
   bool zones = false;           // each zone in a colour of its own
+
+  bool operator==(const RenderOptions&) const = default;
 };
 
 class Renderer {

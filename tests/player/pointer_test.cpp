@@ -1,0 +1,173 @@
+// The mouse as a probe and as a hand that holds a tool: where they are put for what the picture shows.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "components/soft_body.h"
+#include "player/window_carrier.h"
+#include "player/window_pointer.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kReach = 0.04;  // [m]
+const Viewpoint kAbove{.eye = {0, 1, 0.2}, .target = {0, 0, 0}};
+const Ray kDown{{0, 1, 0}, {0, -1, 0}};
+
+// A plate of 0.2 m in y = 0 that gives way, and a table that does not.
+struct Scene {
+  World world;
+  Entity plate, table;
+  Scene() {
+    plate = world.registry.create();
+    table = world.registry.create();
+    DrawMesh draw;
+    for (const vec3 p : {vec3(-0.1f, 0, -0.1f), vec3(-0.1f, 0, 0.1f), vec3(0.1f, 0, 0.1f)})
+      draw.vertices.push_back({.position = p});
+    draw.indices = {0, 1, 2};
+    draw.parts = {{0, 3, -1}};
+    world.registry.add<Drawable>(plate, {world.draw_meshes.add(std::move(draw))});
+    world.registry.add<Deformable>(plate, {.reach = kReach});
+  }
+};
+
+Picked on(Entity object, dvec3 point, dvec3 rest, dvec3 normal = {0, 1, 0}) {
+  return {.object = object, .point = point, .rest = rest, .normal = normal};
+}
+
+dvec3 settled(Pointer& pointer) {
+  pointer.update(10.0);
+  return pointer.update(10.0);
+}
+
+TEST(Pointer, BeforeAnythingIsSeenTheProbeStandsOutsideOnTheSideOfTheEye) {
+  const Scene scene;
+  Pointer pointer(scene.world, 0.005, kAbove);
+  const dvec3 at = pointer.update(0.01);
+  EXPECT_GT(at.y, 0.05);
+  EXPECT_TRUE(pointer.free());
+  EXPECT_FALSE(pointer.over_touchable());
+}
+
+TEST(Pointer, HoversOverWhatIsPointedAtAndPressesByStepsOfTheReach) {
+  const Scene scene;
+  constexpr double kRadius = 0.005;
+  Pointer pointer(scene.world, kRadius, kAbove);
+  pointer.see(on(scene.plate, {0.01, 0, 0}, {0.01, 0, 0}), kDown);
+  const double hover = settled(pointer).y - kRadius;
+  EXPECT_GT(hover, 0);
+  EXPECT_TRUE(pointer.free());
+  pointer.hold(true);
+  const double first = pointer.depth_goal();
+  EXPECT_NEAR(settled(pointer).y, kRadius - first, 1e-9);
+  EXPECT_FALSE(pointer.free());
+  pointer.deepen(2);
+  EXPECT_NEAR(settled(pointer).y, kRadius - first - 2 * 0.05 * kReach, 1e-9);
+  pointer.hold(false);
+  EXPECT_NEAR(settled(pointer).y, kRadius + hover, 1e-9);
+  pointer.stand(1);
+  EXPECT_TRUE(pointer.pressing());
+  EXPECT_NEAR(settled(pointer).y, kRadius - 0.05 * kReach, 1e-9);
+}
+
+TEST(Pointer, ADeepDentUnderTheCursorDoesNotTakeTheProbeDeeper) {
+  const Scene scene;
+  Pointer pointer(scene.world, 0.0, kAbove);
+  pointer.hold(true);
+  pointer.see(on(scene.plate, {0.01, 0, 0}, {0.01, 0, 0}), kDown);
+  const dvec3 flat = settled(pointer);
+  for (int picture = 0; picture < 20; ++picture)  // each shows the dent that the press before made
+    pointer.see(on(scene.plate, settled(pointer), {0.01, 0, 0}), kDown);
+  EXPECT_LT(length(settled(pointer) - flat), 1e-12);
+}
+
+TEST(Pointer, WhatDoesNotGiveWayIsHoveredOverAndNotPressed) {
+  const Scene scene;
+  Pointer pointer(scene.world, 0.0, kAbove);
+  pointer.hold(true);
+  pointer.see(on(scene.table, {0.3, -0.1, 0}, {0.3, -0.1, 0}), kDown);
+  EXPECT_FALSE(pointer.over_touchable());
+  EXPECT_GT(settled(pointer).y, -0.1);
+  pointer.see(on(scene.plate, {0, 0, 0}, {0, 0, 0}, {0, -1, 0}), kDown);  // the back of the sheet
+  EXPECT_FALSE(pointer.over_touchable());
+  EXPECT_GT(settled(pointer).y, 0.0) << "on the far side of what is looked at";
+}
+
+TEST(Pointer, WhereNothingIsSeenTheProbeGoesWithTheRayThatSawNothing) {
+  const Scene scene;
+  Pointer pointer(scene.world, 0.0, kAbove);
+  pointer.see(on(scene.plate, {0, 0, 0}, {0, 0, 0}), kDown);
+  settled(pointer);
+  const Ray aside{{0, 1, 0}, normalize(dvec3(0.5, -1, 0))};
+  pointer.see(std::nullopt, aside);
+  const dvec3 at = pointer.update(0.01) - aside.from;
+  EXPECT_LT(length(cross(at, aside.along)), 1e-12);
+  EXPECT_LT(length(at), 1.0) << "beyond what was pointed at last";
+  EXPECT_TRUE(pointer.free());
+}
+
+TEST(HeavyCursor, GoesSlowerTheMoreItIsPushedBackAndRejoinsTheHand) {
+  HeavyCursor cursor;
+  cursor.move_to(100, 50);
+  EXPECT_EQ(cursor.x(), 100);
+  cursor.move_to(110, 50);
+  cursor.update(true, HeavyCursor::kHalfForce, 0.01);
+  EXPECT_NEAR(cursor.x(), 105, 1e-12);
+  cursor.move_to(120, 50);
+  cursor.update(true, 3 * HeavyCursor::kHalfForce, 0.01);
+  EXPECT_NEAR(cursor.x(), 107.5, 1e-12);
+  for (int i = 0; i < 100; ++i) cursor.update(false, 0, 0.02);
+  EXPECT_NEAR(cursor.x(), 120, 1e-6);
+}
+
+// A tool at (0.1, 0, 0) whose device is the mouse.
+struct ToolScene : Scene {
+  Entity tool, device;
+  ToolScene() {
+    tool = world.registry.create();
+    device = world.registry.create();
+    world.registry.add<Name>(device, {"palm"});
+    world.registry.add<HapticDevice>(device, {.driver = Driver::kMouse});
+    world.registry.add<Handle6>(tool, {.device = "palm"});
+    world.registry.add<Pose>(tool, {{0.1, 0, 0}, glm::angleAxis(0.3, dvec3(0, 1, 0))});
+  }
+};
+
+TEST(Carrier, ExistsOnlyForAToolOnTheMouseAndBeginsWhereTheToolStands) {
+  Scene none;
+  EXPECT_FALSE(Carrier::of(none.world));
+  ToolScene scene;
+  const std::optional<Carrier> carrier = Carrier::of(scene.world);
+  ASSERT_TRUE(carrier);
+  EXPECT_EQ(carrier->tool(), scene.tool);
+  EXPECT_EQ(carrier->position(), dvec3(0.1, 0, 0));
+  EXPECT_EQ(scene.world.registry.get<HapticDevice>(scene.device).rotation, glm::angleAxis(0.3, dvec3(0, 1, 0)));
+}
+
+TEST(Carrier, WhatWasTakenHoldOfStaysUnderTheCursorAtItsDistance) {
+  ToolScene scene;
+  std::optional<Carrier> carrier = Carrier::of(scene.world);
+  ASSERT_TRUE(carrier);
+  const Viewpoint view{.eye = {0.2, 0.3, 2}, .target = {0, 0, 0}};
+  const dvec3 forward = normalize(view.target - view.eye), grabbed(0.12, 0.02, 0.05);
+  const dvec3 before = carrier->position();
+  carrier->follow(ray_through(view, 10, 10, 640, 480), view);
+  EXPECT_EQ(carrier->position(), before) << "it moves without being held";
+  carrier->grab(grabbed);
+  const Ray ray = ray_through(view, 400, 150, 640, 480);
+  carrier->follow(ray, view);
+  const dvec3 moved = carrier->position() - before, now = grabbed + moved;
+  EXPECT_LT(length(cross(now - ray.from, ray.along)), 1e-12);
+  EXPECT_NEAR(dot(moved, forward), 0.0, 1e-12);
+  carrier->push(2, view);
+  const dvec3 pushed = carrier->position() - before - moved;
+  EXPECT_GT(dot(pushed, forward), 0.0);
+  EXPECT_LT(length(cross(pushed, forward)), 1e-12);
+  carrier->release();
+  const dvec3 left = carrier->position();
+  carrier->follow(ray_through(view, 10, 10, 640, 480), view);
+  EXPECT_EQ(carrier->position(), left);
+}
+
+}  // namespace
+}  // namespace pliant
