@@ -1,16 +1,22 @@
 // As many contacts as carry the load, no more: a hand on an object has thousands of pairs, and tens decide.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "systems/tool/contact_point.h"
+#include "components/math.h"
 
 namespace pliant {
 
+// A contact that might be kept.
 struct Candidate {
-  ContactPoint contact;
-  double end_gap = 0.0;  // [m] predicted: deepest first
-  bool known = false;    // had a contact in the last step
+  std::uint32_t body_low = 0, body_high = 0;  // equal: self-collision
+  dvec3 position{0};                          // [m] world
+  dvec3 normal{0, 1, 0};                      // [1] out of body_low, whoever is side a
+  double end_gap = 0.0;                       // [m] predicted: deepest first
+  bool known = false;                         // had a contact in the last step
+  std::uint64_t key = 0;
+  std::uint32_t source = 0;  // whatever the caller finds it by
 };
 
 struct ThinningLimits {
@@ -19,9 +25,9 @@ struct ThinningLimits {
   std::size_t most = 200;         // of all
 };
 
-// Deepest first, those of the last step preferred; what lies within `spacing` of one that is kept is dropped.
-// `mean_edge` [m] per body. Appends to `out`, in an order that depends on nothing but the candidates.
+// Leaves those to keep: deepest first, those of the last step preferred; what lies within `spacing` of one that is kept
+// is dropped. `mean_edge` [m] per body. The order depends on nothing but the candidates.
 void thin_contacts(std::vector<Candidate>& candidates, const std::vector<double>& mean_edge,
-                   const ThinningLimits& limits, std::vector<ContactPoint>& out);
+                   const ThinningLimits& limits);
 
 }  // namespace pliant

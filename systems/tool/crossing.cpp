@@ -35,13 +35,27 @@ int turning_points(const Cubic& c, std::array<double, 2>& t) {
   return count;
 }
 
-// The root of a falling stretch.
-double bisect(const Cubic& c, double lo, double hi) {
-  for (int i = 0; i < 52; ++i) {
-    const double mid = 0.5 * (lo + hi);
-    (value(c, mid) > 0.0 ? lo : hi) = mid;
+// The root of a falling stretch: regula falsi in its Illinois form, which is done at once where the motion is plain.
+double root(const Cubic& c, double lo, double hi) {
+  double at_lo = value(c, lo), at_hi = value(c, hi);
+  const double enough = 1e-14 * (at_lo - at_hi);
+  int side = 0;
+  double t = hi;
+  for (int i = 0; i < 60; ++i) {
+    t = std::clamp((lo * at_hi - hi * at_lo) / (at_hi - at_lo), lo, hi);
+    const double at = value(c, t);
+    if (std::abs(at) <= enough) break;
+    if (at > 0.0) {
+      lo = t, at_lo = at;
+      if (side == 1) at_hi *= 0.5;
+      side = 1;
+    } else {
+      hi = t, at_hi = at;
+      if (side == -1) at_lo *= 0.5;
+      side = -1;
+    }
   }
-  return 0.5 * (lo + hi);
+  return t;
 }
 
 }  // namespace
@@ -58,7 +72,7 @@ int find_crossings(const Moving& a, const Moving& p, const Moving& q, const Movi
   double lo = 0.0;
   for (int i = 0; i <= turn_count; ++i) {
     const double hi = i < turn_count ? turns[i] : 1.0;
-    if (value(c, lo) >= 0.0 && value(c, hi) < 0.0) times[count++] = bisect(c, lo, hi);
+    if (value(c, lo) >= 0.0 && value(c, hi) < 0.0) times[count++] = root(c, lo, hi);
     lo = hi;
   }
   return count;

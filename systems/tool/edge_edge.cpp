@@ -55,7 +55,6 @@ std::optional<Meeting> meet_edge(const std::array<Moving, 2>& a, const EdgeShape
     return true;
   };
   if (m.gap >= 0.0) {
-    // (f x e) . (a - b) > 0 in front, with f and e exchanged where the normal was turned.
     std::array<double, 3> times;
     const Moving& b_first = turned ? b[1] : b[0];
     const Moving& b_last = turned ? b[0] : b[1];

@@ -14,7 +14,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kFacing = 0.3;     // [1] cosine: outward normals of what touches are opposed, or nearly
 constexpr double kSameSide = 0.5;   // [1] cosine: a normal that is still the one of the last step
 constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a further contact (in a corner)
 constexpr std::uint32_t kMostOfVertex = 3;
@@ -24,6 +23,15 @@ constexpr double kDeepestInMargins = 10.0;  // [1] no penetration is followed fa
 struct VertexMeeting {
   std::uint32_t vertex, triangle;
   Meeting meeting;
+};
+
+// A contact before it is known whether it is kept.
+struct Found {
+  std::uint32_t body_a, body_b;
+  bool edges;  // else a vertex of a on a triangle of b
+  std::uint32_t feature_a, feature_b;
+  Meeting meeting;
+  const ContactPoint* last;  // of the memory, or null
 };
 
 struct Side {
@@ -48,51 +56,49 @@ struct Proximity::Parts {
   Reach reach;
   double margin = 0.0;
   std::vector<VertexMeeting> of_a, of_b;  // vertices of the pair's first body, of its second
+  std::vector<Found> found;
   std::vector<Candidate> candidates;
 
   // --- Features of two triangles
   void try_vertex(const Side& a, std::uint32_t vertex, const Side& b, std::uint32_t triangle,
                   const RelativeSweep& sweep, std::vector<VertexMeeting>& out) const {
     if (dot(a.skin.vertex_normal(vertex), b.skin.normal(triangle)) > kFacing) return;
+    if (!boxes_meet(a.skin.vertex_box(vertex), b.skin.box(triangle), sweep, box_reach())) return;
     if (a.index == b.index) {
       const uvec3 c = b.skin.mesh().triangles[triangle];
       if (a.skin.near(vertex, c.x) || a.skin.near(vertex, c.y) || a.skin.near(vertex, c.z)) return;
     }
-    if (!boxes_meet(a.skin.vertex_box(vertex), b.skin.box(triangle), sweep, box_reach())) return;
     if (const auto m = meet_triangle(a.skin.vertex(vertex), b.skin.triangle(triangle), reach))
       out.push_back({vertex, triangle, *m});
   }
 
   void try_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const RelativeSweep& sweep) {
+    if (dot(a.skin.edge_normal(edge_a), b.skin.edge_normal(edge_b)) > kFacing) return;
     const SkinEdge& ea = a.skin.edges()[edge_a];
     const SkinEdge& eb = b.skin.edges()[edge_b];
-    const dvec3 out_a = a.skin.normal(ea.triangle[0]) + a.skin.normal(ea.triangle[1]);
-    const dvec3 out_b = b.skin.normal(eb.triangle[0]) + b.skin.normal(eb.triangle[1]);
-    if (dot(out_a, out_b) > 2.0 * kFacing) return;
-    if (a.index == b.index && (a.skin.near(ea.from, eb.from) || a.skin.near(ea.from, eb.to) ||
-                               a.skin.near(ea.to, eb.from) || a.skin.near(ea.to, eb.to)))
-      return;
     Box box_a = a.skin.vertex_box(ea.from), box_b = b.skin.vertex_box(eb.from);
     box_a.add(a.skin.vertex_box(ea.to));
     box_b.add(b.skin.vertex_box(eb.to));
     if (!boxes_meet(box_a, box_b, sweep, 2.0f * box_reach())) return;
+    if (a.index == b.index && (a.skin.near(ea.from, eb.from) || a.skin.near(ea.from, eb.to) ||
+                               a.skin.near(ea.to, eb.from) || a.skin.near(ea.to, eb.to)))
+      return;
     const auto m = meet_edge(a.skin.edge(edge_a), a.skin.edge_shape(edge_a), b.skin.edge(edge_b),
                              b.skin.edge_shape(edge_b), reach);
     if (m) take_edges(a, edge_a, b, edge_b, *m);
   }
 
   void try_triangles(const Side& a, std::uint32_t s, const Side& b, std::uint32_t t, const RelativeSweep& sweep) {
-    const std::uint8_t own_s = a.skin.owned(s), own_t = b.skin.owned(t);
+    const unsigned of_s = a.skin.live(s), of_t = b.skin.live(t);
     const RelativeSweep back = sweep.reversed();
     for (int i = 0; i < 3; ++i) {
-      if (own_s & 1u << i) try_vertex(a, a.skin.mesh().triangles[s][i], b, t, sweep, of_a);
-      if (own_t & 1u << i) try_vertex(b, b.skin.mesh().triangles[t][i], a, s, back, a.index == b.index ? of_a : of_b);
+      if (of_s & 1u << i) try_vertex(a, a.skin.mesh().triangles[s][i], b, t, sweep, of_a);
+      if (of_t & 1u << i) try_vertex(b, b.skin.mesh().triangles[t][i], a, s, back, a.index == b.index ? of_a : of_b);
     }
-    for (int i = 0; i < 3; ++i) {
-      if (!(own_s & 8u << i)) continue;
-      for (int k = 0; k < 3; ++k)
-        if (own_t & 8u << k) try_edges(a, a.skin.edge_of(s, i), b, b.skin.edge_of(t, k), sweep);
-    }
+    if (of_s < 8u || of_t < 8u) return;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3 && (of_s & 8u << i); ++k)
+        if (of_t & 8u << k) try_edges(a, a.skin.edge_of(s, i), b, b.skin.edge_of(t, k), sweep);
   }
 
   float box_reach() const { return static_cast<float>(0.5 * std::max(reach.front, reach.behind)); }
@@ -102,38 +108,35 @@ struct Proximity::Parts {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     const ContactPoint* last = memory.find(key);
     if (!last && m.gap < -margin) return;  // edges deep below each other that never met: others hold those bodies
-    ContactPoint c;
-    c.a = a.skin.point_on_edge(edge_a, m.along_a);
-    c.b = b.skin.point_on_edge(edge_b, m.along_b);
-    keep(a, b, m, key, last, c);
+    keep({a.index, b.index, true, edge_a, edge_b, m, last}, key, a.skin.point_on_edge(edge_a, m.along_a).position);
   }
 
   // Meetings of every vertex of body a with body b. In front, a vertex touches what it meets; behind, it touches what
   // it came from: the side of the last step, or, where there is none, the nearest if it really is inside.
-  void take_vertices(const Side& a, const Side& b, std::vector<VertexMeeting>& found) {
-    std::sort(found.begin(), found.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
+  void take_vertices(const Side& a, const Side& b, std::vector<VertexMeeting>& met) {
+    std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
       return x.vertex != y.vertex ? x.vertex < y.vertex : x.triangle < y.triangle;
     });
-    for (auto first = found.begin(); first != found.end();) {
-      const auto last = std::find_if(first, found.end(), [&](const auto& m) { return m.vertex != first->vertex; });
+    for (auto first = met.begin(); first != met.end();) {
+      const auto last = std::find_if(first, met.end(), [&](const auto& m) { return m.vertex != first->vertex; });
       take_vertex(a, b, {first, last});
       first = last;
     }
   }
 
-  void take_vertex(const Side& a, const Side& b, std::span<VertexMeeting> found) {
-    const std::uint32_t vertex = found.front().vertex;
+  void take_vertex(const Side& a, const Side& b, std::span<VertexMeeting> met) {
+    const std::uint32_t vertex = met.front().vertex;
     std::array<const ContactPoint*, kMostOfVertex> past;
     for (std::uint32_t k = 0; k < kMostOfVertex; ++k) past[k] = memory.find(vertex_key(a.index, b.index, vertex, k));
-    const std::optional<VertexMeeting> behind = side_to_return_to(a, b, found, past);
+    const std::optional<VertexMeeting> behind = side_to_return_to(a, b, met, past);
 
     std::array<const VertexMeeting*, kMostOfVertex> kept{};
     std::uint32_t count = 0;
     if (behind) kept[count++] = &*behind;
-    std::sort(found.begin(), found.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
+    std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
       return x.meeting.end_gap != y.meeting.end_gap ? x.meeting.end_gap < y.meeting.end_gap : x.triangle < y.triangle;
     });
-    for (const VertexMeeting& m : found) {
+    for (const VertexMeeting& m : met) {
       if (m.meeting.gap < 0.0 || count == kMostOfVertex) continue;
       if (behind && dot(behind->meeting.normal, m.meeting.normal) < 0.0) continue;  // a thin body's far side
       const bool alike = std::any_of(kept.begin(), kept.begin() + count, [&](const VertexMeeting* k) {
@@ -155,20 +158,18 @@ struct Proximity::Parts {
       const ContactPoint* last = best < kMostOfVertex ? past[best] : nullptr;
       if (!last) best = static_cast<std::uint32_t>(std::find(used.begin(), used.end(), false) - used.begin());
       used[best] = true;
-      ContactPoint c;
-      c.a = a.skin.point_at_vertex(vertex);
-      c.b = b.skin.point_on_triangle(kept[i]->triangle, kept[i]->meeting.barycentric);
-      keep(a, b, kept[i]->meeting, vertex_key(a.index, b.index, vertex, best), last, c);
+      keep({a.index, b.index, false, vertex, kept[i]->triangle, kept[i]->meeting, last},
+           vertex_key(a.index, b.index, vertex, best), a.skin.vertex(vertex).x);
     }
   }
 
   // Of the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
-  std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b, std::span<const VertexMeeting> found,
+  std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b, std::span<const VertexMeeting> met,
                                                  const std::array<const ContactPoint*, kMostOfVertex>& past) const {
     const VertexMeeting* behind = nullptr;
     bool known = false;
     double in_front = 1e300;
-    for (const VertexMeeting& m : found) {
+    for (const VertexMeeting& m : met) {
       if (m.meeting.gap >= 0.0) {
         in_front = std::min(in_front, m.meeting.gap);
         continue;
@@ -197,17 +198,35 @@ struct Proximity::Parts {
     return dot(n, mesh.position(m.vertex) - mesh.position(c.x)) >= 0.0f;
   }
 
-  void keep(const Side& a, const Side& b, const Meeting& m, std::uint64_t key, const ContactPoint* last,
-            ContactPoint c) {
-    c.body_a = a.index;
-    c.body_b = b.index;
-    c.normal = m.normal;
-    c.gap = m.gap;
+  void keep(const Found& f, std::uint64_t key, dvec3 position) {
+    const Meeting& m = f.meeting;
+    Candidate c{std::min(f.body_a, f.body_b), std::max(f.body_a, f.body_b), position};
+    c.normal = f.body_a <= f.body_b ? -m.normal : m.normal;
+    c.end_gap = m.end_gap;
+    c.known = f.last != nullptr;
     c.key = key;
-    c.mu_static = std::sqrt(a.body.friction_static * b.body.friction_static);
-    c.mu_sliding = std::sqrt(a.body.friction_sliding * b.body.friction_sliding);
-    carry_over(last, c);
-    candidates.push_back({c, m.end_gap, last != nullptr});
+    c.source = static_cast<std::uint32_t>(found.size());
+    found.push_back(f);
+    candidates.push_back(c);
+  }
+
+  ContactPoint contact_of(const std::vector<std::unique_ptr<Body>>& bodies, const Candidate& candidate) const {
+    const Found& f = found[candidate.source];
+    const Body &a = *bodies[f.body_a], &b = *bodies[f.body_b];
+    const Skin &on_a = skins[f.body_a], &on_b = skins[f.body_b];
+    ContactPoint c;
+    c.body_a = f.body_a;
+    c.body_b = f.body_b;
+    c.a = f.edges ? on_a.point_on_edge(f.feature_a, f.meeting.along_a) : on_a.point_at_vertex(f.feature_a);
+    c.b = f.edges ? on_b.point_on_edge(f.feature_b, f.meeting.along_b)
+                  : on_b.point_on_triangle(f.feature_b, f.meeting.barycentric);
+    c.normal = f.meeting.normal;
+    c.gap = f.meeting.gap;
+    c.key = candidate.key;
+    c.mu_static = std::sqrt(a.friction_static * b.friction_static);
+    c.mu_sliding = std::sqrt(a.friction_sliding * b.friction_sliding);
+    carry_over(f.last, c);
+    return c;
   }
 
   // --- Bodies
@@ -241,6 +260,7 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
   p.memory.take(out);
   p.margin = margin;
   p.reach = {margin, std::clamp(1.5 * p.memory.deepest(), margin, kDeepestInMargins * margin)};
+  p.found.clear();
   p.candidates.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) p.skins[i].refit(*bodies[i], T, static_cast<double>(p.box_reach()));
 
@@ -251,7 +271,8 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
       if (bodies[i]->size() > 0 || bodies[k]->size() > 0) p.find_between(side(i), side(k));
   }
   out.clear();
-  thin_contacts(p.candidates, p.mean_edge, {}, out);
+  thin_contacts(p.candidates, p.mean_edge, {});
+  for (const Candidate& c : p.candidates) out.push_back(p.contact_of(bodies, c));
 }
 
 }  // namespace pliant

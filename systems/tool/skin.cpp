@@ -10,6 +10,7 @@ namespace pliant {
 namespace {
 
 constexpr double kNearEdges = 2.5;  // [mean edges] along the surface: such neighbours never collide
+constexpr double kFlat = 0.05;      // [rad] edges between triangles that are nearer to one plane cannot touch
 constexpr float kRounding = 4e-7f;  // [1] of coordinates: boxes are single precision
 
 Box grown(const Box& box, float by) {
@@ -37,7 +38,9 @@ Skin::Skin(const Body& body) : mesh_(body.skin) {
   vertex_normal_.resize(mesh_->vertex_count);
   normal_.resize(mesh_->triangles.size());
   triangle_box_.resize(mesh_->triangles.size());
+  vertex_box_.resize(mesh_->vertex_count);
   for (const std::vector<Box>& level : mesh_->tree.levels) boxes_.emplace_back(level.size());
+  normal_boxes_ = boxes_;
 }
 
 void Skin::find_edges() {
@@ -154,13 +157,6 @@ EdgeShape Skin::edge_shape(std::uint32_t e) const {
   return shape;
 }
 
-Box Skin::vertex_box(std::uint32_t v) const {
-  Box box;
-  box.add(vec3(position_[v]));
-  box.add(vec3(position_[v] + displacement_[v] - drift_));
-  return box;
-}
-
 void Skin::refit(const Body& body, double T, double reach) {
   const std::uint32_t count = mesh_->vertex_count;
   const bool still = body.size() == 0 && std::all_of(body.skin_velocity.begin(), body.skin_velocity.end(),
@@ -176,6 +172,7 @@ void Skin::refit(const Body& body, double T, double reach) {
   }
   drift_ /= static_cast<double>(std::max(count, 1u));
   find_normals();
+  find_live_edges();
   fit_boxes(reach);
 }
 
@@ -190,15 +187,41 @@ void Skin::find_normals() {
   for (dvec3& n : vertex_normal_) n = unit_or_zero(n);
 }
 
+// Depth lost to a flat edge that is left out: at most kFlat / 4 of its length.
+void Skin::find_live_edges() {
+  live_ = owned_;
+  const double flat = std::cos(kFlat);
+  for (std::uint32_t t = 0; t < live_.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      if (!(owned_[t] & 8u << i)) continue;
+      const SkinEdge& edge = edges_[edge_of_[t][i]];
+      if (edge.triangle[0] == edge.triangle[1]) continue;
+      const dvec3 across = position_[edge.opposite[1]] - position_[edge.from];
+      const bool convex = dot(normal_[edge.triangle[0]], across) < 0.0;
+      if (!convex || dot(normal_[edge.triangle[0]], normal_[edge.triangle[1]]) > flat)
+        live_[t] = static_cast<std::uint8_t>(live_[t] & ~(8u << i));
+    }
+}
+
 void Skin::fit_boxes(double reach) {
   reach_ = reach;
   if (boxes_.empty()) return;
+  for (std::uint32_t v = 0; v < vertex_box_.size(); ++v) {
+    const vec3 from(position_[v]), to(position_[v] + displacement_[v] - drift_);
+    vertex_box_[v].min = glm::min(from, to);
+    vertex_box_[v].max = glm::max(from, to);
+  }
+  std::vector<Box>& leaf_normals = normal_boxes_[0];
+  std::fill(leaf_normals.begin(), leaf_normals.end(), Box());
   for (std::uint32_t t = 0; t < triangle_box_.size(); ++t) {
     Box box;
+    Box& normals = leaf_normals[t / kLeafSize];
+    normals.add(vec3(normal_[t]));
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t v = mesh_->triangles[t][i];
-      box.add(vec3(position_[v]));
-      box.add(vec3(position_[v] + displacement_[v] - drift_));
+      box.add(vertex_box_[v]);
+      normals.add(vec3(vertex_normal_[v]));
+      if (live_[t] & 8u << i) normals.add(vec3(edge_normal(edge_of_[t][i])));
     }
     triangle_box_[t] = grown(box, static_cast<float>(reach));
   }
@@ -209,7 +232,10 @@ void Skin::fit_boxes(double reach) {
     }
   };
   gather(triangle_box_, boxes_[0], kLeafSize);
-  for (std::size_t level = 1; level < boxes_.size(); ++level) gather(boxes_[level - 1], boxes_[level], kTreeWidth);
+  for (std::size_t level = 1; level < boxes_.size(); ++level) {
+    gather(boxes_[level - 1], boxes_[level], kTreeWidth);
+    gather(normal_boxes_[level - 1], normal_boxes_[level], kTreeWidth);
+  }
 }
 
 }  // namespace pliant

@@ -11,6 +11,9 @@
 
 namespace pliant {
 
+// [1] cosine: outward normals of two features that touch are opposed, or nearly.
+inline constexpr double kFacing = 0.3;
+
 struct SkinEdge {
   std::uint32_t from = 0, to = 0;           // vertices
   std::array<std::uint32_t, 2> triangle{};  // beside it; the same twice at a border
@@ -32,6 +35,9 @@ class Skin {
   // goes from corner i to corner i+1).
   std::uint8_t owned(std::uint32_t triangle) const { return owned_[triangle]; }
   std::uint32_t edge_of(std::uint32_t triangle, int i) const { return edge_of_[triangle][i]; }
+  // The same for this step, without edges that cannot touch: where their triangles lie in a plane vertices do, in a
+  // valley nothing does.
+  std::uint8_t live(std::uint32_t triangle) const { return live_[triangle]; }
   SurfacePoint point_at_vertex(std::uint32_t vertex) const;
   SurfacePoint point_on_edge(std::uint32_t edge, double along) const;
   SurfacePoint point_on_triangle(std::uint32_t triangle, dvec3 barycentric) const;
@@ -49,7 +55,12 @@ class Skin {
   // Of triangle runs as in Mesh::tree, level 0 the leaves.
   const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
   const Box& box(std::uint32_t t) const { return triangle_box_[t]; }
-  Box vertex_box(std::uint32_t v) const;  // without reach
+  const Box& vertex_box(std::uint32_t v) const { return vertex_box_[v]; }  // without reach
+  // Of the same runs: all outward normals of their triangles, vertices and edges.
+  const std::vector<std::vector<Box>>& normal_boxes() const { return normal_boxes_; }
+  dvec3 edge_normal(std::uint32_t e) const {  // [1] mean of the two beside it
+    return 0.5 * (normal_[edges_[e].triangle[0]] + normal_[edges_[e].triangle[1]]);
+  }
   // Is a point inside? By the nearest feature within `reach` [m] of it and its pseudonormal (Baerentzen & Aanaes 2005).
   bool contains(dvec3 p, double reach) const;
 
@@ -58,11 +69,12 @@ class Skin {
   void find_neighbours(double distance);
   void fit_boxes(double reach);
   void find_normals();
+  void find_live_edges();
 
   const Mesh* mesh_;
   std::vector<SkinEdge> edges_;
   std::vector<std::array<std::uint32_t, 3>> edge_of_;
-  std::vector<std::uint8_t> owned_;
+  std::vector<std::uint8_t> owned_, live_;
   std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
   std::vector<std::uint32_t> near_first_, near_;               // ascending runs per vertex
@@ -71,8 +83,8 @@ class Skin {
   dvec3 drift_{0};
   double reach_ = -1.0;
   bool still_ = false;  // nothing moved in the last step
-  std::vector<Box> triangle_box_;
-  std::vector<std::vector<Box>> boxes_;
+  std::vector<Box> vertex_box_, triangle_box_;
+  std::vector<std::vector<Box>> boxes_, normal_boxes_;
 };
 
 }  // namespace pliant

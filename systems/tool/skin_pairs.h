@@ -1,5 +1,6 @@
-// Pairs of triangles whose swept boxes meet: both trees descended together (Gottschalk, Lin & Manocha 1996), the larger
-// level first, in an order that depends on nothing but the boxes.
+// Pairs of triangles whose swept boxes meet and that do not all look the same way: both trees descended together
+// (Gottschalk, Lin & Manocha 1996), the larger level first, in an order that depends on nothing but the boxes. The look
+// at normals keeps a smooth skin from being compared with its own neighbourhood.
 #pragma once
 
 #include "systems/tool/skin.h"
@@ -30,6 +31,13 @@ struct RelativeSweep {
 
 namespace detail {
 
+// The smallest dot product of a vector in box a with one in box b.
+inline float least_dot(const Box& a, const Box& b) {
+  const vec3 p = a.min * b.min, q = a.min * b.max, r = a.max * b.min, s = a.max * b.max;
+  const vec3 least = glm::min(glm::min(p, q), glm::min(r, s));
+  return least.x + least.y + least.z;
+}
+
 template <class Use>
 struct PairWalk {
   const Skin& a;
@@ -45,9 +53,12 @@ struct PairWalk {
     return std::min((i + 1) * width(level), size(skin, level));
   }
   const Box& box(const Skin& skin, std::size_t level, std::uint32_t i) const { return skin.boxes()[level][i]; }
+  bool facing(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
+    return least_dot(a.normal_boxes()[la][ia], b.normal_boxes()[lb][ib]) <= static_cast<float>(kFacing) + 1e-5f;
+  }
 
   void across(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
-    if (!sweep.meet(box(a, la, ia), box(b, lb, ib))) return;
+    if (!sweep.meet(box(a, la, ia), box(b, lb, ib)) || !facing(la, ia, lb, ib)) return;
     if (la == 0 && lb == 0) return leaves(ia, ib);
     if (la >= lb) {
       for (std::uint32_t k = ia * kTreeWidth; k < end(a, la, ia); ++k) across(la - 1, k, lb, ib);
@@ -62,6 +73,7 @@ struct PairWalk {
   }
   // Of one skin with itself: every unordered pair of different triangles once.
   void within(std::size_t level, std::uint32_t i) const {
+    if (!facing(level, i, level, i)) return;
     if (level == 0) {
       for (std::uint32_t s = i * kLeafSize; s < end(a, 0, i); ++s)
         for (std::uint32_t t = s + 1; t < end(a, 0, i); ++t)

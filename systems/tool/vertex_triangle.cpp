@@ -79,7 +79,10 @@ std::optional<Meeting> meet_triangle(const Moving& vertex, const std::array<Movi
   const double area1 = length(n1);
   m.end_gap = area1 > 0.0 ? dot(n1, end - x1[0]) / area1 : m.gap;
 
-  if (m.gap >= 0.0) {
+  // What does not travel as far as the gap does not cross it.
+  double travel = 0.0;
+  for (const Moving& c : triangle) travel = std::max(travel, length(vertex.d - c.d));
+  if (m.gap >= 0.0 && m.gap <= travel) {
     std::array<double, 3> times;
     const int count = find_crossings(triangle[0], triangle[1], triangle[2], vertex, times);
     for (int i = 0; i < count; ++i) {
