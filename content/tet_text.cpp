@@ -28,6 +28,7 @@ bool to_integer(std::string_view word, std::int64_t& out) {
 }
 
 bool TetText::line(std::string_view& out) {
+  taken_ = at_;
   if (left() == 0) return false;
   const std::size_t end = std::min(text().find('\n', at_), text().size());
   out = text().substr(at_, end - at_);
@@ -40,13 +41,16 @@ bool TetText::word(std::string_view& out, bool comments) {
   const std::string_view all = text();
   for (;;) {
     while (at_ < all.size() && is_space(all[at_])) ++at_;
-    if (at_ == all.size()) return false;
+    if (at_ == all.size()) {
+      taken_ = at_;
+      return false;
+    }
     if (!comments || all[at_] != '#') break;
     at_ = std::min(all.find('\n', at_), all.size());
   }
-  const std::size_t begin = at_;
+  taken_ = at_;
   while (at_ < all.size() && !is_space(all[at_])) ++at_;
-  out = all.substr(begin, at_ - begin);
+  out = all.substr(taken_, at_ - taken_);
   return true;
 }
 
@@ -75,7 +79,7 @@ bool TetText::skip_past(std::string_view mark) {
 
 Error TetText::fault(const std::string& what) const {
   if (binary_) return {fmt::format("{} at byte {}", name_, at_), what};
-  const std::string_view before = text().substr(0, at_);
+  const std::string_view before = text().substr(0, taken_);
   return {fmt::format("{}:{}", name_, 1 + std::count(before.begin(), before.end(), '\n')), what};
 }
 

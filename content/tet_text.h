@@ -46,7 +46,7 @@ class TetText {
   bool skip(std::uint64_t bytes);
   bool skip_past(std::string_view mark);  // behind the next occurrence; false: there is none
 
-  Error fault(const std::string& what) const;  // at this place
+  Error fault(const std::string& what) const;  // at the last word or line, or this byte
 
  private:
   std::string_view text() const { return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()}; }
@@ -54,6 +54,7 @@ class TetText {
   std::span<const std::uint8_t> bytes_;
   std::string name_;
   std::size_t at_ = 0;
+  std::size_t taken_ = 0;  // where the last word or line begins
   bool binary_ = false, swapped_ = false;
 };
 

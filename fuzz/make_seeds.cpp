@@ -79,12 +79,48 @@ void write_panorama(const fs::path& path, Imf::Compression compression) {
   file.writePixels(8);
 }
 
+template <class... T>
+void append(std::string& out, T... values) {
+  (out.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+}
+
+// One tetrahedron in each form.
+bool write_tets(const fs::path& folder) {
+  bool good = write_text(folder / "msh2",
+                         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+                         "$EndNodes\n$Elements\n2\n1 2 2 0 1 1 2 3\n2 4 2 0 1 1 2 3 4\n$EndElements\n")
+                  .ok();
+  good = good && write_text(folder / "msh4",
+                            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n"
+                            "1 0 0\n0 1 0\n0 0 1\n$EndNodes\n$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n");
+  std::string binary = "$MeshFormat\n4.1 1 8\n";
+  append(binary, std::int32_t{1});
+  binary += "\n$EndMeshFormat\n$Nodes\n";
+  append(binary, std::uint64_t{1}, std::uint64_t{4}, std::uint64_t{1}, std::uint64_t{4});
+  append(binary, std::int32_t{3}, std::int32_t{1}, std::int32_t{0}, std::uint64_t{4});
+  append(binary, std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{3}, std::uint64_t{4});
+  append(binary, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+  binary += "\n$EndNodes\n$Elements\n";
+  append(binary, std::uint64_t{1}, std::uint64_t{1}, std::uint64_t{1}, std::uint64_t{1});
+  append(binary, std::int32_t{3}, std::int32_t{1}, std::int32_t{4}, std::uint64_t{1});
+  append(binary, std::uint64_t{1}, std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{3}, std::uint64_t{4});
+  good = good && write_text(folder / "msh4_binary", binary + "\n$EndElements\n");
+  const std::string points = "DATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+  good = good && write_text(folder / "vtk", "# vtk DataFile Version 3.0\none\nASCII\n" + points +
+                                                "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
+  good = good && write_text(folder / "vtk5", "# vtk DataFile Version 5.1\none\nASCII\n" + points +
+                                                 "CELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n"
+                                                 "0 1 2 3\nCELL_TYPES 1\n10\n");
+  return good &&
+         write_text(folder / "tetgen", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n\0011 4 0\n1 1 2 3 4\n").ok();
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   if (count != 2) return std::fprintf(stderr, "make_seeds FOLDER\n"), 2;
   const fs::path folder = arguments[1];
-  for (const char* name : {"gltf", "draco", "exr", "image", "mesh"}) fs::create_directories(folder / name);
+  for (const char* name : {"gltf", "draco", "exr", "image", "mesh", "tets"}) fs::create_directories(folder / name);
   const Level level = small_level();
   const Primitive& p = level.meshes[0].primitives[0];
   DracoMesh mesh{4, p.index, {{"POSITION", 0, 3, false, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}}}};
@@ -108,5 +144,6 @@ int main(int count, char** arguments) {
   write_panorama(folder / "exr/zip", Imf::ZIP_COMPRESSION);
   write_panorama(folder / "exr/piz", Imf::PIZ_COMPRESSION);
   write_panorama(folder / "exr/dwaa", Imf::DWAA_COMPRESSION);
+  good = good && write_tets(folder / "tets");
   return good ? 0 : 1;
 }
