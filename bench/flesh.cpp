@@ -1,0 +1,190 @@
+// Flesh by itself: what assembling and stepping blocks of 500 to 40,000 tetrahedra costs, and what scheme, step and
+// iterations buy, as the error of a falling beam's tip against a converged reference beside the time.
+//   bench_flesh [--out FILE.json]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "runtime/clock.h"
+#include "systems/tool/flesh_step.h"
+#include "tests/scenes/tet_shapes.h"
+
+namespace pliant {
+namespace {
+
+constexpr dvec3 kGravity(0, -9.81, 0);  // [m/s2]
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+double ms_since(std::uint64_t begin) {
+  return static_cast<double>(now_ns() - begin) * 1e-6;
+}
+
+struct Cost {
+  std::size_t tets = 0;
+  double assemble_ms = 0, factorise_ms = 0, solve_ms = 0;
+  double residual = 0;  // [1] |A v - b| / |b|
+};
+
+// A clamped beam that sways, so that every element turns and stretches from step to step.
+Cost cost(int along, int across) {
+  TetMesh mesh = tets::box(along, across, across, dvec3(0), {0.1, 0.1 * across / along, 0.1 * across / along});
+  tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
+  Flesh flesh(mesh, {.young = 1e5, .poisson = 0.45}, mesh.free_count);
+  auto solver = make_solver(SolverKind::kAuto, flesh.moving());
+  solver->analyse(flesh.inner());
+  Cost out;
+  out.tets = mesh.tets.size();
+  std::vector<double> assemble, factorise, solve;
+  Vector v(3 * flesh.moving()), back;
+  const double T = 0.01;
+  for (int i = 0; i < 21; ++i) {
+    std::uint64_t begin = now_ns();
+    flesh.assemble(T, kGravity);
+    assemble.push_back(ms_since(begin));
+    begin = now_ns();
+    if (!solver->factorise(flesh.inner())) return out;
+    factorise.push_back(ms_since(begin));
+    begin = now_ns();
+    const Vector b = flesh.right().head(3 * flesh.moving());
+    solver->solve(b, v);
+    solve.push_back(ms_since(begin));
+    flesh.inner().multiply(v, back);
+    out.residual = std::max(out.residual, (back - b).norm() / b.norm());
+    for (std::uint32_t n = 0; n < flesh.moving(); ++n) {
+      flesh.velocity()[n] = {v[3 * n], v[3 * n + 1], v[3 * n + 2]};
+      flesh.position()[n] += T * flesh.velocity()[n];
+    }
+  }
+  out.assemble_ms = median(assemble), out.factorise_ms = median(factorise), out.solve_ms = median(solve);
+  return out;
+}
+
+// A soft beam is let go and swings down once; its tip is watched every 60th of a second.
+struct Way {
+  Scheme scheme = Scheme::kEuler;
+  int steps = 1;  // per 60th of a second
+  int iterations = 1;
+  double tolerance = 1e-6;  // [1]
+};
+constexpr int kFrames = 24;
+struct Swing {
+  std::vector<dvec3> tip;
+  double ms = 0;          // per step
+  double iterations = 0;  // per step
+  double energy = 0;      // [1] largest change of kinetic, elastic and potential energy, of the work of gravity
+};
+
+Swing swing(const Way& way) {
+  TetMesh mesh = tets::box(12, 2, 2, dvec3(0), {0.12, 0.02, 0.02});
+  tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
+  Flesh flesh(mesh, {.young = 2e4, .poisson = 0.45}, mesh.free_count);
+  auto solver = make_solver(SolverKind::kAuto, flesh.moving());
+  solver->analyse(flesh.inner());
+  const auto work = [&] {
+    double sum = 0;
+    for (std::uint32_t n = 0; n < mesh.free_count; ++n)
+      sum += flesh.mass()[n] * dot(kGravity, flesh.position()[n] - mesh.nodes[n]);
+    return sum;
+  };
+  Swing out;
+  double most_work = 0, worst = 0;
+  std::uint64_t spent = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    for (int i = 0; i < way.steps; ++i) {
+      const std::uint64_t begin = now_ns();
+      out.iterations += step_flesh(flesh, *solver, 1.0 / 60 / way.steps, kGravity,
+                                   {.scheme = way.scheme, .iterations = way.iterations, .tolerance = way.tolerance})
+                            .iterations;
+      spent += now_ns() - begin;
+    }
+    dvec3 tip(0);
+    int count = 0;
+    for (std::uint32_t n = 0; n < mesh.free_count; ++n)
+      if (mesh.nodes[n].x > 0.1199) tip += flesh.position()[n], ++count;
+    out.tip.push_back(tip / static_cast<double>(count));
+    most_work = std::max(most_work, work());
+    worst = std::max(worst, std::abs(kinetic_energy(flesh) + flesh.elastic_energy() - work()));
+  }
+  const double steps = static_cast<double>(kFrames) * way.steps;
+  out.ms = static_cast<double>(spent) * 1e-6 / steps;
+  out.iterations /= steps;
+  out.energy = worst / most_work;
+  return out;
+}
+
+// Root of the mean square distance of the tips over the largest way the tip goes.
+double difference(const Swing& a, const Swing& b) {
+  double sum = 0, way = 0;
+  for (std::size_t i = 0; i < a.tip.size(); ++i) {
+    sum += dot(a.tip[i] - b.tip[i], a.tip[i] - b.tip[i]);
+    way = std::max(way, length(b.tip[i] - dvec3(0.12, 0.01, 0.01)));
+  }
+  return std::sqrt(sum / static_cast<double>(a.tip.size())) / way;
+}
+
+std::string costs() {
+  fmt::print("A step of a clamped beam\n{:>8} {:>12} {:>13} {:>9} {:>10}\n", "tets", "assemble ms", "factorise ms",
+             "solve ms", "residual");
+  std::string json;
+  for (const auto& [along, across] : {std::pair(20, 2), std::pair(39, 3), std::pair(67, 5), std::pair(104, 8)}) {
+    const Cost c = cost(along, across);
+    fmt::print("{:>8} {:>12.2f} {:>13.2f} {:>9.2f} {:>10.1e}\n", c.tets, c.assemble_ms, c.factorise_ms, c.solve_ms,
+               c.residual);
+    json += fmt::format(
+        "{}\n    {{\"tets\": {}, \"assemble_ms\": {:.3f}, \"factorise_ms\": {:.3f}, \"solve_ms\": {:.3f}, "
+        "\"residual\": {:.2e}}}",
+        json.empty() ? "" : ",", c.tets, c.assemble_ms, c.factorise_ms, c.solve_ms, c.residual);
+  }
+  return json;
+}
+
+std::string schemes(double& reference_error) {
+  const Way finest{.scheme = Scheme::kMidpoint, .steps = 64, .iterations = 50, .tolerance = 1e-10};
+  Way coarser = finest;
+  coarser.steps = 32;
+  const Swing reference = swing(finest);
+  reference_error = difference(swing(coarser), reference) / 3;  // of order two
+  fmt::print("\nA beam of 288 tetrahedra swings down; the reference's own error is about {:.1e}\n", reference_error);
+  fmt::print("{:>9} {:>10} {:>9} {:>12} {:>9} {:>13} {:>11} {:>13}\n", "scheme", "step ms", "at most", "iterations",
+             "ms/step", "ms/simul. s", "tip error", "energy error");
+  std::string json;
+  for (const Scheme scheme : {Scheme::kEuler, Scheme::kMidpoint})
+    for (const int steps : {1, 2, 4, 8, 16})
+      for (const int iterations : {1, 2, 3, 30}) {
+        const Swing s = swing({.scheme = scheme, .steps = steps, .iterations = iterations});
+        const char* const name = scheme == Scheme::kEuler ? "euler" : "midpoint";
+        const double error = difference(s, reference), second = s.ms * 60 * steps;
+        fmt::print("{:>9} {:>10.2f} {:>9} {:>12.1f} {:>9.2f} {:>13.1f} {:>11.1e} {:>13.1e}\n", name, 1e3 / 60 / steps,
+                   iterations, s.iterations, s.ms, second, error, s.energy);
+        json += fmt::format(
+            "{}\n    {{\"scheme\": \"{}\", \"step_ms\": {:.3f}, \"iterations_at_most\": {}, \"iterations\": {:.2f}, "
+            "\"ms_per_step\": {:.3f}, \"ms_per_simulated_s\": {:.1f}, \"tip_error\": {:.3e}, \"energy_error\": "
+            "{:.3e}}}",
+            json.empty() ? "" : ",", name, 1e3 / 60 / steps, iterations, s.iterations, s.ms, second, error, s.energy);
+      }
+  return json;
+}
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  std::string out;
+  for (int i = 1; i + 1 < argc; ++i)
+    if (std::string(argv[i]) == "--out") out = argv[i + 1];
+  const std::string steps = pliant::costs();
+  double reference_error = 0;
+  const std::string ways = pliant::schemes(reference_error);
+  if (!out.empty())
+    std::ofstream(out) << fmt::format(
+        "{{\n  \"step\": [{}\n  ],\n  \"reference_tip_error\": {:.2e},\n  \"scheme\": [{}\n  ]\n}}\n", steps,
+        reference_error, ways);
+}
