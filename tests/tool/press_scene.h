@@ -1,5 +1,5 @@
-// A soft finger with a rigid handle over a flat ground or a rigid block, stepped as the soft clock does it; contacts are
-// found by height alone, so that every number can be checked by hand.
+// A soft finger with a rigid handle over a flat ground or a rigid block, stepped as the soft clock does it; contacts
+// are found by height alone, so that every number can be checked by hand.
 #pragma once
 
 #include <algorithm>
@@ -35,11 +35,27 @@ inline Handle6 firm_handle() {
   return handle;
 }
 
+inline SoftBody firm_flesh() {
+  SoftBody flesh;
+  flesh.young = 2e4;
+  flesh.poisson = 0.4;
+  flesh.density = 1000.0;
+  flesh.rayleigh = {1.0, 0.002};
+  return flesh;
+}
+
+inline Pose moved(Pose pose, const Vector6& by) {
+  pose.position += linear(by);
+  pose.rotation = rotation_of(angular(by)) * pose.rotation;
+  return pose;
+}
+
 class PressScene {
  public:
   // The finger hangs down from its handle: the bar's x runs along -y, its free end just over y = 0.
-  explicit PressScene(const SoftBody& flesh, const Handle6& handle, double friction, int length = 5)
-      : bar_(make_finger(length, 2, 2, kCell)), ground_(ground_mesh()), friction_(friction) {
+  PressScene(const SoftBody& flesh, const Handle6& handle, double friction, std::uint32_t length = 5,
+             std::uint32_t width = 2)
+      : bar_(make_finger(length, width, width, kCell)), ground_(ground_mesh()), friction_(friction) {
     start_ = {dvec3(0, length * kCell, 0), rotation_of(dvec3(0, 0, -0.5 * 3.14159265358979323846))};
     bodies.push_back(std::make_unique<SoftBodyState>(bar_.tets, bar_.skin, flesh, &handle, start_));
     bodies.push_back(std::make_unique<FixedBody>(ground_, Pose{}));
@@ -54,8 +70,8 @@ class PressScene {
 
   // One step of T [s] at whose end the device is at `end`.
   void step(double T, const Pose& end, dvec3 gravity = dvec3(0)) {
-    Vector6 v = join((end.position - device_.position) / T,
-                     vector_of(end.rotation * glm::conjugate(device_.rotation)) / T);
+    Vector6 v =
+        join((end.position - device_.position) / T, vector_of(end.rotation * glm::conjugate(device_.rotation)) / T);
     if (!placed_) v.setZero();
     tool().set_device(placed_ ? device_ : end, v);
     device_ = end;
@@ -66,6 +82,17 @@ class PressScene {
     build_problem(bodies, contacts, T, kUndonePenetration, delassus, problem);
     report = solve(problem, {2000, 1e-12, 0});
     apply_impulses(bodies, delassus, problem, contacts);
+  }
+  // Pressed down by `depth` [m] over the first half of `steps` of T [s]. Reduces the last one for `tick`.
+  Pose settle(double T, double depth, int steps, double tick, HandleModel& model) {
+    Pose at = start_;
+    for (int i = 0; i < steps; ++i) {
+      at.position.y = start_.position.y - depth * std::min(1.0, i / (0.5 * steps));
+      step(T, at);
+      if (i + 1 == steps) reduce(tick, model);
+      advance();
+    }
+    return at;
   }
   void reduce(double tick, HandleModel& out) const {
     if (out.contacts.from_modes.rows() == 0) out.contacts.resize(kMaxCondensed, kMaxModes);

@@ -1,0 +1,238 @@
+// The tool's touch tick in a world of its own: stability against the table of exact limits, updates that are not felt,
+// models that grow old, budgets that are missed, memory that is not asked for.
+#include "systems/tool/tool_feedback.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "systems/device/devices.h"
+#include "systems/tool/prepare_tools.h"
+#include "systems/tool/tool_touch_state.h"
+#include "systems/touch/prepare.h"
+#include "tests/tool/press_scene.h"
+
+#ifndef PLIANT_SANITIZED
+// Every allocation, Eigen's too, comes by here; the sanitizers have their own.
+namespace {
+std::atomic<std::uint64_t> g_allocations{0};
+}
+extern "C" void* __libc_malloc(std::size_t);
+extern "C" void* malloc(std::size_t size) {
+  ++g_allocations;
+  return __libc_malloc(size);
+}
+#endif
+
+namespace pliant {
+namespace {
+
+constexpr double kTick = 1e-3;  // [s]
+
+// One tool whose device the test moves, and whose models the test publishes.
+struct Stage {
+  World world;
+  Entity tool, device;
+  std::uint64_t ticks = 0;
+  HandleModel model;
+
+  explicit Stage(const Handle6& settings = {}) {
+    tool = world.registry.create();
+    device = world.registry.create();
+    world.registry.add<Name>(device, {"hand"});
+    HapticDevice& d = world.registry.add(device, HapticDevice{});
+    d.max_force = 1e9;
+    d.max_slew = 1e12;
+    world.registry.add<SoftBody>(tool, {});
+    world.registry.add<Pose>(tool, {});
+    world.registry.add<Handle6>(tool, settings).device = "hand";
+    EXPECT_TRUE(prepare_touch(world));
+    const Status prepared = prepare_tools(world);
+    EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().what);
+    model.contacts.resize(kMaxCondensed, kMaxModes);
+    model.soft_step = 1.0 / 60.0;
+    model.handle_mass = Matrix6::Identity() * 1e-3;
+  }
+  ToolTouchState& state() { return *world.tools->tools[0]; }
+  HapticDevice& hand() { return world.registry.get<HapticDevice>(device); }
+  void publish() {
+    ++model.step;
+    model.time = static_cast<double>(ticks) * kTick;
+    model.contacts.prepare_tick(kTick);
+    state().model.write() = model;
+    state().model.publish();
+  }
+  void tick() {
+    const Tick now{ticks, kTick, static_cast<double>(ticks) * kTick};
+    tool_feedback(world, now);
+    write_devices(world, now);
+    ++ticks;
+  }
+};
+
+Handle6 coupling(double stiffness) {
+  Handle6 handle;
+  handle.translation = {stiffness, 0.0};
+  handle.rotation = {0.5, 0.005};
+  handle.max_force = 1e9;
+  return handle;
+}
+
+// [m] how far the device has swung in the last half of three seconds, from 1 mm inside the coupling. The handle is
+// against a rigid wall, so that the coupling is all that the device feels; device: exact mass and damper.
+double swing(double mass, double damping, double stiffness) {
+  Stage stage(coupling(stiffness));
+  stage.state().wanted = ToolForce::kLinear;
+  stage.model.linear.stiffness = 1e12 * Matrix6::Identity();
+  const double E = std::exp(-damping / mass * kTick);
+  double x = 1e-3, v = 0.0, largest = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    if (i % 16 == 0) stage.publish();
+    stage.hand().position.x = x;
+    stage.tick();
+    const double force = stage.state().device_wrench[0], u = force / damping;
+    x += u * kTick + (v - u) * (1 - E) * mass / damping;
+    v = u + (v - u) * E;
+    if (i >= 1500) largest = std::max(largest, std::abs(x));
+    if (!(std::abs(x) < 1e3)) return 1e3;
+  }
+  return largest;
+}
+
+TEST(ToolFeedback, IsStableAgainstARigidWallUpToTheExactLimitOfTheDevice) {
+  struct Row {
+    double mass, damping, limit;  // [kg], [N s/m], [N/m] methods.md 3.7
+  };
+  for (const Row& row : {Row{.045, .05, 100}, Row{.045, .1, 200}, Row{.045, .5, 1002}, Row{.1, 1, 2003}}) {
+    EXPECT_LT(swing(row.mass, row.damping, 0.97 * row.limit), 1e-3) << row.limit;
+    EXPECT_GT(swing(row.mass, row.damping, 1.03 * row.limit), 1e-3) << row.limit;
+  }
+}
+
+TEST(ToolFeedback, AModelsUpdateIsNoJump) {
+  for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
+    Stage stage(coupling(200.0));
+    stage.state().wanted = mode;
+    const auto press = [&](double newton) {
+      stage.model.force.setZero();
+      stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = newton;
+    };
+    press(0.5);
+    stage.publish();
+    for (int i = 0; i < 40; ++i) stage.tick();
+    EXPECT_NEAR(stage.state().wrench[1], 0.5, 1e-9);
+    press(1.5);
+    stage.publish();
+    double before = stage.state().wrench[1], most = 0.0;
+    for (int i = 0; i < 40; ++i) {
+      stage.tick();
+      most = std::max(most, std::abs(stage.state().wrench[1] - before));
+      before = stage.state().wrench[1];
+    }
+    // Fading over T/3 = 5.6 ms changes at most 1 - e^(-1/5.6) of the difference in a tick.
+    EXPECT_LT(most, 1.0 - std::exp(-kTick * 3.0 * 60.0) + 1e-9);
+    EXPECT_NEAR(before, 1.5, 2e-3);
+  }
+}
+
+TEST(ToolFeedback, AModelThatGrewOldFadesToNothing) {
+  for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
+    Stage stage(coupling(200.0));
+    stage.state().wanted = mode;
+    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 1.0;
+    stage.publish();
+    double before = 1.0, most = 0.0;
+    for (int i = 0; i < 150; ++i) {
+      stage.tick();
+      if (i <= 50) EXPECT_NEAR(stage.state().wrench[1], 1.0, 1e-9) << i;  // 3 T = 50 ms
+      most = std::max(most, std::abs(stage.state().wrench[1] - before));
+      before = stage.state().wrench[1];
+    }
+    EXPECT_LT(before, 1e-3);
+    EXPECT_LT(most, 0.25);
+  }
+}
+
+// A finger of many contacts, its last soft step as the model.
+struct Pressing {
+  PressScene scene;
+  Pose at;
+  explicit Pressing(Stage& stage, double friction) : scene(firm_flesh(), firm_handle(), friction, 4, 5) {
+    at = scene.settle(1.0 / 60.0, 2e-3, 30, kTick, stage.model);
+    stage.hand().position = at.position;
+    stage.hand().rotation = at.rotation;
+  }
+};
+
+TEST(ToolFeedback, LateTicksLeaveTheForceToTheLinearModelWithoutAJump) {
+  Stage stage(firm_handle());
+  Pressing pressing(stage, 0.5);
+  ASSERT_GE(stage.model.contacts.count, 30);
+  stage.publish();
+  for (int i = 0; i < 5; ++i) stage.tick();
+  EXPECT_EQ(stage.state().used, ToolForce::kContacts);
+  const Vector6 before = stage.state().wrench;
+  stage.state().limits.budget_ns = 1;
+  stage.state().limits.tolerance = 0.0;
+  for (int i = 0; i < kLateTicks; ++i) stage.tick();
+  EXPECT_EQ(stage.state().used, ToolForce::kLinear);
+  stage.tick();
+  EXPECT_LT((stage.state().wrench - before).norm(), 1e-3 * before.norm());
+  stage.state().limits.budget_ns = 0;
+  stage.publish();
+  stage.tick();
+  EXPECT_EQ(stage.state().used, ToolForce::kContacts);
+}
+
+TEST(ToolFeedback, ATickAllocatesNothing) {
+#ifdef PLIANT_SANITIZED
+  GTEST_SKIP() << "the sanitizers allocate themselves";
+#else
+  for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
+    Stage stage(firm_handle());
+    Pressing pressing(stage, 0.5);
+    stage.state().wanted = mode;
+    stage.publish();
+    stage.tick();
+    std::uint64_t allocated = 0;
+    for (int i = 0; i < 100; ++i) {
+      stage.hand().position.x += 5e-5;
+      if (i == 50) stage.publish();
+      const std::uint64_t before = g_allocations;
+      stage.tick();
+      allocated += g_allocations - before;
+    }
+    EXPECT_EQ(allocated, 0u);
+    EXPECT_GT(stage.state().wrench.norm(), 0.1);
+  }
+#endif
+}
+
+TEST(ToolFeedback, NothingIsFeltOfADeviceThatIsLost) {
+  Stage stage(coupling(200.0));
+  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 0.1;
+  stage.publish();
+  for (int i = 0; i < 40; ++i) stage.tick();
+  EXPECT_GT(length(stage.hand().force_sent), 0.05);
+  stage.hand().status = DeviceStatus::kLost;
+  stage.tick();
+  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
+  EXPECT_EQ(length(stage.hand().torque_sent), 0.0);
+  stage.hand().status = DeviceStatus::kReady;
+  stage.hand().position.x = std::nan("");
+  stage.tick();
+  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
+}
+
+TEST(ToolFeedback, ADeviceThatMovesAProbeAlreadyIsRefused) {
+  Stage stage;
+  const Entity probe = stage.world.registry.create();
+  stage.world.registry.add<Probe>(probe, {}).device = stage.device;
+  const Status status = prepare_tools(stage.world);
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().what.find("give each its own"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pliant
