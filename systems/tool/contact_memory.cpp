@@ -30,11 +30,7 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b, std::uint32_t edge_a, s
 void ContactMemory::take(const std::vector<ContactPoint>& contacts) {
   contacts_ = contacts;
   by_key_.clear();
-  deepest_ = 0.0;
-  for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
-    by_key_.emplace_back(contacts_[i].key, i);
-    deepest_ = std::max(deepest_, -contacts_[i].gap);
-  }
+  for (std::uint32_t i = 0; i < contacts_.size(); ++i) by_key_.emplace_back(contacts_[i].key, i);
   std::sort(by_key_.begin(), by_key_.end());
 }
 

@@ -19,12 +19,10 @@ class ContactMemory {
   void take(const std::vector<ContactPoint>& contacts);
   // Null where the last step had no such contact.
   const ContactPoint* find(std::uint64_t key) const;
-  double deepest() const { return deepest_; }  // [m] >= 0
 
  private:
   std::vector<ContactPoint> contacts_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
-  double deepest_ = 0.0;
 };
 
 // Axes, impulse and sliding of a contact: those of the last step turned onto the new normal, or fresh ones.

@@ -7,8 +7,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kAlike = 0.9;   // [1] cosine between normals that push the same way
-constexpr double kWidest = 1e3;  // [1] spacings grow no further: by then one contact a direction is left
+constexpr double kAlike = 0.9;    // [1] cosine between normals that push the same way
+constexpr double kGrowth = 1.1;   // [1] of the spacing, where too many are left: regular meshes lose half in one go
+constexpr double kSteady = 0.05;  // [mean edges] another must be deeper by so much to replace one of the last step
+constexpr double kWidest = 1e3;   // [1] spacings grow no further: by then one contact a direction is left
 
 using Run = std::vector<Candidate>::iterator;
 
@@ -47,7 +49,7 @@ Run thin_pair(Run first, Run last, double spacing, std::size_t most) {
   const auto too_many = [&] { return static_cast<std::size_t>(last - first) > most; };
   if (too_many()) spacing = std::max(spacing, 0.5 * extent(first, last) / std::sqrt(static_cast<double>(most)));
   last = keep_apart(first, last, spacing);
-  for (double wider = 1.5; too_many(); wider *= 1.5) {
+  for (double wider = kGrowth; too_many(); wider *= kGrowth) {
     if (wider > kWidest) last = first + static_cast<std::ptrdiff_t>(most);
     last = keep_apart(first, last, wider * spacing);
   }
@@ -62,13 +64,14 @@ void thin_contacts(std::vector<Candidate>& candidates, const std::vector<double>
     return limits.spacing * std::min(mean_edge[c.body_low], mean_edge[c.body_high]);
   };
   const auto order = [&](const Candidate& c) {
-    return std::make_tuple(c.body_low, c.body_high, c.end_gap - (c.known ? spacing_of(c) : 0.0), c.key);
+    const double ahead = c.known ? kSteady * std::min(mean_edge[c.body_low], mean_edge[c.body_high]) : 0.0;
+    return std::make_tuple(c.body_low, c.body_high, c.end_gap - ahead, c.key);
   };
   std::sort(candidates.begin(), candidates.end(),
             [&](const Candidate& x, const Candidate& y) { return order(x) < order(y); });
 
   // Sorted so, every pair is a run. All spacings grow together until the total fits, too.
-  for (double wider = 1.0; wider < kWidest; wider *= 1.5) {
+  for (double wider = 1.0; wider < kWidest; wider *= kGrowth) {
     Run kept = candidates.begin();
     for (Run first = candidates.begin(); first != candidates.end();) {
       const Run last = std::find_if(first, candidates.end(), [&](const auto& c) { return !same_pair(c, *first); });

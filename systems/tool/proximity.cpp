@@ -55,6 +55,7 @@ struct Proximity::Parts {
   ContactMemory memory;
   Reach reach;
   double margin = 0.0;
+  double deepest = 0.0;                   // [m] >= 0: penetration of the last step's contacts, as found
   std::vector<VertexMeeting> of_a, of_b;  // vertices of the pair's first body, of its second
   std::vector<Found> found;
   std::vector<Candidate> candidates;
@@ -200,6 +201,8 @@ struct Proximity::Parts {
 
   void keep(const Found& f, std::uint64_t key, dvec3 position) {
     const Meeting& m = f.meeting;
+    if (!std::isfinite(m.gap + m.end_gap + dot(m.normal, position)))
+      return;  // a body that has blown up touches nothing
     Candidate c{std::min(f.body_a, f.body_b), std::max(f.body_a, f.body_b), position};
     c.normal = f.body_a <= f.body_b ? -m.normal : m.normal;
     c.end_gap = m.end_gap;
@@ -259,7 +262,7 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
   ASSERT(bodies.size() == p.skins.size() && margin > 0.0);
   p.memory.take(out);
   p.margin = margin;
-  p.reach = {margin, std::clamp(1.5 * p.memory.deepest(), margin, kDeepestInMargins * margin)};
+  p.reach = {margin, std::clamp(1.5 * p.deepest, margin, kDeepestInMargins * margin)};
   p.found.clear();
   p.candidates.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) p.skins[i].refit(*bodies[i], T, static_cast<double>(p.box_reach()));
@@ -272,7 +275,11 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
   }
   out.clear();
   thin_contacts(p.candidates, p.mean_edge, {});
-  for (const Candidate& c : p.candidates) out.push_back(p.contact_of(bodies, c));
+  p.deepest = 0.0;
+  for (const Candidate& c : p.candidates) {
+    out.push_back(p.contact_of(bodies, c));
+    p.deepest = std::max(p.deepest, -out.back().gap);
+  }
 }
 
 }  // namespace pliant

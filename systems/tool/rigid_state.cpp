@@ -4,26 +4,13 @@
 #include <cmath>
 
 #include "runtime/assert.h"
+#include "systems/tool/rotation_vector.h"
 
 namespace pliant {
 namespace {
 
 constexpr double kTurnPerPart = 0.1;  // [rad] a free turn is followed in parts no larger than this
 constexpr int kMostParts = 256;
-
-// exp: a turn by |w| about w.
-dquat turn(dvec3 w) {
-  const double angle = length(w);
-  const double s = angle > 1e-12 ? std::sin(0.5 * angle) / angle : 0.5;
-  return {std::cos(0.5 * angle), s * w.x, s * w.y, s * w.z};
-}
-// log, for turns below pi.
-dvec3 turn_of(dquat q) {
-  if (q.w < 0.0) q = -q;
-  const dvec3 v(q.x, q.y, q.z);
-  const double s = length(v);
-  return s > 1e-12 ? v * (2.0 * std::atan2(s, q.w) / s) : 2.0 * v;
-}
 
 void place_skin(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& skin_position) {
   const dmat3 r = glm::mat3_cast(pose.rotation);
@@ -74,10 +61,10 @@ dvec3 RigidState::free_turn(double T) const {
   for (int i = 0; i < parts; ++i) {
     dvec3 w = inverse_inertia(q) * angular_momentum_;
     // A contraction by about h |w| < 0.1: eight times leave rounding.
-    for (int k = 0; k < 8; ++k) w = inverse_inertia(turn(0.5 * h * w) * q) * angular_momentum_;
-    q = turn(h * w) * q;
+    for (int k = 0; k < 8; ++k) w = inverse_inertia(rotation_of(0.5 * h * w) * q) * angular_momentum_;
+    q = rotation_of(h * w) * q;
   }
-  return turn_of(q * glm::conjugate(rotation_)) / T;
+  return vector_of(q * glm::conjugate(rotation_)) / T;
 }
 
 void RigidState::free_step(double T, dvec3 gravity) {
@@ -133,7 +120,7 @@ void RigidState::correct(const Vector& dv) {
 void RigidState::advance(double T) {
   linear_ = {velocity_[0], velocity_[1], velocity_[2]};
   centre_ += T * linear_;
-  rotation_ = normalize(turn(T * dvec3(velocity_[3], velocity_[4], velocity_[5])) * rotation_);
+  rotation_ = normalize(rotation_of(T * dvec3(velocity_[3], velocity_[4], velocity_[5])) * rotation_);
   refresh_skin();
 }
 
@@ -165,7 +152,7 @@ void FixedBody::free_step(double, dvec3) {
 void FixedBody::advance(double T) {
   if (linear_ == dvec3(0) && angular_ == dvec3(0)) return;
   pose_.position += T * linear_;
-  pose_.rotation = normalize(turn(T * angular_) * pose_.rotation);
+  pose_.rotation = normalize(rotation_of(T * angular_) * pose_.rotation);
   refresh_skin();
 }
 

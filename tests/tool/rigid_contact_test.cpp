@@ -183,6 +183,52 @@ TEST(RigidContact, AFallIsTheParabola) {
   EXPECT_NEAR(body.centre().y, 2.0 - 0.5 * kG * 1.0 * (1.0 + kT), 1e-9);  // implicit Euler's own parabola
 }
 
+// Contacts between two rigid bodies, one of them asked by unit impulses what W says of it.
+TEST(RigidContact, TheDelassusOperatorIsWhatUnitImpulsesDo) {
+  const Mesh block = test::block_mesh(vec3(0.1f, 0.05f, 0.08f));
+  ContactLoop loop;
+  RigidState& low = loop.add<RigidState>(block, Pose{dvec3(0)}, test::block_mass(dvec3(0.1, 0.05, 0.08), 0.3));
+  RigidState& high =
+      loop.add<RigidState>(block, Pose{dvec3(0.02, 0.0503, 0.01)}, test::block_mass(dvec3(0.1, 0.05, 0.08), 0.7));
+  low.set_velocity(dvec3(0.1, 0.2, 0), dvec3(0.1, 0, 0.3));
+  high.set_velocity(dvec3(0, -0.1, 0.1), dvec3(0, 0.2, 0.1));
+  loop.step(1e-9);  // for the contacts
+  ASSERT_GE(loop.contacts.size(), 4u);
+  const auto relative_velocity = [&] {
+    Vector u = Vector::Zero(3 * Eigen::Index(loop.contacts.size()));
+    for (std::size_t i = 0; i < loop.contacts.size(); ++i) {
+      const ContactPoint& c = loop.contacts[i];
+      const auto at = [&](std::uint32_t b, const SurfacePoint& p) {
+        const RigidState& body = b == 0 ? low : high;
+        const Vector& v = body.velocity();
+        return dvec3(v[0], v[1], v[2]) + cross(dvec3(v[3], v[4], v[5]), p.position - body.centre());
+      };
+      const dvec3 r = at(c.body_a, c.a) - at(c.body_b, c.b);
+      for (int k = 0; k < 3; ++k) u[3 * Eigen::Index(i) + k] = dot(c.axes[k], r);
+    }
+    return u;
+  };
+  for (auto& body : loop.bodies) body->free_step(kT, dvec3(0));
+  build_problem(loop.bodies, loop.contacts, kT, 0.15, loop.delassus, loop.problem);
+  const Eigen::Index rows = 3 * Eigen::Index(loop.contacts.size());
+  const Eigen::MatrixXd w = Eigen::MatrixXd(loop.problem.W).topLeftCorner(rows, rows);
+  EXPECT_TRUE(w.isApprox(w.transpose(), 0.0));
+
+  const Vector before = relative_velocity();
+  for (std::size_t i = 0; i < loop.contacts.size(); ++i) {
+    const double gap = loop.contacts[i].gap;
+    EXPECT_NEAR(loop.problem.bias[3 * Eigen::Index(i)], before[3 * Eigen::Index(i)] + (gap < 0 ? 0.15 : 1.0) * gap / kT,
+                1e-9);
+  }
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    loop.problem.impulse.setZero();
+    loop.problem.impulse[k] = 1.0;
+    const Vector last = relative_velocity();
+    apply_impulses(loop.bodies, loop.delassus, loop.problem, loop.contacts);
+    EXPECT_LT((relative_velocity() - last - w.col(k)).norm(), 1e-9 * w.col(k).norm()) << k;
+  }
+}
+
 // Two pads close on a cube and lift it: pads give way by 1e-4 m/N, so they press with a known force.
 double dropped_in_grip(double mu) {
   const Mesh finger = test::block_mesh(vec3(0.02f, 0.06f, 0.06f)), cube = test::block_mesh(vec3(0.05f), 2);
