@@ -5,8 +5,11 @@
 //           A_ii += s I, A_th = -s G_i, A_hh += s G_i^T G_i, b_i -= T k e_i, b_h += T k G_i^T e_i.
 //           G_i at the node itself, not at where it rides: pulls and damping then have no torque of their own.
 // Both ways the nodes' mass is the handle's: with springs it is taken off the nodes, so that both are the same tool and
-// the first tends to the second as the springs stiffen. Slaved nodes are exact, fewer unknowns and better conditioned;
-// springs are P2's own.
+// the first tends to the second as the springs stiffen. Compared on a bar with the first quarter rigid, T = 1/60 s:
+//   condition of A, 324 tetrahedra:  slave 4e3;  spring of 1, 10, 100, 1000: 3e3, 2e4, 2e5, 2e6
+//   farthest nodes apart at rest under gravity, of the bar's length:      3 %, 0.5 %, 0.06 %, 0.006 %
+//   step, 2,100 tetrahedra:          slave 2.2 ms;  spring 3.1 ms (the handle's nodes have rows of their own)
+// Slaved nodes are exact, cheaper and better conditioned; springs are P2's own.
 #pragma once
 
 #include <vector>

@@ -125,7 +125,7 @@ struct Tool {
   Handle6 handle;
   std::unique_ptr<SoftBodyState> state;
 
-  explicit Tool(Attachment attachment, Bar shape = make_finger(4, 2, 2, 0.01), double tie = kTieStiffness,
+  explicit Tool(Attachment attachment, Bar shape = make_finger(4, 1, 1, 0.01), double tie = kTieStiffness,
                 double beta = 5e-3)
       : bar(std::move(shape)) {
     body.young = 2e4;
@@ -201,13 +201,13 @@ TEST(Tool, SlavedNodesAreRigidToTheLastDigit) {
 
 TEST(Tool, LetGoKeepsItsMomentum) {
   for (const Attachment attachment : kBoth) {
-    Tool tool(attachment);
+    Tool tool(attachment, make_finger(4, 2, 2, 0.01));
     tool.state->set_device({{0.1, 0.02, 0}, rotation_of({0, 1, 2})}, join({1, 0, 0}, {0, 5, 0}));
     tool.run(3, T, dvec3(0));
     tool.state->release_device();
     const Vector6 before = tool.momentum();
     ASSERT_GT(before.norm(), 1e-3);
-    tool.run(300, T, dvec3(0));
+    tool.run(100, T, dvec3(0));
     EXPECT_LT((tool.momentum() - before).head<3>().norm(), 1e-10 * before.head<3>().norm()) << int(attachment);
     EXPECT_EQ(tool.state->coupling_wrench().norm(), 0.0);
   }
@@ -219,7 +219,7 @@ TEST(Tool, LetGoKeepsItsAngularMomentumToFirstOrderInTheStep) {
   // the strained body's turning for straining.)
   for (const Attachment attachment : kBoth) {
     const auto drift = [&](double dt) {
-      Tool tool(attachment, make_finger(4, 2, 2, 0.01), kTieStiffness, /*beta*/ 0.0);
+      Tool tool(attachment, make_finger(4, 1, 1, 0.01), kTieStiffness, /*beta*/ 0.0);
       tool.state->set_device({{0.02, 0.01, 0}, rotation_of({0, 0.3, 0.6})}, join({0, 0, 0}, {0, 3, 1}));
       tool.run(10, 5e-3, dvec3(0));
       tool.state->release_device();
@@ -235,7 +235,7 @@ TEST(Tool, HangsFromItsDeviceWithItsWeight) {
   for (const Attachment attachment : kBoth) {
     Tool tool(attachment);
     tool.state->set_device({}, Vector6::Zero());
-    tool.run(2000, 0.05, kGravity);
+    tool.run(500, 0.2, kGravity);
     const double weight = 9.81 * tool.mass();
     EXPECT_LT(weight, tool.handle.max_force);
     EXPECT_LT(length(linear(tool.state->coupling_wrench()) - dvec3(0, weight, 0)), 1e-9 * weight);
@@ -251,9 +251,9 @@ TEST(Tool, HangsFromItsDeviceWithItsWeight) {
 
 TEST(Tool, SpringsThatStiffenLeadToTheToolOfSlavedNodes) {
   const auto shape = [](Attachment attachment, double tie) {
-    Tool tool(attachment, make_finger(4, 2, 2, 0.01), tie);
+    Tool tool(attachment, make_finger(4, 1, 1, 0.01), tie);
     tool.state->set_device({}, Vector6::Zero());
-    tool.run(1000, 0.05, kGravity);
+    tool.run(300, 0.2, kGravity);
     return tool.state->flesh().position();
   };
   const std::vector<dvec3> slaved = shape(Attachment::kSlave, 1.0);
@@ -432,7 +432,7 @@ TEST(Tool, ShowsItsSkinItsNodesAndWhereItsObjectIs) {
   ASSERT_EQ(shown.position.size(), tool.bar.skin.vertex_count);
   ASSERT_EQ(shown.nodes.size(), tool.bar.tets.node_count());
   EXPECT_LT(length(shown.pose.position), 1e-15);
-  const dvec3 middle{0.02, 0.01, 0.01};
+  const dvec3 middle{0.02, 0.005, 0.005};
   for (std::size_t i = 0; i < shown.normal.size(); ++i) {
     EXPECT_NEAR(length(shown.normal[i]), 1.0f, 1e-6f);
     EXPECT_GT(dot(dvec3(shown.normal[i]), dvec3(shown.position[i]) - middle), 0.0);  // outward
