@@ -26,6 +26,10 @@ std::vector<std::string> explain_dropped(std::uint32_t dropped) {
     sentences.push_back("more dents were recovering at once than the card's list holds; use --field cpu");
   if (dropped & kDroppedStale)
     sentences.push_back("a device's pose came too late and its force went to zero; check its connection");
+  if (dropped & kDroppedFactor)
+    sentences.push_back("a soft body's step could not be solved and it stood still; raise `young` or mend its mesh");
+  if (dropped & kDroppedMotion)
+    sentences.push_back("a body's motion was not a number and it was stopped; reduce `soft_step`");
   return sentences;
 }
 

@@ -32,6 +32,9 @@ enum DroppedBit : std::uint32_t {
   kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
   kDroppedFlood = 8,      // a contact reached more zones than the flood holds: reduce `reach`
   kDroppedReleases = 32,  // more dents were recovering at once than the card's list holds: the oldest vanished
+  kDroppedFactor = 64,    // a body's step could not be solved and it stood still: raise `young` or `density`, or mend
+                          // its mesh
+  kDroppedMotion = 128,   // a body's motion was not a number and it was stopped: reduce `soft_step`
   kDroppedStale = 16,     // a device's pose came too late and its force went to zero: check its connection
 };
 

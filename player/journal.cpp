@@ -3,21 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/device/hands.h"
 #include "systems/touch/hash_state.h"
 
 namespace pliant {
-namespace {
-
-std::vector<Entity> all_probes(const World& world) {
-  std::vector<Entity> probes;
-  for (auto [entity, probe] : world.registry.view<Probe>()) probes.push_back(entity);
-  return probes;
-}
-
-}  // namespace
-
 Journal::Journal(const World& world, double seconds)
-    : probes_(all_probes(world)),
+    : probes_(hands(world)),
       recorder_(static_cast<std::size_t>(std::ceil(seconds * world.simulation.touch_rate)) *
                 std::max<std::size_t>(probes_.size(), 1)) {
   for (auto [entity, deformable] : world.registry.view<Deformable>()) awake_.push_back({entity, 0, 0});
@@ -30,8 +21,7 @@ void Journal::note(const World& world, Tick tick) {
     row.time = tick.time;
     row.probe = i;
     row.reading = reading(world, probes_[i]);
-    const Probe& probe = world.registry.get<Probe>(probes_[i]);
-    if (const HapticDevice* device = world.registry.find<HapticDevice>(probe.device)) {
+    if (const HapticDevice* device = find_device(world, probes_[i])) {
       row.device_position = device->position;
       row.device_rotation = device->rotation;
       row.device_ready = device->status == DeviceStatus::kReady;

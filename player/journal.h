@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// One probe after one tick.
+// One probe or tool after one tick.
 struct TickRow {
   std::uint64_t tick = 0;
   double time = 0.0;        // [s]
@@ -31,13 +31,13 @@ struct AwakeStats {
 
 class Journal {
  public:
-  // Every probe and deformable of a prepared world. Holds `seconds` of rows until they are drained.
+  // Every probe, tool and deformable of a prepared world. Holds `seconds` of rows until they are drained.
   Journal(const World& world, double seconds);
 
   void note(const World& world, Tick tick);
   void drain(std::vector<TickRow>& rows) { recorder_.drain(rows); }
 
-  const std::vector<Entity>& probes() const { return probes_; }
+  const std::vector<Entity>& probes() const { return probes_; }  // hands(): tools after the probes
   // Valid when the touch clock has stopped.
   const std::vector<AwakeStats>& awake() const { return awake_; }
   std::uint64_t ticks() const { return ticks_; }

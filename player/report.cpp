@@ -60,6 +60,21 @@ Json systems(const Schedule<World>& schedule) {
   return list;
 }
 
+// Figures of the soft clock.
+Json soft(const SoftClock& clock) {
+  const SoftFigures& figures = clock.figures();
+  Json json;
+  json["step_ms"] = percentiles(clock.schedule().total(), 1e-3, false);
+  json["steps"] = figures.steps;
+  json["overruns"] = figures.overruns;
+  json["tetrahedra"] = clock.tetrahedra();
+  json["contacts"] = {{"mean", mean(figures.contacts_sum, figures.steps)}, {"max", figures.contacts_max}};
+  json["sweeps"] = mean(figures.sweeps_sum, figures.steps);
+  json["residual"] = figures.residual_max;
+  json["systems_us"] = systems(clock.schedule());
+  return json;
+}
+
 }  // namespace
 
 std::string report_json(const RunFigures& figures) {
@@ -79,6 +94,7 @@ std::string report_json(const RunFigures& figures) {
                                     {"max", frames ? frames->upload_bytes_max() : 0}};
   json["objects"] = objects(figures);
   json["probes"] = probes(figures);
+  if (figures.soft) json["soft"] = soft(*figures.soft);
   json["dropped"] = figures.dropped;
   json["hash"] = figures.hash;
   json["systems_us"] = systems(figures.schedule);
@@ -95,6 +111,13 @@ void print_summary(const RunFigures& figures, const std::filesystem::path& out) 
     fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm deep and {:.2f} N, net work {:.3g} mJ\n",
                probe.name, probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
                probe.max_force, probe.net_work * 1e3);
+  if (figures.soft) {
+    const SoftFigures& soft = figures.soft->figures();
+    const Histogram& step = figures.soft->schedule().total();
+    fmt::print("  soft: {} steps over {} tetrahedra, {:.2f} ms median, {:.2f} ms p99, {} overruns, {:.1f} contacts\n",
+               soft.steps, figures.soft->tetrahedra(), step.percentile_us(0.5) * 1e-3, step.percentile_us(0.99) * 1e-3,
+               soft.overruns, mean(soft.contacts_sum, soft.steps));
+  }
   fmt::print("{}: report.json, forces.csv, forces.png", out.string());
   if (figures.pictures > 0) fmt::print(", {} pictures", figures.pictures);
   fmt::print("\n");

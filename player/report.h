@@ -10,6 +10,7 @@
 #include "player/frames.h"
 #include "player/journal.h"
 #include "player/keeper.h"
+#include "player/soft_clock.h"
 #include "runtime/schedule.h"
 
 namespace pliant {
@@ -27,6 +28,7 @@ struct RunFigures {
   std::uint64_t overruns = 0;
   std::vector<std::string> dropped;  // sentences
   std::string hash;                  // hex
+  const SoftClock* soft = nullptr;   // null: the level has nothing soft or rigid that moves
 };
 
 std::string report_json(const RunFigures& figures);

@@ -22,7 +22,11 @@
 #include "player/verbs.h"
 #include "player/window_session.h"
 #include "runtime/parallel.h"
+#include "systems/device/hands.h"
 #include "systems/schedule.h"
+#include "systems/tool/prepare_soft.h"
+#include "systems/tool/prepare_tools.h"
+#include "systems/tool/soft_state.h"
 #include "systems/touch/hash_state.h"
 #include "systems/touch/prepare.h"
 #include "systems/visual/field_cost.h"
@@ -88,8 +92,8 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
   if (replay.header.level != world.name)
     return failed({options.replay, "was recorded on level '" + replay.header.level + "'; run it on that level"});
   std::vector<std::string> names;
-  for (auto [entity, probe] : world.registry.view<Probe>()) {
-    const Name* name = world.registry.find<Name>(entity);
+  for (const Entity hand : hands(world)) {
+    const Name* name = world.registry.find<Name>(hand);
     names.push_back(name ? name->value : std::string());
   }
   if (names != replay.header.probes)
@@ -98,10 +102,10 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
 }
 
 // In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets
-// one.
+// one; not where there is a tool, which --probe TOOL=mouse gives to it.
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
-    if (node.device && node.device->driver == Driver::kMouse) return {};
+    if (node.handle || (node.device && node.device->driver == Driver::kMouse)) return {};
   std::string name = "mouse";
   const auto taken = [&](const LevelNode& node) { return node.name == name; };
   while (std::any_of(level.nodes.begin(), level.nodes.end(), taken)) name += "'";
@@ -123,7 +127,7 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
   std::vector<ProbeSource> added = sources;
   if (run.replay) {
     for (const std::string& name : run.replay->header.probes) {
-      const auto has_name = [&](const LevelNode& node) { return node.name == name && node.probe.has_value(); };
+      const auto has_name = [&](const LevelNode& node) { return node.name == name && (node.probe || node.handle); };
       if (std::none_of(level.nodes.begin(), level.nodes.end(), has_name))
         added.push_back({name, Driver::kExternal, {}});
     }
@@ -173,7 +177,8 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   run.world = std::move(spawned).value();
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   run.world.field_place = choose_field(options, windowed, run.world);
-  if (const Status status = prepare_touch(run.world); !status) return failed(status.error());
+  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
+    if (const Status status = prepare_system(run.world); !status) return failed(status.error());
   make_orbits(run.world);
   if (run.replay) {
     if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
@@ -184,11 +189,11 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   return {};
 }
 
-// As long as the longest script that a probe follows.
+// As long as the longest script that a probe or tool follows.
 double default_seconds(const World& world) {
   double longest = 0.0;
-  for (auto [entity, probe] : world.registry.view<Probe>()) {
-    const HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
+  for (const Entity hand : hands(world)) {
+    const HapticDevice* device = find_device(world, hand);
     if (!device || device->driver != Driver::kScript || !device->path.valid()) continue;
     const Path& path = world.paths[device->path];
     if (!path.rows.empty()) longest = std::max(longest, path.rows.back().time);
@@ -298,6 +303,7 @@ Result<Ran> run_headless(const RunOptions& options, TouchLoop& loop) {
 
 Result<Ran> run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
   WindowSession session{*shown.window, shown.script, loop.world, loop.schedule, loop.journal, loop.keeper, loop.out};
+  session.soft = loop.soft;
   session.level = options.level;
   session.rate = loop.rate;
   session.ticks = loop.ticks;
@@ -336,7 +342,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   auto keeper = Keeper::create(world, journal.probes(), sources, out->stage("forces.csv"));
   if (!keeper) return failed(keeper.error());
   if (journal.probes().empty())
-    say(run, "the level has no probe, so nothing is touched; give one with --probe NAME=orbit");
+    say(run, "the level has no probe and no tool, so nothing is touched; give one with --probe NAME=orbit");
   if (!options.record.empty()) {
     RecordingHeader header{world.name, rate, {}};
     for (const ProbeSummary& probe : keeper->summaries()) header.probes.push_back(probe.name);
@@ -351,6 +357,8 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   Schedule<World> schedule(touch_schedule());
   TouchLoop loop{world, schedule, journal, *keeper, *out, rate, ticks, frames.get(), {}, nullptr};
   loop.replay = run.replay ? &*run.replay : nullptr;
+  SoftClock soft(world);
+  if (soft.any()) loop.soft = &soft;
   if (frames)
     loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps)
                                          : spread_frames(ticks, options.frames < 0 ? kDefaultFrames : options.frames);
@@ -358,6 +366,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   auto ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
   if (!ran) return failed(ran.error());
   if (ran->opened) next = std::move(other);
+  if (soft.any()) world.dropped |= world.soft->dropped;
   Hash hash = journal.hash();
   hash_state(world, hash);
   release_devices(world);
@@ -374,7 +383,8 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
                      rate,
                      ran->overruns,
                      explain_dropped(world.dropped),
-                     fmt::format("{:016x}", hash.value())};
+                     fmt::format("{:016x}", hash.value()),
+                     loop.soft};
   if (journal.lost() > 0)
     figures.dropped.push_back(
         fmt::format("{} rows of forces.csv were lost because writing fell behind: take fewer or "

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "components/soft_body.h"
 #include "content/script.h"
+#include "systems/device/hands.h"
 #include "systems/device/orbit.h"
 
 namespace pliant {
@@ -10,25 +12,32 @@ namespace {
 
 constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
 
-// The device that moves this probe and no other; a shared one is copied first, so that the others keep theirs.
-Entity own_device(World& world, Entity probe) {
-  const Entity current = world.registry.get<Probe>(probe).device;
+// The device that moves this probe or tool and no other; a shared one is copied first, so that the others keep theirs.
+Entity own_device(World& world, Entity hand) {
+  const Entity current = device_of(world, hand);
   int users = 0;
-  for (auto [entity, other] : world.registry.view<const Probe>())
-    if (other.device == current) ++users;
-  const HapticDevice* device = world.registry.find<HapticDevice>(current);
+  for (const Entity other : hands(world))
+    if (device_of(world, other) == current) ++users;
+  const HapticDevice* device = find_device(world, hand);
   if (device && users == 1) return current;
-  const HapticDevice copy = device ? *device : HapticDevice{};
+  HapticDevice copy = device ? *device : HapticDevice{};
+  if (Handle6* handle = world.registry.find<Handle6>(hand)) {  // a tool's device is named; without a name it is its own
+    handle->device.clear();
+    if (const Pose* pose = world.registry.find<Pose>(hand))
+      copy.position = pose->position, copy.rotation = pose->rotation;
+    if (!world.registry.has<HapticDevice>(hand)) world.registry.add<HapticDevice>(hand, copy);
+    return hand;
+  }
   const Entity made = world.registry.create();
   world.registry.add<HapticDevice>(made, copy);
-  world.registry.get<Probe>(probe).device = made;
+  world.registry.get<Probe>(hand).device = made;
   return made;
 }
 
-// The first probe of this name.
-Entity find_probe(const World& world, const std::string& name) {
-  for (auto [entity, probe, its_name] : world.registry.view<Probe, Name>())
-    if (its_name.value == name) return entity;
+// The first probe or tool of this name.
+Entity find_hand(const World& world, const std::string& name) {
+  for (const Entity hand : hands(world))
+    if (const Name* its_name = world.registry.find<Name>(hand); its_name && its_name->value == name) return hand;
   return kNoEntity;
 }
 
@@ -65,11 +74,12 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
     for (const LevelNode& node : level.nodes) {
       if (node.name != name) continue;
       taken = true;
-      is_probe = is_probe || node.probe.has_value();
+      is_probe = is_probe || node.probe.has_value() || node.handle.has_value();
     }
     if (is_probe) continue;
     if (taken)
-      return Error{"--probe " + name, "the level has a node of that name that is no probe; choose another name"};
+      return Error{"--probe " + name,
+                   "the level has a node of that name that is neither probe nor tool; choose another name"};
     LevelNode node;
     node.name = name;
     node.probe.emplace();
@@ -83,15 +93,16 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
 
 Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
   for (const ProbeSource& source : sources) {
-    const Entity probe = find_probe(world, source.name);
-    if (probe == kNoEntity) return Error{"--probe " + source.name, "the level has no such probe; check the name"};
+    const Entity hand = find_hand(world, source.name);
+    if (hand == kNoEntity)
+      return Error{"--probe " + source.name, "the level has no such probe or tool; check the name"};
     Handle<Path> path;
     if (source.driver == Driver::kScript) {
       auto script = load_script(source.file);
       if (!script) return script.error();
       path = world.paths.add(std::move(script).value());
     }
-    HapticDevice& device = world.registry.get<HapticDevice>(own_device(world, probe));
+    HapticDevice& device = world.registry.get<HapticDevice>(own_device(world, hand));
     device.driver = source.driver;
     device.file = source.file;
     device.path = path;
@@ -100,19 +111,19 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
 }
 
 void make_orbits(World& world) {
-  std::vector<Entity> probes;
-  for (auto [entity, probe] : world.registry.view<const Probe>()) probes.push_back(entity);
   unsigned index = 0;
-  for (Entity entity : probes) {
-    const Probe& probe = world.registry.get<Probe>(entity);
-    HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
+  for (const Entity hand : hands(world)) {
+    const HapticDevice* device = find_device(world, hand);
     if (!device || device->driver != Driver::kOrbit) continue;
-    device->path = world.paths.add(make_orbit(world, index++, probe.radius));
+    const Probe* probe = world.registry.find<Probe>(hand);
+    const Handle<Path> path =
+        world.paths.add(probe ? make_orbit(world, index++, probe->radius) : make_tool_orbit(world, hand));
+    world.registry.get<HapticDevice>(device_of(world, hand)).path = path;
   }
 }
 
-std::string describe_source(const World& world, Entity probe) {
-  const HapticDevice* device = world.registry.find<HapticDevice>(world.registry.get<Probe>(probe).device);
+std::string describe_source(const World& world, Entity hand) {
+  const HapticDevice* device = find_device(world, hand);
   if (!device) return "null";
   switch (device->driver) {
     case Driver::kScript:

@@ -11,7 +11,7 @@
 namespace pliant {
 
 struct ProbeSource {
-  std::string name;  // of the probe
+  std::string name;  // of the probe or tool
   Driver driver = Driver::kOrbit;
   std::string file;  // of a script, relative to the working directory
 };
@@ -23,13 +23,13 @@ Result<ProbeSource> parse_source(const std::string& argument);
 // that keys reach it. Fails where a node of that name is not a probe, and where a name comes twice.
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources);
 
-// Gives each named probe its source; scripts are read. Call after spawn.
+// Gives each named probe or tool its source; scripts are read. Call after spawn.
 Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
 
-// Makes the paths of every probe whose driver is `orbit`. Call after prepare_touch.
+// Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch.
 void make_orbits(World& world);
 
-// "script:press.csv", "orbit", "mouse", "null": what moves this probe.
-std::string describe_source(const World& world, Entity probe);
+// "script:press.csv", "orbit", "mouse", "null": what moves this probe or tool.
+std::string describe_source(const World& world, Entity hand);
 
 }  // namespace pliant

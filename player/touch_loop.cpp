@@ -8,6 +8,7 @@
 #include "player/interrupt.h"
 #include "player/progress.h"
 #include "runtime/clock.h"
+#include "systems/device/hands.h"
 
 namespace pliant {
 namespace {
@@ -20,8 +21,8 @@ Tick replayed_tick(TouchLoop& loop, std::uint64_t n) {
   const std::vector<Entity>& probes = loop.journal.probes();
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const RecordedPose& pose = recording.poses[n * probes.size() + i];
-    HapticDevice* device = loop.world.registry.find<HapticDevice>(loop.world.registry.get<Probe>(probes[i]).device);
-    if (!device) continue;
+    if (!find_device(loop.world, probes[i])) continue;
+    HapticDevice* device = &loop.world.registry.get<HapticDevice>(device_of(loop.world, probes[i]));
     device->driver = Driver::kExternal;
     device->path = {};  // nothing but the recording moves it
     device->position = pose.position;
@@ -41,6 +42,7 @@ Status run_lockstep(TouchLoop& loop) {
   auto frame = loop.frame_ticks.begin();
   for (std::uint64_t n = 0; n < loop.ticks && !interrupt.requested(); ++n) {
     const Tick tick = loop.replay ? replayed_tick(loop, n) : clock.next();
+    if (loop.soft) loop.soft->reach(tick.time);
     loop.schedule.run(loop.world, tick);
     loop.journal.note(loop.world, tick);
     loop.keeper.keep(loop.journal);
@@ -58,6 +60,7 @@ Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
   Progress progress("running");
   std::atomic<bool> stop{false}, done{false}, granted{false};
   std::atomic<std::uint64_t> now{0};  // the tick that the touch clock has reached
+  if (loop.soft) loop.soft->start();
   std::jthread touch([&] {
     granted = request_realtime_priority();
     RealtimeClock clock(loop.rate);
@@ -87,6 +90,7 @@ Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
   }
   stop = true;
   touch.join();
+  if (loop.soft) loop.soft->stop();
   loop.keeper.keep(loop.journal);
   if (!granted) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
   return status;

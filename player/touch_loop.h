@@ -10,6 +10,7 @@
 #include "player/keeper.h"
 #include "player/output_folder.h"
 #include "player/recording.h"
+#include "player/soft_clock.h"
 #include "runtime/schedule.h"
 
 namespace pliant {
@@ -25,6 +26,7 @@ struct TouchLoop {
   Frames* frames = nullptr;                // none: no pictures
   std::vector<std::uint64_t> frame_ticks;  // after which ticks a picture is taken, ascending
   const Recording* replay = nullptr;       // poses for every tick, lockstep only
+  SoftClock* soft = nullptr;               // none: nothing soft
 };
 
 // Both stop early, cleanly, on Ctrl-C.

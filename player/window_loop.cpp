@@ -175,7 +175,7 @@ Result<WindowFigures> WindowLoop::run() {
     pictures_.done();
   }
   s_.window.show(s_.world.name + " - Pliant");
-  touch_.emplace(s_.world, s_.schedule, s_.journal, s_.rate, s_.ticks);
+  touch_.emplace(s_.world, s_.schedule, s_.journal, s_.soft, s_.rate, s_.ticks);
   const std::uint64_t start = now_ns();
   Status status = Done{};
   bool begun = false;

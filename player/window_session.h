@@ -24,6 +24,7 @@ struct WindowSession {
   Journal& journal;
   Keeper& keeper;
   OutputFolder& out;
+  SoftClock* soft = nullptr;                  // none: nothing soft
   std::string level;                          // what `R` opens again
   double rate = 1000.0;                       // [Hz]
   std::uint64_t ticks = 0;                    // at most

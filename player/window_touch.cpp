@@ -16,10 +16,21 @@ void set_devices(World& world, DeviceStatus status) {
 
 }  // namespace
 
-TouchThread::TouchThread(World& world, Schedule<World>& schedule, Journal& journal, double rate, std::uint64_t ticks)
-    : world_(world), schedule_(schedule), journal_(journal), thread_([this, rate, ticks] { run(rate, ticks); }) {}
+TouchThread::TouchThread(World& world, Schedule<World>& schedule, Journal& journal, SoftClock* soft, double rate,
+                         std::uint64_t ticks)
+    : world_(world), schedule_(schedule), journal_(journal), soft_(soft), thread_([this, rate, ticks] {
+        run(rate, ticks);
+      }) {
+  if (soft_) soft_->start();
+}
+
+void TouchThread::pause(bool paused) {
+  paused_ = paused;
+  if (soft_) soft_->pause(paused);
+}
 
 void TouchThread::stop() {
+  if (soft_) soft_->stop();
   stop_ = true;
   if (thread_.joinable()) thread_.join();
 }

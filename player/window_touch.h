@@ -8,6 +8,7 @@
 
 #include "components/world.h"
 #include "player/journal.h"
+#include "player/soft_clock.h"
 #include "runtime/exchange.h"
 #include "runtime/schedule.h"
 
@@ -23,11 +24,13 @@ struct TouchFigures {
 class TouchThread {
  public:
   // Runs at most `ticks`. The world is the thread's until stop() returns.
-  TouchThread(World& world, Schedule<World>& schedule, Journal& journal, double rate, std::uint64_t ticks);
+  // `soft` starts, pauses and stops with it; null: none.
+  TouchThread(World& world, Schedule<World>& schedule, Journal& journal, SoftClock* soft, double rate,
+              std::uint64_t ticks);
   ~TouchThread() { stop(); }
 
   // Stands still in its own time; hands feel nothing meanwhile.
-  void pause(bool paused) { paused_ = paused; }
+  void pause(bool paused);
   bool paused() const { return paused_; }
   // Ends with one tick in which every device counts as lost: the last thing sent is zero force.
   void stop();
@@ -46,6 +49,7 @@ class TouchThread {
   World& world_;
   Schedule<World>& schedule_;
   Journal& journal_;
+  SoftClock* soft_;
   TripleBuffer<TouchFigures> figures_;
   std::atomic<bool> stop_{false}, paused_{false}, done_{false};
   std::atomic<std::uint64_t> now_{0};

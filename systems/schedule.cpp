@@ -2,6 +2,9 @@
 #include "systems/schedule.h"
 
 #include "systems/device/devices.h"
+#include "systems/tool/publish_soft.h"
+#include "systems/tool/soft_step.h"
+#include "systems/tool/tool_feedback.h"
 #include "systems/touch/collision.h"
 #include "systems/touch/dynamics.h"
 #include "systems/touch/force_field.h"
@@ -20,8 +23,23 @@ std::vector<System<World>> touch_schedule() {
       {"force_field", force_field},    // Contacts -> amplitudes (small LCP); wakes the zones within reach
       {"dynamics", dynamics},          // awake zones: exact step, stream = targets + residual; rest sleeps
       {"friction_feedback", friction_feedback},  // local law at the virtual vertex, bristle friction -> Probe force
+      {"tool_feedback", tool_feedback},          // device pose -> 6-DoF handle on its model -> Handle6 wrench
       {"write_devices", write_devices},          // safety: finite, clamp, slew, engage, passivity -> device
       {"publish", publish_paced},                // dirty zones, probe poses and forces -> TripleBuffer
+  };
+}
+
+// The soft step (P2): implicit over T, everything that contacts can push. Its own clock may allocate and be late.
+std::vector<System<World>> soft_schedule() {
+  return {
+      {"read_tool_input", read_tool_input},  // ToolInput -> where the device holds each handle
+      {"free_motion", free_motion},          // assemble, factorise, v* of every body as if nothing touched
+      {"find_contacts", find_contacts},      // skins -> ContactPoint {points, normal, gap}; on P1 surfaces by P1's law
+      {"solve_contacts", solve_contacts},    // Delassus operator, Signorini and Coulomb -> impulses, velocities
+      {"linearise_tools", linearise_tools},  // what the step says about each handle -> HandleModel
+      {"advance_bodies", advance_bodies},    // x += T v; P1 surfaces give way
+      {"publish_tools", publish_tools},      // HandleModel -> touch clock
+      {"publish_soft", publish_soft},        // skins, contacts, handles -> visual clock; presses -> touch clock
   };
 }
 

@@ -9,5 +9,6 @@
 namespace pliant {
 
 std::vector<System<World>> touch_schedule();  // 1 kHz
+std::vector<System<World>> soft_schedule();   // every Simulation::soft_step, where a level has soft or rigid bodies
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "components/soft_body.h"
 #include "systems/touch/surface_query.h"
 
 namespace pliant {
@@ -61,7 +62,56 @@ std::vector<Hit> slide_line(const World& world, const Hit& first, double size) {
   return line;
 }
 
+Box world_box(const Mesh& mesh, const Pose& pose) {
+  Box box;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) box.add(vec3(pose.to_world(dvec3(mesh.position(v)))));
+  return box;
+}
+
+// The highest place of anything else under a box. [m]
+std::optional<double> ground_below(const World& world, Entity tool, const Box& box) {
+  std::optional<double> ground;
+  const auto offer = [&](Entity entity, Handle<Mesh> mesh, const Pose& pose) {
+    if (entity == tool) return;
+    const Box other = world_box(world.meshes[mesh], pose);
+    const bool below = other.min.x < box.max.x && other.max.x > box.min.x && other.min.z < box.max.z &&
+                       other.max.z > box.min.z && other.max.y < box.center().y;
+    if (below) ground = std::max(ground.value_or(other.max.y), static_cast<double>(other.max.y));
+  };
+  for (auto [entity, body, pose] : world.registry.view<Deformable, Pose>()) offer(entity, body.mesh, pose);
+  for (auto [entity, body, pose] : world.registry.view<SoftBody, Pose>()) offer(entity, body.skin, pose);
+  for (auto [entity, body, pose] : world.registry.view<RigidBody, Pose>()) offer(entity, body.skin, pose);
+  return ground;
+}
+
 }  // namespace
+
+Path make_tool_orbit(const World& world, Entity tool) {
+  constexpr double kPress = 0.15, kSlide = 0.25;  // [1] of the tool's height and width
+  const Pose& pose = world.registry.get<Pose>(tool);
+  const Box box = world_box(world.meshes[world.registry.get<SoftBody>(tool).skin], pose);
+  const dvec3 size(box.max - box.min);
+  const double away = std::max(0.0, box.min.y - ground_below(world, tool, box).value_or(box.min.y - 0.5 * size.y));
+  const dvec3 press = pose.position - dvec3(0, away + kPress * size.y, 0);
+  const dvec3 slide = press + dvec3(kSlide * size.x, 0, 0), lift = slide + dvec3(0, away + kPress * size.y, 0);
+
+  struct Leg {
+    double seconds;
+    dvec3 to;
+  };
+  Path path;
+  path.repeats = true;
+  path.rows.push_back({0.0, pose.position, pose.rotation});
+  for (const Leg& leg : {Leg{kApproachTime + kPressTime, press}, Leg{kSlideTime, slide}, Leg{kLiftTime, lift},
+                         Leg{kReturnTime, pose.position}}) {
+    const PathRow from = path.rows.back();
+    const int steps = static_cast<int>(std::lround(leg.seconds / kStep));
+    for (int i = 1; i <= steps; ++i)
+      path.rows.push_back(
+          {from.time + i * kStep, from.position + smooth(double(i) / steps) * (leg.to - from.position), pose.rotation});
+  }
+  return path;
+}
 
 Path make_orbit(const World& world, unsigned index, double radius) {
   Box bounds;

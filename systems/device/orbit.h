@@ -10,4 +10,8 @@ namespace pliant {
 // place and phase). Call after prepare_touch; allocates. An empty path where nothing can be touched.
 Path make_orbit(const World& world, unsigned index, double radius);
 
+// The same for a tool: from where the level put it down onto what lies below, along it, and back. It presses by a share
+// of the tool's own height.
+Path make_tool_orbit(const World& world, Entity tool);
+
 }  // namespace pliant

@@ -36,6 +36,10 @@ class Body {
   virtual int size() const = 0;
   // Assembles and factorises A for a step of T [s], and finds v* without contacts. Updates skin_velocity.
   virtual void free_step(double T, dvec3 gravity) = 0;
+  // False: the step's A could not be factorised; solve() must not be called.
+  virtual bool solvable() const { return true; }
+  // Stands still from here on: what its velocities were meant nothing.
+  virtual void halt() {}
   // v: after free_step v*, after correct() the step's final velocity.
   virtual const Vector& velocity() const = 0;
   // columns.middleCols(first, 3) += sign * J^T(point) [a0 a1 a2], J^T of unit impulses along the axes' columns.

@@ -124,6 +124,12 @@ void RigidState::advance(double T) {
   refresh_skin();
 }
 
+void RigidState::halt() {
+  linear_ = angular_momentum_ = dvec3(0);
+  velocity_.setZero();
+  std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
+}
+
 void RigidState::refresh_skin() {
   place_skin(*skin, pose(), skin_position);
 }

@@ -32,6 +32,7 @@ class RigidState : public Body {
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
   Vector starting_velocity() const override { return start_; }
+  void halt() override;
   void show(SoftObjectSnapshot& out) const override;
 
   const RigidMass& mass() const { return mass_; }

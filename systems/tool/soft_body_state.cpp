@@ -128,6 +128,17 @@ Vector6 SoftBodyState::coupling_wrench() const {
   return (coupling_step_.right - coupling_step_.matrix.cwiseProduct(velocity_.tail<6>())) / T_;
 }
 
+Vector6 SoftBodyState::handle_wrench() const {
+  return handle_mass_ * (velocity_.tail<6>() - start_) / T_ - coupling_wrench() - handle_load_;
+}
+
+void SoftBodyState::halt() {
+  velocity_.setZero();
+  std::fill(flesh_.velocity().begin(), flesh_.velocity().end(), dvec3(0));
+  std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
+  if (handle_) handle_->set_velocity(Vector6::Zero());
+}
+
 void SoftBodyState::advance(double T) {
   std::vector<dvec3>&x = flesh_.position(), &v = flesh_.velocity();
   for (std::uint32_t i = 0; i < flesh_.moving(); ++i) {

@@ -38,11 +38,14 @@ class SoftBodyState final : public Body {
   void weigh(const Rows& x, Rows& out) const override;
   RayleighDamping damping() const override { return damping_; }
   Vector starting_velocity() const override;
+  void halt() override;
   void show(SoftObjectSnapshot& out) const override;
 
   const Flesh& flesh() const { return flesh_; }
   void set_tie_stiffness(double ratio) { tie_->stiffness = ratio; }  // [1] handle_tie.h; with spring attachment
-  bool solvable() const { return solvable_; }  // false: the last step's matrix could not be factorised; nothing moved
+  bool solvable() const override {
+    return solvable_;
+  }  // false: the last step's matrix could not be factorised; nothing moved
 
   // The device that holds the handle: its pose and velocity (of the frame that the object's own frame is to follow),
   // now; it is taken to keep that velocity for a step. Not finite: released. Only with a handle.
@@ -72,6 +75,8 @@ class SoftBodyState final : public Body {
   const CouplingForce& coupling() const { return coupling_; }  // at the step's beginning; zero while released
   // [N], [N m] world, on the handle at its centre: what the coupling did over the step, with the velocity as it is now.
   Vector6 coupling_wrench() const;
+  // The same of flesh and contacts together: what the handle's momentum and the coupling leave over.
+  Vector6 handle_wrench() const;
 
  private:
   // Calls use(node, weight) for the nodes that a point of the skin rides on.

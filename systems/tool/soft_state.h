@@ -10,8 +10,12 @@
 #include "systems/tool/contact_point.h"
 #include "systems/tool/contact_problem.h"
 #include "systems/tool/delassus.h"
+#include "systems/tool/yielding_body.h"
 
 namespace pliant {
+
+// [1] beta 0.1-0.2: the share of a penetration that a soft step undoes. More adds energy, less leaves bodies sunk in.
+inline constexpr double kPenetrationShare = 0.15;
 
 // [ms] of the last step, by stage.
 struct SoftTimes {
@@ -20,14 +24,20 @@ struct SoftTimes {
 
 struct SoftState {
   std::vector<std::unique_ptr<Body>> bodies;  // fixed ones too
+  std::vector<std::uint32_t> moving;          // those with degrees of freedom, which a snapshot shows
+  std::vector<std::uint32_t> yielding;        // YieldingBody, one per Deformable
   std::unique_ptr<Proximity> proximity;
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
   Delassus delassus;
   ContactProblem problem;
   SweepReport report;
   SoftTimes times;
-  double margin = 1e-3;  // [m] proximity margin, sized from the level
-  std::uint64_t steps = 0;
+  double margin = 1e-3;       // [m] proximity margin, sized from the level
+  std::uint64_t steps = 0;    // done
+  std::uint64_t began = 0;    // [ns] of the step under way
+  std::uint32_t dropped = 0;  // DroppedBit, the soft clock's own
+
+  YieldingBody& surface(std::uint32_t body) { return static_cast<YieldingBody&>(*bodies[body]); }
 };
 
 }  // namespace pliant

@@ -1,5 +1,6 @@
 #include "systems/touch/hash_state.h"
 
+#include "systems/tool/hash_soft.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
@@ -50,11 +51,13 @@ void hash_state(const World& world, Hash& hash) {
       add(hash, contact.force);
     }
   }
+  hash_soft(world, hash);
 }
 
 void hash_forces(const World& world, Hash& hash) {
   for (const ProbeState& state : world.touch->probes)
     add(hash, world.registry.get<HapticDevice>(world.registry.get<Probe>(state.entity).device).force_sent);
+  hash_tool_forces(world, hash);
 }
 
 }  // namespace pliant

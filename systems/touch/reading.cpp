@@ -1,5 +1,6 @@
 #include "systems/touch/reading.h"
 
+#include "systems/tool/tool_reading.h"
 #include "systems/touch/field.h"
 
 namespace pliant {
@@ -20,6 +21,7 @@ double surface_height(const World& world, const Contact& contact) {
 }  // namespace
 
 ProbeReading reading(const World& world, Entity entity) {
+  if (!world.registry.has<Probe>(entity)) return tool_reading(world, entity);
   const Probe& probe = world.registry.get<Probe>(entity);
   ProbeReading out;
   out.position = probe.position;

@@ -1,4 +1,4 @@
-// What there is to know about one probe after a tick: a row of forces.csv.
+// What there is to know about one probe or tool after a tick: a row of forces.csv.
 #pragma once
 
 #include "components/world.h"
@@ -17,6 +17,7 @@ struct ProbeReading {
   double tangential_force = 0.0;  // [N] magnitude of the rest
 };
 
-ProbeReading reading(const World& world, Entity probe);
+// Of a tool: systems/tool/tool_reading.h.
+ProbeReading reading(const World& world, Entity hand);
 
 }  // namespace pliant

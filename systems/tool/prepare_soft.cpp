@@ -1,0 +1,125 @@
+#include "systems/tool/prepare_soft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/mass_properties.h"
+#include "components/soft_body.h"
+#include "systems/tool/rigid_state.h"
+#include "systems/tool/soft_body_state.h"
+#include "systems/tool/soft_state.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+// Tunables of the margin within which pairs are taken along although they are not about to touch.
+constexpr double kMarginOfEdge = 0.1;  // [1] of the shortest mean edge: less misses what the step's end brings together
+constexpr double kMarginOfBody = 0.01;  // [1] of the smallest body's diagonal, for meshes of few large triangles
+
+std::string name_of(const World& world, Entity entity) {
+  const Name* name = world.registry.find<Name>(entity);
+  return "body `" + (name ? name->value : fmt::format("entity {}", entity.index)) + "`";
+}
+
+Pose pose_of(const World& world, Entity entity) {
+  const Pose* pose = world.registry.find<Pose>(entity);
+  return pose ? *pose : Pose{};
+}
+
+void add(SoftState& soft, Entity entity, std::unique_ptr<Body> body) {
+  body->entity = entity;
+  if (body->size() > 0) soft.moving.push_back(static_cast<std::uint32_t>(soft.bodies.size()));
+  soft.bodies.push_back(std::move(body));
+}
+
+void add_soft(const World& world, SoftState& soft) {
+  for (auto [entity, body] : world.registry.view<SoftBody>()) {
+    const Handle6* handle = world.registry.find<Handle6>(entity);
+    auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.skin], body, handle,
+                                                 pose_of(world, entity));
+    state->friction_static = body.friction_static;
+    state->friction_sliding = body.friction_sliding;
+    state->self_collides = handle != nullptr;  // fingers pinch; a lump does not
+    add(soft, entity, std::move(state));
+  }
+}
+
+Status add_rigid(const World& world, SoftState& soft) {
+  for (auto [entity, body] : world.registry.view<RigidBody>()) {
+    const Mesh& mesh = world.meshes[body.skin];
+    std::unique_ptr<Body> state;
+    if (body.fixed) {
+      state = std::make_unique<FixedBody>(mesh, pose_of(world, entity));
+    } else {
+      const MassProperties shape = mass_properties(mesh);
+      const double mass = body.mass > 0.0 ? body.mass : body.density * shape.volume;
+      const double density = mass / shape.volume;
+      const dmat3 inertia = density * shape.inertia;
+      if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
+        return Error{name_of(world, entity),
+                     "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
+      state = std::make_unique<RigidState>(mesh, pose_of(world, entity), RigidMass{mass, shape.centre, inertia});
+    }
+    state->friction_static = body.friction_static;
+    state->friction_sliding = body.friction_sliding;
+    add(soft, entity, std::move(state));
+  }
+  return Done{};
+}
+
+void add_yielding(const World& world, SoftState& soft) {
+  for (std::size_t slot = 0; slot < world.touch->objects.size(); ++slot) {
+    const Entity entity = world.touch->objects[slot].entity;
+    const Deformable& deformable = world.registry.get<Deformable>(entity);
+    soft.yielding.push_back(static_cast<std::uint32_t>(soft.bodies.size()));
+    add(soft, entity,
+        std::make_unique<YieldingBody>(world.meshes[deformable.mesh], deformable, pose_of(world, entity), slot));
+  }
+}
+
+double margin(const SoftState& soft) {
+  double smallest = std::numeric_limits<double>::max();
+  for (const std::uint32_t i : soft.moving) {
+    const Mesh& mesh = *soft.bodies[i]->skin;
+    smallest = std::min({smallest, kMarginOfEdge * mesh.mean_edge, kMarginOfBody * mesh.box.diagonal()});
+  }
+  return smallest;
+}
+
+// Everything of the size that it will have.
+SoftSnapshot first_snapshot(const SoftState& soft) {
+  SoftSnapshot snapshot;
+  snapshot.contacts.reserve(kMaxShownContacts);
+  for (const std::uint32_t i : soft.moving) {
+    snapshot.objects.emplace_back();
+    soft.bodies[i]->show(snapshot.objects.back());
+    const auto* body = dynamic_cast<const SoftBodyState*>(soft.bodies[i].get());
+    if (body && body->has_handle()) snapshot.handles.push_back({body->entity, body->handle().object_pose(), {}, {}});
+  }
+  return snapshot;
+}
+
+}  // namespace
+
+Status prepare_soft(World& world) {
+  world.soft = nullptr;
+  world.soft_snapshots = nullptr;
+  auto soft = std::make_shared<SoftState>();
+  add_soft(world, *soft);
+  if (Status status = add_rigid(world, *soft); !status) return status;
+  if (soft->moving.empty()) return Done{};
+  const double T = world.simulation.soft_step;
+  if (!(T > 0.0 && T <= 1.0))
+    return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s; give more than 0 and at most 1 s", T)};
+  add_yielding(world, *soft);
+  soft->margin = margin(*soft);
+  soft->proximity = std::make_unique<Proximity>(soft->bodies);
+  world.soft_snapshots = std::make_unique<TripleBuffer<SoftSnapshot>>(first_snapshot(*soft));
+  world.soft = std::move(soft);
+  return Done{};
+}
+
+}  // namespace pliant

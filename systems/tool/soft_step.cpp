@@ -1,0 +1,102 @@
+// One step of everything soft and rigid (P2; methods.md 2.1-2.6). What fails stands still and says so: a factorisation
+// that does not exist, or a motion that is no number, must not spread through the contacts.
+#include "systems/tool/soft_step.h"
+
+#include <algorithm>
+
+#include "systems/tool/linearise.h"
+#include "systems/tool/soft_state.h"
+
+namespace pliant {
+namespace {
+
+constexpr SweepLimits kSweeps{200, 1e-6, 0};  // fewer sweeps: stacks and grips creep
+
+double ms_since(std::uint64_t begin) {
+  return static_cast<double>(now_ns() - begin) * 1e-6;
+}
+
+// Contacts with a body that has no solution in this step.
+void leave_out_failed(SoftState& soft) {
+  const auto failed = [&](const ContactPoint& contact) {
+    return !soft.bodies[contact.body_a]->solvable() || !soft.bodies[contact.body_b]->solvable();
+  };
+  soft.contacts.erase(std::remove_if(soft.contacts.begin(), soft.contacts.end(), failed), soft.contacts.end());
+}
+
+// A body whose velocity is no number is stopped.
+void stop_non_finite(SoftState& soft) {
+  for (const std::uint32_t i : soft.moving) {
+    if (soft.bodies[i]->velocity().allFinite()) continue;
+    soft.dropped |= kDroppedMotion;
+    soft.bodies[i]->halt();
+  }
+}
+
+}  // namespace
+
+void read_tool_input(World& world, Tick tick) {
+  if (!world.soft) return;
+  world.soft->began = now_ns();
+  take_inputs(world, tick.dt);
+}
+
+void free_motion(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  const std::uint64_t begin = now_ns();
+  for (const std::unique_ptr<Body>& body : soft.bodies) {
+    body->free_step(tick.dt, world.simulation.gravity);
+    if (body->solvable()) continue;
+    soft.dropped |= kDroppedFactor;
+    body->halt();
+  }
+  stop_non_finite(soft);
+  soft.times.free_motion = ms_since(begin);
+}
+
+void find_contacts(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  const std::uint64_t begin = now_ns();
+  soft.proximity->find(soft.bodies, tick.dt, soft.margin, soft.contacts);
+  leave_out_failed(soft);
+  for (const std::uint32_t i : soft.yielding) soft.surface(i).place(soft.contacts, i, tick.dt);
+  soft.times.proximity = ms_since(begin);
+}
+
+void solve_contacts(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  const std::uint64_t begin = now_ns();
+  build_problem(soft.bodies, soft.contacts, tick.dt, kPenetrationShare, soft.delassus, soft.problem);
+  soft.times.delassus = ms_since(begin);
+  const std::uint64_t built = now_ns();
+  soft.report = solve(soft.problem, kSweeps);
+  soft.times.sweeps = ms_since(built);
+  apply_impulses(soft.bodies, soft.delassus, soft.problem, soft.contacts);
+  stop_non_finite(soft);
+}
+
+void linearise_tools(World& world, Tick tick) {
+  if (!world.soft) return;
+  const std::uint64_t begin = now_ns();
+  linearise(world, tick.dt);
+  world.soft->times.linearise = ms_since(begin);
+}
+
+void advance_bodies(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  for (const std::unique_ptr<Body>& body : soft.bodies) body->advance(tick.dt);
+  for (const std::uint32_t i : soft.yielding) soft.surface(i).yield(soft.contacts, tick.dt);
+}
+
+void publish_tools(World& world, Tick) {
+  if (!world.soft) return;
+  publish_models(world);
+  ++world.soft->steps;
+  world.soft->times.total = ms_since(world.soft->began);
+}
+
+}  // namespace pliant

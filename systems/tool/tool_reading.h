@@ -1,0 +1,12 @@
+// What there is to know about a tool after a tick, in the words of a probe (systems/touch/reading.h).
+#pragma once
+
+#include "systems/touch/reading.h"
+
+namespace pliant {
+
+// position: of the device. depth: how far the hand has led the device past the handle [m], in contact. normal: the
+// mean direction in which contacts push the tool, by the newest model.
+ProbeReading tool_reading(const World& world, Entity tool);
+
+}  // namespace pliant
