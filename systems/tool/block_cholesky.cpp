@@ -1,6 +1,7 @@
 #include "systems/tool/block_cholesky.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pliant {
 namespace {
@@ -18,6 +19,7 @@ void BlockCholesky::analyse(const BlockMatrix& a) {
   Elimination e = plan_elimination(a);
   fronts_.assign(e.supernodes.size(), {});
   std::size_t factor = 0, top = 0, highest = 0;
+  flops_ = 0;
   int most_rows = 0, most_columns = 0;
   std::vector<std::size_t> waiting;  // strips of updates on the stack, as factorise() will have them
   for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
@@ -31,6 +33,7 @@ void BlockCholesky::analyse(const BlockMatrix& a) {
     for (const std::uint32_t row : node.below)
       for (std::uint32_t i = 0; i < 3; ++i) f.below.push_back(3 * row + i);
     factor += static_cast<std::size_t>(f.columns) * static_cast<std::size_t>(f.strips);
+    for (int c = 0; c < f.columns; ++c) flops_ += std::pow(f.columns + static_cast<double>(f.below.size()) - c, 2);
     most_rows = std::max(most_rows, f.strips * kStrip);
     most_columns = std::max(most_columns, f.columns);
     if (f.parent != 0xffffffff) {
@@ -51,8 +54,8 @@ void BlockCholesky::analyse(const BlockMatrix& a) {
     waiting.push_back(triangle_strips(f.rest()));
     top += waiting.back();
   }
-  factor_.resize(factor);
-  stack_.resize(highest + 1);
+  factor_strips_ = factor, stack_strips_ = highest + 1;
+  factor_.clear(), stack_.clear();
   reciprocal_.resize(3 * a.size);
   const auto rows = static_cast<std::size_t>(most_rows);
   row_from_.resize(rows), row_panel_.resize(rows), row_triangle_.resize(rows);
@@ -120,6 +123,7 @@ void BlockCholesky::add_update(const Front& child, const double* update, const F
 }
 
 bool BlockCholesky::factorise(const BlockMatrix& a) {
+  factor_.resize(factor_strips_), stack_.resize(stack_strips_);
   std::vector<std::uint32_t> waiting;
   Strip* top = stack_.data();
   for (std::uint32_t s = 0; s < fronts_.size(); ++s) {

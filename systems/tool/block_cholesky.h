@@ -21,7 +21,8 @@ class BlockCholesky final : public LinearSolver {
   void solve(const Vector& b, Vector& x) const override;
   void solve_many(Eigen::Ref<Rows> columns) const override;
 
-  std::size_t factor_size() const { return 8 * factor_.size(); }  // numbers in L, zeros taken along included
+  std::size_t factor_size() const { return kStrip * factor_strips_; }  // numbers in L, zeros taken along included
+  double flops() const { return flops_; }                              // additions and multiplications of a factorise()
 
  private:
   struct alignas(64) Strip {
@@ -51,7 +52,9 @@ class BlockCholesky final : public LinearSolver {
   std::vector<std::uint32_t> old_of_new_;
   std::vector<Front> fronts_;
   std::vector<Source> sources_;
-  std::vector<Strip> factor_;
+  std::size_t factor_strips_ = 0, stack_strips_ = 0;
+  double flops_ = 0;
+  std::vector<Strip> factor_;       // allocated by the first factorise()
   std::vector<double> reciprocal_;  // of L's diagonal
   std::vector<Strip> stack_;        // updates that wait for their parents
   std::vector<std::size_t> row_from_, row_panel_, row_triangle_;

@@ -38,6 +38,7 @@ FleshReport step_flesh(Flesh& flesh, LinearSolver& solver, double T, dvec3 gravi
   FleshReport report;
   while (report.iterations < step.iterations) {
     flesh.assemble(h, gravity, report.iterations > 0 ? &begin : nullptr);
+    solver.place(flesh.position());
     report.solved = solver.factorise(flesh.inner());
     if (!report.solved) {
       x = begin;

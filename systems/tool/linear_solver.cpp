@@ -1,20 +1,29 @@
 #include "systems/tool/linear_solver.h"
 
+#include "systems/tool/auto_solver.h"
 #include "systems/tool/block_cholesky.h"
+#include "systems/tool/conjugate_gradient.h"
 #include "systems/tool/dense_solver.h"
 #include "systems/tool/eigen_cholesky.h"
 
 namespace pliant {
 
-std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t) {
+// Small systems are always factorised: conjugate gradients are no faster there (auto_solver.h), and a factor is exact.
+constexpr std::uint32_t kSmall = 400;  // block rows
+
+std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_rows) {
   switch (kind) {
     case SolverKind::kDense:
       return std::make_unique<DenseSolver>();
     case SolverKind::kAuto:
+      if (block_rows > kSmall) return std::make_unique<AutoSolver>();
+      return std::make_unique<BlockCholesky>();
     case SolverKind::kBlockCholesky:
       return std::make_unique<BlockCholesky>();
     case SolverKind::kEigenCholesky:
       return std::make_unique<EigenCholesky>();
+    case SolverKind::kConjugateGradient:
+      return std::make_unique<ConjugateGradient>();
     default:
       return nullptr;
   }

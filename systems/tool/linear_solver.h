@@ -6,12 +6,13 @@
 #include <string_view>
 #include <vector>
 
+#include "components/math.h"
 #include "systems/tool/block_matrix.h"
 
 namespace pliant {
 
 enum class SolverKind : std::uint8_t {
-  kAuto,           // by size, as measured (docs beside choose_solver)
+  kAuto,           // by size and by how many right-hand sides come, as measured (auto_solver.h)
   kBlockCholesky,  // ours, sparse 3x3 blocks
   kEigenCholesky,  // Eigen's SimplicialLDLT
   kCholmod,        // SuiteSparse's, where the build has it
@@ -25,6 +26,9 @@ class LinearSolver {
   virtual std::string_view name() const = 0;
   // Once per pattern; `a` must outlive the solver's use.
   virtual void analyse(const BlockMatrix& a) = 0;
+  // [m] where the nodes of the block rows stand, for methods that use it (rigid motions of neighbourhoods): once, and
+  // again before factorise() when they have moved.
+  virtual void place(const std::vector<dvec3>& nodes) { (void)nodes; }
   // Numbers of an analysed pattern. False: not positive definite; solve() must not be called then.
   [[nodiscard]] virtual bool factorise(const BlockMatrix& a) = 0;
   // x = A^-1 b. x comes in as a guess (iterative methods start there; others ignore it).

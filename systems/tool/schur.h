@@ -24,6 +24,7 @@ class CoupledSolver {
  public:
   CoupledSolver(std::unique_ptr<LinearSolver> flesh, const BlockMatrix& pattern, bool handle);
 
+  void place(const std::vector<dvec3>& nodes) { flesh_->place(nodes); }  // LinearSolver::place
   // Factorises and solves for the first right-hand side: x = A^-1 b; x comes in as a guess. False: A is not positive
   // definite or not finite; then x is zero, and so is every solution until the next success.
   [[nodiscard]] bool factorise(const BlockMatrix& tt, const std::vector<HandleRow>& th, const Matrix6& hh,

@@ -89,6 +89,7 @@ void SoftBodyState::set_device(const Pose& pose, const Vector6& velocity) {
 void SoftBodyState::free_step(double T, dvec3 gravity) {
   T_ = T;
   flesh_.assemble(T, gravity);
+  solver_.place(flesh_.position());
   if (handle_) {
     tie_->assemble(flesh_, *handle_, T, gravity);
     couple(T);

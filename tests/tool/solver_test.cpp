@@ -5,7 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "systems/tool/linear_solver.h"
+#include "systems/tool/auto_solver.h"
+#include "systems/tool/flesh.h"
 
 namespace pliant {
 namespace {
@@ -181,6 +182,112 @@ TEST_P(EverySolver, RefusesWhatIsNotPositiveDefinite) {
     EXPECT_FALSE(solver->factorise(broken));
   }
   EXPECT_TRUE(solver->factorise(good)) << "a refused matrix must not spoil the next";
+}
+
+// A clamped beam of soft tissue as the soft step has it, nodes near and far: stiffness (T c / h)^2 times inertia.
+struct Beam {
+  TetMesh mesh;
+  std::unique_ptr<Flesh> flesh;
+
+  Beam(std::uint32_t nx, std::uint32_t ny) {
+    const double h = 0.1 / (ny - 1);
+    mesh.free_count = (nx - 1) * ny * ny;
+    // The layer at x = 0 is pinned, and pinned nodes are the last ones.
+    const auto shift = [&](std::uint32_t node) { return node < ny * ny ? mesh.free_count + node : node - ny * ny; };
+    mesh.nodes.resize(nx * ny * ny);
+    for (std::uint32_t node = 0; node < mesh.nodes.size(); ++node)
+      mesh.nodes[shift(node)] = h * dvec3(node / (ny * ny), node / ny % ny, node % ny);
+    for (Tet tet : brick(nx, ny, ny)) {
+      for (std::uint32_t& node : tet) node = shift(node);
+      mesh.tets.push_back(tet);
+    }
+    flesh = std::make_unique<Flesh>(mesh, FleshMaterial{.young = 1e5, .poisson = 0.45}, mesh.free_count);
+  }
+};
+
+TEST_P(EverySolver, AgreesWithADenseFactorOnABendingBeam) {
+  for (const double T : {0.001, 0.01, 0.1, 1e6}) {
+    Beam beam(11, 4);
+    const auto solver = make_solver(GetParam(), beam.flesh->moving());
+    solver->analyse(beam.flesh->inner());
+    for (int step = 0; step < 3; ++step) {
+      beam.flesh->assemble(T, {0, 0, -9.81});
+      solver->place(beam.flesh->position());
+      ASSERT_TRUE(solver->factorise(beam.flesh->inner()));
+      const Vector b = beam.flesh->right(), truth = beam.flesh->inner().dense().llt().solve(b);
+      Vector x = Vector::Zero(b.size());
+      solver->solve(b, x);
+      EXPECT_LT(distance(x, truth), 2e-8) << "a step of " << T << " s";
+      for (std::uint32_t i = 0; i < beam.flesh->moving(); ++i) {
+        const dvec3 v(truth[3 * i], truth[3 * i + 1], truth[3 * i + 2]);
+        beam.flesh->velocity()[i] = v;
+        beam.flesh->position()[i] += std::min(T, 0.05) * v;
+      }
+    }
+  }
+}
+
+TEST(ConjugateGradient, NeedsNoMoreIterationsOnTwiceTheNodesWhenItKnowsWhereTheyStand) {
+  int iterations[2][2];  // [nodes known][finer]
+  for (const bool known : {false, true})
+    for (const bool finer : {false, true}) {
+      Beam beam(finer ? 23 : 16, finer ? 8 : 6);
+      ConjugateGradient solver;
+      solver.analyse(beam.flesh->inner());
+      beam.flesh->assemble(0.01, {0, 0, -9.81});
+      if (known) solver.place(beam.flesh->position());
+      ASSERT_TRUE(solver.factorise(beam.flesh->inner()));
+      Vector x = Vector::Zero(3 * beam.flesh->moving());
+      solver.solve(beam.flesh->right(), x);
+      EXPECT_TRUE(solver.converged());
+      iterations[known][finer] = solver.iterations();
+    }
+  for (const bool finer : {false, true}) EXPECT_LT(iterations[true][finer], iterations[false][finer]);
+  EXPECT_LE(iterations[true][true], 1.25 * iterations[true][false]);
+}
+
+TEST(ConjugateGradient, StartsFromTheGuess) {
+  Beam beam(14, 5);
+  ConjugateGradient solver;
+  solver.analyse(beam.flesh->inner());
+  beam.flesh->assemble(0.01, {0, 0, -9.81});
+  solver.place(beam.flesh->position());
+  ASSERT_TRUE(solver.factorise(beam.flesh->inner()));
+  Vector x = Vector::Zero(3 * beam.flesh->moving());
+  solver.solve(beam.flesh->right(), x);
+  EXPECT_GT(solver.iterations(), 5);
+  solver.solve(beam.flesh->right(), x);
+  EXPECT_LE(solver.iterations(), 1);
+  solver.solve(Vector::Zero(x.size()), x = Vector::Zero(x.size()));
+  EXPECT_EQ(solver.iterations(), 0);
+  EXPECT_TRUE(x.isZero(0));
+}
+
+// One right-hand side by conjugate gradients, many by a factor, and back: always the same answers.
+TEST(AutoSolver, ChangesItsMethodAndNotItsAnswers) {
+  Beam beam(18, 6);
+  AutoSolver solver;
+  solver.analyse(beam.flesh->inner());
+  for (const int columns : {0, 40, 0, 0, 2, 90, 90}) {
+    beam.flesh->assemble(0.01, {0, 0, -9.81});
+    solver.place(beam.flesh->position());
+    ASSERT_TRUE(solver.factorise(beam.flesh->inner()));
+    BlockCholesky direct;
+    direct.analyse(beam.flesh->inner());
+    ASSERT_TRUE(direct.factorise(beam.flesh->inner()));
+    const Vector b = beam.flesh->right();
+    Vector x = Vector::Zero(b.size()), truth = x;
+    solver.solve(b, x);
+    direct.solve(b, truth);
+    EXPECT_LT(distance(x, truth), 1e-8);
+    if (columns == 0) continue;
+    Rows many(b.size(), columns);
+    for (int c = 0; c < columns; ++c) many.col(c) = random_vector(beam.flesh->moving(), static_cast<unsigned>(c));
+    Rows right = many;
+    solver.solve_many(many);
+    direct.solve_many(right);
+    EXPECT_LT((many - right).norm(), 1e-8 * right.norm());
+  }
 }
 
 }  // namespace
