@@ -1,6 +1,6 @@
 // Whatever contacts can push, as the soft step sees it: a linear system A v = b over its own degrees of freedom, solved
 // by a black box, and a skin whose points move with those degrees of freedom (J).
-// Kinds: rigid (rigid_state.h), soft (soft_state.h), tool = soft with a handle (tool_state.h), fixed (no degrees of
+// Kinds: rigid (rigid_state.h), soft, with a handle (a tool) or without (soft_body_state.h), fixed (no degrees of
 // freedom), yielding (a P1 surface: none either, but compliance).
 #pragma once
 

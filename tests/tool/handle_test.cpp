@@ -382,6 +382,22 @@ TEST(Tool, OfASingleRowOfHandleNodesIsSolvable) {
   }
 }
 
+TEST(Tool, ThatIsAllHandleIsARigidBody) {
+  const Bar bar = make_bar(2, 1, 1, 0.01, [](std::uint32_t, std::uint32_t, std::uint32_t) { return Role::kHandle; });
+  Handle6 handle;
+  for (const SolverKind kind : available_solvers()) {
+    SoftBodyState state(bar.tets, bar.skin, {}, &handle, Pose{}, kind);
+    ASSERT_EQ(state.size(), 6);
+    for (int i = 0; i < 30; ++i) {
+      state.free_step(T, kGravity);
+      state.advance(T);
+    }
+    EXPECT_TRUE(state.solvable());
+    EXPECT_LT(length(state.handle().object_pose().position - dvec3(0, -9.81 * T * T * 30 * 31 / 2, 0)), 1e-12);
+    EXPECT_LT(state.flesh_matrix().norm(), 1e-12 * state.handle_mass().norm());
+  }
+}
+
 TEST(Tool, WithoutAHandleIsFleshThatFalls) {
   const Bar bar = make_finger(2, 1, 1, 0.01);  // whose handle nobody declares
   SoftBody body;
