@@ -39,6 +39,16 @@ const ContactPoint* ContactMemory::find(std::uint64_t key) const {
   return it != by_key_.end() && it->first == key ? &contacts_[it->second] : nullptr;
 }
 
+void SideMemory::sort() {
+  std::sort(normals_.begin(), normals_.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+}
+
+const dvec3* SideMemory::find(std::uint64_t key) const {
+  const auto it = std::lower_bound(normals_.begin(), normals_.end(), key,
+                                   [](const auto& x, std::uint64_t k) { return x.first < k; });
+  return it != normals_.end() && it->first == key ? &it->second : nullptr;
+}
+
 void carry_over(const ContactPoint* last, ContactPoint& contact) {
   const dvec3 n = contact.normal;
   // Without a past: the world axis that is farthest from the normal.

@@ -25,6 +25,18 @@ class ContactMemory {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
 };
 
+// On which side of each other features were, whether or not their contact was kept for the solve.
+class SideMemory {
+ public:
+  void clear() { normals_.clear(); }
+  void add(std::uint64_t key, dvec3 normal) { normals_.emplace_back(key, normal); }
+  void sort();                                 // once all are added, before find()
+  const dvec3* find(std::uint64_t key) const;  // null where they did not meet
+
+ private:
+  std::vector<std::pair<std::uint64_t, dvec3>> normals_;
+};
+
 // Axes, impulse and sliding of a contact: those of the last step turned onto the new normal, or fresh ones.
 void carry_over(const ContactPoint* last, ContactPoint& contact);
 

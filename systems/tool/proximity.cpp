@@ -53,6 +53,7 @@ struct Proximity::Parts {
   std::vector<Skin> skins;
   std::vector<double> mean_edge;  // [m] per body
   ContactMemory memory;
+  SideMemory sides;  // of the last step
   Reach reach;
   double margin = 0.0;
   double deepest = 0.0;                   // [m] >= 0: penetration of the last step's contacts, as found
@@ -108,7 +109,8 @@ struct Proximity::Parts {
   void take_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     const ContactPoint* last = memory.find(key);
-    if (!last && m.gap < -margin) return;  // edges deep below each other that never met: others hold those bodies
+    if (m.gap < -margin && !sides.find(key))
+      return;  // edges deep below each other that never met: others hold those bodies
     keep({a.index, b.index, true, edge_a, edge_b, m, last}, key, a.skin.point_on_edge(edge_a, m.along_a).position);
   }
 
@@ -129,7 +131,7 @@ struct Proximity::Parts {
     const std::uint32_t vertex = met.front().vertex;
     std::array<const ContactPoint*, kMostOfVertex> past;
     for (std::uint32_t k = 0; k < kMostOfVertex; ++k) past[k] = memory.find(vertex_key(a.index, b.index, vertex, k));
-    const std::optional<VertexMeeting> behind = side_to_return_to(a, b, met, past);
+    const std::optional<VertexMeeting> behind = side_to_return_to(a, b, met);
 
     std::array<const VertexMeeting*, kMostOfVertex> kept{};
     std::uint32_t count = 0;
@@ -165,8 +167,11 @@ struct Proximity::Parts {
   }
 
   // Of the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
-  std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b, std::span<const VertexMeeting> met,
-                                                 const std::array<const ContactPoint*, kMostOfVertex>& past) const {
+  std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b,
+                                                 std::span<const VertexMeeting> met) const {
+    std::array<const dvec3*, kMostOfVertex> past;
+    for (std::uint32_t k = 0; k < kMostOfVertex; ++k)
+      past[k] = sides.find(vertex_key(a.index, b.index, met.front().vertex, k));
     const VertexMeeting* behind = nullptr;
     bool known = false;
     double in_front = 1e300;
@@ -175,8 +180,8 @@ struct Proximity::Parts {
         in_front = std::min(in_front, m.meeting.gap);
         continue;
       }
-      const bool came = std::any_of(past.begin(), past.end(), [&](const ContactPoint* p) {
-        return p && dot(p->normal, m.meeting.normal) > kSameSide;
+      const bool came = std::any_of(past.begin(), past.end(), [&](const dvec3* normal) {
+        return normal && dot(*normal, m.meeting.normal) > kSameSide;
       });
       if (!behind || (came && !known) || (came == known && m.meeting.gap > behind->meeting.gap)) behind = &m;
       known |= came;
@@ -273,6 +278,9 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
     for (std::size_t k = i + 1; k < bodies.size(); ++k)
       if (bodies[i]->size() > 0 || bodies[k]->size() > 0) p.find_between(side(i), side(k));
   }
+  p.sides.clear();
+  for (const Candidate& c : p.candidates) p.sides.add(c.key, p.found[c.source].meeting.normal);
+  p.sides.sort();
   out.clear();
   thin_contacts(p.candidates, p.mean_edge, {});
   p.deepest = 0.0;

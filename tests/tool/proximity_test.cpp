@@ -223,6 +223,35 @@ TEST(Proximity, NormalsDoNotFlipWhileABallIsPressedHalfThrough) {
   }
 }
 
+// A pin pushed into a plate farther than its middle: the far side is then the nearer.
+TEST(Proximity, WhatEntersAThinPlateIsSentBackWhereItCameFrom) {
+  const Mesh plate = test::block_mesh(vec3(0.1f, 0.003f, 0.1f), 1), ball = test::sphere_mesh(0.02f, 4);
+  std::vector<std::unique_ptr<Body>> bodies;
+  bodies.push_back(std::make_unique<ScriptedBody>(plate));
+  bodies.push_back(std::make_unique<ScriptedBody>(ball));
+  auto& moving = static_cast<ScriptedBody&>(*bodies[1]);
+  const auto place = [](double depth) {
+    return [depth](dvec3 x) { return dvec3(0.2 * x.x, x.y, 0.2 * x.z) + dvec3(0.003, 0.0215 - depth, 0.001); };
+  };
+  moving.move_to(1.0, place(-0.001));
+  moving.arrive(1.0);
+  Proximity proximity(bodies);
+  std::vector<ContactPoint> contacts;
+  for (int step = 0; step < 60; ++step) {
+    const double depth = -0.001 + 6e-5 * (step + 1);  // ends at 2.6 mm of 3 mm
+    moving.move_to(kT, place(depth));
+    proximity.find(bodies, kT, 3e-3, contacts);
+    bool sent_back = false;
+    for (const ContactPoint& c : contacts) {
+      if (c.body_a != 1) continue;
+      EXPECT_GT(c.normal.y, -0.3) << depth;
+      sent_back |= c.normal.y > 0.9 && c.gap < 1e-3 - depth;
+    }
+    EXPECT_TRUE(sent_back) << depth;
+    moving.arrive(kT);
+  }
+}
+
 TEST(Proximity, AVertexInsideWithoutAPastIsPushedOutTheNearestWay) {
   const Mesh small = test::block_mesh(vec3(0.02f)), slab = test::block_mesh(vec3(0.1f, 0.01f, 0.1f), 4);
   for (const double side : {-1.0, 1.0}) {
