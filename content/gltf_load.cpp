@@ -10,6 +10,8 @@
 #include "content/gltf_appearance.h"
 #include "content/gltf_document.h"
 #include "content/gltf_mesh.h"
+#include "content/tet_file.h"
+#include "content/tet_level.h"
 
 namespace pliant {
 
@@ -228,7 +230,7 @@ Result<Level> load_level(const fs::path& path) {
     if (!bytes) return bytes.error();
     level = load_gltf(*bytes, extension == ".glb", path.parent_path());
   } else {
-    level = import_mesh(path);
+    level = is_tet_file(path) ? import_tets(path) : import_mesh(path);
   }
   if (!level) {
     const std::string where = level.error().where;

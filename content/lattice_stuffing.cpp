@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "content/lattice_grid.h"
+#include "content/tet_quality.h"
 #include "runtime/parallel.h"
 
 namespace pliant {
@@ -15,6 +16,8 @@ namespace {
 // A cut closer to a lattice node than this share of its edge is moved into the node (Labelle & Shewchuk, table 1, the
 // pair that they prove bounds for).
 constexpr double kWarpLong = 0.24999, kWarpShort = 0.41189;
+
+constexpr double kBridgeSmallest = 0.26, kBridgeLargest = 2.62;  // [rad] 15 and 150 degrees
 
 enum Side : std::int8_t { kOutside = -1, kOn = 0, kInside = 1 };
 
@@ -198,6 +201,18 @@ class Stuffer {
     ASSERT(false);
   }
 
+  // All four corners have moved onto the surface: where a finger is hardly thicker than a cell, such elements are all
+  // that joins it. The paper leaves them out; here they stay where they lie inside and are as well-shaped as the
+  // others.
+  bool bridges(const std::array<Place, 4>& corners) {
+    std::vector<dvec3> p;
+    for (const Place place : corners) p.push_back(warped_.at(grid_.index(place)));
+    const Tet tet = tet_volume(p, {0, 1, 2, 3}) > 0.0 ? Tet{0, 1, 2, 3} : Tet{0, 1, 3, 2};
+    const TetQuality quality = measure_quality(p, {&tet, 1});
+    return quality.smallest_dihedral > kBridgeSmallest && quality.largest_dihedral < kBridgeLargest &&
+           inside_(0.25 * (p[0] + p[1] + p[2] + p[3]));
+  }
+
   // What of a lattice tetrahedron lies inside.
   void clip(const std::array<Place, 4>& corners) {
     Place in[4], on[4], out[4];
@@ -208,7 +223,7 @@ class Stuffer {
       if (side == kOn) on[ons++] = p;
       if (side == kOutside) out[outs++] = p;
     }
-    if (ins == 0) return;
+    if (ins == 0 && (ons < 4 || !bridges(corners))) return;
     if (outs == 0) {
       emit(node(corners[0]), node(corners[1]), node(corners[2]), node(corners[3]));
     } else if (ins == 1) {

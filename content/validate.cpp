@@ -9,12 +9,17 @@
 #include "content/gltf_document.h"
 #include "content/level.h"
 #include "content/mesh_build.h"
+#include "content/spawn_soft.h"
+#include "content/tet_file.h"
+#include "content/tet_parts.h"
 
 namespace pliant {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr double kSharp = 0.05;  // [rad] dihedral angle below which an element is hard on solvers
 
 void find_in_extensions(const Json& json, Findings& findings) {
   const Json& nodes = array_of(json, "nodes");
@@ -52,6 +57,42 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
     findings.push_back({Severity::kNote, pointer, "stays on the processor under --field gpu: " + obstacle});
 }
 
+// What about soft and rigid bodies cannot go together, and what is read differently from their files.
+void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& findings) {
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (!node.in_scene) continue;
+    const std::string pointer = level.source ? fmt::format("/nodes/{}", level.source->json_node[i]) : node.name;
+    if (const std::string fault = soft_fault(node); !fault.empty())
+      findings.push_back({Severity::kError, pointer, fault});
+    if (!node.soft_body || node.soft_body->mesh.empty()) continue;
+    const Result<fs::path> path = confined_path(folder, node.soft_body->mesh);
+    if (!path) continue;  // spawn says so
+    if (const Result<TetFile> file = load_tets(*path); file)
+      for (const std::string& note : file->notes) findings.push_back({Severity::kNote, pointer, note});
+  }
+}
+
+// Flesh that can be simulated, but not well.
+void find_in_flesh(const World& world, Findings& findings) {
+  for (auto [entity, soft_body, name] : world.registry.view<const SoftBody, const Name>()) {
+    const std::string node = name.value;  // clang 14 captures no structured bindings
+    const TetMesh& tets = world.tet_meshes[soft_body.tets];
+    const auto warn = [&](std::string what) { findings.push_back({Severity::kWarning, node, std::move(what)}); };
+    const std::uint32_t parts = count_parts(tets), pieces = count_parts(world.meshes[soft_body.skin]);
+    if (parts > pieces)
+      warn(
+          fmt::format("its flesh falls into {} parts where its skin has {}: what joins them is thinner than the cell; "
+                      "make `cell` smaller",
+                      parts, pieces));
+    if (tets.quality.smallest_dihedral < kSharp)
+      warn(
+          fmt::format("has a dihedral angle of {:.2g} degrees: steps may need more work; mesh it again, or leave "
+                      "`mesh` out for a lattice",
+                      glm::degrees(tets.quality.smallest_dihedral)));
+  }
+}
+
 }  // namespace
 
 Findings validate_level(const fs::path& path) {
@@ -80,12 +121,13 @@ Findings validate_level(const fs::path& path) {
         {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
   for (std::size_t i = 0; i < level->nodes.size(); ++i) {
     const LevelNode& node = level->nodes[i];
-    if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable)) continue;
+    if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable && !node.rigid_body)) continue;
     const std::string pointer = level->source ? fmt::format("/nodes/{}", level->source->json_node[i]) : node.name;
     find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer, findings);
   }
   // Files that the level names.
   const fs::path folder = path.parent_path();
+  find_in_soft_nodes(*level, folder, findings);
   for (const LevelNode& node : level->nodes)
     if (node.device && !node.device->file.empty() && !fs::is_regular_file(folder / node.device->file))
       findings.push_back(
@@ -97,7 +139,9 @@ Findings validate_level(const fs::path& path) {
     for (const std::string& note : notes) findings.push_back({Severity::kNote, "PLIANT_environment", note});
   }
   if (any_error(findings)) return findings;
-  if (const Result<World> world = spawn(*level); !world)
+  if (const Result<World> world = spawn(*level); world)
+    find_in_flesh(*world, findings);
+  else
     findings.push_back({Severity::kError, world.error().where, world.error().what});
   return findings;
 }

@@ -7,8 +7,10 @@
 
 #include "content/level.h"
 #include "content/mesh_build.h"
+#include "content/tet_file.h"
 #include "player/content_folder.h"
 #include "player/exit.h"
+#include "player/inspect_tets.h"
 #include "player/verbs.h"
 
 namespace pliant {
@@ -159,6 +161,7 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   json["touchable"] = touchable;
   json["bare_mesh"] = !level.has_pliant();
   json["objects"] = list;
+  json["flesh"] = describe_flesh(level);
   json["notes"] = level.notes;
   return json;
 }
@@ -190,6 +193,7 @@ void print(const Json& json, const Box& box) {
                object["deformable"].get<bool>() ? ", deformable" : "");
     for (const Json& problem : object["problems"]) fmt::print("    {}\n", problem.get<std::string>());
   }
+  print_flesh(json["flesh"]);
   for (const Json& sentence : json["notes"]) fmt::print("  note: {}\n", sentence.get<std::string>());
   if (!json["touchable"].get<bool>())
     fmt::print("  cannot be touched: there is no triangle in the scene that is shown\n");
@@ -204,6 +208,7 @@ void print(const Json& json, const Box& box) {
 int inspect(const std::string& file, bool as_json) {
   const auto path = find_level(file);
   if (!path) return fail(kFailed, path.error());
+  if (is_tet_file(*path)) return inspect_tets(*path, as_json);
   const auto level = load_level(*path);
   if (!level) return fail(kFailed, level.error());
   const std::vector<ObjectReport> objects = inspect_objects(*level);

@@ -12,6 +12,7 @@
 #include "content/lattice_inside.h"
 #include "content/mesh_build.h"
 #include "content/tet_boundary.h"
+#include "content/tet_parts.h"
 #include "content/tet_quality.h"
 #include "runtime/hash.h"
 #include "runtime/parallel.h"
@@ -175,6 +176,24 @@ TEST(Lattice, ACavityStaysEmptyAndTwoBodiesStayTwo) {
   for (std::uint32_t v = 0; v < pair.vertex_count; ++v)
     for (const std::uint32_t corner : mesh.tets[mesh.skin[v].tet])
       EXPECT_EQ(mesh.nodes[corner].x > 1.2, pair.position(v).x > 1.2f) << "a vertex rides on the other body";
+}
+
+TEST(Lattice, ARingHardlyThickerThanACellStaysWhole) {
+  const Mesh surface = mesh_of({torus(1.0f, 0.1f, 64, 16)});
+  for (const double cell : {0.12, 0.11, 0.1}) {
+    const TetMesh mesh = lattice(surface, cell);
+    expect_sound(mesh);
+    EXPECT_EQ(count_parts(mesh), 1u) << "at a cell of " << cell;
+  }
+  EXPECT_EQ(count_parts(surface), 1u);
+  EXPECT_EQ(count_parts(mesh_of({icosphere(1), torus(3.0f, 0.5f, 12, 8)})), 2u);
+  // Two elements that share an edge hang together like a door.
+  TetMesh hinge;
+  hinge.nodes.resize(6);
+  hinge.tets = {{0, 1, 2, 3}, {0, 1, 4, 5}};
+  EXPECT_EQ(count_parts(hinge), 2u);
+  hinge.tets[1] = {0, 2, 1, 4};
+  EXPECT_EQ(count_parts(hinge), 1u);
 }
 
 TEST(Lattice, WhatEnclosesNothingOrNeedsTooMuchIsRefusedInOneSentence) {

@@ -10,6 +10,7 @@
 #include "components/mass_properties.h"
 #include "content/gltf_save.h"
 #include "content/tet_quality.h"
+#include "content/validate.h"
 #include "tests/content/gltf_builder.h"
 #include "tests/content/mesh_shapes.h"
 
@@ -170,6 +171,38 @@ TEST(SpawnSoft, ARigidBodyHasASkinAndIsDrawn) {
   const Mesh& skin = world.meshes[world.registry.get<RigidBody>(thing).skin];
   EXPECT_EQ(skin.vertex_count, 642u);
   EXPECT_TRUE(world.registry.has<Pose>(thing) && world.registry.has<Drawable>(thing));
+}
+
+TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndFleshThatFallsApart) {
+  const Temporary file("notes.vtk", std::string(kBlock).replace(std::string(kBlock).find("4 0 1 2 4"), 9, "4 0 2 1 4"));
+  const auto findings = [&](auto change) {
+    Level level = ball();
+    change(level);
+    const Temporary saved("level.glb", "");
+    EXPECT_TRUE(save_level(level, saved.path).ok());
+    std::string all;
+    for (const Finding& finding : validate_level(saved.path))
+      all += (finding.severity == Severity::kError ? "error " : "other ") + finding.pointer + ": " + finding.message +
+             "\n";
+    return all;
+  };
+  const std::string clash = findings([](Level& level) { level.nodes[0].deformable = Deformable{}; });
+  EXPECT_THAT(clash, HasSubstr("error /nodes/0: has both PLIANT_soft_body and PLIANT_deformable"));
+  const std::string turned = findings([&](Level& level) {
+    level.nodes[0].soft_body->mesh = file.path.filename().string();
+    level.meshes[0].primitives[0].index.resize(30);
+  });
+  EXPECT_THAT(turned, HasSubstr("other /nodes/0: 1 inverted tetrahedron"));
+  // Two balls on a thread.
+  const std::string apart = findings([](Level& level) {
+    Primitive& p = level.meshes[0].primitives[0];
+    const auto count = static_cast<std::uint32_t>(p.position.size());
+    const std::vector<std::uint32_t> index = p.index;
+    for (std::uint32_t v = 0; v < count; ++v) p.position.push_back(p.position[v] + vec3(0.2f, 0, 0));
+    for (const std::uint32_t v : index) p.index.push_back(v + count);
+    p.index.insert(p.index.end(), {0, 5, count});
+  });
+  EXPECT_THAT(apart, HasSubstr("falls into 2 parts where its skin has 1"));
 }
 
 TEST(SpawnSoft, WhatCannotBeIsRefusedInOneSentenceThatNamesTheNode) {
