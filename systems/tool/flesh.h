@@ -15,6 +15,7 @@
 #include "components/math.h"
 #include "components/tet_mesh.h"
 #include "systems/tool/block_matrix.h"
+#include "systems/tool/element.h"
 
 namespace pliant {
 
@@ -47,7 +48,6 @@ class Flesh {
   const std::vector<dvec3>& velocity() const { return v_; }
   const std::vector<double>& mass() const { return mass_; }  // [kg] lumped, per node
   std::uint32_t moving() const { return moving_; }
-  const TetMesh& mesh() const { return mesh_; }
 
   // Rotations, forces and matrices at the current positions, for a step T [s] under gravity [m/s2].
   // inner: rows and columns of moving nodes; outer: A_ij for moving i and handle nodes j (those between moving and the
@@ -74,19 +74,16 @@ class Flesh {
   const Vector& elastic_force() const { return force_; }
 
  private:
-  struct Element {
-    Tet node;                       // ascending, so that a pair of them stands in the upper triangle
-    double volume = 0.0;            // [m3] at rest
-    std::array<dvec3, 4> gradient;  // [1/m] b_i
-  };
   // Where the blocks of a pair of an element's nodes go: of inner, outer or corner, as the nodes say.
   using Slots = std::array<std::uint32_t, 10>;  // pairs (0,0) (0,1) (0,2) (0,3) (1,1) (1,2) (1,3) (2,2) (2,3) (3,3)
   struct Scale;                                 // what one assemble() multiplies with
 
   void take_elements();
   void lay_out();
-  void add_element(std::size_t e, const Scale& scale, const std::vector<dvec3>& begin);
-  void add_told(const Element& element, const std::array<dvec3, 4>& c, const Scale& scale);
+  void visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const;
+  void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
+                  const ElementVisit& visit);
+  void add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit);
   void mirror();
   void add_masses(double T, dvec3 gravity);
   double* block(std::uint32_t row, std::uint32_t column, std::uint32_t slot);
@@ -97,10 +94,8 @@ class Flesh {
   std::uint32_t moving_ = 0;
   std::vector<dvec3> x_, v_;
   std::vector<double> mass_;
-  std::vector<Element> elements_;  // stiff ones, by their nodes: what lies together is added together
-  std::vector<Slots> slots_;
-  std::size_t inside_ = 0;       // elements before it have moving nodes only
-  std::vector<dquat> rotation_;  // of each element, from rest to now; the guess for the next time
+  std::vector<ElementPack> packs_;  // stiff elements by their nodes, ascending: what lies together is added together
+  std::vector<Slots> slots_;        // of each element
   std::vector<std::array<std::uint32_t, 2>> inner_mirror_, corner_mirror_;  // an upper block and its lower twin
   BlockMatrix inner_;
   std::vector<Entry> outer_, corner_;
