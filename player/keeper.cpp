@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace pliant {
@@ -26,9 +27,10 @@ std::string name_of(const World& world, Entity entity) {
   return name ? name->value : std::string();
 }
 
-// Nine digits: exact for a float, and 1e-9 relative for what is kept in double. Adding zero turns -0 into 0.
+// Nine digits: exact for a float, and 1e-9 relative for what is kept in double. Adding zero turns -0 into 0; what has
+// decayed to (nearly) less than a double holds is zero, which every reader takes.
 void put(std::string& line, double value) {
-  fmt::format_to(std::back_inserter(line), ",{:.9g}", value + 0.0);
+  fmt::format_to(std::back_inserter(line), ",{:.9g}", (std::abs(value) < 1e-100 ? 0.0 : value) + 0.0);
 }
 void put(std::string& line, const dvec3& v) {
   put(line, v.x);

@@ -1,0 +1,162 @@
+// pliant run on a level with a tool: a soft block with a rigid back, over a ground and beside a P1 plate.
+#include <cmath>
+
+#include "content/level.h"
+#include "tests/player/command.h"
+
+namespace pliant::testing {
+namespace {
+
+constexpr double kHeight = 0.04;  // [m] of the block
+
+// About the origin, n x n squares a face: flesh is pushed where its skin has vertices.
+Primitive box(vec3 size, int n) {
+  Primitive p;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-1.0f, 1.0f}) {
+      vec3 out(0), u(0), v(0);
+      out[axis] = side;
+      u[(axis + 1) % 3] = side;
+      v[(axis + 2) % 3] = 1;
+      const auto first = static_cast<std::uint32_t>(p.position.size());
+      for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j)
+          p.position.push_back(0.5f * size *
+                               (out + (2.0f * float(i) / float(n) - 1) * u + (2.0f * float(j) / float(n) - 1) * v));
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const std::uint32_t a = first + static_cast<std::uint32_t>(i * (n + 1) + j),
+                              right = a + static_cast<std::uint32_t>(n) + 1;
+          for (const std::uint32_t corner : {a, right, right + 1, a, right + 1, a + 1}) p.index.push_back(corner);
+        }
+    }
+  return p;
+}
+
+class ToolRun : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    Level level;
+    level.meshes = {{"block", {box(vec3(0.03f, float(kHeight), 0.03f), 4)}},
+                    {"ground", {box(vec3(0.3f, 0.02f, 0.3f), 1)}}};
+    LevelNode tool;
+    tool.name = "hand";
+    tool.mesh = 0;
+    tool.local.translation = vec3(0, 0.05f, 0);
+    tool.soft_body.emplace();
+    tool.soft_body->young = 2e4;
+    tool.soft_body->poisson = 0.3;
+    tool.soft_body->density = 200;
+    tool.soft_body->rayleigh = {1.0, 0.01};
+    tool.soft_body->cell = 0.01;
+    tool.handle.emplace();
+    tool.handle->box = Box{vec3(-1, 0.01f, -1), vec3(1)};
+    tool.handle->device = "arm";
+    LevelNode arm;
+    arm.name = "arm";
+    arm.local.translation = tool.local.translation;
+    arm.device.emplace();
+    LevelNode ground;
+    ground.name = "ground";
+    ground.mesh = 1;
+    ground.local.translation = vec3(0, -0.01f, 0);
+    ground.rigid_body.emplace();
+    ground.rigid_body->fixed = true;
+    level.nodes = {tool, arm, ground};
+    ASSERT_TRUE(save_level(level, folder / "block.glb").ok());
+    // Down by 3 mm into the ground, turned a little, held, and up again.
+    write_text(folder / "press.csv",
+               "time_s,x,y,z,qw,qx,qy,qz\n0,0,0.05,0,1,0,0,0\n0.4,0,0.017,0,1,0,0,0\n"
+               "0.5,0,0.017,0,0.9999,0,0.0141,0\n0.8,0,0.017,0,0.9999,0,0.0141,0\n1.0,0,0.05,0,1,0,0,0\n");
+  }
+  Said press(const std::string& out, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"run",   "block.glb", "--probe",  "hand=script:press.csv",
+                                       "--out", out,         "--frames", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return pliant(arguments);
+  }
+};
+
+TEST_F(ToolRun, AToolIsReportedLikeAProbeAndTheSoftClockBesideIt) {
+  const Said said = press("out");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = report("out");
+  EXPECT_EQ(json["ticks"], 1000) << "as long as the script";
+  ASSERT_EQ(json["probes"].size(), 1u);
+  EXPECT_EQ(json["probes"][0]["name"], "hand");
+  EXPECT_EQ(json["probes"][0]["source"], "script:press.csv");
+  EXPECT_GT(json["probes"][0]["contact_ticks"].get<int>(), 300);
+  EXPECT_GT(json["probes"][0]["max_force_N"].get<double>(), 0.2);
+  EXPECT_LE(json["probes"][0]["net_work_J"].get<double>(), 0.0);
+  const Json& soft = json["soft"];
+  EXPECT_EQ(soft["steps"], 60) << "one every 1/60 s";
+  EXPECT_EQ(soft["overruns"], 0);
+  EXPECT_GT(soft["tetrahedra"].get<int>(), 20);
+  EXPECT_GT(soft["contacts"]["max"].get<int>(), 3);
+  EXPECT_GT(soft["contacts"]["max"].get<double>(), soft["contacts"]["mean"].get<double>());
+  for (const char* key : {"p50", "p99", "max"}) EXPECT_GT(soft["step_ms"][key].get<double>(), 0.0) << key;
+  for (const char* key : {"sweeps", "residual"}) EXPECT_GE(soft[key].get<double>(), 0.0) << key;
+  EXPECT_TRUE(json["dropped"].empty()) << json["dropped"];
+
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  ASSERT_EQ(forces.rows.size(), 1000u);
+  for (std::size_t i = 0; i < forces.rows.size(); ++i) {
+    EXPECT_EQ(forces.rows[i].at("probe"), "hand");
+    const double time = forces.number(i, "time_s");
+    if (time > 0.7 && time < 0.8) {
+      EXPECT_GT(forces.number(i, "fy"), 0.2) << "the ground pushes up";
+      EXPECT_EQ(forces.rows[i].at("in_contact"), "1") << time;
+    }
+    if (time > 0.1 && time < 0.3) EXPECT_EQ(forces.rows[i].at("in_contact"), "0") << time;
+    if (time > 0.85) EXPECT_LT(forces.number(i, "fy"), 0.0) << "the tool hangs from the hand that lifts it";
+  }
+}
+
+TEST_F(ToolRun, LockstepGivesTheSameBitsAndAReplayTheSameAgain) {
+  ASSERT_EQ(press("first", {"--record", "hand.rec"}).status, 0);
+  ASSERT_EQ(press("second").status, 0);
+  EXPECT_EQ(report("first")["hash"], report("second")["hash"]);
+  const Said again = pliant({"run", "block.glb", "--replay", "hand.rec", "--out", "third", "--frames", "0"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(report("first")["hash"], report("third")["hash"]);
+  ASSERT_EQ(press("softer", {"--set", "hand.soft_body.young=15000"}).status, 0);
+  EXPECT_NE(report("first")["hash"], report("softer")["hash"]) << "the hash knows the flesh";
+}
+
+TEST_F(ToolRun, AToolWithoutADeviceThatMovesIsHeldWhereItStands) {
+  const Said said = pliant({"run", "block.glb", "--seconds", "0.3", "--out", "still", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(report("still")["probes"][0]["source"], "null");
+  EXPECT_EQ(report("still")["probes"][0]["contact_ticks"], 0);
+}
+
+TEST_F(ToolRun, AnOrbitTakesTheToolDownToTheGround) {
+  const Said said =
+      pliant({"run", "block.glb", "--probe", "hand=orbit", "--seconds", "2", "--out", "orbit", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(report("orbit")["probes"][0]["source"], "orbit");
+  EXPECT_GT(report("orbit")["probes"][0]["contact_ticks"].get<int>(), 200);
+}
+
+TEST_F(ToolRun, RealTimeRunsBothClocksAndStopsThemTogether) {
+  const Said said = press("live", {"--realtime", "--seconds", "0.5"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = report("live");
+  EXPECT_EQ(json["mode"], "realtime");
+  EXPECT_GT(json["soft"]["steps"].get<int>(), 0);
+  EXPECT_LE(json["soft"]["steps"].get<int>(), 40) << "no faster than one every 1/60 s";
+}
+
+TEST_F(ToolRun, ALevelWithoutFleshHasNoSoftClock) {
+  write_text(folder / "plate.obj", plate_obj());
+  ASSERT_EQ(pliant({"run", "plate.obj", "--seconds", "0.05", "--out", "plate", "--frames", "0"}).status, 0);
+  EXPECT_FALSE(report("plate").contains("soft"));
+}
+
+TEST_F(ToolRun, ASourceForNobodyIsRefused) {
+  expect_refused({"run", "block.glb", "--probe", "ground=orbit"}, 2, "ground");
+}
+
+}  // namespace
+}  // namespace pliant::testing
