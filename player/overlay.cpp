@@ -250,6 +250,11 @@ void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, floa
          touch.rate > 0.98 * state.rate_wanted || state.paused ? kGood : kBad);
   figure("tick p50, p99, max", fmt::format("{:.0f}  {:.0f}  {:.0f} us", touch.p50, touch.p99, touch.max));
   figure("overruns", std::to_string(touch.overruns), touch.overruns ? kBad : kGood);
+  if (state.soft) {
+    const SoftFigures& soft = *state.soft;
+    figure("soft step, contacts", fmt::format("{:.1f} ms  {}", soft.step_ms, soft.contacts));
+    figure("soft overruns", std::to_string(soft.overruns), soft.overruns ? kBad : kGood);
+  }
   std::string pictures = fmt::format("{:.0f} Hz  {:.1f} ms", state.frames_per_second, state.draw_ms);
   if (state.resolution < 1) pictures += fmt::format("  at {:.0f} %", 100 * state.resolution);
   figure("pictures", pictures);

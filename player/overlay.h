@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/math.h"
 #include "player/journal.h"
+#include "player/soft_clock.h"
 #include "player/window_touch.h"
 #include "systems/visual/renderer.h"
 
@@ -45,11 +47,12 @@ struct OverlayState {
   bool figures = true, help = false;  // what is shown
   std::string title;
   TouchFigures touch;
-  double rate_wanted = 1000.0;     // [Hz]
-  double frames_per_second = 0.0;  // [Hz]
-  double draw_ms = 0.0;            // [ms]
-  double resolution = 1.0;         // [1] of the window's, each way
-  std::uint64_t upload_bytes = 0;  // of the last frame
+  double rate_wanted = 1000.0;      // [Hz]
+  std::optional<SoftFigures> soft;  // none: the level has nothing soft
+  double frames_per_second = 0.0;   // [Hz]
+  double draw_ms = 0.0;             // [ms]
+  double resolution = 1.0;          // [1] of the window's, each way
+  std::uint64_t upload_bytes = 0;   // of the last frame
   std::uint64_t awake_vertices = 0;
   bool paused = false;
   std::string message;  // a sentence for a while; empty: none

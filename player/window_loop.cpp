@@ -15,12 +15,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kMessageTime = 8.0;   // [s]
-constexpr float kTintShare = 0.2f;     // [1] of the reach: a height that is coloured fully
-constexpr double kSlowestTurn = 0.25;  // [s] beyond this, motion does not catch up
-constexpr double kSmoothing = 0.1;     // [1] of the newest picture in the shown rate
-constexpr double kHearEvery = 0.004;   // [s] at most
-constexpr double kHungPicture = 2.0;   // [s] a picture that takes longer may never come: nobody sees what the hand does
+constexpr vec3 kToolColor(0.85f, 0.55f, 0.42f);  // linear: of a tool's plot
+constexpr double kMessageTime = 8.0;             // [s]
+constexpr float kTintShare = 0.2f;               // [1] of the reach: a height that is coloured fully
+constexpr double kSlowestTurn = 0.25;            // [s] beyond this, motion does not catch up
+constexpr double kSmoothing = 0.1;               // [1] of the newest picture in the shown rate
+constexpr double kHearEvery = 0.004;             // [s] at most
+constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may never come: nobody sees what the hand does
 
 // The radius of the probe that the mouse moves, if there is one. [m]
 std::optional<double> mouse_radius(const World& world) {
@@ -52,8 +53,8 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
   state_.rate_wanted = session.rate;
   for (std::size_t i = 0; i < session.journal.probes().size(); ++i) {
     const ProbeSummary& summary = session.keeper.summaries()[i];
-    state_.probes.push_back(
-        {summary.name, summary.source, session.world.registry.get<Probe>(session.journal.probes()[i]).color, {}});
+    const Probe* probe = session.world.registry.find<Probe>(session.journal.probes()[i]);
+    state_.probes.push_back({summary.name, summary.source, probe ? probe->color : kToolColor, {}});
     if (summary.source == "mouse") mouse_probe_ = i;
   }
   mouse_.x = 0.5 * session.window.width();
@@ -116,6 +117,7 @@ PictureOrder WindowLoop::order(bool shown) {
   if (touch_) {
     state_.touch = touch_->figures();
     state_.paused = touch_->paused();
+    if (s_.soft) state_.soft = s_.soft->latest();
   }
   if (seconds_ - said_at_ > kMessageTime) state_.message.clear();
   PictureOrder next;

@@ -7,6 +7,7 @@
 #include "systems/touch/touch_state.h"
 #include "tests/scenes/tet_shapes.h"
 #include "tests/scenes/tool_stage.h"
+#include "tests/systems/count_allocations.h"
 
 namespace pliant {
 namespace {
@@ -248,6 +249,19 @@ TEST(Yielding, TheSurfaceFollowsTheFleshFromTickToTick) {
   });
   ASSERT_GT(last, 1e-3);
   EXPECT_LT(largest, last / 10);  // no jump at a soft step: each is ten ticks long
+}
+
+TEST(Yielding, ATickUnderPressingFleshAllocatesNothing) {
+  Press press;
+  press.stage.lead(press.tool, dvec3(0, -0.004, 0), 0.2);
+  for (int n = 0; n < 3; ++n) {
+    press.stage.step();  // the soft clock may; what it publishes is taken by the first of these ticks
+    for (int i = 0; i < 10; ++i) {
+      const CountAllocations allocations;
+      press.stage.tick();
+      EXPECT_EQ(allocations.count(), 0u);
+    }
+  }
 }
 
 }  // namespace
