@@ -8,6 +8,7 @@
 #include <new>
 
 #include "player/exit.h"
+#include "player/study.h"
 #include "player/verbs.h"
 
 namespace pliant {
@@ -102,6 +103,16 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
   verb->footer("Example:\n  pliant validate level.gltf");
 }
 
+void add_study(CLI::App& app, StudyOptions& options) {
+  CLI::App* verb = app.add_subcommand("study", "speed against error: figures, data and a plot");
+  CLI::Option* name = verb->add_option("name", options.name, "of a study, or all");
+  CLI::Option* list = verb->add_flag("--list", options.list, "which studies there are");
+  verb->add_option("--out", options.out, "folder for what is written; default: out/study");
+  verb->add_flag("--quick", options.quick, "a shorter run, for a look");
+  name->excludes(list);
+  verb->footer("Example:\n  pliant study all --quick");
+}
+
 // Verbs that are promised and not there yet: whatever they are given, they say so.
 void add_not_yet(CLI::App& app, const char* name, const char* what, const char* footer) {
   CLI::App* verb = app.add_subcommand(name, what);
@@ -137,7 +148,8 @@ int parse_and_run(int argc, const char* const* argv) {
   CLI::App* verb = app.add_subcommand("devices", "haptic and pointing devices found, and how to use each");
   verb->add_flag("--json", devices_json, "as JSON");
   verb->footer("Example:\n  pliant devices --json");
-  add_not_yet(app, "study", "speed against error (not yet built)", "Example:\n  pliant study all --quick");
+  StudyOptions study_options;
+  add_study(app, study_options);
   add_not_yet(app, "edit", "the editor (not yet built)", "Example:\n  pliant edit level.gltf");
 
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
@@ -156,6 +168,7 @@ int parse_and_run(int argc, const char* const* argv) {
   if (name == "convert") return convert(conversion);
   if (name == "validate") return validate(validated);
   if (name == "devices") return devices(devices_json);
+  if (name == "study") return study(study_options);
   return fail(kUsage, {name, "not yet built; see `pliant --help` for what is"});
 }
 

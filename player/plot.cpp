@@ -1,32 +1,14 @@
 #include "player/plot.h"
 
-#include <cairo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#ifdef PLIANT_SANITIZED
-// Fontconfig keeps its configuration, on purpose, until the program ends; the leak sanitizer asks us about it.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libfontconfig\n";
-}
-extern "C" const char* __lsan_default_options() {
-  return "print_suppressions=0";
-}
-#endif
+#include "player/pen.h"
 
 namespace pliant {
 namespace {
-
-// Okabe and Ito's colours, told apart by nearly everyone.
-struct Color {
-  double r, g, b;
-  friend bool operator==(const Color&, const Color&) = default;
-};
-constexpr Color kBlue{0.0, 0.447, 0.698}, kVermilion{0.835, 0.369, 0.0}, kGreen{0.0, 0.62, 0.451};
-constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContact{1.0, 0.945, 0.79}, kPaper{1, 1, 1};
 
 // [pixel]
 constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
@@ -38,61 +20,6 @@ struct Panel {
   double px(double t) const { return x + w * t / seconds; }
   double py(double v) const { return y + h - h * v / high; }
 };
-
-class Pen {
- public:
-  explicit Pen(double height)
-      : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kWidth), static_cast<int>(height))),
-        cairo_(cairo_create(surface_)) {
-    color(kPaper);
-    cairo_paint(cairo_);
-  }
-  ~Pen() {
-    cairo_destroy(cairo_);
-    cairo_surface_destroy(surface_);
-  }
-  Pen(const Pen&) = delete;
-  Pen& operator=(const Pen&) = delete;
-
-  cairo_t* get() { return cairo_; }
-  void color(Color c, double alpha = 1.0) { cairo_set_source_rgba(cairo_, c.r, c.g, c.b, alpha); }
-  void line(double x0, double y0, double x1, double y1, double width) {
-    cairo_set_line_width(cairo_, width);
-    cairo_move_to(cairo_, x0, y0);
-    cairo_line_to(cairo_, x1, y1);
-    cairo_stroke(cairo_);
-  }
-  // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width [pixel].
-  double text(double x, double y, double size, double align, const std::string& words, bool bold = false) {
-    cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cairo_, size);
-    cairo_text_extents_t box;
-    cairo_text_extents(cairo_, words.c_str(), &box);
-    cairo_move_to(cairo_, x - align * box.x_advance, y);
-    cairo_show_text(cairo_, words.c_str());
-    return box.x_advance;
-  }
-  void upright_text(double x, double y, double size, const std::string& words) {
-    cairo_save(cairo_);
-    cairo_translate(cairo_, x, y);
-    cairo_rotate(cairo_, -1.5707963267948966);
-    text(0, 0, size, 0.5, words);
-    cairo_restore(cairo_);
-  }
-  bool save(const std::filesystem::path& file) {
-    return cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS;
-  }
-
- private:
-  cairo_surface_t* surface_;
-  cairo_t* cairo_;
-};
-
-std::string number(double value, double step) {
-  const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-  return fmt::format("{:.{}f}", value, std::min(digits, 9));
-}
 
 // Where the probe was in contact, then grid and axes with numbers: what lies under the curves.
 void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, const char* quantity) {
@@ -217,7 +144,7 @@ double tick_step(double high, int most) {
 Status plot_forces(const std::filesystem::path& file, const std::string& title, const std::vector<PlotRow>& rows,
                    double dt, double seconds) {
   const std::size_t shown = std::min(rows.size(), kMaxPlotRows);
-  Pen pen(kTitle + kRow * static_cast<double>(std::max<std::size_t>(shown, 1)) + kFoot);
+  Pen pen(kWidth, kTitle + kRow * static_cast<double>(std::max<std::size_t>(shown, 1)) + kFoot);
   pen.color(kInk);
   const double width = pen.text(kLeft, 46, 26, 0, title, true);
   std::string subtitle = "depth below the undeformed surface, and force on the hand";

@@ -279,16 +279,20 @@ class Reduction {
     }
     const auto active = static_cast<Eigen::Index>(held.size());
     const Eigen::MatrixXd D = left.leftCols(active);
-    Eigen::MatrixXd R = Eigen::MatrixXd::Zero(active, rows());
-    for (Eigen::Index k = 0; k < active; ++k) R(k, held[static_cast<std::size_t>(k)]) = 1.0;
 
     Matrix6 C = tool_.flesh_matrix(), M = c_.flesh_mass, B = c_.flesh_damping;
     if (active > 0) {
-      Eigen::MatrixXd W = R * gram_ * D;
+      const auto J = c_.from_handle.topRows(rows());
+      Eigen::MatrixXd W(active, active), RJ(active, 6);
+      for (Eigen::Index l = 0; l < active; ++l) {
+        const Eigen::Index at = held[static_cast<std::size_t>(l)] / 3 * 3;
+        const Vector column = gram_.middleCols(at, 3) * D.col(l).segment<3>(at);
+        for (Eigen::Index k = 0; k < active; ++k) W(k, l) = column[held[static_cast<std::size_t>(k)]];
+        RJ.row(l) = J.row(held[static_cast<std::size_t>(l)]);
+      }
       // Redundant contacts share their force; a ridge below what counts keeps the solve regular.
       W.diagonal().array() += 1e-9 * W.diagonal().cwiseAbs().maxCoeff();
-      const auto J = c_.from_handle.topRows(rows());
-      const Eigen::MatrixXd RJ = R * J, DJ = D.transpose() * J;
+      const Eigen::MatrixXd DJ = D.transpose() * J;
       const Eigen::MatrixXd phi = -W.partialPivLu().solve(RJ);
       const Eigen::MatrixXd psi = slips ? Eigen::MatrixXd(-W.transpose().partialPivLu().solve(DJ)) : phi;
       C -= DJ.transpose() * phi;
@@ -297,7 +301,9 @@ class Reduction {
                              step_.T * step_.T * c_.frequency2.head(c_.modes).array()))
                                .inverse();
       const Eigen::MatrixXd right_rate = share.asDiagonal() * (modes.transpose() * (D * phi));
-      const Eigen::MatrixXd left_rate = share.asDiagonal() * (modes.transpose() * (R.transpose() * psi));
+      Eigen::MatrixXd held_by = Eigen::MatrixXd::Zero(rows(), 6);  // R^T psi
+      for (Eigen::Index k = 0; k < active; ++k) held_by.row(held[static_cast<std::size_t>(k)]) = psi.row(k);
+      const Eigen::MatrixXd left_rate = share.asDiagonal() * (modes.transpose() * held_by);
       const auto coupled = [&](const Rows6& between, const Matrix6& of_flesh, const Vector& diagonal) -> Matrix6 {
         const auto border = between.topRows(c_.modes);
         return of_flesh + border.transpose() * right_rate + left_rate.transpose() * border +
@@ -319,8 +325,8 @@ class Reduction {
   std::vector<int> chosen_;
   HandleModel& out_;
   CondensedContacts& c_;
-  double highest_ = 0.0;   // [rad/s]
-  double lag_ = 0.0;       // [s m/N] sum of damping times flexibility: one lag for all, by how much each gives way
+  double highest_ = 0.0;  // [rad/s]
+  double lag_ = 0.0;      // [s m/N] sum of damping times flexibility: one lag for all, by how much each gives way
   Eigen::MatrixXd gram_;  // W_a: of tool flesh, objects and yielding surfaces, the handle held
   Vector6 start_ = Vector6::Zero(), flesh_force_ = Vector6::Zero();
 };

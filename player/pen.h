@@ -1,0 +1,43 @@
+// What plots are drawn with: lines and words on a picture that becomes a PNG.
+#pragma once
+
+#include <cairo.h>
+
+#include <filesystem>
+#include <string>
+
+namespace pliant {
+
+// Okabe and Ito's colours, told apart by nearly everyone.
+struct Color {
+  double r, g, b;
+  friend bool operator==(const Color&, const Color&) = default;
+};
+inline constexpr Color kBlue{0.0, 0.447, 0.698}, kVermilion{0.835, 0.369, 0.0}, kGreen{0.0, 0.62, 0.451};
+inline constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContact{1.0, 0.945, 0.79}, kPaper{1, 1, 1};
+
+// Lengths in pixels.
+class Pen {
+ public:
+  Pen(double width, double height);
+  ~Pen();
+  Pen(const Pen&) = delete;
+  Pen& operator=(const Pen&) = delete;
+
+  cairo_t* get() { return cairo_; }
+  void color(Color c, double alpha = 1.0) { cairo_set_source_rgba(cairo_, c.r, c.g, c.b, alpha); }
+  void line(double x0, double y0, double x1, double y1, double width);
+  // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width.
+  double text(double x, double y, double size, double align, const std::string& words, bool bold = false);
+  void upright_text(double x, double y, double size, const std::string& words);
+  bool save(const std::filesystem::path& file);
+
+ private:
+  cairo_surface_t* surface_;
+  cairo_t* cairo_;
+};
+
+// With as many digits as ticks `step` apart need.
+std::string number(double value, double step);
+
+}  // namespace pliant
