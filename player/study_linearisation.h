@@ -24,16 +24,18 @@ struct ForceSample {
 struct MethodFigures {
   std::string name;
   double rms_N = 0.0, max_N = 0.0;                  // of the force's error
-  double rms_share = 0.0;                           // [1] of the true force's RMS
+  double rms_share = 0.0;                           // [1] of the RMS of what is felt beyond the flesh's weight
   double p50_us = 0.0, p99_us = 0.0, max_us = 0.0;  // cost of a tick
 };
 
 struct LinearisationFigures {
   std::string level;
+  double pace = 1.0;                                  // [1] of the script's own
   double soft_step = 0.0, tick = 0.0, seconds = 0.0;  // [s]
   std::size_t tetrahedra = 0;
   int contacts = 0, modes = 0;         // most in any model
-  double rms_N = 0.0, max_N = 0.0;     // of the true force
+  Vector6 weight = Vector6::Zero();    // of the flesh
+  double rms_N = 0.0, max_N = 0.0;     // of the true force beyond the weight
   double step_share = 0.0;             // [1] RMS error of the soft step at its own instants: what no model can undo
   std::vector<MethodFigures> methods;  // held, linear, contacts, full
   std::vector<ForceSample> samples;
@@ -41,7 +43,7 @@ struct LinearisationFigures {
   double jump_share = 0.0;  // [1] largest change at an update over the largest in the steps around it
 };
 
-Result<LinearisationFigures> measure_linearisation(const std::string& level, double seconds);
+Result<LinearisationFigures> measure_linearisation(const std::string& level, double pace, double seconds);
 Status study_linearisation(OutputFolder& out, bool quick);
 
 // Force over time by each way, and error against cost.

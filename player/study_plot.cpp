@@ -39,7 +39,9 @@ void frame(Pen& pen, const Area& area, const std::string& across, const std::str
 
 void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures) {
   const double begin = figures.samples.front().time, end = figures.samples.back().time;
-  const double step_y = tick_step(figures.max_N * 1.05, 5), high = step_y * std::ceil(figures.max_N * 1.05 / step_y);
+  double peak = 0.0;
+  for (const ForceSample& s : figures.samples) peak = std::max(peak, s.full.head<3>().norm());
+  const double step_y = tick_step(peak * 1.05, 5), high = step_y * std::ceil(peak * 1.05 / step_y);
   const double step_x = tick_step(end - begin, 10);
   const auto px = [&](double t) { return area.x + area.w * (t - begin) / std::max(end - begin, 1e-9); };
   const auto py = [&](double f) { return area.y + area.h - area.h * std::min(f / high, 1.1); };
@@ -116,9 +118,10 @@ Status plot_linearisation(const std::filesystem::path& file, const Linearisation
   Pen pen(kWidth, kHeight);
   pen.color(kInk);
   const double width = pen.text(84, 46, 26, 0, "linearisation", true);
-  pen.text(84 + width + 20, 46, 16, 0,
-           fmt::format("{}: {} tetrahedra, up to {} contacts; soft step {:.1f} ms, models one step late", figures.level,
-                       figures.tetrahedra, figures.contacts, figures.soft_step * 1e3));
+  pen.text(
+      84 + width + 20, 46, 16, 0,
+      fmt::format("{} at {:g} x its pace: {} tetrahedra, up to {} contacts; soft step {:.1f} ms, models one step late",
+                  figures.level, figures.pace, figures.tetrahedra, figures.contacts, figures.soft_step * 1e3));
   if (!figures.samples.empty()) {
     draw_forces(pen, {84, 110, kWidth - 112, 330}, figures);
     draw_trade(pen, {84, 540, kWidth - 112, 280}, figures);

@@ -11,8 +11,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kUndone = 0.15;  // [1] share of a penetration that the soft step undoes
-
 // The tool's body in the soft step, or its count of bodies.
 std::uint32_t body_of(const SoftState& soft, Entity tool) {
   std::uint32_t index = 0;
@@ -82,7 +80,7 @@ void take_inputs(World& world, double T) {
 void linearise(World& world, double T) {
   if (!world.tools || !world.soft) return;
   SoftState& soft = *world.soft;
-  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, kUndone};
+  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, kPenetrationShare};
   for (const auto& tool : world.tools->tools) {
     const std::uint32_t index = body_of(soft, tool->entity);
     if (index == soft.bodies.size()) continue;
