@@ -6,6 +6,8 @@
 namespace pliant {
 namespace {
 
+constexpr std::uint32_t kNone = 0xffffffff;
+
 int strips_of(std::size_t rows) {
   return static_cast<int>((rows + kStrip - 1) / kStrip);
 }
@@ -36,7 +38,7 @@ void BlockCholesky::analyse(const BlockMatrix& a) {
     for (int c = 0; c < f.columns; ++c) flops_ += std::pow(f.columns + static_cast<double>(f.below.size()) - c, 2);
     most_rows = std::max(most_rows, f.strips * kStrip);
     most_columns = std::max(most_columns, f.columns);
-    if (f.parent != 0xffffffff) {
+    if (f.parent != kNone) {
       ++fronts_[f.parent].children;
       const Supernode& up = e.supernodes[f.parent];
       for (const std::uint32_t row : f.below) {
@@ -178,22 +180,12 @@ void BlockCholesky::solve(const Vector& b, Vector& x) const {
 // Eight columns at a time. A subtree in which no right-hand side has numbers is left out on the way up.
 void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
   for (Eigen::Index from = 0; from < columns.cols(); from += kStrip) {
-    const int width = static_cast<int>(std::min<Eigen::Index>(kStrip, columns.cols() - from));
-    std::fill(touched_.begin(), touched_.end(), 0);
-    for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
-      const Front& f = fronts_[s];
-      bool any = touched_[s] != 0;
-      for (std::uint32_t r = f.first; r < f.first + static_cast<std::uint32_t>(f.columns); ++r) {
-        const double* const right = &columns(3 * old_of_new_[r / 3] + r % 3, from);
-        for (int l = 0; l < kStrip; ++l) x_[r].lane[l] = l < width ? right[l] : 0.0;
-        for (int l = 0; l < width; ++l) any |= right[l] != 0;
-      }
-      touched_[s] = any;
-      if (any && f.parent != 0xffffffff) touched_[f.parent] = 1;
-    }
+    auto some = columns.middleCols(from, std::min<Eigen::Index>(kStrip, columns.cols() - from));
+    take_columns(some);
     for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
       const Front& f = fronts_[s];
       if (!touched_[s]) continue;
+      if (f.parent != kNone) touched_[f.parent] = 1;
       std::copy_n(&x_[f.first], f.columns, local_.data());
       std::fill(local_.data() + f.columns, local_.data() + f.strips * kStrip, Strip{});
       forward_many(panel(f), reciprocal_.data() + f.first, local_.front().lane);
@@ -205,14 +197,43 @@ void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
     for (std::size_t s = fronts_.size(); s-- > 0;) {
       const Front& f = fronts_[s];
       std::copy_n(&x_[f.first], f.columns, local_.data());
-      std::fill(local_.data() + f.columns, local_.data() + f.strips * kStrip, Strip{});
       for (std::size_t i = 0; i < f.below.size(); ++i) local_[static_cast<std::size_t>(f.columns) + i] = x_[f.below[i]];
+      std::fill(local_.data() + f.columns + f.below.size(), local_.data() + f.strips * kStrip, Strip{});
       backward_many(panel(f), reciprocal_.data() + f.first, local_.front().lane);
       std::copy_n(local_.data(), f.columns, &x_[f.first]);
-      for (std::uint32_t r = f.first; r < f.first + static_cast<std::uint32_t>(f.columns); ++r)
-        std::copy_n(x_[r].lane, width, &columns(3 * old_of_new_[r / 3] + r % 3, from));
+    }
+    give_columns(some);
+  }
+}
+
+// x_ = up to eight columns in the factor's order; touched_: fronts in which one of them has numbers.
+void BlockCholesky::take_columns(Eigen::Ref<const Rows> some) const {
+  for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
+    const Front& f = fronts_[s];
+    touched_[s] = 0;
+    for (std::uint32_t r = f.first; r < f.first + static_cast<std::uint32_t>(f.columns); ++r) {
+      const double* const from = some.data() + some.outerStride() * (3 * old_of_new_[r / 3] + r % 3);
+      double* const to = x_[r].lane;
+      if (some.cols() == kStrip) {
+        std::copy_n(from, kStrip, to);
+      } else {
+        std::copy_n(from, some.cols(), to);
+        std::fill(to + some.cols(), to + kStrip, 0.0);
+      }
+      for (int l = 0; l < kStrip; ++l) touched_[s] |= static_cast<char>(to[l] != 0);
     }
   }
+}
+
+void BlockCholesky::give_columns(Eigen::Ref<Rows> some) const {
+  for (std::uint32_t i = 0; i < old_of_new_.size(); ++i)
+    for (std::uint32_t d = 0; d < 3; ++d) {
+      double* const to = some.data() + some.outerStride() * (3 * old_of_new_[i] + d);
+      if (some.cols() == kStrip)
+        std::copy_n(x_[3 * i + d].lane, kStrip, to);
+      else
+        std::copy_n(x_[3 * i + d].lane, some.cols(), to);
+    }
 }
 
 }  // namespace pliant

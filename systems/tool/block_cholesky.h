@@ -48,6 +48,8 @@ class BlockCholesky final : public LinearSolver {
   void place_sources(const BlockMatrix& a, const Elimination& e);
   void assemble(const Front& f, const BlockMatrix& a, double* panel) const;
   void add_update(const Front& child, const double* update, const Front& parent, double* panel, double* triangle);
+  void take_columns(Eigen::Ref<const Rows> some) const;
+  void give_columns(Eigen::Ref<Rows> some) const;
 
   std::vector<std::uint32_t> old_of_new_;
   std::vector<Front> fronts_;

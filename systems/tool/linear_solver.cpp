@@ -2,6 +2,7 @@
 
 #include "systems/tool/auto_solver.h"
 #include "systems/tool/block_cholesky.h"
+#include "systems/tool/cholmod.h"
 #include "systems/tool/conjugate_gradient.h"
 #include "systems/tool/dense_solver.h"
 #include "systems/tool/eigen_cholesky.h"
@@ -22,11 +23,16 @@ std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_r
       return std::make_unique<BlockCholesky>();
     case SolverKind::kEigenCholesky:
       return std::make_unique<EigenCholesky>();
+    case SolverKind::kCholmod:
+#ifdef PLIANT_CHOLMOD
+      return std::make_unique<Cholmod>();
+#else
+      return nullptr;
+#endif
     case SolverKind::kConjugateGradient:
       return std::make_unique<ConjugateGradient>();
-    default:
-      return nullptr;
   }
+  return nullptr;
 }
 
 std::vector<SolverKind> available_solvers() {

@@ -27,24 +27,28 @@ struct Machine {
   static constexpr int kGroup = kBytes / 8;  // columns of a tile summed at a time: as many as sixteen registers allow
 };
 
-// tile[j] += sum over p of a[p] * b[p * stride + j * next], j < 8: strips of 8 times scalars.
-template <int kBytes>
-PLIANT_INLINE void add_products(const double* a, const double* b, int length, int stride, int next, double* tile) {
+// tile[j] += sum over p of a[p] * scalar(p, j), j < 8, p < length: strips of 8 times numbers of the
+// panel, which stand
+//   kRow:    at b[8 p + j], one strip of the panel: its rows j, columns p;
+//   kColumn: at b[(p / 8) * stride + 8 j + p % 8], strip after strip: rows p, columns j.
+enum class Read { kRow, kColumn };
+template <int kBytes, Read kRead>
+PLIANT_INLINE void add_products(const double* a, const double* b, int length, int stride, double* tile) {
   using M = Machine<kBytes>;
   using Pack = typename M::Pack;
+  constexpr int kRun = kRead == Read::kRow ? 1 : kStrip, kNext = kRead == Read::kRow ? 1 : kStrip;
   for (int group = 0; group < kStrip; group += M::kGroup) {
     Pack sum[M::kGroup][M::kPacks];
     for (int j = 0; j < M::kGroup; ++j)
       for (int l = 0; l < M::kPacks; ++l)
         sum[j][l] = *reinterpret_cast<const Pack*>(tile + (group + j) * kStrip + l * M::kLanes);
-    const double* scalar = b + group * next;
-    for (int p = 0; p < length; ++p) {
-      for (int l = 0; l < M::kPacks; ++l) {
-        const Pack strip = *reinterpret_cast<const Pack*>(a + p * kStrip + l * M::kLanes);
-        for (int j = 0; j < M::kGroup; ++j) sum[j][l] += strip * scalar[j * next];
-      }
-      scalar += stride;
-    }
+    const double* scalar = b + group * kNext;
+    for (int p = 0; p < length; p += kRun, scalar += stride)
+      for (int run = 0; run < kRun; ++run)
+        for (int l = 0; l < M::kPacks; ++l) {
+          const Pack strip = *reinterpret_cast<const Pack*>(a + (p + run) * kStrip + l * M::kLanes);
+          for (int j = 0; j < M::kGroup; ++j) sum[j][l] += strip * scalar[j * kNext + run];
+        }
     for (int j = 0; j < M::kGroup; ++j)
       for (int l = 0; l < M::kPacks; ++l)
         *reinterpret_cast<Pack*>(tile + (group + j) * kStrip + l * M::kLanes) = sum[j][l];
@@ -91,7 +95,7 @@ PLIANT_INLINE bool factorise_panel_for(double* data, Panel panel, double* recipr
       double* const out = strip + begin * kStrip;
       // tile = A - (columns already factorised)
       std::fill(tile, tile + kStrip * kStrip, 0.0);
-      add_products<kBytes>(strip, pivots, begin, kStrip, 1, tile);
+      add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile);
       for (int c = 0; c < width * kStrip; ++c) tile[c] = out[c] - tile[c];
       if (strip == pivots) {
         if (!factorise_tile<kBytes>(tile, width, reciprocal + begin)) return false;
@@ -115,8 +119,9 @@ PLIANT_INLINE void update_triangle_for(Panel panel, double* triangle) {
   for (int i = above; i < panel.strips; ++i)
     for (int j = above; j <= i; ++j) {
       std::fill(tile, tile + kStrip * kStrip, 0.0);
-      add_products<kBytes>(panel.data + static_cast<std::ptrdiff_t>(i) * stride,
-                           panel.data + static_cast<std::ptrdiff_t>(j) * stride, panel.columns, kStrip, 1, tile);
+      add_products<kBytes, Read::kRow>(panel.data + static_cast<std::ptrdiff_t>(i) * stride,
+                                       panel.data + static_cast<std::ptrdiff_t>(j) * stride, panel.columns, kStrip,
+                                       tile);
       double* const out = triangle + triangle_size(i - above) + static_cast<std::ptrdiff_t>(j - above) * 64;
       for (int c = 0; c < kStrip * kStrip; ++c) out[c] -= tile[c];
     }
@@ -171,7 +176,7 @@ PLIANT_INLINE void forward_many_for(Panel panel, const double* reciprocal, doubl
     double* const rows = x + i * kStrip * kStrip;
     const int begin = std::min(i * kStrip, panel.columns);
     std::fill(tile, tile + kStrip * kStrip, 0.0);
-    add_products<kBytes>(x, strip, begin, kStrip, 1, tile);
+    add_products<kBytes, Read::kRow>(x, strip, begin, kStrip, tile);
     for (int c = 0; c < kStrip * kStrip; ++c) rows[c] -= tile[c];
     for (int p = begin; p < std::min(begin + kStrip, panel.columns); ++p) {
       scale(x + p * kStrip, reciprocal[p]);
@@ -188,10 +193,9 @@ PLIANT_INLINE void backward_many_for(Panel panel, const double* reciprocal, doub
   for (int begin = (panel.columns - 1) / kStrip * kStrip; begin >= 0; begin -= kStrip) {
     const int end = std::min(begin + kStrip, panel.columns), own = begin / kStrip;
     std::fill(tile, tile + kStrip * kStrip, 0.0);
-    for (int i = own + 1; i < panel.strips; ++i)
-      add_products<kBytes>(x + i * kStrip * kStrip,
-                           panel.data + static_cast<std::ptrdiff_t>(i) * stride + begin * kStrip, kStrip, 1, kStrip,
-                           tile);
+    add_products<kBytes, Read::kColumn>(x + (own + 1) * kStrip * kStrip,
+                                        panel.data + static_cast<std::ptrdiff_t>(own + 1) * stride + begin * kStrip,
+                                        (panel.strips - own - 1) * kStrip, stride, tile);
     const double* const strip = panel.data + static_cast<std::ptrdiff_t>(own) * stride;
     for (int p = end - 1; p >= begin; --p) {
       double* const sum = tile + (p - begin) * kStrip;
