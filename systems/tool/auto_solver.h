@@ -1,8 +1,8 @@
 // Conjugate gradients for a right-hand side or two, a factor for many: each step is begun as the last one would best
 // have been, and the other method steps in when it turns out otherwise. Measured on one core, clamped beams of 160 /
 // 504 / 2,106 / 7,774 nodes (540 / 2,100 / 10k / 40k tetrahedra), a step of 10 ms, ms:
-//   factorise and solve one:          0.25 /  2.3 /   45 / 1,100
-//   conjugate gradients to 1e-9, one: 0.20 /  0.9 /  6.0 /    45   (bench/soft_solver.cpp)
+//   factorise and solve one:          0.25 /  2.1 /   49 /   725
+//   conjugate gradients to 1e-9, one: 0.23 /  0.9 /  5.3 /    27   (bench/soft_solver.cpp)
 #pragma once
 
 #include "systems/tool/block_cholesky.h"
