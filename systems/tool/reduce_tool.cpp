@@ -23,8 +23,9 @@ struct Share {
   const Body* body = nullptr;
   std::uint32_t index = 0;
   std::vector<int> local;  // which of the chosen contacts it takes part in, ascending
-  Rows answers;            // V = A^-1 J^T, handle held: size x 3 local
-  Eigen::MatrixXd gram;    // G = J V
+  Rows shaken;             // of the tool: rows that its own inertia pulls at, size x columns; empty for objects
+  Rows answers;            // V = A^-1 [J^T shaken], handle held: size x (3 local + shaken's)
+  Eigen::MatrixXd gram;    // G = [J; shaken^T] V
   StepSplit split;
   PivotedFactor factor;
   Rows weighed;  // M V(:, picks)
@@ -60,6 +61,7 @@ class Reduction {
   const ContactPoint& contact(int chosen) const {
     return step_.contacts[static_cast<std::size_t>(chosen_[static_cast<std::size_t>(chosen)])];
   }
+  int global(int chosen) const { return chosen_[static_cast<std::size_t>(chosen)]; }
   Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(chosen_.size()); }
   Vector6 twist() const { return tool_.velocity().tail<6>(); }
 
@@ -142,7 +144,7 @@ class Reduction {
     share.split = {step_.T, share.body->damping()};
     for (int i = 0; i < c_.count; ++i)
       if (contact(i).body_a == index || contact(i).body_b == index) share.local.push_back(i);
-    if (share.local.empty()) return;
+    if (share.local.empty() && index != tool_index_) return;
     answer(share);
     share.factor = factor_pivoted(share.gram, kMostBodyModes, kExplained);
     const auto picks = static_cast<Eigen::Index>(share.factor.picks.size());
@@ -159,18 +161,21 @@ class Reduction {
 
   void answer(Share& share) const {
     const BodyResponse& response = step_.delassus.of[share.index];
-    const auto columns = 3 * static_cast<Eigen::Index>(share.local.size());
-    share.answers.resize(share.body->size(), columns);
+    const bool is_tool = share.index == tool_index_;
+    const auto contacts = 3 * static_cast<Eigen::Index>(share.local.size());
+    const Eigen::Index columns = contacts + (is_tool ? 6 * kShakes : 0);
+    share.answers.setZero(share.body->size(), columns);
     for (std::size_t k = 0; k < share.local.size(); ++k) {
       const int global = chosen_[static_cast<std::size_t>(share.local[k])];
       const auto at = std::lower_bound(response.contacts.begin(), response.contacts.end(), global);
       share.answers.middleCols(3 * static_cast<Eigen::Index>(k), 3) =
           response.z.middleCols(3 * (at - response.contacts.begin()), 3);
     }
-    // The handle's share of the answer is taken out again: A_tt^-1 J_t^T = v + Z w.
-    if (share.index == tool_index_) {
+    if (is_tool) {
+      // The handle's share of the answer is taken out again: A_tt^-1 J_t^T = v + Z w.
       const Rows moved = share.answers.bottomRows<6>();
       share.answers.noalias() -= tool_.follow() * moved;
+      shake(share, contacts);
     }
     share.gram.resize(columns, columns);
     Rows three(3, columns);
@@ -179,12 +184,39 @@ class Reduction {
       gather(*share.body, share.index, share.local[k], share.answers, three);
       share.gram.middleRows(3 * static_cast<Eigen::Index>(k), 3) = three;
     }
+    if (is_tool) share.gram.bottomRows(6 * kShakes) = share.shaken.transpose() * share.answers;
     share.gram = 0.5 * (share.gram + share.gram.transpose()).eval();
+  }
+
+  // What the flesh does by its own inertia when the handle shakes it: A^-1 M Phi, A^-1 M A^-1 M Phi, ... Scaled to
+  // count as much as the softest contact.
+  void shake(Share& share, Eigen::Index first) const {
+    const Eigen::Index flesh = tool_.size() - 6;
+    double softest = 0.0;
+    for (const int i : share.local) softest = std::max(softest, step_.problem.W(3 * global(i), 3 * global(i)));
+    share.shaken.setZero(tool_.size(), 6 * kShakes);
+    Rows shape = tool_.follow(), pull;
+    for (int round = 0; round < kShakes; ++round) {
+      tool_.weigh(shape, pull);
+      pull.bottomRows<6>().setZero();
+      Rows answer = pull.topRows(flesh);
+      tool_.solve_held(answer);
+      for (int k = 0; k < 6; ++k) {
+        const double size = pull.col(k).head(flesh).dot(answer.col(k));
+        const double scale = size > 0.0 ? std::sqrt((softest > 0.0 ? softest : 1.0) / size) : 0.0;
+        const Eigen::Index at = 6 * round + k;
+        share.shaken.col(at) = scale * pull.col(k);
+        share.answers.col(first + at).head(flesh) = scale * answer.col(k);
+      }
+      shape.topRows(flesh) = answer;
+      shape.bottomRows<6>().setZero();
+    }
   }
 
   void scatter(const Share& share) {
     const Eigen::MatrixXd left = left_flexibility(share.gram, share.modes, share.split);
-    lag_ += share.split.damping.beta * left.trace();
+    const auto contacts = 3 * static_cast<Eigen::Index>(share.local.size());
+    lag_ += share.split.damping.beta * left.topLeftCorner(contacts, contacts).trace();
     c_.from_modes.block(0, c_.modes, rows(), share.modes.count()).setZero();
     for (std::size_t i = 0; i < share.local.size(); ++i) {
       const Eigen::Index from = 3 * static_cast<Eigen::Index>(i), to = 3 * share.local[i];
@@ -201,13 +233,14 @@ class Reduction {
   Vector own_velocity(const Share& share) const {
     Rows v = share.body->velocity();
     if (share.index == tool_index_) v -= tool_.follow() * twist();
-    Vector out(3 * static_cast<Eigen::Index>(share.local.size()));
+    Vector out(share.gram.rows());
     Rows three(3, 1);
     for (std::size_t k = 0; k < share.local.size(); ++k) {
       three.setZero();
       gather(*share.body, share.index, share.local[k], v, three);
       out.segment<3>(3 * static_cast<Eigen::Index>(k)) = three;
     }
+    if (share.index == tool_index_) out.tail(6 * kShakes) = share.shaken.transpose() * v;
     return out;
   }
 

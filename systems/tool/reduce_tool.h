@@ -15,6 +15,8 @@ inline constexpr double kExplained = 1e-6;      // [1] of the largest compliance
 inline constexpr int kMostBodyModes = 48;       // of one body: cost of a step against modes at many contacts
 inline constexpr double kHighestPerTick = 1.0;  // [rad] frequency x tick: faster modes are springs to the touch tick
 
+inline constexpr int kShakes = 2;  // how well the tool's own vibration is followed: six modes each
+
 // A step of T [s] after apply_impulses, before the bodies advance.
 struct FinishedStep {
   const std::vector<std::unique_ptr<Body>>& bodies;
