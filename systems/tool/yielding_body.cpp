@@ -12,7 +12,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kApart = 0.25;      // [1] of the reach: presses nearer to each other than this look like one
+constexpr double kApart = 0.25;      // [1] of the reach: presses are first chosen so far apart, then nearer together,
+constexpr double kAlike = 0.05;      // [1] down to where two of them look like one
 constexpr double kLeastShare = 0.1;  // [1] as in force_field: a reach that hardly meets a vertex still counts
 
 // The law's secant at a depth, its slope at none. [1]
@@ -183,23 +184,30 @@ void YieldingBody::list_presses(const std::vector<ContactPoint>& contacts,
     if (contacts[dent.contact].impulse.x > 0) deepest.push_back(&dent);
   std::stable_sort(deepest.begin(), deepest.end(), [](const Dent* a, const Dent* b) { return a->depth > b->depth; });
   out.count = 0;
-  for (const Dent* dent : deepest) {
-    if (out.count == kMaxPresses) return;
-    const ContactPoint& contact = contacts[dent->contact];
-    const SurfacePoint& flesh = dent->is_a ? contact.b : contact.a;
-    const dvec3 now = point_on(*bodies[dent->is_a ? contact.body_b : contact.body_a], flesh);
-    PressPoint point;
-    point.key = contact.key;
-    point.triangle = (dent->is_a ? contact.a : contact.b).triangle;
-    point.barycentric = (dent->is_a ? contact.a : contact.b).barycentric;
-    point.position = pose_.to_local(now);
-    point.velocity = (point.position - pose_.to_local(flesh.position)) / T;
-    const auto near = [&](const PressPoint& other) {
-      const dvec3 d = other.position - point.position;
-      return dot(d, d) * dent->source.inv_reach2 < kApart * kApart;
-    };
-    if (std::none_of(out.points.begin(), out.points.begin() + out.count, near)) out.points[out.count++] = point;
-  }
+  for (double apart = kApart; apart > kAlike; apart *= 0.5)
+    for (const Dent* dent : deepest) {
+      if (out.count == kMaxPresses) return;
+      const PressPoint point = press_point(*dent, contacts, bodies, T);
+      const auto near = [&](const PressPoint& other) {
+        const dvec3 d = other.position - point.position;
+        return dot(d, d) * double(dent->source.inv_reach2) < apart * apart;
+      };
+      if (std::none_of(out.points.begin(), out.points.begin() + out.count, near)) out.points[out.count++] = point;
+    }
+}
+
+PressPoint YieldingBody::press_point(const Dent& dent, const std::vector<ContactPoint>& contacts,
+                                     const std::vector<std::unique_ptr<Body>>& bodies, double T) const {
+  const ContactPoint& contact = contacts[dent.contact];
+  const SurfacePoint& mine = dent.is_a ? contact.a : contact.b;
+  const SurfacePoint& flesh = dent.is_a ? contact.b : contact.a;
+  PressPoint point;
+  point.key = contact.key;
+  point.triangle = mine.triangle;
+  point.barycentric = mine.barycentric;
+  point.position = pose_.to_local(point_on(*bodies[dent.is_a ? contact.body_b : contact.body_a], flesh));
+  point.velocity = (point.position - pose_.to_local(flesh.position)) / T;
+  return point;
 }
 
 }  // namespace pliant

@@ -63,6 +63,8 @@ class YieldingBody final : public Body {
   bool place(ContactPoint& contact, bool is_a, Dent& dent) const;
   Eigen::MatrixXd shares() const;  // A
   void dent_skin();
+  PressPoint press_point(const Dent& dent, const std::vector<ContactPoint>& contacts,
+                         const std::vector<std::unique_ptr<Body>>& bodies, double T) const;
 
   Deformable deformable_;
   Pose pose_;
