@@ -39,7 +39,7 @@ Cost cost(int along, int across) {
   TetMesh mesh = tets::box(along, across, across, dvec3(0), {0.1, 0.1 * across / along, 0.1 * across / along});
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
   Flesh flesh(mesh, {.young = 1e5, .poisson = 0.45}, mesh.free_count);
-  auto solver = make_solver(SolverKind::kAuto, flesh.moving());
+  auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
   solver->analyse(flesh.inner());
   Cost out;
   out.tets = mesh.tets.size();
@@ -87,7 +87,7 @@ Swing swing(const Way& way) {
   TetMesh mesh = tets::box(12, 2, 2, dvec3(0), {0.12, 0.02, 0.02});
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
   Flesh flesh(mesh, {.young = 2e4, .poisson = 0.45}, mesh.free_count);
-  auto solver = make_solver(SolverKind::kAuto, flesh.moving());
+  auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
   solver->analyse(flesh.inner());
   const auto work = [&] {
     double sum = 0;

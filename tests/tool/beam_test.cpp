@@ -24,7 +24,7 @@ class ClampedBeam {
  public:
   explicit ClampedBeam(const Beam& beam)
       : beam_(beam), mesh_(mesh_of(beam)), flesh_(mesh_, beam.material, mesh_.free_count) {
-    solver_ = make_solver(SolverKind::kAuto, flesh_.moving());
+    solver_ = make_solver(SolverKind::kBlockCholesky, flesh_.moving());
     solver_->analyse(flesh_.inner());
     // The load spreads evenly over the end: each node has the area of the end's cells around it.
     share_.assign(mesh_.nodes.size(), 0.0);

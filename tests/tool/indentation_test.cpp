@@ -68,7 +68,7 @@ QuarterBlock::QuarterBlock(int rings, int growing, double factor) {
     if (p.y > -1e-9 && std::hypot(p.x, p.z) < 1.001 * kRadius)
       surface.push_back(i), radius_.push_back(std::hypot(p.x, p.z));
   }
-  auto solver = make_solver(SolverKind::kAuto, flesh.moving());
+  auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
   solver->analyse(A);
   EXPECT_TRUE(solver->factorise(A));
   const auto count = static_cast<Eigen::Index>(surface.size());
