@@ -59,12 +59,16 @@ RigidMotion device_at(const World& world, Entity device, double time, double dt)
 }
 
 // A soft step of T [s] at whose end the device is where the script has it at `time`; its model is in `pending`.
-void soft_step(World& world, Schedule<World>& schedule, std::uint64_t index, double T, double time) {
+// `handle`: where it is then, if that is known; otherwise it follows the device.
+void soft_step(World& world, Schedule<World>& schedule, std::uint64_t index, double T, double time,
+               const RigidMotion* handle = nullptr) {
   ToolTouchState& tool = tool_of(world);
   ToolInput& input = tool.input.write();
   input.status = DeviceStatus::kReady;
   input.time = time;
   input.device = device_at(world, tool.device, time, T);
+  input.placed = handle != nullptr;
+  if (handle) input.handle = *handle;
   tool.input.publish();
   schedule.run(world, Tick{index, T, time});
 }
@@ -176,7 +180,7 @@ Status follow_models(Truth& truth, const std::string& level, std::size_t length,
   Stopwatch linear, contacts;
   double off = 0.0, size = 0.0;
   for (std::size_t k = 0; k * length < truth.wrench.size(); ++k) {
-    soft_step(*world, schedule, k, T, static_cast<double>(k) * T);
+    soft_step(*world, schedule, k, T, static_cast<double>(k) * T, &truth.handle[k * length]);
     const HandleModel& model = tool_of(*world).pending;
     out.weight = model.contacts.flesh_mass * join(world->simulation.gravity, dvec3(0));
     off += (model.force - truth.wrench[k * length]).head<3>().squaredNorm();

@@ -89,9 +89,11 @@ struct HandleModel {
 // Touch clock -> soft clock, per tool.
 struct ToolInput {
   DeviceStatus status = DeviceStatus::kLost;
-  double time = 0.0;   // [s] that the motion belongs to
-  double tick = 1e-3;  // [s] length of a touch tick
-  RigidMotion device;  // of the device's own frame
+  double time = 0.0;    // [s] that the motion belongs to
+  double tick = 1e-3;   // [s] length of a touch tick
+  RigidMotion device;   // of the device's own frame
+  bool placed = false;  // `handle` means something: the soft clock's handle goes there, so that there is but one path
+  RigidMotion handle;   // the 1 kHz handle's centre
 };
 
 }  // namespace pliant

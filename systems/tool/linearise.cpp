@@ -73,6 +73,7 @@ void take_inputs(World& world, double T) {
     before.position -= T * linear(input.device.velocity);
     before.rotation = glm::normalize(rotation_of(-T * angular(input.device.velocity)) * before.rotation);
     body->set_device(before, input.device.velocity);
+    if (input.placed) body->lead_handle(input.handle);
     tool->pending.time = input.time;
   }
 }

@@ -4,7 +4,9 @@
 //   linearise         after apply_impulses and before the bodies advance: what the step says about each handle
 //   publish_models    last: brings what was found up to date with the handle's path since, and publishes it
 // A soft step that begins with an input of time t ends at t: the device is led back by T times its velocity, so that it
-// arrives at the step's end where it was sensed. What has happened since is in ToolTouchState::path.
+// arrives at the step's end where it was sensed; once the touch clock moves the handle, the handle itself is led there,
+// since two handles on one device would each swing in their own way. What has happened since is in
+// ToolTouchState::path.
 #pragma once
 
 #include "components/world.h"

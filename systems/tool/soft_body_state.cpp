@@ -4,9 +4,13 @@
 #include <cmath>
 
 #include "runtime/assert.h"
+#include "systems/tool/rotation_vector.h"
 
 namespace pliant {
 namespace {
+
+constexpr double kLeadMass = 1e4;     // [kg] of what leads a handle: far above any tool's
+constexpr double kLeadInertia = 1e2;  // [kg m2]
 
 FleshMaterial material_of(const SoftBody& body) {
   return {.young = body.young,
@@ -107,6 +111,14 @@ void SoftBodyState::couple(double T) {
   start_ = handle_->motion().velocity;
   coupling_ = device_ ? coupling_force(settings_, handle_->motion(), device_target()) : CouplingForce{};
   coupling_step_ = device_ ? coupling_step(coupling_, handle_->motion(), device_target(), T) : CouplingStep{};
+  if (led_) {
+    // So heavy a companion that neither flesh nor contacts can hold the handle back.
+    const RigidMotion now = handle_->motion();
+    const dvec3 turn = vector_of(led_->pose.rotation * glm::conjugate(now.pose.rotation));
+    coupling_ = {};
+    coupling_step_.matrix = join(dvec3(kLeadMass), dvec3(kLeadInertia));
+    coupling_step_.right = coupling_step_.matrix.cwiseProduct(join(led_->pose.position - now.pose.position, turn)) / T;
+  }
   tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right);
 }
 

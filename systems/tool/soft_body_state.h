@@ -50,7 +50,9 @@ class SoftBodyState final : public Body {
   // The device that holds the handle: its pose and velocity (of the frame that the object's own frame is to follow),
   // now; it is taken to keep that velocity for a step. Not finite: released. Only with a handle.
   void set_device(const Pose& pose, const Vector6& velocity);
-  void release_device() { device_.reset(); }
+  void release_device() { device_.reset(), led_.reset(); }
+  // From now on the handle is moved as it is told, whatever pulls at it: its centre to `end` over the next step.
+  void lead_handle(const RigidMotion& end) { led_ = end; }
 
   // --- Of the handle; all of the last free_step, at its beginning, unless said otherwise. Only with a handle.
   bool has_handle() const { return handle_.has_value(); }
@@ -101,7 +103,7 @@ class SoftBodyState final : public Body {
   double T_ = 0.0;  // [s] of the last free_step
   Vector velocity_;
   std::vector<dvec3> node_velocity_;  // [m/s] by velocity_, of the free motion
-  std::optional<RigidMotion> device_;
+  std::optional<RigidMotion> device_, led_;
   CouplingForce coupling_;
   CouplingStep coupling_step_;
   Vector6 start_ = Vector6::Zero();  // w0

@@ -126,9 +126,11 @@ void pull_device(ToolTouchState& tool, const HandleModel& model, const Handle6& 
 void tell_soft_clock(ToolTouchState& tool, Tick tick) {
   ToolInput& input = tool.input.write();
   input.status = tool.sensing ? DeviceStatus::kReady : DeviceStatus::kLost;
-  input.time = tick.time;
+  input.time = tool.placed ? tick.time + tick.dt : tick.time;
   input.tick = tick.dt;
   input.device = tool.sensed;
+  input.placed = tool.placed;
+  input.handle = tool.handle;
   tool.input.publish();
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
@@ -142,6 +144,8 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (tool.placed && sensing) {
     step(tool, model, settings, tick);
     pull_device(tool, model, settings);
+  } else {
+    tool.handle.velocity.setZero();
   }
   tell_soft_clock(tool, tick);
 }
