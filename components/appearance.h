@@ -39,11 +39,13 @@ struct Material {
   std::int32_t normal_texture = -1;
   std::int32_t occlusion_texture = -1;
   std::int32_t emissive_texture = -1;
-  std::int32_t height_texture = -1;  // extras.height_texture: relief finer than the mesh, in its red channel
-  float height_scale = 0.0f;         // [m] extras.height_scale: white above black
-  float ior = 1.5f;                  // KHR_materials_ior
-  float transmission = 0.0f;         // KHR_materials_transmission
-  float thickness = 0.0f;            // [m] KHR_materials_volume
+  std::int32_t transmission_texture = -1;  // KHR_materials_transmission: its red channel scales `transmission`
+  std::int32_t thickness_texture = -1;     // KHR_materials_volume: its green channel scales `thickness`
+  std::int32_t height_texture = -1;        // extras.height_texture: relief finer than the mesh, in its red channel
+  float height_scale = 0.0f;               // [m] extras.height_scale: white above black
+  float ior = 1.5f;                        // KHR_materials_ior
+  float transmission = 0.0f;               // KHR_materials_transmission
+  float thickness = 0.0f;                  // [m] KHR_materials_volume
   vec3 attenuation_color{1};
   float attenuation_distance = 0.0f;  // [m] 0: none
   enum class Alpha : std::uint8_t { kOpaque, kMask, kBlend } alpha = Alpha::kOpaque;

@@ -32,7 +32,8 @@ struct ContactMark {
 struct HandleMark {
   Entity tool;  // has a Handle6
   Pose pose;
-  vec3 force{0}, torque{0};  // [N], [N m] world, that flesh and contacts put on the handle
+  vec3 force{0}, torque{0};   // [N], [N m] world, that flesh and contacts put on the handle
+  vec3 middle{0}, wanted{0};  // [m] world, of the handle: where its middle is, and where the device wants it
 };
 
 struct SoftSnapshot {

@@ -60,9 +60,12 @@ Material material_of(const SourceDocument& document, const Json& json, Level& le
   if (json.contains("normalTexture")) out.normal_scale = value_of(json["normalTexture"], "scale", 1.0f);
   if (json.contains("occlusionTexture")) out.occlusion_strength = value_of(json["occlusionTexture"], "strength", 1.0f);
   out.ior = value_of(part(extension_of(json, "KHR_materials_ior")), "ior", 1.5f);
-  out.transmission = value_of(part(extension_of(json, "KHR_materials_transmission")), "transmissionFactor", 0.0f);
+  const Json& transmission = part(extension_of(json, "KHR_materials_transmission"));
+  out.transmission = value_of(transmission, "transmissionFactor", 0.0f);
+  out.transmission_texture = texture_of(document, transmission, "transmissionTexture", level);
   const Json& volume = part(extension_of(json, "KHR_materials_volume"));
   out.thickness = value_of(volume, "thicknessFactor", 0.0f);
+  out.thickness_texture = texture_of(document, volume, "thicknessTexture", level);
   out.attenuation_color = vector_of(volume, "attenuationColor", vec3(1));
   out.attenuation_distance = value_of(volume, "attenuationDistance", 0.0f);
   const std::string alpha = value_of<std::string>(json, "alphaMode", "OPAQUE");

@@ -80,9 +80,13 @@ class Builder {
     if (m.emissive != vec3(0)) json["emissiveFactor"] = numbers(m.emissive / strength);
     if (strength != 1.0f) extend(json, "KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
     if (m.ior != 1.5f) extend(json, "KHR_materials_ior", {{"ior", m.ior}});
-    if (m.transmission != 0.0f) extend(json, "KHR_materials_transmission", {{"transmissionFactor", m.transmission}});
+    Json transmission = Json::object();
+    if (m.transmission != 0.0f) transmission["transmissionFactor"] = m.transmission;
+    set_texture(transmission, "transmissionTexture", m.transmission_texture);
+    if (!transmission.empty()) extend(json, "KHR_materials_transmission", transmission);
     Json volume = Json::object();
     if (m.thickness != 0.0f) volume["thicknessFactor"] = m.thickness;
+    set_texture(volume, "thicknessTexture", m.thickness_texture);
     if (m.attenuation_color != vec3(1)) volume["attenuationColor"] = numbers(m.attenuation_color);
     if (m.attenuation_distance != 0.0f) volume["attenuationDistance"] = m.attenuation_distance;
     if (!volume.empty()) extend(json, "KHR_materials_volume", volume);

@@ -160,7 +160,8 @@ class Difference {
       same(at + " a factor", a.*member, b.*member);
     for (std::int32_t Material::*member :
          {&Material::base_color_texture, &Material::metallic_roughness_texture, &Material::normal_texture,
-          &Material::occlusion_texture, &Material::emissive_texture})
+          &Material::occlusion_texture, &Material::emissive_texture, &Material::transmission_texture,
+          &Material::thickness_texture})
       same(at + " a texture", a.*member, b.*member);
     same(at + " emissive", a.emissive, b.emissive);
     same(at + " attenuation color", a.attenuation_color, b.attenuation_color);

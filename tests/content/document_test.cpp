@@ -75,6 +75,8 @@ Level everything() {
   material.ior = 1.41f;
   material.transmission = 0.2f;
   material.thickness = 0.013f;
+  material.transmission_texture = 1;
+  material.thickness_texture = 0;
   material.attenuation_color = {0.9f, 0.1f, 0.2f};
   material.attenuation_distance = 0.02f;
   material.alpha = Material::Alpha::kMask;
