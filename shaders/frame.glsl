@@ -20,6 +20,6 @@ layout(std140, binding = 0) uniform Frame {
   uvec4 modes;             // number of lamps, what is switched on
 };
 
-const uint kReflection = 1u, kRefraction = 2u, kBump = 4u, kShadows = 8u, kZones = 16u;
+const uint kReflection = 1u, kRefraction = 2u, kBump = 4u, kShadows = 8u, kZones = 16u, kBehind = 32u, kLinear = 64u;
 
 bool on(uint mode) { return (modes.y & mode) != 0u; }

@@ -11,6 +11,8 @@
 layout(binding = 2) uniform sampler2D roughness_map;  // g: roughness, b: metallic
 layout(binding = 4) uniform sampler2D occlusion_map;  // r
 layout(binding = 5) uniform sampler2D emissive_map;
+layout(binding = 9) uniform sampler2D transmission_map;  // r
+layout(binding = 10) uniform sampler2D thickness_map;    // g
 
 in Varying {
   vec3 position;
@@ -44,7 +46,7 @@ vec3 zone_color(uint zone) {
 void main() {
   vec4 base = base_color_at(from.uv);
   if (base.a < emissive.w) discard;
-  float through = on(kRefraction) ? volume.x : 0.0;
+  float through = on(kRefraction) ? volume.x * texture(transmission_map, from.uv).r : 0.0;
   if (on(kZones)) base.rgb = zone_color(from.zone), through = 0.0;
   if (picture.z > 0.0) base.rgb = tinted(base.rgb);
   vec4 map = texture(roughness_map, from.uv);
@@ -63,7 +65,8 @@ void main() {
   vec3 light = lit_by_lamps(s, open_to_lamp(from.position, normal)) + lit_by_surroundings(s);
   if (through > 0.0) {
     vec3 entering = base.rgb * (1.0 - metallic) * through * (1.0 - coat_of_surroundings(s));
-    light += entering * seen_through(s, Through(volume.y, volume.z, absorption.rgb));
+    float thickness = volume.z * texture(thickness_map, from.uv).g;
+    light += entering * seen_through(s, Through(volume.y, thickness, absorption.rgb), gl_FragCoord.z);
   }
   light += emissive.rgb * texture(emissive_map, from.uv).rgb;
   color = vec4(tone_mapped(light), coat.x > 0.0 ? base.a : 1.0);

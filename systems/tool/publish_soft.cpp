@@ -20,7 +20,9 @@ void show_bodies(const SoftState& soft, SoftSnapshot& out) {
     const auto* tool = dynamic_cast<const SoftBodyState*>(&body);
     if (!tool || !tool->has_handle()) continue;
     const Vector6 wrench = tool->handle_wrench();
-    out.handles[handle++] = {body.entity, tool->handle().object_pose(), vec3(linear(wrench)), vec3(angular(wrench))};
+    const vec3 middle(tool->handle().motion().pose.position), wanted(tool->device_target().pose.position);
+    out.handles[handle++] = {
+        body.entity, tool->handle().object_pose(), vec3(linear(wrench)), vec3(angular(wrench)), middle, wanted};
   }
 }
 

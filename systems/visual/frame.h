@@ -22,7 +22,9 @@ enum ModeBit : std::uint32_t {
   kRefractionMode = 2,
   kBumpMode = 4,
   kShadowMode = 8,
-  kZoneMode = 16
+  kZoneMode = 16,
+  kBehindMode = 32,  // what stands behind glass was drawn for it
+  kLinearMode = 64   // no tone mapping: the picture is to be seen through glass
 };
 
 struct FrameConstants {
@@ -51,7 +53,11 @@ enum TextureUnit : unsigned {
   kEmissiveUnit = 5,
   kHeightUnit = 6,
   kShadowUnit = 7,
-  kCoatUnit = 8
+  kCoatUnit = 8,
+  kTransmissionUnit = 9,
+  kThicknessUnit = 10,
+  kBehindUnit = 11,
+  kBehindDepthUnit = 12
 };
 
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/soft_body.h"
 #include "systems/visual/marker_shapes.h"
 
 namespace pliant {
@@ -19,10 +20,15 @@ constexpr float kArrowRadius = 0.0055f;
 constexpr float kHeadRadius = 0.015f, kHeadLength = 0.04f;
 constexpr float kSmallestForce = 0.01f;  // [N] below: no arrow
 constexpr float kFrameLength = 0.09f, kFrameRadius = 0.004f;
+constexpr float kNormalLength = 0.045f, kNormalRadius = 0.004f, kThinArrow = 0.4f;
+constexpr float kWantedBall = 0.008f, kShortestCoupling = 1e-4f;
 constexpr std::size_t kMostInstances = 7;  // of a probe: ball, stylus, arrow of two, frame of three
+constexpr std::size_t kMostOfContact = 3;  // normal, arrow of two
+constexpr std::size_t kMostOfHandle = 7;   // frame of three, coupling, the device's end, arrow of two
 const vec3 kFrameColors[3] = {{0.85f, 0.06f, 0.04f}, {0.08f, 0.75f, 0.06f}, {0.05f, 0.15f, 0.90f}};
 const vec3 kArrowColor{0.95f, 0.70f, 0.03f};
 const vec3 kRodColor{0.55f, 0.57f, 0.60f};
+const vec3 kStickingColor{0.08f, 0.75f, 0.06f}, kSlidingColor{0.85f, 0.06f, 0.04f}, kCouplingColor{0.65f, 0.1f, 0.75f};
 
 }  // namespace
 
@@ -54,7 +60,13 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   }
   made.vertices_ = gpu::Buffer::fixed<MarkerVertex>(all.vertices);
   made.indices_ = gpu::Buffer::fixed<std::uint32_t>(all.indices);
-  made.instances_ = gpu::Buffer::writable(nullptr, made.probes_.size() * kMostInstances * sizeof(Instance));
+  for ([[maybe_unused]] auto [entity, handle] : world.registry.view<Handle6>()) ++made.most_handles_;
+  for ([[maybe_unused]] auto [entity, soft] : world.registry.view<SoftBody>()) made.most_contacts_ = kMaxShownContacts;
+  for ([[maybe_unused]] auto [entity, rigid] : world.registry.view<RigidBody>())
+    made.most_contacts_ = kMaxShownContacts;
+  const std::size_t most =
+      made.probes_.size() * kMostInstances + made.most_contacts_ * kMostOfContact + made.most_handles_ * kMostOfHandle;
+  made.instances_ = gpu::Buffer::writable(nullptr, most * sizeof(Instance));
 
   made.layout_ = gpu::VertexArray::make();
   made.layout_.source(0, made.vertices_, sizeof(MarkerVertex));
@@ -78,6 +90,14 @@ void Markers::take(const std::vector<ProbeSnapshot>& probes) {
         probe.force = now.force;
         probe.normal = now.normal;
       }
+}
+
+void Markers::take(const SoftSnapshot& snapshot) {
+  const auto first = [](const auto& all, std::size_t count, std::size_t most) {
+    return all.begin() + static_cast<std::ptrdiff_t>(std::min({count, all.size(), most}));
+  };
+  contacts_.assign(snapshot.contacts.begin(), first(snapshot.contacts, snapshot.contact_count, most_contacts_));
+  handles_.assign(snapshot.handles.begin(), first(snapshot.handles, snapshot.handles.size(), most_handles_));
 }
 
 // Which way is out of the body, where a probe is: along the force while it presses, else along the normal of the
@@ -121,14 +141,25 @@ void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const V
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
 }
 
+// From `from` along the force, as long as the force is large.
+void Markers::lay_out_arrow(vec3 from, vec3 force, float thickness) {
+  const float newtons = length(force);
+  if (!(newtons >= kSmallestForce)) return;
+  const vec3 direction = force / newtons;
+  const vec3 neck = from + std::min(kArrowPerNewton * newtons, kLongestArrow) * diagonal_ * direction;
+  place(kRod, from, neck, thickness * kArrowRadius * diagonal_, kArrowColor, 0.5f);
+  place(kHead, neck, neck + thickness * kHeadLength * diagonal_ * direction, thickness * kHeadRadius * diagonal_,
+        kArrowColor, 0.5f);
+}
+
 void Markers::lay_out_force(const Known& probe, vec3 ball, float radius) {
-  const float newtons = static_cast<float>(length(probe.force));
-  if (newtons < kSmallestForce) return;
-  const vec3 direction = vec3(probe.force) / newtons;
-  const float shaft = std::min(kArrowPerNewton * newtons, kLongestArrow) * diagonal_;
-  const vec3 neck = ball + (radius + shaft) * direction;
-  place(kRod, ball, neck, kArrowRadius * diagonal_, kArrowColor, 0.5f);
-  place(kHead, neck, neck + kHeadLength * diagonal_ * direction, kHeadRadius * diagonal_, kArrowColor, 0.5f);
+  const vec3 force(probe.force);
+  if (length(force) >= kSmallestForce) lay_out_arrow(ball + radius * normalize(force), force, 1.0f);
+}
+
+void Markers::lay_out_axes(vec3 from, const mat3& axes) {
+  for (int i = 0; i < 3; ++i)
+    place(kRod, from, from + kFrameLength * diagonal_ * axes[i], kFrameRadius * diagonal_, kFrameColors[i], 0.6f);
 }
 
 // At the probe's lowest point: tangents in red and blue, the normal in green.
@@ -136,9 +167,25 @@ void Markers::lay_out_frame(const Known& probe) {
   if (length(probe.normal) < 0.5) return;
   const vec3 y(normalize(probe.normal));
   const vec3 x = normalize(cross(std::abs(y.z) < 0.9f ? vec3(0, 0, 1) : vec3(1, 0, 0), y));
-  const vec3 axes[3] = {x, y, cross(x, y)}, foot = vec3(probe.position) - probe.radius * y;
-  for (int i = 0; i < 3; ++i)
-    place(kRod, foot, foot + kFrameLength * diagonal_ * axes[i], kFrameRadius * diagonal_, kFrameColors[i], 0.6f);
+  lay_out_axes(vec3(probe.position) - probe.radius * y, mat3(x, y, cross(x, y)));
+}
+
+// Its normal, darker where it slides, and its force.
+void Markers::lay_out_contact(const ContactMark& contact) {
+  if (!(length(contact.normal) > 0.5f)) return;
+  place(kRod, contact.position, contact.position + kNormalLength * diagonal_ * contact.normal,
+        kNormalRadius * diagonal_, contact.sliding ? kSlidingColor : kStickingColor, 0.6f);
+  lay_out_arrow(contact.position, contact.force, kThinArrow);
+}
+
+// Its frame, and the coupling: from its middle to where the device wants that.
+void Markers::lay_out_handle(const HandleMark& handle) {
+  lay_out_axes(handle.middle, mat3(glm::mat4_cast(quat(handle.pose.rotation))));
+  if (length(handle.wanted - handle.middle) > kShortestCoupling * diagonal_)
+    place(kRod, handle.middle, handle.wanted, kFrameRadius * diagonal_, kCouplingColor, 0.6f);
+  const float ball = kWantedBall * diagonal_;
+  place(kRod, handle.wanted - vec3(0, ball, 0), handle.wanted + vec3(0, ball, 0), ball, kCouplingColor, 0.6f);
+  lay_out_arrow(handle.middle, handle.force, 1.0f);
 }
 
 std::size_t Markers::upload(const Viewpoint& viewpoint, const RenderOptions& options) {
@@ -152,6 +199,10 @@ std::size_t Markers::upload(const Viewpoint& viewpoint, const RenderOptions& opt
     if (options.markers && options.forces) lay_out_force(probe, ball, radius);
     if (options.contact_frames) lay_out_frame(probe);
   }
+  if (options.contacts)
+    for (const ContactMark& contact : contacts_) lay_out_contact(contact);
+  if (options.handles)
+    for (const HandleMark& handle : handles_) lay_out_handle(handle);
   changed_ = placed_[kBall] != balls_before_;
   balls_before_ = placed_[kBall];
   std::size_t travelled = 0;

@@ -1,4 +1,5 @@
-// Probes and what they feel: a ball on a stylus, and an arrow along the force.
+// Probes and what they feel: a ball on a stylus, and an arrow along the force. The contacts of soft bodies, and the
+// handles of tools with what holds them, for looking closer.
 #pragma once
 
 #include <cstddef>
@@ -19,6 +20,7 @@ class Markers {
 
   // Takes where the probes are now. Probes that the level did not have at make() are ignored.
   void take(const std::vector<ProbeSnapshot>& probes);
+  void take(const SoftSnapshot& snapshot);
   // Lays out and sends every marker; returns the bytes that travelled.
   std::size_t upload(const Viewpoint& viewpoint, const RenderOptions& options);
   void draw() const;
@@ -49,10 +51,17 @@ class Markers {
   void lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint);
   void lay_out_force(const Known& probe, vec3 ball, float radius);
   void lay_out_frame(const Known& probe);
+  void lay_out_contact(const ContactMark& contact);
+  void lay_out_handle(const HandleMark& handle);
+  void lay_out_axes(vec3 from, const mat3& axes);
+  void lay_out_arrow(vec3 from, vec3 force, float thickness);
   void draw_kind(Kind kind, GLuint first_instance) const;
   void place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, float roughness);
 
   std::vector<Known> probes_;
+  std::vector<ContactMark> contacts_;
+  std::vector<HandleMark> handles_;
+  std::size_t most_contacts_ = 0, most_handles_ = 0;  // that there is room for
   std::vector<Box> boxes_;
   float diagonal_ = 1.0f;  // [m] of the scene
   gpu::Buffer vertices_, indices_, instances_;

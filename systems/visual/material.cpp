@@ -84,9 +84,12 @@ Result<Materials> Materials::make(const World& world) {
                              .occlusion = texture(m.occlusion_texture, gpu::Meaning::kData, kOne),
                              .emissive = texture(m.emissive_texture, gpu::Meaning::kColor, kOne),
                              .height = texture(m.height_texture, gpu::Meaning::kData, kOne),
+                             .transmission = texture(m.transmission_texture, gpu::Meaning::kData, kOne),
+                             .thickness = texture(m.thickness_texture, gpu::Meaning::kData, kOne),
                              .casts = leaves_shadow(m),
                              .blends = m.alpha == Material::Alpha::kBlend,
-                             .double_sided = m.double_sided});
+                             .double_sided = m.double_sided,
+                             .transmits = m.transmission > 0.0f && m.alpha != Material::Alpha::kBlend});
   }
   if (!uploaded) return uploaded.error();
   made.constants_ = gpu::Buffer::fixed(bytes.data(), bytes.size());
@@ -112,6 +115,8 @@ void Materials::bind(std::int32_t index) const {
   textures_[static_cast<std::size_t>(e.occlusion)].bind(kOcclusionUnit);
   textures_[static_cast<std::size_t>(e.emissive)].bind(kEmissiveUnit);
   textures_[static_cast<std::size_t>(e.height)].bind(kHeightUnit);
+  textures_[static_cast<std::size_t>(e.transmission)].bind(kTransmissionUnit);
+  textures_[static_cast<std::size_t>(e.thickness)].bind(kThicknessUnit);
 }
 
 }  // namespace pliant

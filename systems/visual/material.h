@@ -17,13 +17,15 @@ class Materials {
   // Binds constants and textures of material `index` (-1 or out of range: the default material).
   void bind(std::int32_t index) const;
   bool blends(std::int32_t index) const { return entry(index).blends; }
+  bool transmits(std::int32_t index) const { return entry(index).transmits; }
   bool casts_shadow(std::int32_t index) const { return entry(index).casts; }
   bool double_sided(std::int32_t index) const { return entry(index).double_sided; }
 
  private:
   struct Entry {
-    int base_color = 0, roughness = 0, normal = 0, occlusion = 0, emissive = 0, height = 0;  // into textures_
-    bool casts = true, blends = false, double_sided = false;
+    int base_color = 0, roughness = 0, normal = 0, occlusion = 0, emissive = 0, height = 0, transmission = 0,
+        thickness = 0;  // into textures_
+    bool casts = true, blends = false, double_sided = false, transmits = false;
   };
   const Entry& entry(std::int32_t index) const;
   std::size_t row(std::int32_t index) const;

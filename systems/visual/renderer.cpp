@@ -6,10 +6,12 @@
 #include "systems/visual/environment.h"
 #include "systems/visual/gpu/framebuffer.h"
 #include "systems/visual/gpu/program.h"
+#include "systems/visual/gpu/scene_texture.h"
 #include "systems/visual/marker.h"
 #include "systems/visual/picking.h"
 #include "systems/visual/shadow.h"
 #include "systems/visual/surface.h"
+#include "systems/visual/tet_lines.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {
@@ -31,10 +33,14 @@ struct Renderer::Parts {
   Surroundings surroundings;
   Surfaces surfaces;
   Markers markers;
+  TetLines tetrahedra;
   gpu::Program background;
   gpu::VertexArray nothing;  // the background's vertices come from their numbers
   gpu::Buffer frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
+  gpu::Buffer behind_frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
   gpu::Framebuffer samples, picture;
+  gpu::SceneTexture behind;  // what is seen through glass
+  bool through = false;      // this picture has glass
   Shadow shadow;
   bool shaded = false;     // this picture has a shadow
   bool shadow_old = true;  // and the map does not show it yet
@@ -46,6 +52,7 @@ struct Renderer::Parts {
   void measure_scene();
   std::size_t upload(const Viewpoint& viewpoint, int width, int height);
   bool draw_shadow();
+  void draw_behind(int width, int height);
   void draw_scene(vec3 eye);
   FrameStats render(const Viewpoint& viewpoint, int width, int height);
 };
@@ -68,8 +75,15 @@ std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int h
   constants.modes.y = modes_of(options);
   if (shadow.place(constants.lamps[0], scene, constants) && options.shadows) constants.modes.y |= kShadowMode;
   shaded = constants.modes.y & kShadowMode;
-  const std::size_t travelled =
-      frame.write(0, &constants, sizeof constants) + surfaces.upload() + markers.upload(viewpoint, options);
+  std::size_t travelled = surfaces.upload() + markers.upload(viewpoint, options);
+  if (options.tetrahedra) travelled += tetrahedra.upload();
+  through = options.refraction && surfaces.has_glass();
+  if (through) {
+    constants.modes.y |= kLinearMode;
+    travelled += behind_frame.write(0, &constants, sizeof constants);
+    constants.modes.y ^= kLinearMode | kBehindMode;
+  }
+  travelled += frame.write(0, &constants, sizeof constants);
   shadow_old = shadow_old || surfaces.changed() || markers.changed() || constants.shadow_from_world != lamp_view;
   lamp_view = constants.shadow_from_world;
   clip_from_world = constants.view_projection;
@@ -87,10 +101,24 @@ bool Renderer::Parts::draw_shadow() {
   return true;
 }
 
+// What glass lets through: everything that is not glass, in linear light, in the same view.
+void Renderer::Parts::draw_behind(int width, int height) {
+  if (!through) return;
+  if (!behind.has_size(width, height)) behind = gpu::SceneTexture(width, height);
+  glBindTextureUnit(kBehindUnit, 0);
+  glBindTextureUnit(kBehindDepthUnit, 0);
+  glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, behind_frame.id());
+  behind.begin();
+  surfaces.draw_opaque(false);
+  markers.draw();
+  glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame.id());
+  behind.bind(kBehindUnit, kBehindDepthUnit);
+}
+
 // What the eye sees, in order.
 void Renderer::Parts::draw_scene(vec3 eye) {
   glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
-  surfaces.draw_opaque();
+  surfaces.draw_opaque(true);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   markers.draw();
 
@@ -106,6 +134,7 @@ void Renderer::Parts::draw_scene(vec3 eye) {
   surfaces.draw_blended(eye);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glDisable(GL_BLEND);
+  if (options.tetrahedra) tetrahedra.draw();
 }
 
 FrameStats Renderer::Parts::render(const Viewpoint& viewpoint, int width, int height) {
@@ -127,6 +156,7 @@ FrameStats Renderer::Parts::render(const Viewpoint& viewpoint, int width, int he
   if (question) picking.draw(surfaces, clip_from_world, *question);
   question.reset();
   stats.shadow_drawn = draw_shadow();
+  draw_behind(width, height);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, samples.id());
   glViewport(0, 0, width, height);
   glClearColor(kPlain, kPlain, kPlain, 1.0f);
@@ -148,6 +178,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   Result<Picking> picking = Picking::make();
   if (!picking) return picking.error();
   parts.picking = *std::move(picking);
+  Result<TetLines> tetrahedra = TetLines::make(world);
+  if (!tetrahedra) return tetrahedra.error();
+  parts.tetrahedra = *std::move(tetrahedra);
   Result<Markers> markers = Markers::make(world, parts.surfaces.boxes());
   if (!markers) return markers.error();
   parts.markers = *std::move(markers);
@@ -169,7 +202,11 @@ void Renderer::update(const Snapshot& snapshot) {
 }
 
 void Renderer::update(const SoftSnapshot& snapshot) {
-  for (const SoftObjectSnapshot& object : snapshot.objects) parts_->surfaces.take(object);
+  for (const SoftObjectSnapshot& object : snapshot.objects) {
+    parts_->surfaces.take(object);
+    parts_->tetrahedra.take(object);
+  }
+  parts_->markers.take(snapshot);
 }
 
 void Renderer::pick(const PickQuestion& question) {

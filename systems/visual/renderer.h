@@ -63,6 +63,9 @@ struct RenderOptions {
   bool shadows = true;          // of the key light
   bool wireframe = false;       // surfaces as lines
   bool zones = false;           // each zone in a colour of its own
+  bool tetrahedra = false;      // of soft bodies, as lines
+  bool contacts = false;        // of soft and rigid bodies: normals, and an arrow along each force
+  bool handles = false;         // of tools: their frame, and a line to the device that holds them
 
   bool operator==(const RenderOptions&) const = default;
 };

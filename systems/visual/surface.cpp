@@ -121,6 +121,8 @@ Result<Surfaces> Surfaces::make(const World& world) {
     item.number = static_cast<std::uint32_t>(made.items_.size()) + 1;
     const Placement block = placement_block(item.to_world, item.number, false);
     item.placement = gpu::Buffer::writable(&block, sizeof block);
+    for (const Part& part : item.parts)
+      made.has_glass_ = made.has_glass_ || made.materials_.transmits(part.run.material);
     made.items_.push_back(std::move(item));
   }
   if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.on_card; })) {

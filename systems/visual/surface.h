@@ -32,8 +32,10 @@ class Surfaces {
 
   // Draws with materials: what is opaque first, what blends only in the second call, from the back to the front as seen
   // from `eye` [m].
-  void draw_opaque() const;
+  void draw_opaque(bool glass_too) const;
   void draw_blended(vec3 eye) const;
+  // Something is seen through, refracted.
+  bool has_glass() const { return has_glass_; }
   // Depth alone, into the shadow map that is current.
   void draw_shadow() const;
   // Everything that can be seen, for the program that is in use.
@@ -82,7 +84,7 @@ class Surfaces {
   Materials materials_;
   gpu::Program program_, shadow_;
   FieldProgram field_program_;  // compiled only if some field lives on the card
-  bool changed_ = true;
+  bool changed_ = true, has_glass_ = false;
 };
 
 }  // namespace pliant

@@ -44,12 +44,13 @@ void Surfaces::draw_all() const {
   }
 }
 
-void Surfaces::draw_opaque() const {
+void Surfaces::draw_opaque(bool glass_too) const {
   program_.use();
   for (const Item& item : items_) {
     bind(item);
     for (const Part& part : item.parts)
-      if (!materials_.blends(part.run.material)) draw_one(item, part);
+      if (!materials_.blends(part.run.material) && (glass_too || !materials_.transmits(part.run.material)))
+        draw_one(item, part);
   }
 }
 

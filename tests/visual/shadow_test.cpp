@@ -1,0 +1,99 @@
+// When the shadow map is drawn, and what stands in it besides surfaces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "systems/visual/renderer.h"
+#include "tests/visual/scene.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+const Viewpoint kAbove{.eye = {0, 2.2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
+
+// A sheet under a lamp 45 degrees over the left.
+World lit_sheet() {
+  World world = test::sheet(48);
+  const Entity light = world.registry.create();
+  mat4 m(1);
+  m[2] = vec4(normalize(vec3(-1, 1, 0)), 0);
+  world.registry.add<Light>(light, {.intensity = 6});
+  world.registry.add<WorldTransform>(light, {m});
+  return world;
+}
+
+std::unique_ptr<Renderer> renderer_for(const World& world) {
+  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
+  if (!made) ADD_FAILURE() << made.error().message();
+  return made ? *std::move(made) : nullptr;
+}
+
+using test::snapshot_of;
+
+TEST(ShadowPass, IsLeftOutWhileNothingThatCastsOneMoves) {
+  NEEDS_A_CONTEXT();
+  World world = lit_sheet();
+  const Entity probe = test::add_probe(world, {0.3, 0.2, 0}, 0.05);
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  auto drawn = [&](const Viewpoint& view) {
+    FrameStats stats;
+    renderer->picture(view, kWidth, kHeight, &stats);
+    return stats.shadow_drawn;
+  };
+  Snapshot moved;
+  moved.probes.push_back({.probe = probe, .position = {0.31, 0.2, 0}});
+  EXPECT_TRUE(drawn(kAbove)) << "the first";
+  EXPECT_FALSE(drawn(kAbove)) << "nothing happened";
+  EXPECT_FALSE(drawn({.eye = {1, 2, 1}, .target = {0, 0, 0}})) << "only the eye moved";
+  renderer->update(snapshot_of(world, test::dent({0, 0, 0}, 0.05f, 0.3f)));
+  EXPECT_TRUE(drawn(kAbove)) << "a dent";
+  EXPECT_FALSE(drawn(kAbove));
+  renderer->update(moved);
+  EXPECT_TRUE(drawn(kAbove)) << "a probe";
+  renderer->update(moved);
+  EXPECT_FALSE(drawn(kAbove)) << "a probe that stays";
+  renderer->options().markers = false;
+  EXPECT_TRUE(drawn(kAbove)) << "no probe any more";
+  renderer->options().shadows = false;
+  EXPECT_FALSE(drawn(kAbove));
+  renderer->update(snapshot_of(world, test::dent({0, 0, 0}, 0.02f, 0.3f)));
+  EXPECT_FALSE(drawn(kAbove));
+  renderer->options().shadows = true;
+  EXPECT_TRUE(drawn(kAbove)) << "a dent while shadows were off";
+}
+
+TEST(ShadowPass, APictureWithoutItIsTheSame) {
+  NEEDS_A_CONTEXT();
+  const World world = lit_sheet();
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  renderer->update(snapshot_of(world, test::dent({-0.2f, 0, 0}, 0.2f, 0.4f)));
+  const Image first = renderer->picture(kAbove, kWidth, kHeight);
+  EXPECT_EQ(first.rgba, renderer->picture(kAbove, kWidth, kHeight).rgba);
+}
+
+TEST(ShadowPass, AProbeCastsItsShadowWhereTheLampSaysAndNowhereElse) {
+  NEEDS_A_CONTEXT();
+  World world = lit_sheet();
+  constexpr double kUp = 0.3;  // [m] so much to the right of itself its shadow lies
+  test::add_probe(world, {-0.2, kUp, 0}, 0.08);
+  const std::unique_ptr<Renderer> renderer = renderer_for(world);
+  ASSERT_TRUE(renderer);
+  const Image with = renderer->picture(kAbove, kWidth, kHeight);
+  renderer->options().shadows = false;
+  const Image without = renderer->picture(kAbove, kWidth, kHeight);
+  const double metre = kHeight / 2 / std::tan(0.5 * kAbove.yfov) / kAbove.eye.y;
+  auto darker = [&](double x, double z) {
+    const auto pixel = static_cast<std::size_t>(static_cast<int>(kHeight / 2 + metre * z) * kWidth +
+                                                static_cast<int>(kWidth / 2 + metre * x));
+    return int{without.rgba[4 * pixel]} - int{with.rgba[4 * pixel]};
+  };
+  EXPECT_GT(darker(-0.2 + kUp, 0), 15);
+  EXPECT_LE(std::abs(darker(0.5, 0.3)), 2);
+  EXPECT_LE(std::abs(darker(0.1, 0.25)), 2);
+}
+
+}  // namespace
+}  // namespace pliant
