@@ -29,6 +29,7 @@ constexpr const char* kKeys[][2] = {
     {"Space, R", "pause; start anew"},
     {"W, Z, H", "wireframe, zones, height as colour"},
     {"C, A, S", "contact frames, force arrows, shadows"},
+    {"T, K, G", "tetrahedra, contacts of soft bodies, handles of tools"},
     {"F12", "screenshot into the run's folder"},
     {"Tab, F1", "hide or show figures; this page"},
     {"Drop a file", "open it"},
@@ -93,6 +94,25 @@ void curve(const ProbeHistory& history, float ProbeHistory::Bin::*value, float t
   finish();
 }
 
+void probe_line(const ProbeLine& probe, float scale) {
+  // The probe's own colour, its name, and what it feels.
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImVec2 dot = ImGui::GetCursorScreenPos();
+  const auto shown = [](float linear) { return std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f); };
+  list->AddCircleFilled(
+      {dot.x + 5 * scale, dot.y + 0.5f * ImGui::GetTextLineHeight()}, 5 * scale,
+      ImGui::ColorConvertFloat4ToU32({shown(probe.color.x), shown(probe.color.y), shown(probe.color.z), 1.0f}));
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 17 * scale);
+  ImGui::Text("%s", probe.name.c_str());
+  const ProbeHistory::Bin& now = probe.history.newest();
+  const std::string force = fmt::format("{:.2f} N", now.force), depth = fmt::format("{:.1f} mm", now.depth * 1e3f);
+  const float wide = ImGui::CalcTextSize("00.0 mm").x, right = ImGui::GetWindowContentRegionMax().x;
+  ImGui::SameLine(right - 2 * wide - 6 * scale);
+  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", force.c_str());
+  ImGui::SameLine(right - wide);
+  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDepthColor), "%s", depth.c_str());
+}
+
 void plot(const ProbeLine& probe, float scale) {
   float force = 0.1f, depth = 1e-4f;
   for (std::size_t age = 0; age < ProbeHistory::kBins; ++age)
@@ -103,28 +123,8 @@ void plot(const ProbeLine& probe, float scale) {
   force = round_up(force);
   depth = round_up(depth);
 
-  // The probe's own colour, its name, and what moves it.
+  probe_line(probe, scale);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const ImVec2 dot = ImGui::GetCursorScreenPos();
-  const auto shown = [](float linear) { return std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f); };
-  list->AddCircleFilled(
-      {dot.x + 5 * scale, dot.y + 0.5f * ImGui::GetTextLineHeight()}, 5 * scale,
-      ImGui::ColorConvertFloat4ToU32({shown(probe.color.x), shown(probe.color.y), shown(probe.color.z), 1.0f}));
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 17 * scale);
-  ImGui::Text("%s", probe.name.c_str());
-  ImGui::SameLine();
-  const std::string source = probe.source.substr(0, probe.source.find(':'));
-  ImGui::TextColored(kDim, "%s", source.c_str());
-
-  const ProbeHistory::Bin& now = probe.history.newest();
-  const std::string text_force = fmt::format("{:.2f} N", now.force),
-                    text_depth = fmt::format("{:.1f} mm", now.depth * 1e3f);
-  const float wide = ImGui::CalcTextSize("00.0 mm").x, right = ImGui::GetWindowContentRegionMax().x;
-  ImGui::SameLine(right - 2 * wide - 6 * scale);
-  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", text_force.c_str());
-  ImGui::SameLine(right - wide);
-  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDepthColor), "%s", text_depth.c_str());
-
   const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, 52 * scale);
   const ImVec2 end(at.x + size.x, at.y + size.y);
   list->AddRectFilled(at, end, kPlotColor, 4 * scale);
@@ -146,6 +146,42 @@ void plot(const ProbeLine& probe, float scale) {
 void toggle(const char* name, bool& value, bool second_column, float scale) {
   if (second_column) ImGui::SameLine(150 * scale);
   ImGui::Checkbox(name, &value);
+}
+
+void draw_figures(const OverlayState& state) {
+  const TouchFigures& touch = state.touch;
+  figure("tick p50, p99, max", fmt::format("{:.0f}  {:.0f}  {:.0f} us", touch.p50, touch.p99, touch.max));
+  figure("overruns", std::to_string(touch.overruns), touch.overruns ? kBad : kGood);
+  if (state.soft) {
+    const SoftFigures& soft = *state.soft;
+    figure("soft step, contacts", fmt::format("{:.1f} ms  {}", soft.step_ms, soft.contacts));
+    figure("soft overruns", std::to_string(soft.overruns), soft.overruns ? kBad : kGood);
+  }
+  std::string pictures = fmt::format("{:.0f} Hz  {:.1f} ms", state.frames_per_second, state.draw_ms);
+  if (state.resolution < 1) pictures += fmt::format("  at {:.0f} %", 100 * state.resolution);
+  figure("pictures", pictures);
+  figure("awake vertices", std::to_string(state.awake_vertices));
+  figure("upload per picture", bytes(state.upload_bytes));
+}
+
+void draw_switches(RenderOptions& options, float tint, float scale) {
+  ImGui::Separator();
+  bool height = options.tint_height > 0;
+  toggle("wireframe", options.wireframe, false, scale);
+  toggle("zones", options.zones, true, scale);
+  toggle("height as colour", height, false, scale);
+  toggle("shadows", options.shadows, true, scale);
+  toggle("contact frames", options.contact_frames, false, scale);
+  toggle("force arrows", options.forces, true, scale);
+  toggle("probes", options.markers, false, scale);
+  toggle("bump", options.bump, true, scale);
+  toggle("reflection", options.reflection, false, scale);
+  toggle("refraction", options.refraction, true, scale);
+  toggle("tetrahedra", options.tetrahedra, false, scale);
+  toggle("contacts", options.contacts, true, scale);
+  toggle("handles", options.handles, false, scale);
+  toggle("surroundings", options.background, true, scale);
+  options.tint_height = height ? (options.tint_height > 0 ? options.tint_height : tint) : 0.0f;
 }
 
 void draw_help(float scale) {
@@ -236,7 +272,7 @@ bool Overlay::wants_mouse() const {
 
 void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, float tint) {
   ImGui::SetNextWindowPos({12 * scale_, 12 * scale_}, ImGuiCond_Always);
-  ImGui::SetNextWindowSize({300 * scale_, 0}, ImGuiCond_Always);
+  ImGui::SetNextWindowSize({(large_ ? 300.0f : 232.0f) * scale_, 0}, ImGuiCond_Always);
   ImGui::Begin("figures", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
   ImGui::Text("%s", state.title.c_str());
@@ -244,41 +280,22 @@ void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, floa
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
   ImGui::TextColored(state.paused ? kBad : kDim, "%s", right.c_str());
   ImGui::Separator();
-
   const TouchFigures& touch = state.touch;
   figure("touch", fmt::format("{:.0f} of {:.0f} Hz", touch.rate, state.rate_wanted),
          touch.rate > 0.98 * state.rate_wanted || state.paused ? kGood : kBad);
-  figure("tick p50, p99, max", fmt::format("{:.0f}  {:.0f}  {:.0f} us", touch.p50, touch.p99, touch.max));
-  figure("overruns", std::to_string(touch.overruns), touch.overruns ? kBad : kGood);
-  if (state.soft) {
-    const SoftFigures& soft = *state.soft;
-    figure("soft step, contacts", fmt::format("{:.1f} ms  {}", soft.step_ms, soft.contacts));
-    figure("soft overruns", std::to_string(soft.overruns), soft.overruns ? kBad : kGood);
+  if (large_) {
+    draw_figures(state);
+  } else {
+    figure("pictures", fmt::format("{:.0f} Hz", state.frames_per_second));
   }
-  std::string pictures = fmt::format("{:.0f} Hz  {:.1f} ms", state.frames_per_second, state.draw_ms);
-  if (state.resolution < 1) pictures += fmt::format("  at {:.0f} %", 100 * state.resolution);
-  figure("pictures", pictures);
-  figure("awake vertices", std::to_string(state.awake_vertices));
-  figure("upload per picture", bytes(state.upload_bytes));
-
   for (const ProbeLine& probe : state.probes) {
-    ImGui::Separator();
-    plot(probe, scale_);
+    if (large_) ImGui::Separator();
+    (large_ ? plot : probe_line)(probe, scale_);
   }
-  ImGui::Separator();
-  bool height = options.tint_height > 0;
-  toggle("wireframe", options.wireframe, false, scale_);
-  toggle("zones", options.zones, true, scale_);
-  toggle("height as colour", height, false, scale_);
-  toggle("shadows", options.shadows, true, scale_);
-  toggle("contact frames", options.contact_frames, false, scale_);
-  toggle("force arrows", options.forces, true, scale_);
-  toggle("probes", options.markers, false, scale_);
-  toggle("bump", options.bump, true, scale_);
-  toggle("reflection", options.reflection, false, scale_);
-  toggle("refraction", options.refraction, true, scale_);
-  toggle("surroundings", options.background, false, scale_);
-  options.tint_height = height ? (options.tint_height > 0 ? options.tint_height : tint) : 0.0f;
+  if (large_) draw_switches(options, tint, scale_);
+  // Small at first, so that it does not stand before what there is to touch.
+  if (ImGui::SmallButton(large_ ? "less" : "more")) large_ = !large_;
+  ImGui::SameLine();
   ImGui::TextColored(kDim, "F1 keys   Tab hides this");
   ImGui::End();
 }

@@ -87,6 +87,7 @@ class Overlay {
  private:
   void draw_panel(const OverlayState& state, RenderOptions& options, float tint);
   float scale_;
+  bool large_ = false;
 };
 
 }  // namespace pliant

@@ -163,6 +163,7 @@ Status WindowLoop::learn(const PictureDone& done) {
     say(done.screenshot ? shooting_.string() : done.screenshot.error().message(), !done.screenshot);
   shooting_.clear();
   if (!done.answer) return Done{};
+  answer_ = done.answer;
   pointer_.see(done.answer->seen, asked_ray_);
   if (drag_ == Drag::kAsked && done.answer->question.number >= decides_) decide(done.answer->seen);
   return Done{};

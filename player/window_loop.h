@@ -63,6 +63,7 @@ class WindowLoop {
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
   double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed
+  std::optional<PickAnswer> answer_;           // the newest
   Ray asked_ray_;                              // of the question under way
   std::uint64_t questions_ = 0, decides_ = 0;  // asked so far; the one whose answer decides a press
   bool pointed_ = false, close_ = false, wants_mouse_ = false;

@@ -3,8 +3,12 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <cmath>
+
 namespace pliant {
 namespace {
+
+constexpr double kSamePlace = 2.0;  // [pixel]
 
 std::size_t imgui_button(MouseButton button) {
   return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
@@ -45,6 +49,11 @@ void WindowLoop::press(const InputEvent& event) {
     decides_ = questions_ + 1;
     pressed_x_ = cursor_.x();
     pressed_y_ = cursor_.y();
+    // A hand that has rested here has been told already.
+    const auto here = [&](const PickQuestion& q) {
+      return std::hypot(q.x - pressed_x_, q.y - pressed_y_) < kSamePlace;
+    };
+    if (answer_ && here(answer_->question)) decide(answer_->seen);
   }
 }
 
@@ -151,6 +160,15 @@ void WindowLoop::key(int key) {
       break;
     case GLFW_KEY_S:
       options.shadows = !options.shadows;
+      break;
+    case GLFW_KEY_T:
+      options.tetrahedra = !options.tetrahedra;
+      break;
+    case GLFW_KEY_K:
+      options.contacts = !options.contacts;
+      break;
+    case GLFW_KEY_G:
+      options.handles = !options.handles;
       break;
     default:
       break;

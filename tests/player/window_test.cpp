@@ -101,6 +101,57 @@ TEST_F(WindowTest, SecondsEndItAndADroppedFileThatIsNoneLeavesTheLevelAsItWas) {
   EXPECT_GE(report("out")["ticks"].get<int>() + report("out")["overruns"].get<int>(), 1000);
 }
 
+// Mean difference of the channels of two pictures of one size, 0 to 255.
+double difference(const fs::path& a, const fs::path& b) {
+  const auto x = load_image(a), y = load_image(b);
+  if (!x || !y || x->rgba.size() != y->rgba.size()) return 255.0;
+  double sum = 0;
+  for (std::size_t i = 0; i < x->rgba.size(); ++i) sum += std::abs(int{x->rgba[i]} - int{y->rgba[i]});
+  return sum / (0.75 * static_cast<double>(x->rgba.size()));
+}
+
+TEST_F(WindowTest, ShowsWhatARunWithoutOneShows) {
+  write_text(folder / "hold.csv", "time_s,x,y,z\n0,0,0.01,0\n0.3,0.01,-0.008,0\n60,0.01,-0.008,0\n");
+  const Said said = shown({"plate.obj", "--set", "*.deformable.reach=0.04", "--probe", "tip=script:hold.csv"},
+                          "0.0,key,Tab\n1.5,key,F12\n2.5,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  auto still = [&](const std::string& script, const std::string& out) {
+    const Said drawn =
+        pliant({"run", "plate.obj", "--set", "*.deformable.reach=0.04", "--headless", "--probe", "tip=script:" + script,
+                "--seconds", "2", "--frames", "1", "--size", "240x160", "--out", out});
+    ASSERT_EQ(drawn.status, 0) << drawn.err;
+  };
+  still("hold.csv", "still");
+  write_text(folder / "lift.csv", "time_s,x,y,z\n0,0.01,0.03,0\n60,0.01,0.03,0\n");
+  still("lift.csv", "lifted");
+  const fs::path window = folder / "out" / "screenshot-001.png";
+  EXPECT_LT(difference(window, folder / "still" / "frame-0000.png"), 0.3);
+  EXPECT_GT(difference(window, folder / "lifted" / "frame-0000.png"), 0.5) << "any picture would pass";
+}
+
+TEST_F(WindowTest, SlowPicturesDoNotTakeTheForceFromAMouseThatPresses) {
+  write_text(folder / "fine.obj", plate_obj(500));
+  const Said said = shown({"fine.obj"}, "0.0,key,Tab\n0.0,move,120 80\n0.8,press,\n4.5,release,\n5.5,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  expect_no_force_at_the_end();
+  if (report("out")["frame_ms"]["p50"] < 250.0)
+    GTEST_SKIP() << "pictures come faster here than the touch clock's patience with a silent mouse";
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  std::size_t felt = 0, without = 0, waiting = 0;  // ticks; waiting: for force to come back
+  for (std::size_t i = 0; i < forces.rows.size(); ++i) {
+    const bool force = forces.number(i, "fx") != 0.0 || forces.number(i, "fy") != 0.0 || forces.number(i, "fz") != 0.0;
+    if (force) {
+      ++felt;
+      without += waiting;
+      waiting = 0;
+    } else if (felt > 0) {
+      ++waiting;
+    }
+  }
+  ASSERT_GT(felt, 500u) << "it hardly pressed";
+  EXPECT_LT(without, felt / 10);
+}
+
 TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
   write_text(folder / "other.obj", plate_obj());
   const Said said = shown({"plate.obj"}, "0.1,drop,other.obj\n3.0,close,\n");
