@@ -35,6 +35,7 @@ struct Handle6 {
   std::array<double, 2> rotation{0.5, 0.005};     // [N m/rad], [N m s/rad]
   double max_force = 3.3;                         // [N]
   double max_torque = 0.3;                        // [N m]
+  bool carried = true;                            // the tool's weight is held up, and not felt
   std::string device;                             // node with PLIANT_haptic_device
 };
 

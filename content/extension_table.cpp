@@ -232,6 +232,7 @@ std::vector<Key> handle_keys() {
   keys.push_back(number("coupling.max_force", "N", {0.0, 1e4}, h(&H::max_force), "saturation of the coupling's force"));
   keys.push_back(
       number("coupling.max_torque", "N m", {0.0, 1e4}, h(&H::max_torque), "saturation of the coupling's torque"));
+  keys.push_back(flag("carried", h(&H::carried), "hold up the tool's weight, so that the hand does not feel it"));
   keys.push_back(text("device", KeyType::kNode, h(&H::device),
                       "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
   return keys;

@@ -80,8 +80,7 @@ struct HandleModel {
   RigidMotion handle;                     // of its centre
   dvec3 centre{0};                        // [m] of the handle, in the tool's object frame
   Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone
-  Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight
-  dvec3 weight{0};                        // [N] of handle and flesh: borne by the device's own arm, not felt
+  Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight, and what carries the tool
   Vector6 force = Vector6::Zero();  // [N], [N m] that flesh and contacts put on the handle, as the soft step saw it
   LinearModel linear;
   CondensedContacts contacts;

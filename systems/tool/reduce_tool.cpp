@@ -112,7 +112,6 @@ class Reduction {
     out_.soft_step = step_.T;
     out_.handle_mass = tool_.handle_mass();
     out_.handle_load = tool_.handle_load();
-    out_.weight = linear(out_.handle_load) * (1.0 + moving_mass() / out_.handle_mass(0, 0));
     start_ = tool_.starting_velocity().tail<6>();
     Vector6 from_contacts = Vector6::Zero(), elsewhere = Vector6::Zero();
     add_contact_wrenches(from_contacts, elsewhere);
@@ -271,14 +270,6 @@ class Reduction {
     if (share.index == tool_index_) mass = modes.transform.transpose() * (share.weighed.transpose() * tool_.follow());
     c_.modal_stiffness.middleRows(first, count) = -inertia / elastic * mass;
     c_.modal_damping.middleRows(first, count) = alpha * mass + beta * c_.modal_stiffness.middleRows(first, count);
-  }
-
-  // [kg] of the flesh that moves.
-  double moving_mass() const {
-    Rows along = Rows::Zero(tool_.size(), 1), weighed;
-    for (Eigen::Index i = 0; i < tool_.size() - 6; i += 3) along(i, 0) = 1.0;
-    tool_.weigh(along, weighed);
-    return weighed.col(0).head(tool_.size() - 6).sum();
   }
 
   // The flesh that follows the handle.

@@ -72,6 +72,11 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const S
     handle_.emplace(std::span(tets.nodes).subspan(first, count), std::span(flesh_.mass()).subspan(first, count),
                     box_size(tets), placement);
     tie_.emplace(handle->attachment, material_of(body), flesh_, first);
+    for (std::uint32_t i = 0; i < tets.pinned_begin(); ++i) {
+      mass_ += flesh_.mass()[i];
+      balance_ += flesh_.mass()[i] * (tets.nodes[i] - handle_->centre());
+    }
+    balance_ /= mass_;
   }
   for (std::size_t i = 0; i < tets.nodes.size(); ++i) {
     flesh_.position()[i] = placement.to_world(tets.nodes[i]);
@@ -96,9 +101,9 @@ void SoftBodyState::free_step(double T, dvec3 gravity) {
   solver_.place(flesh_.position());
   if (handle_) {
     tie_->assemble(flesh_, *handle_, T, gravity);
-    couple(T);
+    couple(T, gravity);
     solvable_ = solver_.factorise(flesh_.inner(), tie_->border(), tie_->corner(), tie_->right(), velocity_);
-    separate_flesh(T, gravity);
+    separate_flesh(T);
   } else {
     solvable_ = solver_.factorise(flesh_.inner(), {}, Matrix6::Zero(), flesh_.right(), velocity_);
   }
@@ -106,8 +111,16 @@ void SoftBodyState::free_step(double T, dvec3 gravity) {
   refresh_skin(node_velocity_, skin_velocity);
 }
 
+// What holds up the whole tool in its rest shape. A hand that lifts the weight and lowers it elsewhere would be given
+// work that no surface ever took from it, which no passive device may do.
+Vector6 SoftBodyState::support(dvec3 gravity) const {
+  if (!(device_ || led_) || !settings_.carried) return Vector6::Zero();
+  const dvec3 force = -mass_ * gravity;
+  return join(force, cross(handle_->motion().pose.rotation * balance_, force));
+}
+
 // The device's pull on the handle, implicit.
-void SoftBodyState::couple(double T) {
+void SoftBodyState::couple(double T, dvec3 gravity) {
   start_ = handle_->motion().velocity;
   coupling_ = device_ ? coupling_force(settings_, handle_->motion(), device_target()) : CouplingForce{};
   coupling_step_ = device_ ? coupling_step(coupling_, handle_->motion(), device_target(), T) : CouplingStep{};
@@ -119,13 +132,14 @@ void SoftBodyState::couple(double T) {
     coupling_step_.matrix = join(dvec3(kLeadMass), dvec3(kLeadInertia));
     coupling_step_.right = coupling_step_.matrix.cwiseProduct(join(led_->pose.position - now.pose.position, turn)) / T;
   }
-  tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right);
+  handle_mass_ = handle_->mass_matrix();
+  const Vector6 carry = support(gravity);
+  handle_load_ = handle_mass_ * join(gravity, dvec3(0)) + carry;
+  tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right + T * carry);
 }
 
 // S and its right-hand side, less what is not flesh.
-void SoftBodyState::separate_flesh(double T, dvec3 gravity) {
-  handle_mass_ = handle_->mass_matrix();
-  handle_load_ = handle_mass_ * join(gravity, dvec3(0));
+void SoftBodyState::separate_flesh(double T) {
   if (!solvable_) {
     flesh_matrix_.setZero();
     flesh_wrench_.setZero();

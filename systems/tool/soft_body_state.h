@@ -65,7 +65,8 @@ class SoftBodyState final : public Body {
   const Matrix6& reduced() const { return solver_.reduced(); }  // S = handle_mass + flesh_matrix + coupling [kg]
   const Rows& follow() const { return solver_.follow(); }       // [-Z; 1], size() x 6
   const Matrix6& handle_mass() const { return handle_mass_; }   // M_h [kg], [kg m2]
-  const Vector6& handle_load() const { return handle_load_; }   // [N], [N m] M_h's weight, at the centre
+  // [N], [N m] at the centre: M_h's weight, and what carries the tool while a device holds it.
+  const Vector6& handle_load() const { return handle_load_; }
   // What flesh does to the handle in this step, as a linear function of the handle's velocity w over it:
   //   T F(w) = T flesh_wrench - flesh_matrix (w - w0),  w0 the velocity at the step's beginning,
   // mass-proportional damping of M_h included; its inertia and weight, coupling and contacts left out.
@@ -88,8 +89,9 @@ class SoftBodyState final : public Body {
   Eigen::Index handle_row() const { return 3 * static_cast<Eigen::Index>(flesh_.moving()); }
   dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
   dvec3 node_velocity(std::uint32_t node) const;  // [m/s] by velocity()
-  void couple(double T);
-  void separate_flesh(double T, dvec3 gravity);
+  void couple(double T, dvec3 gravity);
+  Vector6 support(dvec3 gravity) const;
+  void separate_flesh(double T);
   void refresh_skin(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_skin) const;
 
   const TetMesh& tets_;
@@ -98,6 +100,8 @@ class SoftBodyState final : public Body {
   Flesh flesh_;
   std::optional<RigidHandle> handle_;
   std::optional<HandleTie> tie_;
+  double mass_ = 0.0;   // [kg] of flesh and handle
+  dvec3 balance_{0};    // [m] from the handle's centre to that mass's, at rest, object axes
   CoupledSolver solver_;
   bool solvable_ = true;
   double T_ = 0.0;  // [s] of the last free_step

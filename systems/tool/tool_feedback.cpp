@@ -120,9 +120,7 @@ void pull_device(ToolTouchState& tool, const HandleModel& model, const Handle6& 
   const RigidMotion target = tool.sensed.at(model.centre);
   const Vector6 wrench = -coupling_force(settings, tool.handle, target).wrench;
   const dvec3 arm = target.pose.position - tool.sensed.pose.position;
-  // Without the tool's weight: a hand that only holds it feels nothing, and the safety layer's gate opens.
-  const dvec3 force = linear(wrench) - model.weight;
-  tool.device_wrench = join(force, angular(wrench) + cross(arm, force));
+  tool.device_wrench = join(linear(wrench), angular(wrench) + cross(arm, linear(wrench)));
 }
 
 void tell_soft_clock(ToolTouchState& tool, Tick tick) {
