@@ -135,7 +135,7 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   std::vector<std::string> probes, devices;
   std::set<std::string> extensions;
   for (const LevelNode& node : level.nodes) {
-    if (node.probe) probes.push_back(node.name);
+    if (node.probe || node.handle) probes.push_back(node.name);
     if (node.device) devices.push_back(node.name);
     if (node.deformable) extensions.insert("PLIANT_deformable");
     if (node.probe) extensions.insert("PLIANT_probe");

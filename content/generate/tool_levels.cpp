@@ -101,10 +101,10 @@ void add_hand(Level& level, const Waypoint& start) {
 
 // On the organ: down with the fingers first, a stroke across, a roll about the fingers' axis, up.
 std::vector<Waypoint> organ_path() {
-  return {{0.0, {0.0, 0.125, 0.075}, {0, 0, 0}},     {1.5, {0.0, 0.074, 0.060}, {0, 0, 0}},
-          {2.3, {0.0, 0.064, 0.060}, {4, 0, 0}},     {4.3, {0.035, 0.066, 0.050}, {4, 0, 0}},
-          {5.3, {0.030, 0.066, 0.055}, {4, 0, -10}}, {6.3, {-0.005, 0.066, 0.060}, {4, 0, 6}},
-          {7.2, {0.0, 0.110, 0.075}, {0, 0, 0}},     {8.0, {0.0, 0.125, 0.075}, {0, 0, 0}}};
+  return {{0.0, {0.0, 0.115, 0.075}, {0, 0, 0}},     {1.5, {0.0, 0.072, 0.060}, {0, 0, 0}},
+          {2.3, {0.0, 0.054, 0.060}, {4, 0, 0}},     {4.3, {0.035, 0.056, 0.050}, {4, 0, 0}},
+          {5.3, {0.030, 0.056, 0.055}, {4, 0, -10}}, {6.3, {-0.005, 0.056, 0.060}, {4, 0, 6}},
+          {7.2, {0.0, 0.100, 0.075}, {0, 0, 0}},     {8.0, {0.0, 0.115, 0.075}, {0, 0, 0}}};
 }
 
 // Low over the tray: through the bodies from the right, back, and down on one of them.
@@ -117,10 +117,10 @@ std::vector<Waypoint> crowd_path() {
 
 // Forward between the walls, a small twist while squeezed, and back.
 std::vector<Waypoint> squeeze_path() {
-  return {{0.0, {0.0, 0.03, 0.115}, {0, 0, 0}}, {2.4, {0.0, 0.03, 0.040}, {0, 0, 0}},
-          {3.4, {0.0, 0.03, 0.040}, {0, 4, 0}}, {4.4, {0.0, 0.03, 0.040}, {0, -4, 0}},
-          {5.2, {0.0, 0.03, 0.040}, {0, 0, 0}}, {7.2, {0.0, 0.03, 0.115}, {0, 0, 0}},
-          {8.0, {0.0, 0.03, 0.115}, {0, 0, 0}}};
+  return {{0.0, {0.0, 0.03, 0.105}, {0, 0, 0}}, {2.4, {0.0, 0.03, 0.012}, {0, 0, 0}},
+          {3.4, {0.0, 0.03, 0.012}, {0, 3, 0}}, {4.4, {0.0, 0.03, 0.012}, {0, -3, 0}},
+          {5.2, {0.0, 0.03, 0.012}, {0, 0, 0}}, {7.2, {0.0, 0.03, 0.105}, {0, 0, 0}},
+          {8.0, {0.0, 0.03, 0.105}, {0, 0, 0}}};
 }
 
 Status write_level(const Level& level, const std::vector<Waypoint>& path, const char* comment,
@@ -144,7 +144,7 @@ Level hand() {
   body.soft_body->pinned = {{-0.2f, -0.1f, -0.2f}, {0.2f, -0.022f, 0.2f}};
   add_fixed(level, "table", {0.16, 0.008, 0.13}, {0.0, -0.060, 0.0}, 0.0, stone);
   add_hand(level, organ_path().front());
-  add_view(level, {0.10, 0.24, 0.42}, {0.0, 0.02, 0.0}, "sky.exr", {0.4, 0.8, 0.3});
+  add_view(level, {0.34, 0.22, 0.12}, {0.0, 0.02, 0.0}, "sky.exr", {0.4, 0.8, 0.3});
   return level;
 }
 
@@ -177,10 +177,11 @@ Level hand_squeeze() {
   Level level;
   level.name = "hand_squeeze";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
-  add_fixed(level, "wall_left", {0.006, 0.045, 0.060}, {-0.062, 0.010, -0.070}, -16.0, stone);
-  add_fixed(level, "wall_right", {0.006, 0.045, 0.060}, {0.062, 0.010, -0.070}, 16.0, stone);
+  add_fixed(level, "table", {0.16, 0.006, 0.15}, {0.0, -0.041, -0.01}, 0.0, stone);
+  add_fixed(level, "wall_left", {0.006, 0.045, 0.060}, {-0.054, 0.010, -0.070}, -17.5, stone);
+  add_fixed(level, "wall_right", {0.006, 0.045, 0.060}, {0.054, 0.010, -0.070}, 17.5, stone);
   add_hand(level, squeeze_path().front());
-  add_view(level, {0.06, 0.30, 0.34}, {0.0, 0.02, -0.02}, "sky.exr", {0.3, 0.8, 0.4});
+  add_view(level, {0.03, 0.34, 0.10}, {0.0, 0.02, -0.05}, "sky.exr", {0.3, 0.8, 0.4});
   return level;
 }
 
