@@ -43,7 +43,7 @@ struct HapticDevice {
   dquat rotation{1, 0, 0, 0};
   double sensed_at = 0.0;  // [s] when; older than kStaleAfter: treated as lost
   dvec3 force_sent{0};     // [N] world, what left for the hand in this tick
-  dvec3 torque_sent{0};        // [N m] world, the same; only tools make any
+  dvec3 torque_sent{0};    // [N m] world, the same; only tools make any
 };
 
 }  // namespace pliant

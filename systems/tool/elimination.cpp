@@ -102,8 +102,8 @@ double panel_blocks(double count, double below) {
   return count * (count + 1) / 2 + count * below;
 }
 
-// Whether a supernode and its parent, right after it, go together: fewer fronts for more zeros. On beams of 500 to 2,100
-// nodes twice these shares of zeros cost 5 to 10 % more, and so did none at all.
+// Whether a supernode and its parent, right after it, go together: fewer fronts for more zeros. On beams of 500 to
+// 2,100 nodes twice these shares of zeros cost 5 to 10 % more, and so did none at all.
 bool worth_merging(const Candidate& s, const Candidate& parent) {
   const double count = s.node.count + parent.node.count;
   const double blocks = panel_blocks(count, static_cast<double>(parent.node.below.size()));

@@ -8,9 +8,9 @@
 // H has the eigenvalues s1+s2, s1+s3, s2+s3 of the signed singular values at a stationary point, and only the global
 // maximum has them all positive: "a = 0 and H positive definite" certifies the answer. Where the certificate fails
 // (first call, large rotation, inversion, collapse) the largest eigenvector of Horn's 4x4 matrix decides (Horn 1987).
-// What lost, for steps of a simulation (10 % strain, 0.02 rad since the guess; one at a time on a 2020s Xeon): Mueller's
-// step converges linearly, 17 iterations to 1e-9, 840 ns; a Jacobi singular value decomposition 580 ns, and its signs
-// jump from step to step; Horn's matrix alone 2,100 ns; this 100 ns, and less eight at a time (element.h).
+// What lost, for steps of a simulation (10 % strain, 0.02 rad since the guess; one at a time on a 2020s Xeon):
+// Mueller's step converges linearly, 17 iterations to 1e-9, 840 ns; a Jacobi singular value decomposition 580 ns, and
+// its signs jump from step to step; Horn's matrix alone 2,100 ns; this 100 ns, and less eight at a time (element.h).
 #pragma once
 
 #include "components/math.h"

@@ -100,8 +100,8 @@ class SoftBodyState final : public Body {
   Flesh flesh_;
   std::optional<RigidHandle> handle_;
   std::optional<HandleTie> tie_;
-  double mass_ = 0.0;   // [kg] of flesh and handle
-  dvec3 balance_{0};    // [m] from the handle's centre to that mass's, at rest, object axes
+  double mass_ = 0.0;  // [kg] of flesh and handle
+  dvec3 balance_{0};   // [m] from the handle's centre to that mass's, at rest, object axes
   CoupledSolver solver_;
   bool solvable_ = true;
   double T_ = 0.0;  // [s] of the last free_step

@@ -115,7 +115,8 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   if (tool.late >= kLateTicks && tool.used == ToolForce::kContacts) use(tool, model, ToolForce::kLinear);
 }
 
-// What the coupling does to the device, at the device's own origin.
+// What the coupling does to the device, at the device's own origin. Before the step: device and handle of one moment. A
+// handle one tick ahead would push a moving hand on, by k v dt.
 void pull_device(ToolTouchState& tool, const HandleModel& model, const Handle6& settings) {
   const RigidMotion target = tool.sensed.at(model.centre);
   const Vector6 wrench = -coupling_force(settings, tool.handle, target).wrench;
@@ -142,8 +143,8 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
   if (tool.placed && sensing) {
-    step(tool, model, settings, tick);
     pull_device(tool, model, settings);
+    step(tool, model, settings, tick);
   } else {
     tool.handle.velocity.setZero();
   }

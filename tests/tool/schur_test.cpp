@@ -62,6 +62,7 @@ struct Finger {
   Finger(Attachment attachment, std::unique_ptr<LinearSolver> solver) {
     body.rayleigh = {0.3, 2e-3};
     handle.attachment = attachment;
+    handle.carried = false;  // what carries it is no part of the matrix
     const Pose placement{{0.1, 0.2, -0.1}, rotation_of({0.3, -0.5, 0.2})};
     state = std::make_unique<SoftBodyState>(bar.tets, bar.skin, body, &handle, placement, std::move(solver));
     const Pose there{{0.12, 0.21, -0.1}, rotation_of({0.6, -0.5, 0.9})};

@@ -2,6 +2,7 @@
 #include "systems/visual/cube.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -98,7 +99,7 @@ TEST(Cube, EveryLevelIsTheIntegralOverTheCoatsLobe) {
 
 class CubeCache : public testing::Test {
  protected:
-  CubeCache() : folder_(fs::path(testing::TempDir()) / "pliant_cube_cache") {
+  CubeCache() : folder_(fs::path(testing::TempDir()) / ("pliant_cube_cache_" + std::to_string(::getpid()))) {
     const char* before = std::getenv("XDG_CACHE_HOME");
     had_ = before != nullptr;
     if (before) before_ = before;
