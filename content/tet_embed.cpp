@@ -32,7 +32,7 @@ dvec3 closest_on_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
 // An implicit tree of boxes over tetrahedra that lie along the Hilbert curve.
 class Tree {
  public:
-  Tree(const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) : nodes_(nodes), tets_(tets) {
+  Tree(const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) : tets_(tets) {
     std::vector<Bounds> level;
     for (std::size_t t = 0; t < tets.size(); ++t) {
       if (t % kWidth == 0) level.emplace_back();
@@ -87,7 +87,6 @@ class Tree {
     for (std::size_t c = 0; c < count; ++c) visit_below(p, reach, visit, level - 1, near[c].second);
   }
 
-  const std::vector<dvec3>& nodes_;
   const std::vector<Tet>& tets_;
   std::vector<std::vector<Bounds>> levels_;
 };
