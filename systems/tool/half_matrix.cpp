@@ -2,11 +2,7 @@
 
 #include <algorithm>
 
-#if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
-#define PLIANT_TWICE __attribute__((target_clones("avx2", "default")))
-#else
-#define PLIANT_TWICE
-#endif
+#include "runtime/kernel.h"
 
 namespace pliant {
 namespace {
@@ -94,7 +90,7 @@ void HalfMatrix<Scalar>::take(const HalfPattern& pattern, const BlockMatrix& a) 
 template struct HalfMatrix<float>;
 template struct HalfMatrix<double>;
 
-PLIANT_TWICE void multiply(const HalfPattern& pattern, const HalfMatrix<double>& a, const double* x, double* y) {
+PLIANT_KERNEL void multiply(const HalfPattern& pattern, const HalfMatrix<double>& a, const double* x, double* y) {
   multiply_half<double>(pattern, a, x, y);
 }
 void multiply(const HalfPattern& pattern, const HalfMatrix<float>& a, const float* x, float* y) {

@@ -3,13 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-// Kernels are compiled twice, for plain x86-64 and for AVX2, and the loader picks. Without contraction both give the
-// same bits. Sanitizers do not mix with this mechanism, so they get the plain version.
-#if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
-#define PLIANT_KERNEL __attribute__((target_clones("avx2", "default")))
-#else
-#define PLIANT_KERNEL
-#endif
+#include "runtime/kernel.h"
 
 namespace pliant {
 namespace {
