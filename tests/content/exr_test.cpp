@@ -7,6 +7,7 @@
 #include <ImfOutputFile.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <limits>
 
@@ -82,6 +83,28 @@ TEST(Exr, EveryTruncationIsRefusedInASentence) {
     const Result<Panorama> panorama = decode_panorama(std::span(whole).first(size), "cut.exr");
     ASSERT_FALSE(panorama.ok()) << size;
     ASSERT_EQ(panorama.error().message().rfind("cut.exr: ", 0), 0u);
+  }
+}
+
+// The library reads what a type says, not what an attribute claims: were both let differ, the rest of the header would
+// be read from elsewhere, as attributes of any size.
+TEST(Exr, AnAttributeOfAnotherSizeThanItsTypeIsRefusedBeforeTheLibrarySeesIt) {
+  const std::vector<float> ramp{1.0f, 2.0f};
+  const Bytes whole = exr(2, 1, {{"R", ramp}, {"G", ramp}, {"B", ramp}});
+  for (const char* type : {"box2i", "chlist", "v2f", "float"}) {
+    Bytes bytes = whole;
+    const std::string text(bytes.begin(), bytes.end()), word = std::string(1, '\0') + type + std::string(1, '\0');
+    const std::size_t at = text.find(word);
+    ASSERT_NE(at, std::string::npos) << type;
+    const std::size_t size_at = at + word.size();
+    std::uint32_t size = 0;
+    std::memcpy(&size, bytes.data() + size_at, 4);
+    bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(size_at + 4 + size), std::uint8_t{0});
+    ++size;
+    std::memcpy(bytes.data() + size_at, &size, 4);
+    const Result<Panorama> panorama = decode_panorama(bytes, "test");
+    ASSERT_FALSE(panorama.ok()) << type;
+    EXPECT_NE(panorama.error().message().find("damaged"), std::string::npos) << panorama.error().message();
   }
 }
 
