@@ -357,6 +357,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   Schedule<World> schedule(touch_schedule());
   TouchLoop loop{world, schedule, journal, *keeper, *out, rate, ticks, frames.get(), {}, nullptr};
   loop.replay = run.replay ? &*run.replay : nullptr;
+  if (options.realtime || shown) limit_tool_ticks(world);
   SoftClock soft(world);
   if (soft.any()) loop.soft = &soft;
   if (frames)

@@ -99,7 +99,7 @@ Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
 void release_devices(World& world) {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) {
     device.status = DeviceStatus::kLost;
-    device.force_sent = dvec3(0);
+    device.force_sent = device.torque_sent = dvec3(0);
   }
 }
 

@@ -10,7 +10,7 @@ constexpr double kTellEvery = 0.1;  // [s] of figures for a person to read
 void set_devices(World& world, DeviceStatus status) {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) {
     device.status = status;
-    if (status == DeviceStatus::kLost) device.force_sent = dvec3(0);
+    if (status == DeviceStatus::kLost) device.force_sent = device.torque_sent = dvec3(0);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "systems/device/devices.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "components/soft_body.h"
 #include "systems/device/mouse.h"
@@ -21,23 +22,26 @@ void sense(const World& world, HapticDevice& device, double time) {
   device.sensed_at = time;
 }
 
-// A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned.
+// A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is
+// unknown of the one is unknown of the other, so that both are let go and engaged together.
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
-  const SafetyResult force =
-      make_safe(tool.force_safety, device, linear(tool.device_wrench), device.position, tick.time, tick.dt);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
+  const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // Ready without a pose: no pose at all
+  const bool known = posed && tool.device_wrench.allFinite();
+  const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
+  const SafetyResult force = make_safe(tool.force_safety, device, known ? linear(tool.device_wrench) : unknown,
+                                       device.position, tick.time, tick.dt);
   const SafetyLimits torque_limits{handle.max_torque, 0.0,
                                    device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9)};
-  const SafetyResult torque = make_safe(tool.torque_safety, device, torque_limits, angular(tool.device_wrench),
-                                        tool.turned, tick.time, tick.dt);
+  const SafetyResult torque = make_safe(tool.torque_safety, device, torque_limits,
+                                        known ? angular(tool.device_wrench) : unknown, tool.turned, tick.time, tick.dt);
   for (const SafetyResult& result : {force, torque}) {
     if (result.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
     if (result.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
   }
-  const bool whole = force.event == SafetyEvent::kNone && torque.event == SafetyEvent::kNone;
-  device.force_sent = whole ? force.force : dvec3(0);
-  device.torque_sent = whole ? torque.force : dvec3(0);
+  device.force_sent = force.force;
+  device.torque_sent = torque.force;
 }
 
 }  // namespace

@@ -71,4 +71,10 @@ Status prepare_tools(World& world) {
   return Done{};
 }
 
+void limit_tool_ticks(World& world) {
+  if (!world.tools) return;
+  for (const auto& tool : world.tools->tools)
+    tool->limits.budget_ns = static_cast<std::uint64_t>(kTickBudgetShare * 1e9 / world.simulation.touch_rate);
+}
+
 }  // namespace pliant

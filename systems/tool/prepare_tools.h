@@ -10,4 +10,9 @@ namespace pliant {
 // device gets one that never moves, where it stands; one whose device already moves something else is refused.
 Status prepare_tools(World& world);
 
+// Real time: solving contacts again may take this share of a tick; after a few ticks over it the linear model takes
+// over (tool_feedback.h). Without it, as in lockstep, no tick looks at the wall's clock. Before the clocks start.
+inline constexpr double kTickBudgetShare = 0.3;  // [1] more: other systems of the tick come late
+void limit_tool_ticks(World& world);
+
 }  // namespace pliant

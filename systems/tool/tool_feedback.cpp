@@ -82,9 +82,10 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   handle.velocity = tool.handle.velocity;
   handle.inertia = model.handle_mass;
   handle.inertia.diagonal() += bond.matrix;
-  handle.right = model.handle_mass * tool.handle.velocity + bond.right + tick.dt * (model.handle_load + tool.fade);
-
+  // What carries the tool is as old as the flesh's weight in the model: without the one, the other would lift the hand.
   const double believed = trust(model, tick.time);
+  handle.right =
+      model.handle_mass * tool.handle.velocity + bond.right + tick.dt * (believed * model.handle_load + tool.fade);
   if (believed < 1.0 && tool.used != ToolForce::kLinear) use(tool, model, ToolForce::kLinear);
   switch (tool.used) {
     case ToolForce::kHeld: {
@@ -124,6 +125,21 @@ void pull_device(ToolTouchState& tool, const HandleModel& model, const Handle6& 
   tool.device_wrench = join(linear(wrench), angular(wrench) + cross(arm, linear(wrench)));
 }
 
+bool finite(const RigidMotion& motion) {
+  const dvec3 x = motion.pose.position;
+  const dquat q = motion.pose.rotation;
+  return std::isfinite(dot(x, x)) && std::isfinite(glm::dot(q, q)) && motion.velocity.allFinite();
+}
+
+// A model that is no number must not stay in the handle: nothing is felt until the next one.
+void forget(ToolTouchState& tool) {
+  tool.placed = false;
+  tool.handle = tool.sensed;
+  tool.fade.setZero();
+  tool.wrench.setZero();
+  tool.device_wrench.setZero();
+}
+
 void tell_soft_clock(ToolTouchState& tool, Tick tick) {
   ToolInput& input = tool.input.write();
   input.status = tool.sensing ? DeviceStatus::kReady : DeviceStatus::kLost;
@@ -145,6 +161,10 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (tool.placed && sensing) {
     pull_device(tool, model, settings);
     step(tool, model, settings, tick);
+    if (!finite(tool.handle)) {
+      world.dropped |= kDroppedNonFinite;
+      forget(tool);
+    }
   } else {
     tool.handle.velocity.setZero();
   }

@@ -225,6 +225,67 @@ TEST(ToolFeedback, NothingIsFeltOfADeviceThatIsLost) {
   EXPECT_EQ(length(stage.hand().force_sent), 0.0);
 }
 
+TEST(ToolFeedback, ACarriedToolIsLetGoWhenItsModelIsTooOldToBeBelieved) {
+  for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
+    Stage stage(coupling(200.0));
+    stage.state().wanted = mode;
+    // Flesh pulls down with its weight, what carries it holds against that: the hand feels nothing.
+    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = -0.5;
+    stage.model.handle_load[1] = 0.5;
+    stage.publish();
+    double most = 0.0;
+    for (int i = 0; i < 1000; ++i) {  // the soft clock has stopped
+      stage.tick();
+      most = std::max(most, stage.state().device_wrench.norm());
+    }
+    EXPECT_LT(most, 0.01) << "by weight or by what carries it";
+  }
+}
+
+TEST(ToolFeedback, AModelThatIsNoNumberIsNotFeltAndTheNextOneIs) {
+  Stage stage(coupling(200.0));
+  const auto press = [&](double newton) {
+    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = newton;
+    stage.publish();
+  };
+  press(0.1);
+  for (int i = 0; i < 40; ++i) stage.tick();
+  EXPECT_GT(length(stage.hand().force_sent), 0.05);
+  press(std::nan(""));
+  for (int i = 0; i < 3; ++i) {
+    stage.tick();
+    EXPECT_TRUE(std::isfinite(length(stage.hand().force_sent)));
+    EXPECT_LE(length(stage.hand().force_sent), 0.11);
+  }
+  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
+  EXPECT_NE(stage.world.dropped & kDroppedNonFinite, 0u);
+  press(0.1);
+  for (int i = 0; i < 40; ++i) stage.tick();
+  EXPECT_NEAR(length(stage.hand().force_sent), 0.1, 0.01);
+}
+
+TEST(ToolFeedback, NothingLeavesAtOnceWhereTheDevicesRotationIsNone) {
+  Stage stage(coupling(200.0));
+  stage.hand().max_slew = 1.0;  // letting go by slewing would take 100 ticks
+  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 0.1;
+  for (int i = 0; i < 200; ++i) {
+    if (i % 16 == 0) stage.publish();
+    stage.tick();
+  }
+  EXPECT_GT(length(stage.hand().force_sent), 0.05);
+  stage.hand().rotation = dquat(0, 0, 0, 0);
+  stage.tick();
+  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
+  EXPECT_EQ(length(stage.hand().torque_sent), 0.0);
+}
+
+TEST(ToolFeedback, OnlyRealTimeGivesATickABudgetOfWallTime) {
+  Stage stage;
+  EXPECT_EQ(stage.state().limits.budget_ns, 0u);
+  limit_tool_ticks(stage.world);
+  EXPECT_EQ(stage.state().limits.budget_ns, 300000u);
+}
+
 TEST(ToolFeedback, ADeviceThatMovesAProbeAlreadyIsRefused) {
   Stage stage;
   const Entity probe = stage.world.registry.create();
