@@ -1,0 +1,95 @@
+#include "systems/tool/reduction/tool_contacts.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pliant {
+namespace {
+
+constexpr std::uint32_t kFar = 0xffffffff;
+
+// How many bodies away from the tool; what cannot move passes nothing on.
+std::vector<std::uint32_t> distances(const FinishedStep& step, std::uint32_t tool) {
+  std::vector<std::uint32_t> distance(step.bodies.size(), kFar);
+  distance[tool] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const ContactPoint& c : step.contacts) {
+      if (step.bodies[c.body_a]->size() == 0 || step.bodies[c.body_b]->size() == 0) continue;
+      std::uint32_t &a = distance[c.body_a], &b = distance[c.body_b];
+      if (a != kFar && a + 1 < b) b = a + 1, changed = true;
+      if (b != kFar && b + 1 < a) a = b + 1, changed = true;
+    }
+  }
+  return distance;
+}
+
+}  // namespace
+
+std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int most) {
+  const std::vector<std::uint32_t> distance = distances(step, tool);
+  const auto nearest = [&](int i) {
+    const ContactPoint& c = step.contacts[static_cast<std::size_t>(i)];
+    return std::min(distance[c.body_a], distance[c.body_b]);
+  };
+  std::vector<int> order(step.contacts.size());
+  std::iota(order.begin(), order.end(), 0);
+  order.erase(std::remove_if(order.begin(), order.end(), [&](int i) { return nearest(i) == kFar; }), order.end());
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+    if (nearest(i) != nearest(j)) return nearest(i) < nearest(j);
+    return step.contacts[static_cast<std::size_t>(i)].gap < step.contacts[static_cast<std::size_t>(j)].gap;
+  });
+  if (order.size() > static_cast<std::size_t>(most)) order.resize(static_cast<std::size_t>(most));
+  return order;
+}
+
+bool ToolContacts::chosen(std::size_t in_step) const {
+  return std::find(chosen_.begin(), chosen_.end(), static_cast<int>(in_step)) != chosen_.end();
+}
+
+bool ToolContacts::takes_part(std::uint32_t body) const {
+  bool found = body == tool_;
+  for (int i = 0; i < count() && !found; ++i) found = (*this)[i].body_a == body || (*this)[i].body_b == body;
+  return found;
+}
+
+void ToolContacts::gather(std::uint32_t body, int i, const Rows& x, Eigen::Ref<Rows> out) const {
+  const ContactPoint& p = (*this)[i];
+  if (p.body_a == body) step_.bodies[body]->gather(p.a, p.axes, 1.0, x, out);
+  if (p.body_b == body) step_.bodies[body]->gather(p.b, p.axes, -1.0, x, out);
+}
+
+void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
+  const FinishedStep& step = contacts.step();
+  const Eigen::MatrixXd& compliance = step.delassus.compliance;
+  out.count = contacts.count();
+  out.from_handle.topRows(contacts.rows()).setZero();
+  out.flexibility.topLeftCorner(contacts.rows(), contacts.rows()).setZero();
+  Rows three(3, 6);
+  for (int i = 0; i < out.count; ++i) {
+    const ContactPoint& p = contacts[i];
+    const int row = 3 * contacts.in_step(i);
+    for (int k = 0; k < 3; ++k) out.force[3 * i + k] = p.impulse[k] / step.T;
+    three.setZero();
+    contacts.gather(contacts.tool_index(), i, contacts.tool().follow(), three);
+    out.from_handle.middleRows(3 * i, 3) = three;
+
+    const bool yields = compliance.rows() > row && compliance(row, row) > 0.0;
+    const bool touches = p.impulse.x > 0.0;
+    // Of a gap g0, T u is left when it was open; of a penetration, what was not undone.
+    const double u = step.problem.velocity[row];
+    double left = p.gap >= 0.0 || yields ? step.T * u : (1.0 - step.beta) * p.gap + step.T * u;
+    if (touches && (p.gap >= 0.0 || yields)) left = 0.0;
+    out.gap[i] = left;
+    out.push[i] = std::min(0.0, step.beta * left / step.T);
+
+    out.mu_static[static_cast<std::size_t>(i)] = p.mu_static;
+    out.mu_sliding[static_cast<std::size_t>(i)] = p.mu_sliding;
+    out.sliding[static_cast<std::size_t>(i)] = p.sliding;
+    for (int j = 0; yields && j < out.count; ++j)
+      out.flexibility.block<3, 3>(3 * i, 3 * j) =
+          step.T * step.T * compliance.block<3, 3>(row, 3 * contacts.in_step(j));
+  }
+}
+
+}  // namespace pliant
