@@ -1,0 +1,471 @@
+// What a whole soft step of a tool costs (systems/schedule.cpp), by tetrahedra and by contacts, stage by stage, and
+// what a touch tick of that tool costs, beside how far each is off. A paddle of flesh, its upper face a rigid handle on
+// a scripted device, is pressed on a bed of studs and circles there with friction: one contact a stud, however fine the
+// flesh. The clocks run as in real time where a step takes its whole T: models come one step late and are brought up to
+// date along the handle's path.
+// Times on the wall, and of the processor for this one thread, which count little of what else runs.
+//   bench_soft_step --small --out soft_step.json
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "runtime/clock.h"
+#include "systems/schedule.h"
+#include "systems/tool/block_cholesky.h"
+#include "systems/tool/prepare_soft.h"
+#include "systems/tool/prepare_tools.h"
+#include "systems/tool/tool_touch_state.h"
+#include "systems/touch/prepare.h"
+#include "tests/scenes/tet_shapes.h"
+#include "tests/scenes/tool_stage.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kStep = 1.0 / 60, kTick = 1e-3;  // [s]
+const dvec3 kPaddle(0.084, 0.018, 0.048);         // [m]
+const dvec3 kBed(0.072, 0, 0.036);                // [m] where studs stand
+constexpr double kStud = 0.003;                   // [m] wide and high
+constexpr double kDepth = 1.5e-3;                 // [m] how far the device leads the paddle into the studs ...
+constexpr double kPressed = 0.3;                  // [s] ... by when
+constexpr double kCircle = 3e-3, kTurn = 2.0;     // [m] radius, [s] once around
+constexpr double kFriction = 0.4;                 // [1]
+constexpr int kExactSweeps = 50000;               // of the contacts' own reference
+constexpr double kExact = 1e-12;                  // [1] its tolerance
+
+// Cells of the paddle: six tetrahedra each.
+struct Cells {
+  int along, high, across;
+};
+// Studs in rows on so many grounds side by side: two bodies have 60 contacts at most.
+struct Studs {
+  int grounds, along, across;
+  int count() const { return grounds * along * across; }
+};
+
+double processor_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+// [bytes] in use on the heap.
+double heap() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+struct Spread {
+  double p50 = 0, p99 = 0, max = 0;
+};
+Spread spread(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double q) {
+    return values[std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())))];
+  };
+  return values.empty() ? Spread{} : Spread{at(0.5), at(0.99), values.back()};
+}
+double median(std::vector<double> values) {
+  return spread(std::move(values)).p50;
+}
+
+// Pyramids in rows, points up at y = 0.
+Primitive studs(double from, double to, int along, int across) {
+  Primitive p;
+  for (int i = 0; i < along; ++i)
+    for (int k = 0; k < across; ++k) {
+      const dvec3 top(from + (to - from) * (i + 0.5) / along, 0, kBed.z * ((k + 0.5) / across - 0.5));
+      const auto first = static_cast<std::uint32_t>(p.position.size());
+      p.position.push_back(vec3(top));
+      for (const dvec3 corner : {dvec3(-1, -2, -1), dvec3(-1, -2, 1), dvec3(1, -2, 1), dvec3(1, -2, -1)})
+        p.position.push_back(vec3(top + 0.5 * kStud * corner));
+      for (const std::uint32_t v : {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1, 1, 4, 3, 1, 3, 2}) p.index.push_back(first + v);
+    }
+  return p;
+}
+
+struct Costs {
+  bool usual = false;                      // size and bed
+  std::size_t tetrahedra = 0, moving = 0;  // moving: nodes
+  int studs = 0, steps = 0;
+  double contacts = 0, pushing = 0, sweeps = 0;  // means of a step
+  Spread processor, wall;                        // [ms] a step
+  double interrupted = 0;  // [1] wall over processor time, at most, of the quarter of steps that the stages are of
+  double free_motion = 0, proximity = 0, delassus = 0, sweep = 0, linearise = 0, rest = 0;  // [ms]
+  // Errors, the largest of the steps that were checked; all [1].
+  double flesh_error = 0;     // of A_tt^-1 J_t^T lambda, |x - x'| / |x'|, x' from a factor, refined
+  double residual = 0;        // of the contact laws, of the largest |bias|
+  double velocity_error = 0;  // of the contact velocities, of the largest |bias|, against 1e-12
+  double force_error = 0;     // of the sum of all contact forces, of its size, against 1e-12
+  double reference = 0;       // the reference's own residual, of the largest |bias|
+  Spread tick;                // [ns] tool_feedback, on the wall
+  double tick_residual = 0;   // median, of the largest |bias|
+  double mesh_bytes = 0, model_bytes = 0, step_bytes = 0;  // in use on the heap; the last after the run
+};
+
+class Bench {
+ public:
+  Bench(Cells cells, Studs bed, ToolForce force) : stage_(kStep, 1 / kTick) {
+    const double before = heap();
+    TetMesh paddle = tets::box(cells.along, cells.high, cells.across, -0.5 * kPaddle * dvec3(1, 0, 1),
+                               0.5 * kPaddle * dvec3(1, 2, 1));
+    tets::hold(
+        paddle, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 0.999 * kPaddle.y; });
+    costs_.tetrahedra = paddle.tets.size();
+    SoftBody flesh;
+    flesh.young = 1e4;
+    flesh.poisson = 0.45;
+    flesh.rayleigh = {1.0, 0.005};
+    flesh.friction_static = flesh.friction_sliding = kFriction;
+    Handle6 handle;
+    handle.translation = {2000, 20};
+    handle.rotation = {5, 0.05};
+    handle.max_force = 50;
+    handle.max_torque = 5;
+    tool_ = stage_.add_soft(std::move(paddle), flesh, {kStart}, &handle);
+    RigidBody ground;
+    ground.fixed = true;
+    ground.friction_static = ground.friction_sliding = kFriction;
+    for (int i = 0; i < bed.grounds; ++i) {
+      const auto edge = [&](int k) { return kBed.x * (double(k) / bed.grounds - 0.5); };
+      stage_.add_rigid(studs(edge(i), edge(i + 1), bed.along, bed.across), ground, {});
+    }
+    costs_.studs = bed.count();
+    const double loaded = heap();
+    ASSERT(prepare_touch(stage_.world).ok() && prepare_tools(stage_.world).ok());
+    costs_.mesh_bytes = loaded - before;
+    costs_.model_bytes = heap() - loaded;
+    ready_ = heap();
+    ASSERT(prepare_soft(stage_.world).ok());
+    touch_tool().wanted = force;
+  }
+
+  Costs run(int steps, int check_every) {
+    while (time_ < kPressed) step(false);
+    for (int i = 0; i < steps; ++i) {
+      step(true);
+      if (i % check_every == check_every - 1) check();
+    }
+    costs_.step_bytes = heap() - ready_;
+    summarise(steps);
+    return costs_;
+  }
+
+ private:
+  static constexpr dvec3 kStart{0, 0.5e-3, 0};
+
+  ToolTouchState& touch_tool() { return *stage_.world.tools->tools.front(); }
+
+  dvec3 path(double time) const {
+    const double down = std::min(1.0, time / kPressed), turned = std::max(0.0, time - kPressed) / kTurn * 2 * M_PI;
+    return kStart + dvec3(kCircle * std::sin(turned), -down * (kStart.y + kDepth), kCircle * (1 - std::cos(turned)));
+  }
+
+  // One soft step and the ticks during it. Its last two systems run when the ticks are over.
+  void step(bool measured) {
+    const std::size_t late = soft_.size() - 2;
+    const Tick tick{steps_, kStep, static_cast<double>(steps_) * kStep};
+    double wall = 0, processor = 0;
+    const auto run_systems = [&](std::size_t from, std::size_t to) {
+      const std::uint64_t began = now_ns();
+      const double began_ms = processor_ms();
+      for (std::size_t i = from; i < to; ++i) soft_[i].run(stage_.world, tick);
+      processor += processor_ms() - began_ms;
+      wall += static_cast<double>(now_ns() - began) * 1e-6;
+    };
+    run_systems(0, late);
+    ++steps_;
+    while (time_ < static_cast<double>(steps_) * kStep) touch(measured);
+    run_systems(late, soft_.size());
+    if (!measured) return;
+    const SoftState& soft = stage_.soft();
+    walls_.push_back(wall), processors_.push_back(processor), times_.push_back(soft.times);
+    costs_.contacts += static_cast<double>(soft.contacts.size());
+    costs_.pushing += static_cast<double>(std::count_if(soft.contacts.begin(), soft.contacts.end(),
+                                                        [](const ContactPoint& c) { return c.impulse.x > 0; }));
+    costs_.sweeps += soft.report.sweeps;
+  }
+
+  void touch(bool measured) {
+    time_ = static_cast<double>(++ticks_) * kTick;
+    HapticDevice& device = stage_.device_of(tool_);
+    device.position = path(time_);
+    device.sensed_at = time_;
+    for (const System<World>& system : touch_) {
+      const std::uint64_t began = now_ns();
+      system.run(stage_.world, {ticks_, kTick, time_});
+      if (!measured || system.name != "tool_feedback") continue;
+      tick_ns_.push_back(static_cast<double>(now_ns() - began));
+      const CondensedState& contacts = touch_tool().contacts;
+      const double most = contacts.problem.bias.head(3 * contacts.problem.count).cwiseAbs().maxCoeff();
+      if (touch_tool().used == ToolForce::kContacts) tick_residuals_.push_back(contacts.report.residual / most);
+    }
+  }
+
+  // The step that is over, against the same equations solved to the last digits.
+  void check() {
+    check_flesh();
+    const SoftState& soft = stage_.soft();
+    const Eigen::Index rows = 3 * soft.problem.count;
+    ContactProblem exact = soft.problem;
+    const SweepReport report = solve(exact, {kExactSweeps, kExact, 0});
+    const double most = exact.bias.head(rows).cwiseAbs().maxCoeff();
+    dvec3 force(0), exact_force(0);
+    for (Eigen::Index i = 0; i < soft.problem.count; ++i) {
+      const dmat3& axes = soft.contacts[static_cast<std::size_t>(i)].axes;
+      for (int k = 0; k < 3; ++k) force += axes[k] * soft.problem.impulse[3 * i + k];
+      for (int k = 0; k < 3; ++k) exact_force += axes[k] * exact.impulse[3 * i + k];
+    }
+    const auto keep = [](double& worst, double value) { worst = std::max(worst, value); };
+    keep(costs_.residual, soft.report.residual / most);
+    keep(costs_.reference, report.residual / most);
+    keep(costs_.velocity_error, (soft.problem.velocity - exact.velocity).head(rows).cwiseAbs().maxCoeff() / most);
+    keep(costs_.force_error, length(force - exact_force) / length(exact_force));
+  }
+
+  // The tool's black box, asked for what this step's impulses do to its flesh.
+  void check_flesh() {
+    const SoftState& soft = stage_.soft();
+    const SoftBodyState& tool = stage_.flesh(tool_);
+    const BlockMatrix& a = tool.flesh().inner();
+    Rows pushed = Rows::Zero(tool.size(), 3);
+    Vector b = Vector::Zero(tool.size());
+    for (const ContactPoint& c : soft.contacts) {
+      const bool is_a = soft.bodies[c.body_a]->entity == tool_;
+      pushed.setZero();
+      tool.spread(is_a ? c.a : c.b, c.axes, is_a ? 1.0 : -1.0, pushed, 0);
+      b += pushed * Eigen::Vector3d(c.impulse.x, c.impulse.y, c.impulse.z);
+    }
+    b.conservativeResize(3 * a.size);
+    Rows found = b;
+    tool.solve_held(found);
+    BlockCholesky direct;
+    direct.analyse(a);
+    if (!direct.factorise(a)) return;
+    Vector x, rest, correction;
+    direct.solve(b, x);
+    for (int i = 0; i < 2; ++i) {
+      a.multiply(x, rest);
+      direct.solve(b - rest, correction);
+      x += correction;
+    }
+    costs_.flesh_error = std::max(costs_.flesh_error, (found.col(0) - x).norm() / x.norm());
+  }
+
+  void summarise(int steps) {
+    costs_.steps = steps;
+    costs_.moving = stage_.flesh(tool_).flesh().moving();
+    for (double* mean : {&costs_.contacts, &costs_.pushing, &costs_.sweeps}) *mean /= steps;
+    costs_.wall = spread(walls_), costs_.processor = spread(processors_);
+    costs_.tick = spread(tick_ns_);
+    costs_.tick_residual = median(tick_residuals_);
+    // The quarter of the steps that was interrupted least.
+    std::vector<std::size_t> calm(walls_.size());
+    std::iota(calm.begin(), calm.end(), std::size_t{0});
+    const auto interrupted = [&](std::size_t i) { return walls_[i] / processors_[i]; };
+    std::sort(calm.begin(), calm.end(), [&](std::size_t i, std::size_t k) { return interrupted(i) < interrupted(k); });
+    calm.resize(calm.size() / 4);
+    costs_.interrupted = interrupted(calm.back());
+    const auto of_calm = [&](auto stage) {
+      std::vector<double> values;
+      for (const std::size_t i : calm) values.push_back(stage(i));
+      return median(values);
+    };
+    costs_.free_motion = of_calm([&](std::size_t i) { return times_[i].free_motion; });
+    costs_.proximity = of_calm([&](std::size_t i) { return times_[i].proximity; });
+    costs_.delassus = of_calm([&](std::size_t i) { return times_[i].delassus; });
+    costs_.sweep = of_calm([&](std::size_t i) { return times_[i].sweeps; });
+    costs_.linearise = of_calm([&](std::size_t i) { return times_[i].linearise; });
+    costs_.rest = of_calm([&](std::size_t i) {
+      const SoftTimes& t = times_[i];
+      return walls_[i] - t.free_motion - t.proximity - t.delassus - t.sweeps - t.linearise;
+    });
+  }
+
+  scenes::ToolStage stage_;
+  Entity tool_;
+  const std::vector<System<World>> soft_ = soft_schedule(), touch_ = touch_schedule();
+  std::uint64_t steps_ = 0, ticks_ = 0;
+  double time_ = 0;   // [s]
+  double ready_ = 0;  // [bytes] on the heap before the soft step's memory
+  std::vector<double> walls_, processors_, tick_ns_, tick_residuals_;
+  std::vector<SoftTimes> times_;
+  Costs costs_;
+};
+
+// 540, 2,016, 10,080 and 40,128 tetrahedra; studs for about 10, 30, 60 and 200 contacts: some touch an edge too.
+constexpr Cells kSizes[]{{9, 2, 5}, {14, 3, 8}, {24, 5, 14}, {38, 8, 22}};
+constexpr Studs kBeds[]{{1, 3, 3}, {1, 9, 3}, {2, 3, 9}, {6, 4, 7}};
+constexpr Cells kUsualSize = kSizes[1];
+constexpr Studs kUsualBed = kBeds[2];
+constexpr double kGoal = 60;  // [1/s] soft steps of the usual tool on the usual bed
+
+double per_tetrahedron(const Costs& c, double bytes) {
+  return bytes / static_cast<double>(c.tetrahedra);
+}
+
+Costs measure(const Cells& cells, const Studs& bed, ToolForce force) {
+  const int tetrahedra = 6 * cells.along * cells.high * cells.across;
+  fmt::print(stderr, "bench_soft_step: {} tetrahedra on {} studs\n", tetrahedra, bed.count());
+  const int steps = tetrahedra > 30000 ? 16 : tetrahedra > 3000 ? 60 : 240;
+  Costs costs = Bench(cells, bed, force).run(steps, steps / 4);
+  costs.usual = cells.along == kUsualSize.along && bed.count() == kUsualBed.count();
+  return costs;
+}
+
+void print_head() {
+  fmt::print(
+      "{:>6} {:>6} {:>8} {:>7} {:>6} {:>8} {:>8} {:>8} {:>8} {:>7} {:>7} {:>8} {:>7} {:>7} {:>6} {:>8} {:>8} {:>8}\n",
+      "tets", "moving", "contacts", "pushing", "sweeps", "p50", "p99", "max", "wall p50", "free", "prox.", "delassus",
+      "sweeps", "linear", "rest", "flesh", "velocity", "force");
+}
+
+void print_row(const Costs& c) {
+  fmt::print(
+      "{:>6} {:>6} {:>8.1f} {:>7.1f} {:>6.1f} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.3f} {:>7.3f} {:>8.3f} {:>7.3f} "
+      "{:>7.3f} {:>6.3f} {:>8.1e} {:>8.1e} {:>8.1e}\n",
+      c.tetrahedra, c.moving, c.contacts, c.pushing, c.sweeps, c.processor.p50, c.processor.p99, c.processor.max,
+      c.wall.p50, c.free_motion, c.proximity, c.delassus, c.sweep, c.linearise, c.rest, c.flesh_error, c.velocity_error,
+      c.force_error);
+}
+
+std::string json(const Spread& s, const char* name, const char* unit) {
+  return fmt::format("\"{0}_p50_{1}\": {2:.4g}, \"{0}_p99_{1}\": {3:.4g}, \"{0}_max_{1}\": {4:.4g}", name, unit, s.p50,
+                     s.p99, s.max);
+}
+
+std::string json(const Costs& c) {
+  return fmt::format(
+      "{{\"tetrahedra\": {}, \"moving_nodes\": {}, \"studs\": {}, \"contacts\": {:.1f}, \"pushing\": {:.1f}, "
+      "\"sweeps\": {:.1f}, \"steps\": {}, {}, {}, \"stages_wall_over_processor\": {:.3f}, \"free_motion_ms\": {:.4f}, "
+      "\"proximity_ms\": "
+      "{:.4f}, \"delassus_ms\": {:.4f}, \"sweeps_ms\": {:.4f}, \"linearise_ms\": {:.4f}, \"rest_ms\": {:.4f}, "
+      "\"flesh_error\": {:.2e}, \"contact_residual\": {:.2e}, \"contact_velocity_error\": {:.2e}, "
+      "\"contact_force_error\": {:.2e}, \"reference_residual\": {:.2e}}}",
+      c.tetrahedra, c.moving, c.studs, c.contacts, c.pushing, c.sweeps, c.steps, json(c.processor, "processor", "ms"),
+      json(c.wall, "wall", "ms"), c.interrupted, c.free_motion, c.proximity, c.delassus, c.sweep, c.linearise, c.rest,
+      c.flesh_error, c.residual, c.velocity_error, c.force_error, c.reference);
+}
+
+struct Report {
+  std::string steps, ticks, memory;
+};
+
+void add(std::string& list, const std::string& entry) {
+  list += (list.empty() ? "\n    " : ",\n    ") + entry;
+}
+
+void add_tick(Report& report, const Costs& c, const char* force) {
+  add(report.ticks,
+      fmt::format("{{\"force\": \"{}\", \"tetrahedra\": {}, \"contacts\": {:.1f}, {}, \"contact_residual\": {:.2e}}}",
+                  force, c.tetrahedra, c.contacts, json(c.tick, "wall", "ns"), c.tick_residual));
+}
+
+void add_memory(Report& report, const Costs& c) {
+  add(report.memory, fmt::format("{{\"tetrahedra\": {}, \"contacts\": {:.1f}, \"mesh_bytes_per_tetrahedron\": {:.0f}, "
+                                 "\"step_bytes_per_tetrahedron\": {:.0f}, \"models_bytes\": {:.0f}}}",
+                                 c.tetrahedra, c.contacts, per_tetrahedron(c, c.mesh_bytes),
+                                 per_tetrahedron(c, c.step_bytes), c.model_bytes));
+}
+
+void print_ticks(const std::vector<std::pair<const char*, Costs>>& ticks) {
+  fmt::print(
+      "\nA touch tick [us on the wall]; median residual of its contacts [1]\n{:>6} {:>9} {:>9} {:>8} {:>8} {:>8} "
+      "{:>9}\n",
+      "tets", "contacts", "force", "p50", "p99", "max", "residual");
+  for (const auto& [force, c] : ticks)
+    fmt::print("{:>6} {:>9.1f} {:>9} {:>8.2f} {:>8.2f} {:>8.1f} {:>9.1e}\n", c.tetrahedra, c.contacts, force,
+               1e-3 * c.tick.p50, 1e-3 * c.tick.p99, 1e-3 * c.tick.max, c.tick_residual);
+}
+
+void print_memory(const std::vector<Costs>& all) {
+  fmt::print(
+      "\nHeap in use: bytes a tetrahedron of mesh and skin, and of flesh, solver and contacts; MB of models\n"
+      "{:>6} {:>9} {:>7} {:>7} {:>7}\n",
+      "tets", "contacts", "mesh", "step", "models");
+  for (const Costs& c : all)
+    fmt::print("{:>6} {:>9.1f} {:>7.0f} {:>7.0f} {:>7.2f}\n", c.tetrahedra, c.contacts,
+               per_tetrahedron(c, c.mesh_bytes), per_tetrahedron(c, c.step_bytes), 1e-6 * c.model_bytes);
+}
+
+int run(bool small, const std::string& out) {
+  Report report;
+  std::vector<Costs> all;
+  std::vector<std::pair<const char*, Costs>> ticks;
+  fmt::print("A soft step of {:.1f} ms [processor ms; stages: medians on the wall]; largest errors [1]\n", 1e3 * kStep);
+  print_head();
+  for (const Cells& cells : kSizes)
+    for (const Studs& bed : kBeds) {
+      const bool usual_size = cells.along == kUsualSize.along, usual_bed = bed.count() == kUsualBed.count();
+      if ((!usual_size && !usual_bed) || (small && cells.along > kUsualSize.along)) continue;
+      all.push_back(measure(cells, bed, ToolForce::kContacts));
+      print_row(all.back());
+      if (usual_size && bed.count() <= kMaxCondensed) ticks.emplace_back("contacts", all.back());
+    }
+  const auto usual = std::find_if(all.begin(), all.end(), [](const Costs& c) { return c.usual; });
+  ticks.emplace_back("linear", measure(kUsualSize, kUsualBed, ToolForce::kLinear));
+  print_ticks(ticks);
+  print_memory(all);
+  const double by_median = 1e3 / usual->processor.p50, by_p99 = 1e3 / usual->processor.p99;
+  fmt::print(
+      "\nGoal, {} tetrahedra with {:.0f} frictional contacts, {:.0f} steps/s on one core: {} ({:.0f}/s by the "
+      "median step, {:.0f}/s by p99)\n",
+      usual->tetrahedra, usual->contacts, kGoal, by_median >= kGoal ? "met" : "missed", by_median, by_p99);
+  if (out.empty()) return 0;
+
+  for (const Costs& c : all) {
+    add(report.steps, json(c));
+    add_memory(report, c);
+  }
+  for (const auto& [force, c] : ticks) add_tick(report, c, force);
+  std::ofstream file(out);
+  file << fmt::format(
+      "{{\n  \"errors_of\": {{\n"
+      "    \"flesh_error\": \"A_tt^-1 J_t^T lambda by the step's solver, against a Cholesky factor refined twice: "
+      "|x - x'| / |x'|\",\n"
+      "    \"contact_residual\": \"natural residual of Signorini's and Coulomb's laws, of the largest |bias|\",\n"
+      "    \"contact_velocity_error\": \"contact velocities, of the largest |bias|, against sweeps on to {:.0e}\",\n"
+      "    \"contact_force_error\": \"sum of the contact forces, of its size, against the same\",\n"
+      "    \"reference_residual\": \"contact_residual of those further sweeps, at most {}\"\n  }},\n"
+      "  \"soft_step_ms\": {:.4f},\n  \"soft_step\": [{}\n  ],\n  \"touch_tick\": [{}\n  ],\n"
+      "  \"heap\": [{}\n  ],\n"
+      "  \"goal\": {{\"steps_per_s\": {:.0f}, \"by_p50\": {:.1f}, \"by_p99\": {:.1f}}}\n}}\n",
+      kExact, kExactSweeps, 1e3 * kStep, report.steps, report.ticks, report.memory, kGoal, by_median, by_p99);
+  if (file.flush()) return 0;
+  fmt::print(stderr, "bench_soft_step: error: {}: cannot be written; name a file in a folder that exists\n", out);
+  return 1;
+}
+
+constexpr const char* kHelp =
+    "bench_soft_step [--small] [--out FILE.json]\n"
+    "What a soft step and a touch tick of a tool cost, stage by stage, beside their errors; with memory.\n"
+    "  --small     only up to 2,016 tetrahedra\n"
+    "  --out FILE  the same as JSON\n"
+    "Example:\n"
+    "  taskset -c 0 bench_soft_step --small --out soft_step.json\n";
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  using namespace pliant;
+  bool small = false;
+  std::string out;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--help" || argument == "-h") {
+      fmt::print("{}", kHelp);
+      return 0;
+    }
+    if (argument == "--small") small = true;
+    if (argument == "--out" && i + 1 < argc) out = argv[++i];
+  }
+  return run(small, out);
+}
