@@ -4,15 +4,29 @@
 #include <cmath>
 #include <cstddef>
 
-// Every kernel is compiled for plain x86-64 and for AVX2; the loader picks. AVX-512 was no faster where both were
-// measured (19 Gflop/s each: without fused multiply-add AVX2 keeps three ports busy, AVX-512 two). Sanitizers do not
-// mix with this mechanism, so they get the plain version.
+// Every kernel is compiled for plain x86-64 and for AVX2, and picks when it is called: GCC's own picking among versions
+// of one name works only for callers that see them all, and gives everybody else the plain one. AVX-512 was no faster
+// where both were measured (19 Gflop/s each: without fused multiply-add AVX2 keeps three ports busy, AVX-512 two).
+// Sanitizers get the plain version.
 #if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
-#define PLIANT_KERNEL(returns, name, arguments, call)                                                \
-  __attribute__((target("avx2"))) returns name arguments call(32) __attribute__((target("default"))) \
-  returns name arguments call(16)
+#define PLIANT_KERNEL(returns, name, parameters, arguments, body)                          \
+  returns plain::name parameters {                                                         \
+    return body(16);                                                                       \
+  }                                                                                        \
+  __attribute__((target("avx2"))) static returns wide_##name parameters {                  \
+    return body(32);                                                                       \
+  }                                                                                        \
+  returns name parameters {                                                                \
+    return __builtin_cpu_supports("avx2") ? wide_##name arguments : plain::name arguments; \
+  }
 #else
-#define PLIANT_KERNEL(returns, name, arguments, call) returns name arguments call(16)
+#define PLIANT_KERNEL(returns, name, parameters, arguments, body) \
+  returns plain::name parameters {                                \
+    return body(16);                                              \
+  }                                                               \
+  returns name parameters {                                       \
+    return plain::name arguments;                                 \
+  }
 #endif
 #define PLIANT_INLINE inline __attribute__((always_inline))
 
@@ -208,24 +222,24 @@ PLIANT_INLINE void backward_many_for(Panel panel, const double* reciprocal, doub
 
 }  // namespace
 
-#define FACTORISE(bytes) \
-  { return factorise_panel_for<bytes>(data, panel, reciprocal); }
-#define UPDATE(bytes) \
-  { update_triangle_for<bytes>(panel, triangle); }
-#define FORWARD(bytes) \
-  { forward_for<bytes>(panel, reciprocal, x); }
-#define BACKWARD(bytes) \
-  { backward_for<bytes>(panel, reciprocal, x, sums); }
-#define FORWARD_MANY(bytes) \
-  { forward_many_for<bytes>(panel, reciprocal, x); }
-#define BACKWARD_MANY(bytes) \
-  { backward_many_for<bytes>(panel, reciprocal, x); }
+#define FACTORISE(bytes) factorise_panel_for<bytes>(data, panel, reciprocal)
+#define UPDATE(bytes) update_triangle_for<bytes>(panel, triangle)
+#define FORWARD(bytes) forward_for<bytes>(panel, reciprocal, x)
+#define BACKWARD(bytes) backward_for<bytes>(panel, reciprocal, x, sums)
+#define FORWARD_MANY(bytes) forward_many_for<bytes>(panel, reciprocal, x)
+#define BACKWARD_MANY(bytes) backward_many_for<bytes>(panel, reciprocal, x)
+#define BYTES(bytes) bytes
 
-PLIANT_KERNEL(bool, factorise_panel, (double* data, Panel panel, double* reciprocal), FACTORISE)
-PLIANT_KERNEL(void, update_triangle, (Panel panel, double* triangle), UPDATE)
-PLIANT_KERNEL(void, forward, (Panel panel, const double* reciprocal, double* x), FORWARD)
-PLIANT_KERNEL(void, backward, (Panel panel, const double* reciprocal, double* x, double* sums), BACKWARD)
-PLIANT_KERNEL(void, forward_many, (Panel panel, const double* reciprocal, double* x), FORWARD_MANY)
-PLIANT_KERNEL(void, backward_many, (Panel panel, const double* reciprocal, double* x), BACKWARD_MANY)
+PLIANT_KERNEL(bool, factorise_panel, (double* data, Panel panel, double* reciprocal), (data, panel, reciprocal),
+              FACTORISE)
+PLIANT_KERNEL(void, update_triangle, (Panel panel, double* triangle), (panel, triangle), UPDATE)
+PLIANT_KERNEL(void, forward, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x), FORWARD)
+PLIANT_KERNEL(void, backward, (Panel panel, const double* reciprocal, double* x, double* sums),
+              (panel, reciprocal, x, sums), BACKWARD)
+PLIANT_KERNEL(void, forward_many, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
+              FORWARD_MANY)
+PLIANT_KERNEL(void, backward_many, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
+              BACKWARD_MANY)
+PLIANT_KERNEL(int, panel_register_bytes, (), (), BYTES)
 
 }  // namespace pliant

@@ -36,4 +36,18 @@ void backward(Panel panel, const double* reciprocal, double* x, double* sums);
 void forward_many(Panel panel, const double* reciprocal, double* x);
 void backward_many(Panel panel, const double* reciprocal, double* x);
 
+// Width of the registers that these use on this machine: 32 with AVX2, else 16. [bytes]
+int panel_register_bytes();
+
+// The same for any machine: what the others must agree with.
+namespace plain {
+bool factorise_panel(double* data, Panel panel, double* reciprocal);
+void update_triangle(Panel panel, double* triangle);
+void forward(Panel panel, const double* reciprocal, double* x);
+void backward(Panel panel, const double* reciprocal, double* x, double* sums);
+void forward_many(Panel panel, const double* reciprocal, double* x);
+void backward_many(Panel panel, const double* reciprocal, double* x);
+int panel_register_bytes();
+}  // namespace plain
+
 }  // namespace pliant
