@@ -58,9 +58,8 @@ std::string check_value(const Key& key, const Json& value) {
     case KeyType::kPair:
       return numbers(value, 2, key.range) ? "" : "is " + given + ", not two numbers in " + range_text(key);
     case KeyType::kVector:
-      return value.is_number() || numbers(value, 3, key.range)
-                 ? ""
-                 : "is " + given + ", not three numbers in " + range_text(key);
+      if (value.is_number()) return number();
+      return numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
     case KeyType::kBox: {
       const KeyRange any{-1e6, 1e6};
       bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&

@@ -66,12 +66,15 @@ Status set_key(Level& level, const std::string& assignment) {
                             suggestion(it.extension, extensions)};
   for (const Key& each : extension->keys) keys.push_back(each.name);
   const Key* key = find_key(*extension, it.key);
-  if (!key)
-    return Error{where, "names '" + it.key + "', which is no key of PLIANT_" + it.extension + suggestion(it.key, keys)};
+  if (!key) {
+    const std::string near = suggestion(it.key, keys);
+    return Error{where, "names '" + it.key + "', which is no key of PLIANT_" + it.extension +
+                            (near.empty() ? fmt::format("; its keys are {}", fmt::join(keys, ", ")) : near)};
+  }
   if (key->type == KeyType::kText || key->type == KeyType::kNode || key->type == KeyType::kChoice)
     it.value = assignment.substr(equals + 1);
   const std::string wrong = check_value(*key, it.value);
-  if (!wrong.empty()) return Error{where, it.key + " " + wrong};
+  if (!wrong.empty()) return Error{where, it.key + " " + wrong + "; it is: " + key->doc};
 
   // Nothing changes unless everything can.
   Level changed;

@@ -9,6 +9,7 @@
 #include "content/gltf_document.h"
 #include "content/level.h"
 #include "content/mesh_build.h"
+#include "content/script.h"
 #include "content/spawn_soft.h"
 #include "content/tet_file.h"
 #include "content/tet_parts.h"
@@ -33,6 +34,34 @@ void find_in_extensions(const Json& json, Findings& findings) {
   for (std::size_t i = 0; i < scenes.size(); ++i)
     if (scenes[i].contains("extensions"))
       find_in_scene_extensions(scenes[i]["extensions"], fmt::format("/scenes/{}/extensions", i), findings);
+}
+
+// JSON pointer of a node; its name where the level is no glTF.
+std::string pointer_of(const Level& level, std::size_t node) {
+  return level.source ? fmt::format("/nodes/{}", level.source->json_node[node]) : level.nodes[node].name;
+}
+
+// Of what is only known by its name; the first, as everywhere.
+std::string pointer_of(const Level& level, const std::string& name) {
+  for (std::size_t i = 0; i < level.nodes.size(); ++i)
+    if (level.nodes[i].in_scene && level.nodes[i].name == name) return pointer_of(level, i);
+  return name;
+}
+
+// Of the scene that is shown.
+std::string scene_pointer(const Level& level) {
+  const Json* json = level.source ? &level.source->json : nullptr;
+  return fmt::format("/scenes/{}", json ? value_of<int>(*json, "scene", 0) : 0);
+}
+
+// spawn names the node that it could not make: FILE: node `NAME`.
+Finding from_spawn(const Level& level, const Error& error) {
+  constexpr std::string_view kBefore = ": node `";
+  const std::size_t at = error.where.find(kBefore);
+  if (at == std::string::npos || error.where.back() != '`')
+    return {Severity::kError, scene_pointer(level), error.message()};
+  const std::size_t first = at + kBefore.size();
+  return {Severity::kError, pointer_of(level, error.where.substr(first, error.where.size() - 1 - first)), error.what};
 }
 
 // How a deformable will feel where its mesh does not suit it.
@@ -62,7 +91,7 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene) continue;
-    const std::string pointer = level.source ? fmt::format("/nodes/{}", level.source->json_node[i]) : node.name;
+    const std::string pointer = pointer_of(level, i);
     if (const std::string fault = soft_fault(node); !fault.empty())
       findings.push_back({Severity::kError, pointer, fault});
     if (!node.soft_body || node.soft_body->mesh.empty()) continue;
@@ -73,10 +102,26 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
   }
 }
 
+// Scripts that are not there, or hold no path.
+void find_in_scripts(const Level& level, const fs::path& folder, Findings& findings) {
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (!node.device || node.device->file.empty()) continue;
+    const std::string pointer = pointer_of(level, i) + "/extensions/PLIANT_haptic_device/file";
+    const fs::path file = folder / node.device->file;
+    if (!fs::is_regular_file(file))
+      findings.push_back(
+          {Severity::kError, pointer, "names the script " + node.device->file + ", which does not exist"});
+    else if (node.device->driver == Driver::kScript)
+      if (const Result<Path> script = load_script(file); !script)
+        findings.push_back({Severity::kError, pointer, script.error().message()});
+  }
+}
+
 // Flesh that can be simulated, but not well.
-void find_in_flesh(const World& world, Findings& findings) {
+void find_in_flesh(const Level& level, const World& world, Findings& findings) {
   for (auto [entity, soft_body, name] : world.registry.view<const SoftBody, const Name>()) {
-    const std::string node = name.value;  // clang 14 captures no structured bindings
+    const std::string node = pointer_of(level, name.value);  // clang 14 captures no structured bindings
     const TetMesh& tets = world.tet_meshes[soft_body.tets];
     const auto warn = [&](std::string what) { findings.push_back({Severity::kWarning, node, std::move(what)}); };
     const std::uint32_t parts = count_parts(tets), pieces = count_parts(world.meshes[soft_body.skin]);
@@ -122,27 +167,24 @@ Findings validate_level(const fs::path& path) {
   for (std::size_t i = 0; i < level->nodes.size(); ++i) {
     const LevelNode& node = level->nodes[i];
     if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable && !node.rigid_body)) continue;
-    const std::string pointer = level->source ? fmt::format("/nodes/{}", level->source->json_node[i]) : node.name;
-    find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer, findings);
+    find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer_of(*level, i), findings);
   }
   // Files that the level names.
   const fs::path folder = path.parent_path();
   find_in_soft_nodes(*level, folder, findings);
-  for (const LevelNode& node : level->nodes)
-    if (node.device && !node.device->file.empty() && !fs::is_regular_file(folder / node.device->file))
-      findings.push_back(
-          {Severity::kError, node.name, "names the script " + node.device->file + ", which does not exist"});
+  find_in_scripts(*level, folder, findings);
   if (level->environment && !level->environment->panorama.empty()) {
     std::vector<std::string> notes;
     const Result<Panorama> panorama = load_panorama(folder / level->environment->panorama, &notes);
-    if (!panorama) findings.push_back({Severity::kError, "PLIANT_environment", panorama.error().message()});
-    for (const std::string& note : notes) findings.push_back({Severity::kNote, "PLIANT_environment", note});
+    const std::string pointer = scene_pointer(*level) + "/extensions/PLIANT_environment/panorama";
+    if (!panorama) findings.push_back({Severity::kError, pointer, panorama.error().message()});
+    for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
   }
   if (any_error(findings)) return findings;
   if (const Result<World> world = spawn(*level); world)
-    find_in_flesh(*world, findings);
+    find_in_flesh(*level, *world, findings);
   else
-    findings.push_back({Severity::kError, world.error().where, world.error().what});
+    findings.push_back(from_spawn(*level, world.error()));
   return findings;
 }
 

@@ -142,6 +142,12 @@ TEST(Extension, SetReachesEveryKeyAndSaysWhatItDidNotUnderstand) {
   EXPECT_EQ(set(level, "hand.haptic_device.driver=null"), "") << "a word that is also JSON";
   EXPECT_EQ(set(level, "*.simulation.touch_rate=4000"), "");
   EXPECT_EQ(level.simulation.touch_rate, 4000.0);
+  EXPECT_EQ(set(level, "*.simulation.gravity=1.62"), "");
+  EXPECT_EQ(level.simulation.gravity, dvec3(0, -1.62, 0));
+  for (const char* absurd : {"1e300", "-1001", "[0, 1e300, 0]"})
+    EXPECT_NE(set(level, (std::string("*.simulation.gravity=") + absurd).c_str()).find("[-1000, 1000]"),
+              std::string::npos)
+        << absurd;
   EXPECT_EQ(set(level, "belly.deformable.young=5400"), "");
   EXPECT_EQ(set(level, "belly.deformable.stiffness=10"), "");
   EXPECT_EQ(level.nodes[0].deformable->stiffness, 10.0);

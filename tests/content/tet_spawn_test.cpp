@@ -202,7 +202,9 @@ TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndFleshThatFallsApart) {
     for (const std::uint32_t v : index) p.index.push_back(v + count);
     p.index.insert(p.index.end(), {0, 5, count});
   });
-  EXPECT_THAT(apart, HasSubstr("falls into 2 parts where its skin has 1"));
+  EXPECT_THAT(apart, HasSubstr("other /nodes/0: its flesh falls into 2 parts where its skin has 1"));
+  const std::string unheld = findings([](Level& level) { level.nodes[0].soft_body->pinned = Box{vec3(8), vec3(9)}; });
+  EXPECT_THAT(unheld, HasSubstr("error /nodes/0: PLIANT_soft_body/pinned: holds no node"));
 }
 
 TEST(SpawnSoft, WhatCannotBeIsRefusedInOneSentenceThatNamesTheNode) {
