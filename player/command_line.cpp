@@ -25,6 +25,11 @@ CLI::Validator within(double low, double high) {
       "");
 }
 
+// A variable of the shell that was not set: the demo level is not meant.
+CLI::Validator named() {
+  return CLI::Validator([](std::string& text) { return std::string(text.empty() ? "its name is empty" : ""); }, "");
+}
+
 // "960x540" -> width, height.
 std::string parse_size(const std::string& text, RunOptions& run) {
   int used = 0;
@@ -83,13 +88,15 @@ void add_run(CLI::App& app, RunOptions& run) {
 void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, ConvertOptions& conversion,
                std::string& validated) {
   CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
-  verb->add_option("file", inspected, "level, mesh or EXR panorama")->required();
+  verb->add_option("file", inspected, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
   verb->add_flag("--json", inspect_json, "as JSON");
   verb->footer("Example:\n  pliant inspect organ.glb");
 
   verb = app.add_subcommand("convert", "any mesh format to glTF or GLB; an EXR panorama to a cube map preview (PNG)");
-  verb->add_option("in", conversion.in, "what to read")->required();
-  verb->add_option("out", conversion.out, "what to write: .glb, .gltf, or .png for a panorama")->required();
+  verb->add_option("in", conversion.in, "what to read")->required()->check(named());
+  verb->add_option("out", conversion.out, "what to write: .glb, .gltf, or .png for a panorama")
+      ->required()
+      ->check(named());
   verb->add_option("--draco", conversion.draco_bits, "compress with this many bits per position (8 to 24)")
       ->check(within(8, 24));
   verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
@@ -99,7 +106,7 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
       "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
 
   verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
-  verb->add_option("level", validated, "level")->required();
+  verb->add_option("level", validated, "level")->required()->check(named());
   verb->footer("Example:\n  pliant validate level.gltf");
 }
 

@@ -20,6 +20,7 @@ Result<fs::path> find_level(const std::string& argument) {
   std::error_code no;
   if (fs::is_regular_file(argument, no)) return fs::path(argument);
   if (fs::is_directory(argument, no)) return Error{argument, "is a folder; give the file in it"};
+  if (fs::exists(argument, no)) return Error{argument, "is no regular file; save it as one first"};
   const std::string name = argument.empty() ? kDemoLevel : argument;
   if (name.find('/') == std::string::npos) {
     const fs::path levels = content_folder() / "levels";

@@ -10,6 +10,7 @@
 #include "content/tet_file.h"
 #include "player/content_folder.h"
 #include "player/exit.h"
+#include "player/inspect_panorama.h"
 #include "player/inspect_tets.h"
 #include "player/verbs.h"
 
@@ -209,6 +210,7 @@ int inspect(const std::string& file, bool as_json) {
   const auto path = find_level(file);
   if (!path) return fail(kFailed, path.error());
   if (is_tet_file(*path)) return inspect_tets(*path, as_json);
+  if (is_panorama_file(*path)) return inspect_panorama(*path, as_json);
   const auto level = load_level(*path);
   if (!level) return fail(kFailed, level.error());
   const std::vector<ObjectReport> objects = inspect_objects(*level);

@@ -130,6 +130,8 @@ Result<Recording> read_recording(const fs::path& file) {
 }
 
 Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const RecordingHeader& header) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) return Error{file.string(), "is a folder; name a file in it"};
   RecordingWriter writer;
   writer.file_ = file;
   writer.aside_ = file;

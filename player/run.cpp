@@ -179,7 +179,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   run.world.field_place = choose_field(options, windowed, run.world);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (const Status status = prepare_system(run.world); !status) return failed(status.error());
-  make_orbits(run.world);
+  for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);
   if (run.replay) {
     if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
     if (run.replay->header.rate != run.world.simulation.touch_rate)
@@ -302,7 +302,8 @@ Result<Ran> run_headless(const RunOptions& options, TouchLoop& loop) {
 }
 
 Result<Ran> run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
-  WindowSession session{*shown.window, shown.script, loop.world, loop.schedule, loop.journal, loop.keeper, loop.out};
+  WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
+                        loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
   session.soft = loop.soft;
   session.level = options.level;
   session.rate = loop.rate;
@@ -333,6 +334,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   const double rate = world.simulation.touch_rate;
   const std::uint64_t ticks = count_ticks(options, shown, run);
 
+  const Interrupt interrupt;  // until all is in place: what is staged must not stay behind
   auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out);
   if (!out) return failed(out.error());
   Journal journal(world, options.realtime || shown ? kJournalSeconds : 2.0 / rate);
@@ -355,7 +357,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
     if (Outcome wrong = make_frames(options, run, frames)) return wrong;
 
   Schedule<World> schedule(touch_schedule());
-  TouchLoop loop{world, schedule, journal, *keeper, *out, rate, ticks, frames.get(), {}, nullptr};
+  TouchLoop loop{world, schedule, journal, *keeper, *out, interrupt, rate, ticks, frames.get(), {}, nullptr};
   loop.replay = run.replay ? &*run.replay : nullptr;
   if (options.realtime || shown) limit_tool_ticks(world);
   SoftClock soft(world);

@@ -110,16 +110,24 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
   return Done{};
 }
 
-void make_orbits(World& world) {
+std::vector<std::string> make_orbits(World& world) {
+  std::vector<std::string> held;
   unsigned index = 0;
   for (const Entity hand : hands(world)) {
     const HapticDevice* device = find_device(world, hand);
     if (!device || device->driver != Driver::kOrbit) continue;
     const Probe* probe = world.registry.find<Probe>(hand);
-    const Handle<Path> path =
-        world.paths.add(probe ? make_orbit(world, index++, probe->radius) : make_tool_orbit(world, hand));
-    world.registry.get<HapticDevice>(device_of(world, hand)).path = path;
+    Path path = probe ? make_orbit(world, index++, probe->radius) : make_tool_orbit(world, hand);
+    if (path.rows.empty()) {
+      const Name* name = world.registry.find<Name>(hand);
+      held.push_back("the path `orbit` of `" + (name ? name->value : std::string()) +
+                     "` finds no surface that gives way, so it is held where it stands; give it a script, or a node "
+                     "PLIANT_deformable");
+      continue;
+    }
+    world.registry.get<HapticDevice>(device_of(world, hand)).path = world.paths.add(std::move(path));
   }
+  return held;
 }
 
 std::string describe_source(const World& world, Entity hand) {

@@ -26,8 +26,9 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources);
 // Gives each named probe or tool its source; scripts are read. Call after spawn.
 Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
 
-// Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch.
-void make_orbits(World& world);
+// Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch. Says who found nothing to
+// touch and is held where it stands.
+std::vector<std::string> make_orbits(World& world);
 
 // "script:press.csv", "orbit", "mouse", "null": what moves this probe or tool.
 std::string describe_source(const World& world, Entity hand);

@@ -14,7 +14,7 @@ namespace {
 struct Study {
   const char* name;
   const char* what;
-  Status (*run)(OutputFolder& out, bool quick);
+  Status (*run)(OutputFolder& out, bool quick, const Interrupt& interrupt);
 };
 constexpr Study kStudies[] = {
     {"linearisation", "1 kHz force of a tool: held, linear, contacts solved again, against the full solve",
@@ -28,9 +28,10 @@ int list() {
 
 int run_one(const Study& known, const StudyOptions& options) {
   const std::filesystem::path folder = options.out.empty() ? "out/study" : options.out;
+  const Interrupt interrupt;  // until all is in place: what is staged must not stay behind
   auto out = OutputFolder::create(folder);
   if (!out) return fail(kFailed, out.error());
-  if (const Status done = known.run(*out, options.quick); !done) return fail(kFailed, done.error());
+  if (const Status done = known.run(*out, options.quick, interrupt); !done) return fail(kFailed, done.error());
   if (const Status done = out->commit(); !done) return fail(kFailed, done.error());
   return kDone;
 }

@@ -91,6 +91,10 @@ class Stopwatch {
   std::vector<double> us_;
 };
 
+Error interrupted() {
+  return {"study linearisation", "was interrupted and wrote nothing; run it again"};
+}
+
 // (d): handle and wrench of every tick.
 struct Truth {
   std::vector<RigidMotion> handle;  // at the tick's end
@@ -98,12 +102,14 @@ struct Truth {
   Stopwatch cost;
 };
 
-Result<Truth> full_solve(const std::string& level, double pace, double tick, int ticks, Progress& progress) {
+Result<Truth> full_solve(const std::string& level, double pace, double tick, int ticks, const Interrupt& interrupt,
+                         Progress& progress) {
   auto world = open_level(level, pace);
   if (!world) return world.error();
   Schedule<World> schedule(soft_schedule());
   Truth truth;
   for (int i = 0; i <= ticks; ++i) {
+    if (interrupt.requested()) return interrupted();
     soft_step(*world, schedule, static_cast<std::uint64_t>(i), tick, i * tick);
     const HandleModel& model = tool_of(*world).pending;
     truth.handle.push_back(model.handle);
@@ -170,7 +176,8 @@ MethodFigures errors(const char* name, const LinearisationFigures& figures, cons
 }
 
 // (a) to (c) from the soft clock at its own pace.
-Status follow_models(Truth& truth, const std::string& level, std::size_t length, LinearisationFigures& out) {
+Status follow_models(Truth& truth, const std::string& level, std::size_t length, const Interrupt& interrupt,
+                     LinearisationFigures& out) {
   auto world = open_level(level, out.pace);
   if (!world) return world.error();
   Schedule<World> schedule(soft_schedule());
@@ -180,6 +187,7 @@ Status follow_models(Truth& truth, const std::string& level, std::size_t length,
   Stopwatch linear, contacts;
   double off = 0.0, size = 0.0;
   for (std::size_t k = 0; k * length < truth.wrench.size(); ++k) {
+    if (interrupt.requested()) return interrupted();
     soft_step(*world, schedule, k, T, static_cast<double>(k) * T, &truth.handle[k * length]);
     const HandleModel& model = tool_of(*world).pending;
     out.weight = model.contacts.flesh_mass * join(world->simulation.gravity, dvec3(0));
@@ -217,13 +225,15 @@ double jump_share(const std::vector<Vector6>& wrench, std::size_t length) {
 }
 
 // All clocks in lockstep, contacts solved again in the touch tick.
-Status run_together(const std::string& level, int ticks, std::size_t length, LinearisationFigures& out) {
+Status run_together(const std::string& level, int ticks, std::size_t length, const Interrupt& interrupt,
+                    LinearisationFigures& out) {
   auto world = open_level(level, out.pace);
   if (!world) return world.error();
   Schedule<World> touch(touch_schedule()), soft(soft_schedule());
   const double T = static_cast<double>(length) * out.tick;
   std::vector<Vector6> wrench;
   for (int i = 0; i < ticks; ++i) {
+    if (interrupt.requested()) return interrupted();
     const auto index = static_cast<std::uint64_t>(i);
     if (index % length == 0) soft.run(*world, Tick{index / length, T, i * out.tick});
     touch.run(*world, Tick{index, out.tick, i * out.tick});
@@ -304,7 +314,8 @@ void print(const LinearisationFigures& figures) {
 
 }  // namespace
 
-Result<LinearisationFigures> measure_linearisation(const std::string& level, double pace, double seconds) {
+Result<LinearisationFigures> measure_linearisation(const std::string& level, double pace, double seconds,
+                                                   const Interrupt& interrupt) {
   LinearisationFigures out;
   out.level = level;
   out.pace = pace;
@@ -321,18 +332,18 @@ Result<LinearisationFigures> measure_linearisation(const std::string& level, dou
   out.tetrahedra = world->tet_meshes[world->registry.get<SoftBody>(tool.entity).tets].tets.size();
 
   Progress progress("study linearisation");
-  auto truth = full_solve(level, pace, out.tick, ticks, progress);
+  auto truth = full_solve(level, pace, out.tick, ticks, interrupt, progress);
   if (!truth) return truth.error();
-  if (const Status status = follow_models(*truth, level, length, out); !status) return status.error();
-  if (const Status status = run_together(level, ticks, length, out); !status) return status.error();
+  if (const Status status = follow_models(*truth, level, length, interrupt, out); !status) return status.error();
+  if (const Status status = run_together(level, ticks, length, interrupt, out); !status) return status.error();
   return out;
 }
 
-Status study_linearisation(OutputFolder& out, bool quick) {
+Status study_linearisation(OutputFolder& out, bool quick, const Interrupt& interrupt) {
   nlohmann::ordered_json json;
   json["study"] = "linearisation";
   for (const double pace : quick ? std::vector{kBrisk} : std::vector{kBrisk, kSlow}) {
-    const auto figures = measure_linearisation(kLevel, pace, quick ? kQuickSeconds : kSeconds);
+    const auto figures = measure_linearisation(kLevel, pace, quick ? kQuickSeconds : kSeconds, interrupt);
     if (!figures) return figures.error();
     print(*figures);
     json["runs"].push_back(to_json(*figures));

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "player/interrupt.h"
 #include "player/output_folder.h"
 #include "systems/tool/handle.h"
 
@@ -43,8 +44,10 @@ struct LinearisationFigures {
   double jump_share = 0.0;  // [1] largest change at an update over the largest in the steps around it
 };
 
-Result<LinearisationFigures> measure_linearisation(const std::string& level, double pace, double seconds);
-Status study_linearisation(OutputFolder& out, bool quick);
+// Both end with an error when `interrupt` is requested.
+Result<LinearisationFigures> measure_linearisation(const std::string& level, double pace, double seconds,
+                                                   const Interrupt& interrupt);
+Status study_linearisation(OutputFolder& out, bool quick, const Interrupt& interrupt);
 
 // Force over time by each way, and error against cost.
 Status plot_linearisation(const std::filesystem::path& file, const LinearisationFigures& figures);

@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "player/exit.h"
-#include "player/interrupt.h"
 #include "player/progress.h"
 #include "runtime/clock.h"
 #include "systems/device/hands.h"
@@ -36,11 +35,10 @@ Tick replayed_tick(TouchLoop& loop, std::uint64_t n) {
 }  // namespace
 
 Status run_lockstep(TouchLoop& loop) {
-  const Interrupt interrupt;
   Progress progress("running");
   LockstepClock clock(loop.rate);
   auto frame = loop.frame_ticks.begin();
-  for (std::uint64_t n = 0; n < loop.ticks && !interrupt.requested(); ++n) {
+  for (std::uint64_t n = 0; n < loop.ticks && !loop.interrupt.requested(); ++n) {
     const Tick tick = loop.replay ? replayed_tick(loop, n) : clock.next();
     if (loop.soft) loop.soft->reach(tick.time);
     loop.schedule.run(loop.world, tick);
@@ -56,7 +54,6 @@ Status run_lockstep(TouchLoop& loop) {
 }
 
 Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
-  const Interrupt interrupt;
   Progress progress("running");
   std::atomic<bool> stop{false}, done{false}, granted{false};
   std::atomic<std::uint64_t> now{0};  // the tick that the touch clock has reached
@@ -76,7 +73,7 @@ Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
   Status status = Done{};
   auto frame = loop.frame_ticks.begin();
   while (!done && status) {
-    if (interrupt.requested()) stop = true;
+    if (loop.interrupt.requested()) stop = true;
     loop.keeper.keep(loop.journal);
     const std::uint64_t reached = now.load(std::memory_order_relaxed);
     if (loop.frames && frame != loop.frame_ticks.end() && *frame <= reached) {

@@ -6,6 +6,7 @@
 
 #include "components/world.h"
 #include "player/frames.h"
+#include "player/interrupt.h"
 #include "player/journal.h"
 #include "player/keeper.h"
 #include "player/output_folder.h"
@@ -21,6 +22,7 @@ struct TouchLoop {
   Journal& journal;
   Keeper& keeper;
   OutputFolder& out;
+  const Interrupt& interrupt;              // ends a run early, cleanly
   double rate = 1000.0;                    // [Hz]
   std::uint64_t ticks = 0;                 // how many to run
   Frames* frames = nullptr;                // none: no pictures
@@ -29,7 +31,6 @@ struct TouchLoop {
   SoftClock* soft = nullptr;               // none: nothing soft
 };
 
-// Both stop early, cleanly, on Ctrl-C.
 Status run_lockstep(TouchLoop& loop);
 // `overruns`: ticks that could not begin in time and were skipped.
 Status run_realtime(TouchLoop& loop, std::uint64_t& overruns);

@@ -37,7 +37,8 @@ int validate(const std::string& argument) {
     fmt::print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity),
                finding.message);
   }
-  fmt::print("{}: {} errors, {} warnings\n", file->string(), errors, warnings);
+  fmt::print("{}: {} error{}, {} warning{}\n", file->string(), errors, errors == 1 ? "" : "s", warnings,
+             warnings == 1 ? "" : "s");
   if (errors == 0) return kDone;
   return fail(kFailed, {file->string(), fmt::format("{} error{}; see the finding{} above", errors,
                                                     errors == 1 ? "" : "s", errors == 1 ? "" : "s")});

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "player/exit.h"
-#include "player/interrupt.h"
 #include "systems/device/mouse.h"
 #include "systems/visual/viewpoint.h"
 
@@ -170,7 +169,6 @@ Status WindowLoop::learn(const PictureDone& done) {
 }
 
 Result<WindowFigures> WindowLoop::run() {
-  const Interrupt interrupt;
   std::vector<InputEvent> events;
   // Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
   for (int i = 0; i < 3; ++i) {
@@ -182,7 +180,7 @@ Result<WindowFigures> WindowLoop::run() {
   const std::uint64_t start = now_ns();
   Status status = Done{};
   bool begun = false;
-  while (!close_ && !figures_.opened && !touch_->done() && !interrupt.requested() && status) {
+  while (!close_ && !figures_.opened && !touch_->done() && !s_.interrupt.requested() && status) {
     events.clear();
     s_.window.poll(events, kHearEvery);
     s_.script.take(static_cast<double>(now_ns()) * 1e-9, events);

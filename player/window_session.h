@@ -8,6 +8,7 @@
 
 #include "components/world.h"
 #include "player/frames.h"
+#include "player/interrupt.h"
 #include "player/journal.h"
 #include "player/keeper.h"
 #include "player/output_folder.h"
@@ -24,6 +25,7 @@ struct WindowSession {
   Journal& journal;
   Keeper& keeper;
   OutputFolder& out;
+  const Interrupt& interrupt;
   SoftClock* soft = nullptr;                  // none: nothing soft
   std::string level;                          // what `R` opens again
   double rate = 1000.0;                       // [Hz]

@@ -49,7 +49,8 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"run", "plate.obj", "--probe", "p=orbit", "--probe", "p=orbit"}, 2, "twice");
   expect_refused({"run", "plate.obj", "--set", "nonsense"}, 2, "nonsense");
   expect_refused({"run", "plate.obj", "--set", "*.deformable.stifness=3"}, 2, "stifness");
-  expect_refused({"run", "plate.obj", "--set", "*.deformable.stiffness=-3"}, 2, "stiffness");
+  expect_refused({"run", "plate.obj", "--set", "*.deformable.stiffness=-3"}, 2, "small-depth slope");
+  expect_refused({"run", "plate.obj", "--set", "*.deformable.weight=3"}, 2, "settling_time");
   expect_refused({"run", "plate.obj", "--set", "nobody.deformable.stiffness=3"}, 2, "nobody");
   expect_refused({"run", "--replay", "x", "--realtime"}, 2, "lockstep");
   expect_refused({"convert", "plate.obj", "plate.stl"}, 2, ".glb");
@@ -57,6 +58,7 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"convert", "plate.obj", "plate.glb", "--unit", "inch"}, 2, "inch");
   expect_refused({"convert", "plate.obj"}, 2, "out");
   expect_refused({"inspect"}, 2, "file");
+  for (const char* verb : {"inspect", "validate"}) expect_refused({verb, ""}, 2, "empty");
 }
 
 TEST_F(Arguments, VerbsThatAreNotThereYetSaySo) {
@@ -70,6 +72,7 @@ TEST_F(Arguments, FilesThatAreNotThereExitWithOne) {
   expect_refused({"convert", "nothing.ply", "out.glb"}, 1, "nothing.ply");
   expect_refused({"convert", "nothing.exr", "out.png"}, 1, "nothing.exr");
   expect_refused({"inspect", "."}, 1, "folder");
+  expect_refused({"inspect", "/dev/null"}, 1, "regular");
 }
 
 TEST_F(Arguments, DevicesListsTheBuiltInOnesAndHowToUseThem) {

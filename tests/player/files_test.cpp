@@ -42,6 +42,20 @@ TEST_F(Files, InspectHintsAtAWrongUnitAndConvertMendsIt) {
   EXPECT_NEAR(inspect("centi.glb")["bounds_m"]["max"][1], 1000.0, 1e-2);
 }
 
+TEST_F(Files, InspectTellsOfAPanoramaHowLargeAndBrightItIs) {
+  const std::string sky = std::string(PLIANT_SOURCE_DIR) + "/content/environments/sky.exr";
+  const Said said = pliant({"inspect", sky, "--json"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = Json::parse(said.out);
+  EXPECT_EQ(json["width"], 512);
+  EXPECT_EQ(json["height"], 256);
+  EXPECT_GT(json["mean_luminance"].get<double>(), 0.0);
+  EXPECT_GT(json["largest_luminance"].get<double>(), json["mean_luminance"].get<double>());
+  EXPECT_NE(pliant({"inspect", sky}).out.find("512 x 256"), std::string::npos);
+  write_text(folder / "damaged.exr", "no picture");
+  expect_refused({"inspect", "damaged.exr"}, 1, "damaged.exr");
+}
+
 TEST_F(Files, ConvertWritesWhatTheLoaderReadsBack) {
   write_text(folder / "plate.obj", plate_obj(20));
   const std::vector<std::vector<std::string>> ways{
@@ -72,6 +86,26 @@ TEST_F(Files, ValidateNamesEveryErrorWithItsPointer) {
   write_text(folder / "good.gltf",
              R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"n"}]})");
   EXPECT_EQ(pliant({"validate", "good.gltf"}).status, 0);
+}
+
+TEST_F(Files, ValidateNamesThePlaceOfFilesThatALevelNames) {
+  write_text(folder / "bad.csv", "time_s,x,y,z\n0,0,0,up\n");
+  const auto said = [&](const std::string& script) {
+    write_text(folder / "level.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{}, {"nodes": [0, 1], "extensions": {
+        "PLIANT_environment": {"panorama": "no.exr"}}}], "scene": 1, "nodes": [{"name": "p", "extensions": {
+        "PLIANT_probe": {"device": 1}}}, {"name": "d", "extensions": {"PLIANT_haptic_device": {"driver": "script",
+        "file": ")" + script + R"("}}}],
+        "extensionsUsed": ["PLIANT_probe", "PLIANT_haptic_device", "PLIANT_environment"]})");
+    return pliant({"validate", "level.gltf"});
+  };
+  const Said missing = said("no.csv"), bad = said("bad.csv");
+  EXPECT_EQ(missing.status, 1);
+  for (const Said& each : {missing, bad}) {
+    EXPECT_NE(each.out.find("/nodes/1/extensions/PLIANT_haptic_device/file: error: "), std::string::npos) << each.out;
+    EXPECT_NE(each.out.find("/scenes/1/extensions/PLIANT_environment/panorama: error: "), std::string::npos)
+        << each.out;
+  }
+  EXPECT_NE(bad.out.find("bad.csv:2"), std::string::npos) << bad.out;
 }
 
 TEST_F(Files, UnknownPliantKeysAreRefusedByName) {

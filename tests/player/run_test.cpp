@@ -128,6 +128,14 @@ TEST_F(Run, AReplayRepeatsTheRecordingToTheBit) {
   EXPECT_EQ(report("again")["probes"][0]["source"], "replay:press.rec");
 }
 
+// Told before the run, not after it.
+TEST_F(Run, ARecordingThatCannotBeWrittenIsRefusedBeforeAnythingRuns) {
+  fs::create_directory(folder / "taken");
+  for (const char* file : {"taken", "nowhere/press.rec"})
+    expect_refused({"run", "plate.obj", "--probe", "p=orbit", "--seconds", "80000", "--frames", "0", "--record", file},
+                   1, file);
+}
+
 TEST_F(Run, ARecordingOfAnotherLevelOrADamagedOneIsRefused) {
   ASSERT_EQ(press("first", {"--record", "press.rec"}).status, 0);
   fs::copy_file(folder / "plate.obj", folder / "other.obj");
@@ -170,6 +178,14 @@ TEST_F(Run, ABareMeshWithoutAProbeIsTouchedByOneAndSaysSo) {
   ASSERT_EQ(json["probes"].size(), 1u);
   EXPECT_EQ(json["probes"][0]["source"], "orbit");
   EXPECT_GT(json["probes"][0]["contact_ticks"], 100);
+}
+
+TEST_F(Run, AFileWithNothingToTouchSaysSo) {
+  write_text(folder / "empty.gltf", R"({"asset": {"version": "2.0"}})");
+  const Said said = pliant({"run", "empty.gltf", "--seconds", "0.1", "--frames", "0", "--out", "out"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("finds no surface"), std::string::npos) << said.err;
+  EXPECT_EQ(report("out")["probes"][0]["contact_ticks"], 0);
 }
 
 TEST_F(Run, ManyProbesEachGetTheirRowsAndALongNameIsQuoted) {
@@ -215,6 +231,19 @@ TEST_F(Run, CtrlCEndsARealTimeRunCleanlyWithAReport) {
   const Json json = report("out");
   EXPECT_GT(json["ticks"], 0);
   EXPECT_LT(json["ticks"], 600000);
+}
+
+// Stopped as soon as its folder is there: while graphics are made ready, long before the first tick.
+TEST_F(Run, ASignalBeforeTheFirstTickLeavesNothingHalfWrittenBehind) {
+  const std::string line =
+      "cd " + quoted(folder.string()) + " && { env -u DISPLAY -u WAYLAND_DISPLAY " + quoted(PLIANT_BINARY) +
+      " run plate.obj --probe p=orbit --seconds 600 --out out --record out.rec >.said 2>&1 & } && pid=$! && "
+      "while kill -0 $pid && [ ! -e out.rec.partial-$pid ]; do :; done && kill -TERM $pid && wait $pid";
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0) << read_text(folder / ".said");
+  EXPECT_LT(report("out")["ticks"], 600000);
+  EXPECT_TRUE(fs::exists(folder / "out.rec"));
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
 }
 
 TEST_F(Run, PicturesAreSpreadOverTheRunAndDoNotChangeIt) {

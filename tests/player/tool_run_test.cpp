@@ -139,6 +139,17 @@ TEST_F(ToolRun, AnOrbitTakesTheToolDownToTheGround) {
   EXPECT_GT(report("orbit")["probes"][0]["contact_ticks"].get<int>(), 200);
 }
 
+// A point probe touches yielding surfaces only, and there is none here.
+TEST_F(ToolRun, AnOrbitWithoutASurfaceHoldsItsProbeAndSaysSo) {
+  const Said said = press("out", {"--probe", "finger=orbit", "--seconds", "0.1"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("`finger` finds no surface"), std::string::npos) << said.err;
+  const Json json = report("out");
+  EXPECT_NE(json["dropped"].dump().find("finger"), std::string::npos);
+  for (const Json& probe : json["probes"])
+    if (probe["name"] == "finger") EXPECT_EQ(probe["contact_ticks"], 0);
+}
+
 TEST_F(ToolRun, RealTimeRunsBothClocksAndStopsThemTogether) {
   const Said said = press("live", {"--realtime", "--seconds", "0.5"});
   ASSERT_EQ(said.status, 0) << said.err;
