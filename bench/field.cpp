@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "bench/measure.h"
 #include "runtime/clock.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/visual/field_gpu.h"
@@ -27,8 +27,7 @@ double median_us(int repeats, Work work) {
     work();
     times.push_back(static_cast<double>(now_ns() - start) * 1e-3);
   }
-  std::sort(times.begin(), times.end());
-  return times[times.size() / 2];
+  return median(std::move(times));
 }
 
 struct Row {
@@ -115,12 +114,7 @@ Row measure(const FieldProgram& program, int n) {
 
 int main(int argc, char** argv) {
   using namespace pliant;
-  bool large = false;
-  std::string out;
-  for (int i = 1; i < argc; ++i) {
-    if (std::string(argv[i]) == "--large") large = true;
-    if (std::string(argv[i]) == "--out" && i + 1 < argc) out = argv[++i];
-  }
+  const BenchArguments arguments(argc, argv, "--large");
   auto context = HeadlessContext::create();
   if (!context) {
     fmt::print("bench_field: {}\n", context.error().message());
@@ -138,7 +132,7 @@ int main(int argc, char** argv) {
              "whole us", "card us", "copy us", "of copy", "height err", "normal deg");
   std::string json = fmt::format("{{\n  \"renderer\": \"{}\",\n  \"field\": [", (*context)->renderer_name());
   std::vector<int> sizes{41, 130, 409};
-  if (large) sizes.push_back(1291);
+  if (arguments.on) sizes.push_back(1291);
   for (const int n : sizes) {
     if (std::size_t{6} * static_cast<std::size_t>(n * n) * 16 > static_cast<std::size_t>(largest)) {
       fmt::print("{:>10} vertices need more than the {} MiB that this driver gives a buffer\n", 6 * n * n,
@@ -158,5 +152,5 @@ int main(int argc, char** argv) {
         r.copy_us / r.card_us, r.height_error, r.normal_error);
   }
   json += "\n  ]\n}\n";
-  if (!out.empty()) std::ofstream(out) << json;
+  arguments.save(json);
 }

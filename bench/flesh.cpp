@@ -6,11 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "bench/measure.h"
 #include "systems/tool/flesh_step.h"
 #include "tests/scenes/tet_shapes.h"
 
@@ -18,15 +17,6 @@ namespace pliant {
 namespace {
 
 constexpr dvec3 kGravity(0, -9.81, 0);  // [m/s2]
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-double processor_ms() {
-  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 struct Cost {
   std::size_t tets = 0;
@@ -178,14 +168,11 @@ std::string schemes(double& reference_error) {
 }  // namespace pliant
 
 int main(int argc, char** argv) {
-  std::string out;
-  for (int i = 1; i + 1 < argc; ++i)
-    if (std::string(argv[i]) == "--out") out = argv[i + 1];
+  const pliant::BenchArguments arguments(argc, argv);
   const std::string steps = pliant::costs();
   double reference_error = 0;
   const std::string ways = pliant::schemes(reference_error);
-  if (!out.empty())
-    std::ofstream(out) << fmt::format(
-        "{{\n  \"step\": [{}\n  ],\n  \"reference_tip_error\": {:.2e},\n  \"scheme\": [{}\n  ]\n}}\n", steps,
-        reference_error, ways);
+  arguments.save(
+      fmt::format("{{\n  \"step\": [{}\n  ],\n  \"reference_tip_error\": {:.2e},\n  \"scheme\": [{}\n  ]\n}}\n", steps,
+                  reference_error, ways));
 }

@@ -7,12 +7,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
-#include <ctime>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "bench/measure.h"
 #include "systems/tool/block_cholesky.h"
 #include "systems/tool/flesh.h"
 #include "systems/tool/linear_solver.h"
@@ -64,11 +62,6 @@ struct Row {
   double error = 0;                               // [1] of the velocity, largest of the checked steps
 };
 
-double percentile(std::vector<double> values, double q) {
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())))];
-}
-
 // A x = b to the last digits: a factor, and its solution refined.
 Vector truth(const BlockMatrix& a, const Vector& b) {
   BlockCholesky direct;
@@ -82,10 +75,6 @@ Vector truth(const BlockMatrix& a, const Vector& b) {
     x += correction;
   }
   return x;
-}
-
-double processor_ms() {
-  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 Row measure(const TetMesh& mesh, SolverKind kind) {
@@ -125,12 +114,7 @@ Row measure(const TetMesh& mesh, SolverKind kind) {
 
 int main(int argc, char** argv) {
   using namespace pliant;
-  bool small = false;
-  std::string out;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--small") == 0) small = true;
-    if (std::strcmp(argv[i], "--out") == 0 && i + 1 < argc) out = argv[++i];
-  }
+  const BenchArguments arguments(argc, argv, "--small");
   fmt::print(
       "An elastic step of {:.0f} ms without contact [ms]\n{:>6} {:>20} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
       1e3 * kStep, "tets", "solver", "assemble", "factorise", "solve", "p50", "p99", "max", "error");
@@ -142,7 +126,8 @@ int main(int argc, char** argv) {
       kinds.insert(kinds.begin(), SolverKind::kAuto);
     for (const SolverKind kind : kinds) {
       // A dense factor of 6,000 rows takes a second or more, and so does Eigen's of 40,000 tetrahedra.
-      if ((kind == SolverKind::kDense && mesh.tets.size() > 3000) || (small && mesh.tets.size() > 3000)) continue;
+      if ((kind == SolverKind::kDense && mesh.tets.size() > 3000) || (arguments.on && mesh.tets.size() > 3000))
+        continue;
       if (kind == SolverKind::kEigenCholesky && mesh.tets.size() > 20000) continue;
       const Row r = measure(mesh, kind);
       fmt::print("{:>6} {:>20} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1e}\n", r.tetrahedra,
@@ -154,5 +139,5 @@ int main(int argc, char** argv) {
           r.error);
     }
   }
-  if (!out.empty()) std::ofstream(out) << "[" << json << "\n]\n";
+  arguments.save("[" + json + "\n]\n");
 }

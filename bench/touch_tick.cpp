@@ -8,10 +8,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "bench/measure.h"
 #include "content/mesh_build.h"
 #include "runtime/clock.h"
 #include "systems/touch/field_kernels.h"
@@ -31,10 +31,6 @@ struct Row {
   double prepare_s = 0;              // weld, order, zones, tree, fields
   double error = 0;                  // [1] of the amplitude, largest over awake vertices
 };
-
-double percentile(std::vector<double>& sorted, double q) {
-  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(q * static_cast<double>(sorted.size())))];
-}
 
 // The target of the volume-preserving shape in double precision, with its own sum for c.
 double field_error(Stage& stage, Entity surface, Entity probe) {
@@ -103,12 +99,11 @@ Row measure(int n, std::uint32_t wanted_awake) {
   }
   row.error = field_error(stage, surface, probe);
   times.erase(times.begin(), times.begin() + kTicks / 20);
-  std::sort(times.begin(), times.end());
   row.vertices = stage.mesh(surface).vertex_count;
   row.awake = static_cast<std::uint32_t>(awake / kTicks);
   row.p50 = percentile(times, 0.5);
   row.p99 = percentile(times, 0.99);
-  row.max = times.back();
+  row.max = percentile(times, 1);
   row.bytes = static_cast<double>(touch_bytes(stage.mesh(surface), stage.field(surface))) / row.vertices;
   return row;
 }
@@ -146,10 +141,8 @@ AllAwake measure_all_awake(int n) {
     copy.push_back(static_cast<double>(now_ns() - t0) * 1e-6);
     from[static_cast<std::size_t>(i)] = to[static_cast<std::size_t>(i) + 1];
   }
-  std::sort(step.begin(), step.end());
-  std::sort(copy.begin(), copy.end());
-  out.step_ms = step[step.size() / 2];
-  out.copy_ms = copy[copy.size() / 2];
+  out.step_ms = median(std::move(step));
+  out.copy_ms = median(std::move(copy));
   return out;
 }
 
@@ -158,17 +151,12 @@ AllAwake measure_all_awake(int n) {
 
 int main(int argc, char** argv) {
   using namespace pliant;
-  bool large = false;
-  std::string out;
-  for (int i = 1; i < argc; ++i) {
-    if (std::string(argv[i]) == "--large") large = true;
-    if (std::string(argv[i]) == "--out" && i + 1 < argc) out = argv[++i];
-  }
+  const BenchArguments arguments(argc, argv, "--large");
   fmt::print("One touch tick, probe sliding, ~2,000 awake vertices\n");
   fmt::print("{:>10} {:>7} {:>9} {:>9} {:>9} {:>10} {:>10} {:>12}\n", "vertices", "awake", "p50 us", "p99 us", "max us",
              "bytes/vtx", "ready s", "error/ampl.");
   std::vector<int> sizes{41, 130, 409};
-  if (large) sizes.push_back(1291);
+  if (arguments.on) sizes.push_back(1291);
   std::string json = "{\n  \"tick\": [";
   double first = 0, at_1e6 = 0;
   for (const int n : sizes) {
@@ -192,5 +180,5 @@ int main(int argc, char** argv) {
       "{:.3f}, "
       "\"ratio\": {:.3f}}}\n}}\n",
       at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
-  if (!out.empty()) std::ofstream(out) << json;
+  arguments.save(json);
 }

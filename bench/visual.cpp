@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "bench/measure.h"
 #include "systems/visual/gpu/context.h"
 #include "systems/visual/renderer.h"
 #include "systems/visual/upload.h"
@@ -87,8 +87,7 @@ Result<std::vector<Row>> measure(int n) {
       row.allowed = std::uint64_t{16} * snapshot.objects[0].awake_vertices + 4096;
       if (i >= 2) times.push_back(stats.draw_ms);  // the first pay for compiling
     }
-    std::nth_element(times.begin(), times.begin() + kFrames / 2, times.end());
-    row.ms = times[kFrames / 2];
+    row.ms = median(times);
     rows.push_back(row);
   }
   return rows;
@@ -99,9 +98,7 @@ Result<std::vector<Row>> measure(int n) {
 
 int main(int argc, char** argv) {
   using namespace pliant;
-  std::string out;
-  for (int i = 1; i + 1 < argc; ++i)
-    if (std::string(argv[i]) == "--out") out = argv[++i];
+  const BenchArguments arguments(argc, argv);
   Result<std::unique_ptr<HeadlessContext>> context = HeadlessContext::create();
   if (!context) {
     fmt::print(stderr, "bench_visual: error: {}\n", context.error().message());
@@ -129,5 +126,5 @@ int main(int argc, char** argv) {
       first = false;
     }
   }
-  if (!out.empty()) std::ofstream(out) << json << "\n  ]\n}\n";
+  arguments.save(json + "\n  ]\n}\n");
 }

@@ -1,16 +1,11 @@
 #include "systems/tool/hash_soft.h"
 
+#include "components/hash_vector.h"
 #include "systems/tool/soft_state.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
 namespace {
-
-void add(Hash& hash, dvec3 v) {
-  hash.add(v.x);
-  hash.add(v.y);
-  hash.add(v.z);
-}
 
 void add(Hash& hash, const Vector6& v) {
   for (const double x : v) hash.add(x);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "components/transform.h"
-#include "systems/tool/body.h"
+#include "systems/tool/immovable_body.h"
 
 namespace pliant {
 
@@ -60,7 +60,7 @@ class RigidState : public Body {
 };
 
 // Ground, walls, and fingers that follow a script: contacts cannot move it.
-class FixedBody : public Body {
+class FixedBody : public ImmovableBody {
  public:
   FixedBody(const Mesh& skin, const Pose& pose);
 
@@ -69,13 +69,7 @@ class FixedBody : public Body {
   // [m/N] > 0: contacts give way along their normals by so much per newton (pads of a gripper); 0: rigid.
   double compliance = 0.0;
 
-  int size() const override { return 0; }
   void free_step(double T, dvec3 gravity) override;
-  const Vector& velocity() const override { return nothing_; }
-  void spread(const SurfacePoint&, const dmat3&, double, Rows&, int) const override {}
-  void gather(const SurfacePoint&, const dmat3&, double, const Rows&, Eigen::Ref<Rows>) const override {}
-  void solve(Rows&) const override {}
-  void correct(const Vector&) override {}
   void advance(double T) override;
   void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
   void show(SoftObjectSnapshot& out) const override;
@@ -86,7 +80,6 @@ class FixedBody : public Body {
 
   Pose pose_;
   dvec3 linear_{0}, angular_{0};
-  Vector nothing_;
 };
 
 }  // namespace pliant

@@ -41,9 +41,6 @@ YieldingBody::YieldingBody(const Mesh& mesh, const Deformable& deformable, const
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) skin_position[v] = pose_.to_world(dvec3(mesh.position(v)));
 }
 
-// A surface without inertia has no motion of its own.
-void YieldingBody::free_step(double, dvec3) {}
-
 bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {
   SurfacePoint& mine = is_a ? contact.a : contact.b;
   const dvec3 x = pose_.to_local((is_a ? contact.b : contact.a).position);

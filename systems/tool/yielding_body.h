@@ -18,11 +18,12 @@
 #include "components/transform.h"
 #include "components/world.h"
 #include "systems/tool/contact_point.h"
+#include "systems/tool/immovable_body.h"
 #include "systems/touch/press.h"
 
 namespace pliant {
 
-class YieldingBody final : public Body {
+class YieldingBody final : public ImmovableBody {
  public:
   // `slot`: its place in TouchState::objects. `mesh` outlives it.
   YieldingBody(const Mesh& mesh, const Deformable& deformable, const Pose& pose, std::size_t slot);
@@ -38,13 +39,7 @@ class YieldingBody final : public Body {
                     double T, ObjectPresses& out) const;
   std::size_t slot() const { return slot_; }
 
-  int size() const override { return 0; }
-  void free_step(double T, dvec3 gravity) override;
-  const Vector& velocity() const override { return nothing_; }
-  void spread(const SurfacePoint&, const dmat3&, double, Rows&, int) const override {}
-  void gather(const SurfacePoint&, const dmat3&, double, const Rows&, Eigen::Ref<Rows>) const override {}
-  void solve(Rows&) const override {}
-  void correct(const Vector&) override {}
+  void free_step(double, dvec3) override {}  // a surface without inertia has no motion of its own
   void advance(double) override {}
   void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
   void show(SoftObjectSnapshot&) const override {}
@@ -73,7 +68,6 @@ class YieldingBody final : public Body {
   std::vector<Dent> dents_;
   Eigen::MatrixXd mobility_;           // M [m/(N s)]
   std::vector<std::uint32_t> dented_;  // zones whose skin is not at rest
-  Vector nothing_;
 };
 
 }  // namespace pliant

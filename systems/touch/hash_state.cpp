@@ -1,16 +1,11 @@
 #include "systems/touch/hash_state.h"
 
+#include "components/hash_vector.h"
 #include "systems/tool/hash_soft.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
 namespace {
-
-void add(Hash& hash, dvec3 v) {
-  hash.add(v.x);
-  hash.add(v.y);
-  hash.add(v.z);
-}
 
 void add(Hash& hash, const std::vector<vec4>& values) {
   if (!values.empty()) hash.add(std::span<const float>(&values[0].x, values.size() * 4));

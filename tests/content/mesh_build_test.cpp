@@ -17,6 +17,7 @@
 namespace pliant {
 namespace {
 
+using test::enclosed_volume;
 using test::icosphere;
 using test::sheet;
 using test::unshared;
@@ -33,13 +34,6 @@ double net_area(const Mesh& mesh) {
     const dvec3 a(mesh.position(t.x)), b(mesh.position(t.y)), c(mesh.position(t.z));
     sum += 0.5 * length(cross(b - a, c - a));
   }
-  return sum;
-}
-
-double signed_volume(const Mesh& mesh) {
-  double sum = 0.0;
-  for (const uvec3& t : mesh.triangles)
-    sum += dot(dvec3(mesh.position(t.x)), cross(dvec3(mesh.position(t.y)), dvec3(mesh.position(t.z)))) / 6.0;
   return sum;
 }
 
@@ -206,7 +200,7 @@ TEST(MeshBuild, AMirroringFrameKeepsTheSurfaceOutward) {
     Primitive p = icosphere(2);
     p.normal = p.position;
     const BuiltMesh built = build(p, frame);
-    EXPECT_GT(signed_volume(built.mesh), 0.0);
+    EXPECT_GT(enclosed_volume(built.mesh), 0.0);
     for (std::uint32_t v = 0; v < built.mesh.vertex_count; ++v)
       EXPECT_GT(dot(built.mesh.normal(v), built.mesh.position(v)), 0.0f);
     for (const DrawVertex& v : built.draw.vertices) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "components/mesh.h"
 #include "content/level.h"
 
 namespace pliant::test {
@@ -77,6 +78,14 @@ inline Level level_of(Primitive primitive, const LocalTransform& local = {}) {
   node.deformable = Deformable{};
   level.nodes.push_back(node);
   return level;
+}
+
+// [m3] of a closed surface; > 0: its normals point outward.
+inline double enclosed_volume(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const uvec3& t : mesh.triangles)
+    sum += dot(dvec3(mesh.position(t.x)), cross(dvec3(mesh.position(t.y)), dvec3(mesh.position(t.z)))) / 6.0;
+  return sum;
 }
 
 }  // namespace pliant::test

@@ -21,6 +21,7 @@
 namespace pliant {
 namespace {
 
+using test::enclosed_volume;
 using test::icosphere;
 using test::sheet;
 
@@ -48,13 +49,6 @@ Primitive torus(float ring, float tube, std::uint32_t around, std::uint32_t alon
       for (const std::uint32_t v : {a, b, d, a, d, c}) p.index.push_back(v);
     }
   return p;
-}
-
-double enclosed(const Mesh& mesh) {
-  double sum = 0.0;
-  for (const uvec3& t : mesh.triangles)
-    sum += dot(dvec3(mesh.position(t.x)), cross(dvec3(mesh.position(t.y)), dvec3(mesh.position(t.z)))) / 6.0;
-  return sum;
 }
 
 TetMesh lattice(const Mesh& surface, double cell = 0.0) {
@@ -90,7 +84,7 @@ void expect_sound(const TetMesh& mesh) {
 TEST(Lattice, VolumeConvergesWithTheSquareOfTheCellAndElementsStayWellShaped) {
   for (const Primitive& shape : {icosphere(4), torus(1.0f, 0.4f, 64, 32)}) {
     const Mesh surface = mesh_of({shape});
-    const double exact = enclosed(surface);
+    const double exact = enclosed_volume(surface);
     double error = 0.0;
     for (const double cell : {0.4, 0.2, 0.1}) {
       const TetMesh mesh = lattice(surface, cell);
@@ -167,7 +161,7 @@ TEST(Lattice, ACavityStaysEmptyAndTwoBodiesStayTwo) {
   for (vec3& p : cavity.position) p *= 0.5f;
   for (std::size_t i = 0; i < cavity.index.size(); i += 3) std::swap(cavity.index[i], cavity.index[i + 1]);
   const Mesh hollow = mesh_of({icosphere(4), cavity});
-  EXPECT_NEAR(total_volume(lattice(hollow, 0.1)), enclosed(hollow), 0.03 * enclosed(hollow));
+  EXPECT_NEAR(total_volume(lattice(hollow, 0.1)), enclosed_volume(hollow), 0.03 * enclosed_volume(hollow));
 
   Primitive beside = icosphere(4);
   for (vec3& p : beside.position) p += vec3(2.4f, 0, 0);

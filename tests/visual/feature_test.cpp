@@ -17,6 +17,7 @@ namespace {
 using test::dent;
 using test::kTolerance;
 using test::perceived_difference;
+using test::renderer_for;
 using test::snapshot_of;
 
 constexpr int kWidth = 192, kHeight = 144;
@@ -109,12 +110,6 @@ World clay_sheet() {
   paint(world, clay);
   light_low(world);
   return world;
-}
-
-std::unique_ptr<Renderer> renderer_for(const World& world) {
-  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
-  if (!made) ADD_FAILURE() << made.error().message();
-  return made ? *std::move(made) : nullptr;
 }
 
 // Draws `world` twice, with and without what `switch_off` takes away.

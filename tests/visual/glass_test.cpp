@@ -10,14 +10,10 @@
 namespace pliant {
 namespace {
 
+using test::renderer_for;
+
 constexpr int kWidth = 160, kHeight = 120;
 const Viewpoint kFront{.eye = {0, 0, 4}, .target = {0, 0, 0}};
-
-std::unique_ptr<Renderer> renderer_for(const World& world) {
-  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
-  if (!made) ADD_FAILURE() << made.error().message();
-  return made ? *std::move(made) : nullptr;
-}
 
 vec3 at(const Image& image, double x, double y) {
   const std::uint8_t* p = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + static_cast<std::size_t>(x))];

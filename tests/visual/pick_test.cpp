@@ -12,6 +12,7 @@ namespace pliant {
 namespace {
 
 using test::dent;
+using test::renderer_for;
 using test::snapshot_of;
 
 constexpr int kWidth = 160, kHeight = 120;
@@ -27,12 +28,6 @@ Ray ray_through(const Viewpoint& view, const World& world, double x, double y) {
   const dmat4 back = glm::inverse(dmat4(projection) * dmat4(view_of(view)));
   const glm::dvec4 far = back * glm::dvec4(2 * x / kWidth - 1, 1 - 2 * y / kHeight, 1, 1);
   return {view.eye, normalize(dvec3(far) / far.w - view.eye)};
-}
-
-std::unique_ptr<Renderer> renderer_for(const World& world) {
-  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
-  if (!made) ADD_FAILURE() << made.error().message();
-  return made ? *std::move(made) : nullptr;
 }
 
 std::optional<Picked> pick(Renderer& renderer, const Viewpoint& view, double x, double y) {

@@ -15,15 +15,10 @@ namespace {
 
 using test::awake_only;
 using test::dent;
+using test::renderer_for;
 using test::snapshot_of;
 
 constexpr int kWidth = 160, kHeight = 120;
-
-std::unique_ptr<Renderer> renderer_for(const World& world) {
-  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
-  if (!made) ADD_FAILURE() << made.error().message();
-  return made ? *std::move(made) : nullptr;
-}
 
 // Where a world point is seen, in pixels from the top left.
 vec2 pixel_of(const Viewpoint& view, const World& world, vec3 point) {

@@ -1,5 +1,7 @@
 #include "tests/visual/scene.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -58,6 +60,12 @@ HeadlessContext* context() {
   if (!made) return nullptr;
   (*made)->make_current();
   return made->get();
+}
+
+std::unique_ptr<Renderer> renderer_for(const World& world) {
+  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
+  if (!made) ADD_FAILURE() << made.error().message();
+  return made ? *std::move(made) : nullptr;
 }
 
 World sheet(std::uint32_t n) {

@@ -7,11 +7,15 @@
 #include "components/soft_body.h"
 #include "components/world.h"
 #include "systems/visual/gpu/context.h"
+#include "systems/visual/renderer.h"
 
 namespace pliant::test {
 
 // One context for the whole program (drivers start slowly); null where this machine has none.
 HeadlessContext* context();
+
+// Null, and the test has failed, where it cannot be made.
+std::unique_ptr<Renderer> renderer_for(const World& world);
 
 // A flat sheet of (2 n) x n squares, [-1, 1] x [-0.5, 0.5] m in the plane y = 0, facing up.
 World sheet(std::uint32_t n);

@@ -23,12 +23,7 @@ World lit_sheet() {
   return world;
 }
 
-std::unique_ptr<Renderer> renderer_for(const World& world) {
-  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
-  if (!made) ADD_FAILURE() << made.error().message();
-  return made ? *std::move(made) : nullptr;
-}
-
+using test::renderer_for;
 using test::snapshot_of;
 
 TEST(ShadowPass, IsLeftOutWhileNothingThatCastsOneMoves) {

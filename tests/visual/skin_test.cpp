@@ -17,16 +17,11 @@ namespace {
 
 using test::expect_golden;
 using test::perceived_difference;
+using test::renderer_for;
 using test::soft_snapshot_of;
 
 constexpr int kWidth = 192, kHeight = 144;
 const Viewpoint kSlanted{.eye = {1.6, 2.0, 3.4}, .target = {0, 0.45, 0}};
-
-std::unique_ptr<Renderer> renderer_for(const World& world) {
-  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
-  if (!made) ADD_FAILURE() << made.error().message();
-  return made ? *std::move(made) : nullptr;
-}
 
 // Squeezed from above, bulging, and twisted about the vertical.
 vec3 squeezed(vec3 p) {

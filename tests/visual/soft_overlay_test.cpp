@@ -11,15 +11,11 @@
 namespace pliant {
 namespace {
 
+using test::renderer_for;
+
 constexpr int kWidth = 192, kHeight = 144;
 const Viewpoint kNear{.eye = {0.5, 1.9, 1.5}, .target = {0, 1, 0}};
 const Viewpoint kSlanted{.eye = {1.6, 2.0, 3.4}, .target = {0, 0.45, 0}};
-
-std::unique_ptr<Renderer> renderer_for(const World& world) {
-  Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
-  if (!made) ADD_FAILURE() << made.error().message();
-  return made ? *std::move(made) : nullptr;
-}
 
 vec3 leaning(vec3 p) {
   return p + vec3(0.4f * p.y * p.y, 0, 0);

@@ -1,0 +1,15 @@
+// Vectors in a running hash, one number after the other.
+#pragma once
+
+#include "components/math.h"
+#include "runtime/hash.h"
+
+namespace pliant {
+
+inline void add(Hash& hash, dvec3 v) {
+  hash.add(v.x);
+  hash.add(v.y);
+  hash.add(v.z);
+}
+
+}  // namespace pliant
