@@ -1,5 +1,5 @@
-// What may leave for a hand: finite, clamped, slew-limited, passive force, and nothing at all while anything is unknown
-// (devices.md 1.4). Order: finite -> status -> engage gate -> norm clamp -> stiffness limit -> slew -> passivity.
+// What may leave for a hand: finite, clamped, slew-limited, passive force, and nothing at all while anything is unknown.
+// Order: finite -> status -> engage gate -> norm clamp -> stiffness limit -> slew -> passivity.
 #pragma once
 
 #include "components/haptic_device.h"
