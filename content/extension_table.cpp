@@ -267,7 +267,7 @@ std::vector<Key> simulation_keys() {
   const auto s = [](auto member) { return at(&Level::simulation, member); };
   std::vector<Key> keys;
   keys.push_back(number("touch_rate", "Hz", {10.0, 100000.0}, s(&S::touch_rate), "rate of the touch clock"));
-  keys.push_back(number("soft_step", "s", {0.0, 1.0, true}, s(&S::soft_step), "step of the soft clock"));
+  keys.push_back(number("soft_step", "s", {1e-4, 1.0}, s(&S::soft_step), "step of the soft clock"));
   Key gravity = key(
       "gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),
       [](dvec3 g) {

@@ -142,6 +142,8 @@ TEST(Extension, SetReachesEveryKeyAndSaysWhatItDidNotUnderstand) {
   EXPECT_EQ(set(level, "hand.haptic_device.driver=null"), "") << "a word that is also JSON";
   EXPECT_EQ(set(level, "*.simulation.touch_rate=4000"), "");
   EXPECT_EQ(level.simulation.touch_rate, 4000.0);
+  EXPECT_NE(set(level, "*.simulation.soft_step=1e-12").find("[0.0001, 1]"), std::string::npos)
+      << "a run that never ends";
   EXPECT_EQ(set(level, "*.simulation.gravity=1.62"), "");
   EXPECT_EQ(level.simulation.gravity, dvec3(0, -1.62, 0));
   for (const char* absurd : {"1e300", "-1001", "[0, 1e300, 0]"})
