@@ -15,10 +15,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "bench/measure.h"
 #include "runtime/clock.h"
 #include "systems/schedule.h"
 #include "systems/tool/block_cholesky.h"
@@ -73,20 +73,6 @@ class Stopwatch {
 double heap() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
-}
-
-struct Spread {
-  double p50 = 0, p99 = 0, max = 0;
-};
-Spread spread(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double q) {
-    return values[std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())))];
-  };
-  return values.empty() ? Spread{} : Spread{at(0.5), at(0.99), values.back()};
-}
-double median(std::vector<double> values) {
-  return spread(std::move(values)).p50;
 }
 
 // [ms] that asking the processor's clock takes by itself: a tick by the linear model is hardly longer.
@@ -191,7 +177,7 @@ class Bench {
     costs_.steps = steps;
     costs_.moving = stage_.flesh(tool_).flesh().moving();
     for (double* mean : {&costs_.contacts, &costs_.pushing, &costs_.sweeps}) *mean /= steps;
-    costs_.tick_residual = median(tick_residuals_);
+    if (!tick_residuals_.empty()) costs_.tick_residual = median(tick_residuals_);
     return costs_;
   }
 
@@ -350,18 +336,18 @@ void print_head() {
 }
 
 void print_row(const Costs& c) {
-  const Spread step = spread(c.times[kProcessor]);
+  const std::vector<double>& step = c.times[kProcessor];
   fmt::print("{:>6} {:>6} {:>8.1f} {:>7.1f} {:>6.1f} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f}", c.tetrahedra, c.moving,
-             c.contacts, c.pushing, c.sweeps, step.p50, step.p99, step.max, median(c.times[kWall]));
+             c.contacts, c.pushing, c.sweeps, median(step), percentile(step, 0.99), percentile(step, 1),
+             median(c.times[kWall]));
   for (const Timed stage : {kFreeMotion, kProximity, kDelassus, kSweeps, kLinearise, kRest})
     fmt::print(" {:>8.3f}", median(c.times[stage]));
   fmt::print(" {:>8.1e} {:>8.1e} {:>8.1e}\n", c.flesh_error, c.velocity_error, c.force_error);
 }
 
 std::string json(const std::vector<double>& times, const char* name, const char* unit) {
-  const Spread s = spread(times);
-  return fmt::format("\"{0}_p50_{1}\": {2:.4g}, \"{0}_p99_{1}\": {3:.4g}, \"{0}_max_{1}\": {4:.4g}", name, unit, s.p50,
-                     s.p99, s.max);
+  return fmt::format("\"{0}_p50_{1}\": {2:.4g}, \"{0}_p99_{1}\": {3:.4g}, \"{0}_max_{1}\": {4:.4g}", name, unit,
+                     median(times), percentile(times, 0.99), percentile(times, 1));
 }
 
 std::string json(const Costs& c) {
@@ -406,9 +392,9 @@ void print_ticks(const std::vector<std::pair<const char*, Costs>>& ticks) {
       "{:>9}\n",
       "tets", "contacts", "force", "p50", "p99", "max", "residual");
   for (const auto& [force, c] : ticks) {
-    const Spread tick = spread(c.times[kTickProcessor]);
-    fmt::print("{:>6} {:>9.1f} {:>9} {:>8.2f} {:>8.2f} {:>8.1f} {:>9.1e}\n", c.tetrahedra, c.contacts, force, tick.p50,
-               tick.p99, tick.max, c.tick_residual);
+    const std::vector<double>& tick = c.times[kTickProcessor];
+    fmt::print("{:>6} {:>9.1f} {:>9} {:>8.2f} {:>8.2f} {:>8.1f} {:>9.1e}\n", c.tetrahedra, c.contacts, force,
+               median(tick), percentile(tick, 0.99), percentile(tick, 1), c.tick_residual);
   }
 }
 
@@ -442,8 +428,8 @@ int run(bool small, int repeats, const std::string& out) {
   ticks.emplace_back("linear", measure(kUsualSize, kUsualBed, ToolForce::kLinear, repeats));
   print_ticks(ticks);
   print_memory(all);
-  const Spread step = spread(usual->times[kProcessor]);
-  const double by_median = 1e3 / step.p50, by_p99 = 1e3 / step.p99;
+  const std::vector<double>& step = usual->times[kProcessor];
+  const double by_median = 1e3 / median(step), by_p99 = 1e3 / percentile(step, 0.99);
   fmt::print(
       "\nGoal, {} tetrahedra with {:.0f} frictional contacts, {:.0f} steps/s on one core: {} ({:.0f}/s by the "
       "median step, {:.0f}/s by p99)\n",
@@ -487,18 +473,15 @@ constexpr const char* kHelp =
 
 int main(int argc, char** argv) {
   using namespace pliant;
-  bool small = false;
   int repeats = 3;
-  std::string out;
   for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
+    const std::string_view argument = argv[i];
     if (argument == "--help" || argument == "-h") {
       fmt::print("{}", kHelp);
       return 0;
     }
-    if (argument == "--small") small = true;
     if (argument == "--repeat" && i + 1 < argc) repeats = std::clamp(std::atoi(argv[++i]), 1, 100);
-    if (argument == "--out" && i + 1 < argc) out = argv[++i];
   }
-  return run(small, repeats, out);
+  const BenchArguments arguments(argc, argv, "--small");
+  return run(arguments.on, repeats, arguments.out);
 }
