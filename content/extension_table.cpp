@@ -100,14 +100,13 @@ std::vector<Key> deformable_keys() {
   const auto d = [](auto member) { return at(&LevelNode::deformable, member); };
   std::vector<Key> keys;
   keys.push_back(choice("spring", {"linear", "cubic", "exponential", "sls"}, d(&D::spring), "law of the normal force"));
-  keys.push_back(number("stiffness", "N/m", {0.0, 1e7}, d(&D::stiffness),
+  keys.push_back(number("stiffness", "N/m", {1e-6, 1e7}, d(&D::stiffness),
                         "small-depth slope of normal force against depth at the probe"));
   keys.push_back(number("cubic", "N/m3", {0.0, 1e15}, d(&D::cubic), "k3 of the cubic law"));
-  keys.push_back(number("stiffening", "1/m", {0.0, 1e6, true}, d(&D::stiffening), "alpha of the exponential law"));
+  keys.push_back(number("stiffening", "1/m", {1e-6, 1e5}, d(&D::stiffening), "alpha of the exponential law"));
   keys.push_back(number("relaxation.stiffness", "N/m", {0.0, 1e7}, d(&D::relaxation_stiffness),
                         "arm of the standard linear solid"));
-  keys.push_back(
-      number("relaxation.time", "s", {0.0, 1e6, true}, d(&D::relaxation_time), "relaxation time of that arm"));
+  keys.push_back(number("relaxation.time", "s", {1e-6, 1e6}, d(&D::relaxation_time), "relaxation time of that arm"));
   keys.push_back(number("damping_ratio", "1", {0.0, 100.0}, d(&D::damping_ratio), "damping ratio of the free surface"));
   keys.push_back(
       number("settling_time", "s", {1e-4, 100.0}, d(&D::settling_time), "2 % settling time of the free surface"));

@@ -5,7 +5,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "content/extension_table.h"
 #include "content/extensions.h"
+#include "systems/touch/local_model.h"
 #include "tests/content/gltf_builder.h"
 
 namespace pliant::test {
@@ -89,7 +91,7 @@ TEST(Extension, WhatIsWrongIsNamedWithWhatWouldBeRight) {
     for (const char* part : parts) EXPECT_NE(refusal.find(part), std::string::npos) << part << " in: " << refusal;
   };
   expect({{"stifness", 3}}, {"/nodes/0/extensions/PLIANT_deformable/stifness", "did you mean stiffness?"});
-  expect({{"stiffness", -3}}, {"/stiffness", "-3", "[0, 10000000]", "N/m"});
+  expect({{"stiffness", -3}}, {"/stiffness", "-3", "[1e-06, 10000000]", "N/m"});
   expect({{"stiffness", "soft"}}, {"\"soft\"", "not a number"});
   expect({{"shape", "round"}}, {"\"round\"", "kelvinlet"});
   expect({{"relaxation", {{"tiem", 3}}}}, {"relaxation/tiem", "relaxation.time"});
@@ -101,6 +103,21 @@ TEST(Extension, WhatIsWrongIsNamedWithWhatWouldBeRight) {
             std::string::npos);
   EXPECT_NE(with({{"PLIANT_environment", Json::object()}}).refusal(), "");
   EXPECT_NE(with({{"PLIANT_haptic_device", {{"driver", "script"}}}}).refusal().find("file"), std::string::npos);
+}
+
+// Or a level would be valid that no run takes.
+TEST(Extension, EveryRangeOfADeformableIsWithinWhatTheTouchClockTakes) {
+  for (const Key& key : find_extension("deformable")->keys) {
+    if (key.type != KeyType::kNumber || key.name == "friction_static") continue;  // has the other friction below it
+    for (const double end : {key.range.min, key.range.max}) {
+      LevelNode node;
+      node.deformable.emplace().reach = 0.01;
+      node.deformable->friction_static = 10.0;
+      if (key.name != "reach" || end > 0.0) key.set(&node, end);  // 0: from the object's box
+      const Status taken = check(*node.deformable, "thing");
+      EXPECT_TRUE(taken.ok()) << taken.error().message();
+    }
+  }
 }
 
 TEST(Extension, AProbeNamesItsDeviceByNameOrNumber) {
