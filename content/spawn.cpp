@@ -4,6 +4,7 @@
 
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
+#include "content/device_use.h"
 #include "content/exr.h"
 #include "content/level.h"
 #include "content/mesh_build.h"
@@ -76,6 +77,8 @@ class Spawner {
       if (Status s = link_probe(n); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = check_handle(n); !s) return s;
+    const std::vector<DeviceFault> shared = find_shared_devices(level_);
+    if (!shared.empty()) return at(shared.front().node, shared.front().what);
     return Done{};
   }
   World take() { return std::move(world_); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "content/device_use.h"
 #include "content/exr.h"
 #include "content/extensions.h"
 #include "content/gltf_document.h"
@@ -169,6 +170,8 @@ Findings validate_level(const fs::path& path) {
     if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable && !node.rigid_body)) continue;
     find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer_of(*level, i), findings);
   }
+  for (const DeviceFault& fault : find_shared_devices(*level))
+    findings.push_back({Severity::kError, pointer_of(*level, fault.node), fault.what});
   // Files that the level names.
   const fs::path folder = path.parent_path();
   find_in_soft_nodes(*level, folder, findings);

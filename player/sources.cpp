@@ -12,24 +12,19 @@ namespace {
 
 constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
 
-// The device that moves this probe or tool and no other; a shared one is copied first, so that the others keep theirs.
+// The device that moves this probe or tool; made where nobody does.
 Entity own_device(World& world, Entity hand) {
-  const Entity current = device_of(world, hand);
-  int users = 0;
-  for (const Entity other : hands(world))
-    if (device_of(world, other) == current) ++users;
-  const HapticDevice* device = find_device(world, hand);
-  if (device && users == 1) return current;
-  HapticDevice copy = device ? *device : HapticDevice{};
-  if (Handle6* handle = world.registry.find<Handle6>(hand)) {  // a tool's device is named; without a name it is its own
+  if (find_device(world, hand)) return device_of(world, hand);
+  HapticDevice device;
+  if (Handle6* handle = world.registry.find<Handle6>(hand)) {  // a tool without a device's name is its own
     handle->device.clear();
     if (const Pose* pose = world.registry.find<Pose>(hand))
-      copy.position = pose->position, copy.rotation = pose->rotation;
-    if (!world.registry.has<HapticDevice>(hand)) world.registry.add<HapticDevice>(hand, copy);
+      device.position = pose->position, device.rotation = pose->rotation;
+    world.registry.add<HapticDevice>(hand, device);
     return hand;
   }
   const Entity made = world.registry.create();
-  world.registry.add<HapticDevice>(made, copy);
+  world.registry.add<HapticDevice>(made, device);
   world.registry.get<Probe>(hand).device = made;
   return made;
 }

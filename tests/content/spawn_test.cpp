@@ -135,6 +135,40 @@ TEST(Spawn, AProbeFindsTheDeviceItNamesOrItsOwn) {
   EXPECT_THAT(refused.error().message(), testing::AllOf(testing::HasSubstr("`tip`"), testing::HasSubstr("`nobody`")));
 }
 
+TEST(Spawn, ADeviceThatTwoProbesOrToolsNameIsRefusedByAllThreeNames) {
+  Level level = level_of(icosphere(0));
+  LevelNode left = named("left"), right = named("right"), hand = named("hand");
+  left.probe = right.probe = Probe{};
+  left.probe_device = right.probe_device = "hand";
+  hand.device = HapticDevice{};
+  level.nodes.insert(level.nodes.end(), {left, hand, right});
+  const auto all_three = [](const std::string& said, const char* second) {
+    EXPECT_THAT(said, testing::AllOf(testing::HasSubstr("`hand`"), testing::HasSubstr("`left`"),
+                                     testing::HasSubstr(second), testing::HasSubstr("of its own")));
+  };
+  Result<World> refused = spawn(level);
+  ASSERT_FALSE(refused.ok());
+  all_three(refused.error().message(), "`right`");
+
+  level.nodes[3].probe_device.clear();  // moved by nobody
+  EXPECT_TRUE(spawn(level).ok());
+  level.nodes[2].probe = Probe{};  // the device's own node is a probe
+  refused = spawn(level);
+  ASSERT_FALSE(refused.ok());
+  all_three(refused.error().message(), "node `hand`");
+  level.nodes[2].probe.reset();
+
+  level.nodes[0].deformable.reset();
+  level.nodes[0].soft_body = SoftBody{.cell = 0.5};
+  level.nodes[0].handle = Handle6{.box = Box{{-2, 0, -2}, {2, 2, 2}}, .device = "hand"};
+  refused = spawn(level);
+  ASSERT_FALSE(refused.ok());
+  all_three(refused.error().message(), "`thing`");
+  level.nodes[1].in_scene = false;  // what is not there moves nothing
+  refused = spawn(level);
+  EXPECT_TRUE(refused.ok()) << refused.error().message();
+}
+
 TEST(Spawn, MissingScriptAndPanoramaAreErrorsThatNameTheFile) {
   Level level = level_of(icosphere(0));
   level.nodes[0].device = HapticDevice{};

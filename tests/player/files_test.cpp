@@ -108,6 +108,19 @@ TEST_F(Files, ValidateNamesThePlaceOfFilesThatALevelNames) {
   EXPECT_NE(bad.out.find("bad.csv:2"), std::string::npos) << bad.out;
 }
 
+TEST_F(Files, ADeviceForTwoIsRefusedWhereItIsReadAndWhereItIsRun) {
+  write_text(folder / "level.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],)"
+                                    R"("extensionsUsed":["PLIANT_probe","PLIANT_haptic_device"],)"
+                                    R"("nodes":[{"name":"left","extensions":{"PLIANT_probe":{"device":"hand"}}},)"
+                                    R"({"name":"right","extensions":{"PLIANT_probe":{"device":"hand"}}},)"
+                                    R"({"name":"hand","extensions":{"PLIANT_haptic_device":{}}}]})");
+  const Said said = pliant({"validate", "level.gltf"});
+  EXPECT_EQ(said.status, 1);
+  EXPECT_NE(said.out.find("/nodes/1"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("`left`"), std::string::npos) << said.out;
+  expect_refused({"run", "level.gltf"}, 1, "`left`");
+}
+
 TEST_F(Files, UnknownPliantKeysAreRefusedByName) {
   write_text(folder / "level.gltf",
              R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"extensionsUsed":["PLIANT_probe"],)"
