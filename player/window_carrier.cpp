@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/soft_body.h"
+#include "systems/device/mouse.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {
@@ -22,7 +23,7 @@ std::optional<Carrier> Carrier::of(World& world) {
     carrier.tool_ = entity;
     carrier.step_ = kStepShare * std::max(1e-3, static_cast<double>(drawn_box(world, true).diagonal()));
     if (const Pose* pose = world.registry.find<Pose>(entity)) {
-      carrier.position_ = pose->position;
+      carrier.position_ = carrier.wanted_ = pose->position;
       device->rotation = pose->rotation;
     }
     return carrier;
@@ -36,14 +37,26 @@ void Carrier::follow(const Ray& ray, const Viewpoint& view) {
   const double along = dot(ray.along, forward);
   if (along < kLeastAlong) return;
   const dvec3 now = ray.from + dot(*held_ - ray.from, forward) / along * ray.along;
-  position_ += now - *held_;
+  wanted_ += now - *held_;
   held_ = now;
 }
 
 void Carrier::push(double clicks, const Viewpoint& view) {
   const dvec3 way = clicks * step_ * normalize(view.target - view.eye);
-  position_ += way;
+  wanted_ += way;
   if (held_) *held_ += way;
+}
+
+void Carrier::release() {
+  held_.reset();
+  wanted_ = position_;
+}
+
+void Carrier::update(double dt) {
+  const double most = kFastestCarry * std::min(dt, kMouseSlowestFrame);  // the touch clock takes no longer for the way
+  const dvec3 way = wanted_ - position_;
+  const double left = length(way);
+  position_ = left > most ? position_ + way * (most / left) : wanted_;
 }
 
 }  // namespace pliant

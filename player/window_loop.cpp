@@ -74,6 +74,7 @@ void WindowLoop::point(double dt) {
   if (!radius_ && !carrier_) return;
   if (carrier_) {
     if (drag_ == Drag::kCarry) carrier_->follow(ray(), camera_.viewpoint());
+    carrier_->update(dt);
     probe_at_ = carrier_->position();
   } else if (pointed_ && !looks_around()) {
     probe_at_ = pointer_.update(dt);

@@ -6,6 +6,7 @@
 #include "components/soft_body.h"
 #include "player/window_carrier.h"
 #include "player/window_pointer.h"
+#include "systems/device/mouse.h"
 
 namespace pliant {
 namespace {
@@ -155,18 +156,53 @@ TEST(Carrier, WhatWasTakenHoldOfStaysUnderTheCursorAtItsDistance) {
   EXPECT_EQ(carrier->position(), before) << "it moves without being held";
   carrier->grab(grabbed);
   const Ray ray = ray_through(view, 400, 150, 640, 480);
+  const auto arrive = [&] {
+    for (int i = 0; i < 100; ++i) carrier->update(0.1);
+  };
   carrier->follow(ray, view);
+  arrive();
   const dvec3 moved = carrier->position() - before, now = grabbed + moved;
   EXPECT_LT(length(cross(now - ray.from, ray.along)), 1e-12);
   EXPECT_NEAR(dot(moved, forward), 0.0, 1e-12);
   carrier->push(2, view);
+  arrive();
   const dvec3 pushed = carrier->position() - before - moved;
   EXPECT_GT(dot(pushed, forward), 0.0);
   EXPECT_LT(length(cross(pushed, forward)), 1e-12);
   carrier->release();
   const dvec3 left = carrier->position();
   carrier->follow(ray_through(view, 10, 10, 640, 480), view);
+  carrier->update(0.1);
   EXPECT_EQ(carrier->position(), left);
+}
+
+TEST(Carrier, AJumpOfThePointerBecomesAGlideThatStopsWhereItIsLetGo) {
+  ToolScene scene;
+  std::optional<Carrier> carrier = Carrier::of(scene.world);
+  ASSERT_TRUE(carrier);
+  const Viewpoint view{.eye = {0.1, 0, 1}, .target = {0.1, 0, 0}};
+  carrier->grab({0.1, 0, 0});
+  const Ray right{view.eye, normalize(dvec3(0.25, 0, -1))};  // 0.25 m aside, in the tool's plane
+  carrier->follow(right, view);
+  EXPECT_EQ(carrier->position(), dvec3(0.1, 0, 0));
+  int turns = 0;
+  for (dvec3 before = carrier->position(); carrier->position().x < 0.35 - 1e-9 && turns < 1000; ++turns) {
+    carrier->update(0.004);
+    EXPECT_LE(length(carrier->position() - before), kFastestCarry * 0.004 * (1 + 1e-9));
+    EXPECT_NEAR(carrier->position().y, 0.0, 1e-12);
+    EXPECT_NEAR(carrier->position().z, 0.0, 1e-12);
+    before = carrier->position();
+  }
+  EXPECT_EQ(turns, 125);  // 0.25 m at 0.5 m/s
+  EXPECT_NEAR(carrier->position().x, 0.35, 1e-9);
+
+  // A picture that hung is no leave to jump: the touch clock makes the way in at most kMouseSlowestFrame.
+  carrier->follow({view.eye, normalize(dvec3(-0.25, 0, -1))}, view);
+  carrier->update(10.0);
+  EXPECT_NEAR(carrier->position().x, 0.35 - kFastestCarry * kMouseSlowestFrame, 1e-9);
+  carrier->release();
+  carrier->update(1.0);
+  EXPECT_NEAR(carrier->position().x, 0.35 - kFastestCarry * kMouseSlowestFrame, 1e-9);
 }
 
 }  // namespace
