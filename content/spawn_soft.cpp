@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "content/lattice.h"
+#include "content/mesh_refine.h"
 #include "content/tet_boundary.h"
 #include "content/tet_embed.h"
 #include "content/tet_file.h"
@@ -11,6 +12,10 @@
 
 namespace pliant {
 namespace {
+
+// [mean edges of the tetrahedra] Flesh is touched through its skin's vertices: where they are farther apart, whatever
+// presses between them moves those far away and sinks through the flesh below it.
+constexpr double kLongestEdge = 2.0;
 
 // The tetrahedra of the body's file, in the object frame.
 Result<TetMesh> read_tets(const std::string& name, const std::string& file, const mat4& to_object,
@@ -35,6 +40,15 @@ Result<TetMesh> read_tets(const std::string& name, const std::string& file, cons
                    "other than 0"};
   put_in_order(mesh, {});
   return mesh;
+}
+
+// [m] Mean over the edges of all tetrahedra.
+double mean_edge(const TetMesh& mesh) {
+  double sum = 0.0;
+  for (const Tet& tet : mesh.tets)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = i + 1; k < 4; ++k) sum += length(mesh.nodes[tet[k]] - mesh.nodes[tet[i]]);
+  return sum / static_cast<double>(6 * mesh.tets.size());
 }
 
 Primitive boundary_primitive(const TetMesh& mesh) {
@@ -92,6 +106,13 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
   Result<std::vector<NodeGroup>> group =
       group_nodes(parts.tets.nodes, parts.surface, body, node.handle ? &*node.handle : nullptr);
   if (!group) return group.error();
+  if (mesh) {
+    std::vector<Primitive> finer = mesh->primitives;
+    if (refine(finer, to_object, kLongestEdge * mean_edge(parts.tets))) {
+      if (Status s = build(finer, to_object); !s) return s.error();
+      parts.tets.skin = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
+    }
+  }
   put_in_order(parts.tets, *group);
   return parts;
 }
