@@ -17,6 +17,8 @@ namespace {
 constexpr double kSameSide = 0.5;   // [1] cosine: a normal that is still the one of the last step
 constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a further contact (in a corner)
 constexpr std::uint32_t kMostOfVertex = 3;
+constexpr double kSlender = 2.0;  // [1] of a mean edge to the shortest one there: beyond, the shortest one counts
+constexpr double kComing = 1e-3;  // [margins] in a step: slower, and it does not go into a sheet but lies in it
 constexpr double kDeepestInMargins = 10.0;  // [1] no penetration is followed farther than this
 
 // A vertex of one skin that meets a triangle of another (or of its own).
@@ -38,7 +40,16 @@ struct Side {
   std::uint32_t index;  // of the body
   const Body& body;
   const Skin& skin;
+  // A fixed surface that encloses nothing: it stops what comes from its front and lets pass what comes from behind.
+  bool sheet() const { return body.size() == 0 && !skin.mesh().closed; }
 };
+
+// [1] What the normals of a vertex and of the triangle that it touches may have in common at most. A sheet is touched
+// from its front, at its border from the side, too.
+double facing(const Side& a, std::uint32_t vertex) {
+  if (!a.sheet()) return kFacing;
+  return a.skin.at_border(vertex) ? 0.0 : -kFacing;
+}
 
 bool boxes_meet(const Box& a, const Box& b, const RelativeSweep& sweep, float reach) {
   Box wide = b;
@@ -64,7 +75,7 @@ struct Proximity::Parts {
   // --- Features of two triangles
   void try_vertex(const Side& a, std::uint32_t vertex, const Side& b, std::uint32_t triangle,
                   const RelativeSweep& sweep, std::vector<VertexMeeting>& out) const {
-    if (dot(a.skin.vertex_normal(vertex), b.skin.normal(triangle)) > kFacing) return;
+    if (dot(a.skin.vertex_normal(vertex), b.skin.normal(triangle)) > facing(a, vertex)) return;
     if (!boxes_meet(a.skin.vertex_box(vertex), b.skin.box(triangle), sweep, box_reach())) return;
     if (a.index == b.index) {
       const uvec3 c = b.skin.mesh().triangles[triangle];
@@ -109,10 +120,21 @@ struct Proximity::Parts {
   void take_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     const ContactPoint* last = memory.find(key);
-    if (m.gap < -margin && !sides.find(key))
-      return;  // edges deep below each other that never met: others hold those bodies
+    const bool met = sides.find(key) != nullptr;
+    if (m.gap < -margin && !met) return;  // edges deep below each other that never met: others hold those bodies
+    if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, met)) return;
+    if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, met)) return;
     keep({a.index, b.index, true, edge_a, edge_b, m, last}, key, a.skin.point_on_edge(edge_a, m.along_a).position);
   }
+
+  // Whether what meets an edge of a sheet, pushed along `push` by it, is in front of it.
+  bool meets_front(dvec3 front, dvec3 push, const Meeting& m, bool met) const {
+    const double along = dot(front, push);
+    return along >= 0.0 && (m.gap >= 0.0 || met || (along > kFacing && enters(m)));
+  }
+  // A sheet has no inside. What shows behind it without a past and goes in was put there, or slipped in beside others;
+  // what goes out came from behind.
+  bool enters(const Meeting& m) const { return m.gap >= -margin && m.end_gap < m.gap - kComing * margin; }
 
   // Meetings of every vertex of body a with body b. In front, a vertex touches what it meets; behind, it touches what
   // it came from: the side of the last step, or, where there is none, the nearest if it really is inside.
@@ -194,7 +216,8 @@ struct Proximity::Parts {
   bool inside(const Side& a, const Side& b, const VertexMeeting& m) const {
     const double depth = -m.meeting.gap;
     if (a.index == b.index) return depth <= margin && in_front_at_rest(b.skin.mesh(), m);
-    if (!b.skin.mesh().closed) return depth <= margin;  // a sheet has one side; far behind it is the open
+    if ((a.sheet() || b.sheet()) && !enters(m.meeting)) return false;
+    if (!b.skin.mesh().closed) return depth <= margin;  // far behind it is the open
     return b.skin.contains(a.skin.vertex(m.vertex).x, reach.behind);
   }
   // Through a thin part of a body its own far side looks like something that was entered.
@@ -210,12 +233,22 @@ struct Proximity::Parts {
       return;  // a body that has blown up touches nothing
     Candidate c{std::min(f.body_a, f.body_b), std::max(f.body_a, f.body_b), position};
     c.normal = f.body_a <= f.body_b ? -m.normal : m.normal;
+    c.gap = m.gap;
     c.end_gap = m.end_gap;
+    c.edge = edge_there(f);
     c.known = f.last != nullptr;
     c.key = key;
     c.source = static_cast<std::uint32_t>(found.size());
     found.push_back(f);
     candidates.push_back(c);
+  }
+
+  // [m] The mean edges tell how finely a skin is meshed; those of a slender bar are longer than it is wide.
+  double edge_there(const Found& f) const {
+    const Skin &a = skins[f.body_a], &b = skins[f.body_b];
+    const double shortest = f.edges ? std::min(a.shortest_at_edge(f.feature_a), b.shortest_at_edge(f.feature_b))
+                                    : std::min(a.shortest_at_vertex(f.feature_a), b.shortest_of_triangle(f.feature_b));
+    return std::min({mean_edge[f.body_a], mean_edge[f.body_b], kSlender * shortest});
   }
 
   ContactPoint contact_of(const std::vector<std::unique_ptr<Body>>& bodies, const Candidate& candidate) const {
@@ -282,7 +315,7 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
   for (const Candidate& c : p.candidates) p.sides.add(c.key, p.found[c.source].meeting.normal);
   p.sides.sort();
   out.clear();
-  thin_contacts(p.candidates, p.mean_edge, {});
+  thin_contacts(p.candidates, {});
   p.deepest = 0.0;
   for (const Candidate& c : p.candidates) {
     out.push_back(p.contact_of(bodies, c));

@@ -32,6 +32,7 @@ dvec3 unit_or_zero(dvec3 n) {
 Skin::Skin(const Body& body) : mesh_(body.skin) {
   ASSERT(body.skin && body.skin_position.size() >= body.skin->vertex_count);
   find_edges();
+  find_shortest();
   if (body.self_collides) find_neighbours(kNearEdges * static_cast<double>(mesh_->mean_edge));
   position_.resize(mesh_->vertex_count, dvec3(0));
   displacement_.resize(mesh_->vertex_count, dvec3(0));
@@ -73,11 +74,25 @@ void Skin::find_edges() {
       edge_of_[t][i] = known;
     }
   }
+  at_border_.assign(mesh_->vertex_count, false);
+  for (const SkinEdge& edge : edges_)
+    if (edge.triangle[0] == edge.triangle[1]) at_border_[edge.from] = at_border_[edge.to] = true;
   for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) triangles_first_[v + 1] += triangles_first_[v];
   triangles_of_.resize(3 * triangles.size());
   std::vector<std::uint32_t> next(triangles_first_.begin(), triangles_first_.end() - 1);
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     for (int i = 0; i < 3; ++i) triangles_of_[next[triangles[t][i]]++] = t;
+}
+
+void Skin::find_shortest() {
+  shortest_at_vertex_.assign(mesh_->vertex_count, 1e300);
+  for (const uvec3& t : mesh_->triangles) {
+    double shortest = 1e300;
+    for (int i = 0; i < 3; ++i)
+      shortest = std::min(shortest, length(dvec3(mesh_->position(t[(i + 1) % 3])) - dvec3(mesh_->position(t[i]))));
+    shortest_.push_back(shortest);
+    for (int i = 0; i < 3; ++i) shortest_at_vertex_[t[i]] = std::min(shortest_at_vertex_[t[i]], shortest);
+  }
 }
 
 // Dijkstra along edges from every vertex, at rest.

@@ -2,6 +2,7 @@
 // of what its triangles sweep. The tree is the mesh's own (components/mesh.h): only boxes are fitted anew.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -38,6 +39,13 @@ class Skin {
   // The same for this step, without edges that cannot touch: where their triangles lie in a plane vertices do, in a
   // valley nothing does.
   std::uint8_t live(std::uint32_t triangle) const { return live_[triangle]; }
+  // [m] at rest: the shortest edge of the triangles around a vertex, beside an edge, of a triangle.
+  double shortest_at_vertex(std::uint32_t v) const { return shortest_at_vertex_[v]; }
+  double shortest_at_edge(std::uint32_t e) const {
+    return std::min(shortest_[edges_[e].triangle[0]], shortest_[edges_[e].triangle[1]]);
+  }
+  double shortest_of_triangle(std::uint32_t t) const { return shortest_[t]; }
+  bool at_border(std::uint32_t v) const { return at_border_[v]; }
   SurfacePoint point_at_vertex(std::uint32_t vertex) const;
   SurfacePoint point_on_edge(std::uint32_t edge, double along) const;
   SurfacePoint point_on_triangle(std::uint32_t triangle, dvec3 barycentric) const;
@@ -66,6 +74,7 @@ class Skin {
 
  private:
   void find_edges();
+  void find_shortest();
   void find_neighbours(double distance);
   void fit_boxes(double reach);
   void find_normals();
@@ -75,6 +84,8 @@ class Skin {
   std::vector<SkinEdge> edges_;
   std::vector<std::array<std::uint32_t, 3>> edge_of_;
   std::vector<std::uint8_t> owned_, live_;
+  std::vector<bool> at_border_;
+  std::vector<double> shortest_, shortest_at_vertex_;
   std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
   std::vector<std::uint32_t> near_first_, near_;               // ascending runs per vertex
