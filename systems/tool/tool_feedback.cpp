@@ -165,8 +165,9 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
       world.dropped |= kDroppedNonFinite;
       forget(tool);
     }
-  } else {
+  } else {  // the handle stays where it is until there is a device to go to
     tool.handle.velocity.setZero();
+    tool.sensed.velocity.setZero();
   }
   tell_soft_clock(tool, tick);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "systems/device/devices.h"
+#include "systems/device/safety.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
@@ -223,6 +224,61 @@ TEST(ToolFeedback, NothingIsFeltOfADeviceThatIsLost) {
   stage.hand().position.x = std::nan("");
   stage.tick();
   EXPECT_EQ(length(stage.hand().force_sent), 0.0);
+}
+
+// Lost in the middle of a motion, back 50 mm away: the tool waits where it is, goes to its device, and only when it is
+// there is anything felt, rising no faster than the device allows.
+TEST(ToolFeedback, AToolWhoseDeviceIsLostWaitsAndIsTakenUpAgainWithoutAJump) {
+  Handle6 settings = coupling(200.0);
+  settings.translation[1] = 2.0;
+  settings.max_force = 3.3;
+  Stage stage(settings);
+  HapticDevice& hand = stage.hand();
+  hand.max_force = 3.3;
+  hand.max_slew = 20.0;
+  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 0.1;
+  double before = 0.0;
+  const auto run = [&](int ticks, auto each) {
+    for (int i = 0; i < ticks; ++i) {
+      if (i % 16 == 0) stage.publish();
+      stage.tick();
+      each(i);
+      const double now = length(hand.force_sent);
+      if (now > 0.0) EXPECT_LE(now - before, hand.max_slew * kTick * (1 + 1e-9)) << "tick " << stage.ticks;
+      before = now;
+    }
+  };
+  run(100, [&](int) { hand.position.x += 1e-4; });
+  EXPECT_GT(before, 0.05);
+  EXPECT_GT(linear(stage.state().handle.velocity).x, 0.05);
+
+  hand.status = DeviceStatus::kLost;
+  stage.tick();
+  const Pose held = stage.state().handle.pose;
+  run(200, [&](int i) {
+    EXPECT_EQ(length(hand.force_sent) + length(hand.torque_sent), 0.0) << i;
+    EXPECT_EQ(stage.state().handle.pose.position, held.position) << i;
+    EXPECT_EQ(stage.state().handle.pose.rotation, held.rotation) << i;
+    stage.state().input.acquire();
+    const ToolInput& told = stage.state().input.read();
+    EXPECT_EQ(told.status, DeviceStatus::kLost);
+    EXPECT_EQ(told.device.velocity.norm() + told.handle.velocity.norm(), 0.0) << i;
+  });
+
+  hand.status = DeviceStatus::kReady;
+  hand.position.x += 0.05;
+  double most = 0.0;
+  int silent = 0;
+  run(400, [&](int) {
+    const double wanted = length(linear(stage.state().device_wrench));
+    most = std::max(most, wanted);
+    if (wanted > kEngageForce && length(hand.force_sent) == 0.0) ++silent;
+    EXPECT_LE(length(hand.force_sent), 0.25) << "felt before the tool had come";
+  });
+  EXPECT_GT(most, 3.0) << "the coupling was strained: there was something to be spared";
+  EXPECT_GT(silent, 5);
+  EXPECT_NEAR(stage.state().handle.pose.position.x, hand.position.x, 1e-4);
+  EXPECT_NEAR(length(hand.force_sent), 0.1, 0.01);
 }
 
 TEST(ToolFeedback, ACarriedToolIsLetGoWhenItsModelIsTooOldToBeBelieved) {
