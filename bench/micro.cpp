@@ -79,6 +79,7 @@ void nearest_query(benchmark::State& state) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<dvec3> points;
+  points.reserve(1000);
   for (int i = 0; i < 1000; ++i)
     points.push_back((0.1 + 0.004 * unit(random)) * normalize(dvec3(unit(random), unit(random), unit(random))));
   std::size_t i = 0;

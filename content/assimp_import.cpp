@@ -115,7 +115,7 @@ Material read_material(const aiMaterial& in, std::string& texture_name) {
     out.base_color.a = opacity;
     out.alpha = Material::Alpha::kBlend;
   }
-  if (!(out.base_color == out.base_color)) out.base_color = vec4(1);
+  if (glm::any(glm::isnan(out.base_color))) out.base_color = vec4(1);
   out.name = utf8(out.name);
   if (in.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == AI_SUCCESS) texture_name = utf8(texture.C_Str());
   return out;

@@ -21,7 +21,7 @@ Json schema_of(const Key& key, const Json& standard) {
     bound(items);
     return Json{{"type", "array"}, {"items", items}, {"minItems", count}, {"maxItems", count}};
   };
-  if (!key.alias && !standard.is_null() && standard != "") out["default"] = standard;
+  if (!key.alias && !standard.is_null() && standard != Json("")) out["default"] = standard;
   switch (key.type) {
     case KeyType::kNumber:
       out["type"] = "number";
@@ -117,9 +117,9 @@ std::string extension_tables() {
       if (range.empty() && key.type != KeyType::kText && key.type != KeyType::kNode && key.type != KeyType::kFlag)
         range = range_text(key);
       const Json standard = key.get(defaults.owner);
-      const std::string shown = key.alias || standard.is_null() || standard == "" ? ""
-                                : standard.is_string()                            ? standard.get<std::string>()
-                                                                                  : standard.dump();
+      const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
+                                : standard.is_string()                                  ? standard.get<std::string>()
+                                                                                        : standard.dump();
       out += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit, range, shown, key.doc);
     }
     out += "\n";

@@ -139,7 +139,8 @@ std::vector<double> read_stored(const SourceDocument& document, std::size_t acce
 std::vector<std::uint32_t> read_sparse_indices(const SourceDocument& document, std::size_t index) {
   const Json& sparse = document.json["accessors"][index]["sparse"];
   const std::uint8_t* data = view_data(document, sparse["indices"]);
-  std::vector<std::uint32_t> indices(data ? sparse["count"].get<std::size_t>() : 0);
+  if (!data) return {};
+  std::vector<std::uint32_t> indices(sparse["count"].get<std::size_t>());
   const int type = sparse["indices"]["componentType"].get<int>();
   for (std::size_t i = 0; i < indices.size(); ++i)
     indices[i] = component<std::uint32_t>(data + i * size_of_component(type), type, false);

@@ -142,7 +142,8 @@ class Builder {
           return Error{mesh.name, "has a position that is not finite and cannot be saved"};
         box.add(p);
       }
-      Json json, &attributes = json["attributes"];
+      Json json;
+      Json& attributes = json["attributes"];
       const std::size_t position = add_attribute(primitive.position, "VEC3");
       json_["accessors"][position]["min"] = numbers(box.min);
       json_["accessors"][position]["max"] = numbers(box.max);
