@@ -9,6 +9,7 @@
 namespace pliant {
 
 using glm::cross;
+using glm::dmat2;
 using glm::dmat3;
 using glm::dmat4;
 using glm::dot;

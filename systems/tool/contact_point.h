@@ -12,8 +12,11 @@ namespace pliant {
 struct ContactPoint {
   std::uint32_t body_a = 0, body_b = 0;  // into SoftState::bodies; equal: self-collision
   SurfacePoint a, b;
-  dvec3 normal{0, 1, 0};                     // [1] world, unit, from b's outside towards a
-  double gap = 0.0;                          // [m] along the normal at the beginning of the step; < 0: penetrating
+  dvec3 normal{0, 1, 0};                     // [1] world, unit, from b's outside towards a; where the step will end
+  double gap = 0.0;                          // [m] along it, for the step's linear law: at the end it is gap + T u_n
+  double depth = 0.0;                        // [m] >= 0: how deep a is behind b where the step begins
+  dmat2 turning{0};                          // [1/m] of the normal with slip (contact_geometry.h: find_turning)
+  double reach = 0.0;                        // [m] of slip: beyond it, what was open when the step ended meets nothing
   dmat3 axes{1};                             // columns: normal, two tangents (steady from step to step)
   double mu_static = 0.4, mu_sliding = 0.3;  // [1] of the pair
   std::uint64_t key = 0;                     // the same pair of features has the same key in the next step: warm start

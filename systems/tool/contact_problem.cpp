@@ -66,9 +66,21 @@ struct Local {
   }
 };
 
+// [m/s] Of the contacts that close without impulses: what is still far away does not say how exact the others must be.
+double fastest(const ContactProblem& problem) {
+  double speed = 1e-9;
+  for (int i = 0; i < problem.count; ++i) {
+    const dvec3 u(problem.bias[3 * i], problem.bias[3 * i + 1], problem.bias[3 * i + 2]);
+    const dvec3 own = problem.own.empty() ? u : u * problem.own[static_cast<std::size_t>(i)];
+    if (own.x < 0.0) speed = std::max({speed, -own.x, std::abs(own.y), std::abs(own.z)});
+  }
+  return speed;
+}
+
 class Sweeper {
  public:
-  explicit Sweeper(ContactProblem& problem) : p_(problem), rows_(3 * problem.count), stride_(problem.W.outerStride()) {
+  explicit Sweeper(ContactProblem& problem)
+      : p_(problem), rows_(3 * problem.count), stride_(problem.W.outerStride()), turned_(!problem.own.empty()) {
     double largest = 0.0;
     for (int i = 0; i < rows_; ++i) largest = std::max(largest, p_.W(i, i));
     immovable_ = kImmovable * largest;
@@ -80,8 +92,10 @@ class Sweeper {
     for (int i = 0; i < rows_; ++i) u[i] = p_.bias[i];
     for (int i = 0; i < p_.count; ++i) {
       double* l = &p_.impulse[3 * i];
-      if (!(l[0] > 0.0) || !std::isfinite(l[0] + l[1] + l[2]) || !movable(i)) l[0] = l[1] = l[2] = 0.0;
-      if (l[0] > 0.0) add_columns(u, column(i), stride_, rows_, l[0], l[1], l[2]);
+      const double normal = own(i, l).x;
+      const bool good = normal > 0.0 && std::isfinite(l[0] + l[1] + l[2]) && movable(i);
+      if (!good) l[0] = l[1] = l[2] = 0.0;
+      if (good) add_columns(u, column(i), stride_, rows_, l[0], l[1], l[2]);
     }
   }
 
@@ -101,10 +115,9 @@ class Sweeper {
   int begin_slips(double slowest) {
     int begun = 0;
     for (int i = 0; i < p_.count; ++i) {
-      const double* u = &p_.velocity[3 * i];
-      const double* l = &p_.impulse[3 * i];
-      if (p_.sliding[i] || l[0] <= 0.0 || length2(u[1], u[2]) <= slowest) continue;
-      if (length2(l[1], l[2]) < (1.0 - 1e-9) * p_.mu_static[i] * l[0]) continue;
+      const dvec3 u = own(i, &p_.velocity[3 * i]), l = own(i, &p_.impulse[3 * i]);
+      if (p_.sliding[i] || l.x <= 0.0 || length2(u.y, u.z) <= slowest) continue;
+      if (length2(l.y, l.z) < (1.0 - 1e-9) * p_.mu_static[i] * l.x) continue;
       p_.sliding[i] = 1;
       begun += p_.mu_sliding[i] < p_.mu_static[i];
     }
@@ -113,49 +126,60 @@ class Sweeper {
   // Those that slipped and now lie inside the sliding cone hold again.
   void end_slips() {
     for (int i = 0; i < p_.count; ++i) {
-      const double* l = &p_.impulse[3 * i];
-      if (l[0] <= 0.0 || length2(l[1], l[2]) < (1.0 - 1e-6) * mu(i) * l[0]) p_.sliding[i] = 0;
+      const dvec3 l = own(i, &p_.impulse[3 * i]);
+      if (l.x <= 0.0 || length2(l.y, l.z) < (1.0 - 1e-6) * mu(i) * l.x) p_.sliding[i] = 0;
     }
   }
 
  private:
   double mu(int i) const { return p_.sliding[i] ? p_.mu_sliding[i] : p_.mu_static[i]; }
   const double* column(int i) const { return p_.W.data() + 3 * i * stride_; }
+  // What is written in W's axes, in the contact's own.
+  dvec3 own(int i, const double* v) const {
+    const dvec3 x(v[0], v[1], v[2]);
+    return turned_ ? x * p_.own[i] : x;
+  }
+  dmat3 own_block(int i) const {
+    const double* w = column(i) + 3 * i;
+    dmat3 block;
+    for (int k = 0; k < 3; ++k) block[k] = dvec3(w[k * stride_], w[k * stride_ + 1], w[k * stride_ + 2]);
+    return turned_ ? glm::transpose(p_.own[i]) * block * p_.own[i] : block;
+  }
   bool movable(int i) const { return p_.W(3 * i, 3 * i) > immovable_; }
 
   void relax(int i) {
-    double* u = &p_.velocity[3 * i];
     double* l = &p_.impulse[3 * i];
-    if (l[0] == 0.0 && u[0] >= 0.0) return;
-    if (!movable(i)) return;
+    const dvec3 u = own(i, &p_.velocity[3 * i]), before(l[0], l[1], l[2]);
     Local local;
-    const double* w = column(i) + 3 * i;
-    for (int k = 0; k < 3; ++k) local.w[k] = dvec3(w[k * stride_], w[k * stride_ + 1], w[k * stride_ + 2]);
-    local.lambda = dvec3(l[0], l[1], l[2]);
-    local.c = dvec3(u[0], u[1], u[2]) - local.w * local.lambda;
+    local.lambda = own(i, l);
+    if (local.lambda.x == 0.0 && u.x >= 0.0) return;
+    if (!movable(i)) return;
+    local.w = own_block(i);
+    local.c = u - local.w * local.lambda;
     local.mu = mu(i);
     if (local.c.x >= 0.0)
       local.lambda = dvec3(0.0);
     else if (!local.stick())
       local.slide();
-    const dvec3 d = local.lambda - dvec3(l[0], l[1], l[2]);
+    const dvec3 after = turned_ ? p_.own[i] * local.lambda : local.lambda, d = after - before;
     if (d == dvec3(0.0)) return;
-    for (int k = 0; k < 3; ++k) l[k] = local.lambda[k];
+    for (int k = 0; k < 3; ++k) l[k] = after[k];
     add_columns(p_.velocity.data(), column(i), stride_, rows_, d.x, d.y, d.z);
   }
 
   double residual_of(int i) const {
-    const double* u = &p_.velocity[3 * i];
-    const double* l = &p_.impulse[3 * i];
-    const double wn = p_.W(3 * i, 3 * i), wt = 0.5 * (p_.W(3 * i + 1, 3 * i + 1) + p_.W(3 * i + 2, 3 * i + 2));
-    double y = wt * l[1] - u[1], z = wt * l[2] - u[2];
-    clamp_to_disc(y, z, mu(i) * wt * l[0]);
-    return std::max(std::abs(std::min(wn * l[0], u[0])), length2(wt * l[1] - y, wt * l[2] - z));
+    const dvec3 u = own(i, &p_.velocity[3 * i]), l = own(i, &p_.impulse[3 * i]);
+    const dmat3 w = own_block(i);
+    const double wn = w[0][0], wt = 0.5 * (w[1][1] + w[2][2]);
+    double y = wt * l.y - u.y, z = wt * l.z - u.z;
+    clamp_to_disc(y, z, mu(i) * wt * l.x);
+    return std::max(std::abs(std::min(wn * l.x, u.x)), length2(wt * l.y - y, wt * l.z - z));
   }
 
   ContactProblem& p_;
   int rows_;
   std::ptrdiff_t stride_;
+  bool turned_;             // contacts have axes of their own
   double immovable_ = 0.0;  // [1/kg]
 };
 
@@ -184,7 +208,7 @@ SweepReport solve(ContactProblem& problem, const SweepLimits& limits) {
   if (problem.count == 0) return report;
 
   const std::uint64_t begin = limits.budget_ns ? now_ns() : 0;
-  const double enough = limits.tolerance * problem.bias.head(rows).cwiseAbs().maxCoeff();
+  const double enough = limits.tolerance * fastest(problem);
   Sweeper sweeper(problem);
   sweeper.start();
   report.residual = sweeper.residual();

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "components/math.h"
 #include "systems/tool/block_matrix.h"
 
 namespace pliant {
@@ -22,8 +23,11 @@ struct ContactProblem {
   Vector bias;        // [m/s] u without impulses; normal rows carry g0/T (beta g0/T where penetrating)
   std::vector<double> mu_static, mu_sliding;  // [1]
   Vector impulse;                             // [N s] lambda; comes in as a guess
-  std::vector<std::uint8_t> sliding;          // in: in the last solve; out: on the cone's border
-  Vector velocity;                            // [m/s] out: u
+  // Of each contact: its normal and tangents, in the axes that W, bias, impulse and velocity are written in. Empty: the
+  // same axes.
+  std::vector<dmat3> own;
+  std::vector<std::uint8_t> sliding;  // in: in the last solve; out: on the cone's border
+  Vector velocity;                    // [m/s] out: u
 
   // Room for `contacts`; numbers are undefined afterwards where something grew.
   void resize(int contacts);

@@ -93,7 +93,7 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
       problem.bias[row + k] = dot(c.axes[k], u);
       problem.impulse[row + k] = c.impulse[k];
     }
-    problem.bias[row] += (c.gap >= 0.0 || yields ? c.gap : beta * c.gap) / T;
+    problem.bias[row] += (c.gap + (yields ? 0.0 : (1.0 - beta) * c.depth)) / T;
     problem.mu_static[i] = c.mu_static;
     problem.mu_sliding[i] = c.mu_sliding;
     problem.sliding[i] = c.sliding;

@@ -42,6 +42,8 @@ void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) 
   c.rate.head(modes) = state.rate.head(modes);
   c.force.head(rows) = state.problem.impulse.head(rows) / c.tick;
   c.gap.head(c.count) = state.gap.head(c.count);
+  std::copy_n(state.slip.begin(), c.count, c.slip.begin());
+  std::copy_n(state.reach.begin(), c.count, c.reach.begin());
   std::copy_n(state.problem.sliding.begin(), c.count, c.sliding.begin());
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "runtime/assert.h"
+#include "systems/tool/contact_geometry.h"
 #include "systems/tool/contact_memory.h"
 #include "systems/tool/contact_point.h"
 #include "systems/tool/contact_thinning.h"
@@ -263,10 +264,14 @@ struct Proximity::Parts {
                   : on_b.point_on_triangle(f.feature_b, f.meeting.barycentric);
     c.normal = f.meeting.normal;
     c.gap = f.meeting.gap;
+    c.depth = std::max(0.0, -f.meeting.gap);
+    const FeaturePair pair{on_a, on_b, f.edges, f.feature_a, f.feature_b, f.meeting.normal};
+    const bool foretold = look_ahead(pair, c);
     c.key = candidate.key;
     c.mu_static = std::sqrt(a.friction_static * b.friction_static);
     c.mu_sliding = std::sqrt(a.friction_sliding * b.friction_sliding);
     carry_over(f.last, c);
+    if (foretold) find_turning(pair, c);
     return c;
   }
 
@@ -319,7 +324,7 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
   p.deepest = 0.0;
   for (const Candidate& c : p.candidates) {
     out.push_back(p.contact_of(bodies, c));
-    p.deepest = std::max(p.deepest, -out.back().gap);
+    p.deepest = std::max(p.deepest, out.back().depth);
   }
 }
 

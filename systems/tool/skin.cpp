@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kNearEdges = 2.5;  // [mean edges] along the surface: such neighbours never collide
 constexpr double kFlat = 0.05;      // [rad] edges between triangles that are nearer to one plane cannot touch
+constexpr double kHollow = 0.98;    // [1] cosine across a hollow edge: sharper ones are touched on their flanks
+constexpr double kSmooth = 0.8;     // [1] cosine between a vertex's normal and its triangles': else it is sharp
 constexpr float kRounding = 4e-7f;  // [1] of coordinates: boxes are single precision
 
 Box grown(const Box& box, float by) {
@@ -36,6 +38,8 @@ Skin::Skin(const Body& body) : mesh_(body.skin) {
   if (body.self_collides) find_neighbours(kNearEdges * static_cast<double>(mesh_->mean_edge));
   position_.resize(mesh_->vertex_count, dvec3(0));
   displacement_.resize(mesh_->vertex_count, dvec3(0));
+  ahead_.resize(mesh_->vertex_count, dvec3(0));
+  curvature_.resize(mesh_->vertex_count, 0.0);
   vertex_normal_.resize(mesh_->vertex_count);
   normal_.resize(mesh_->triangles.size());
   triangle_box_.resize(mesh_->triangles.size());
@@ -78,6 +82,8 @@ void Skin::find_edges() {
   for (const SkinEdge& edge : edges_)
     if (edge.triangle[0] == edge.triangle[1]) at_border_[edge.from] = at_border_[edge.to] = true;
   for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) triangles_first_[v + 1] += triangles_first_[v];
+  edge_count_.assign(mesh_->vertex_count, 0.0);
+  for (const SkinEdge& edge : edges_) ++edge_count_[edge.from], ++edge_count_[edge.to];
   triangles_of_.resize(3 * triangles.size());
   std::vector<std::uint32_t> next(triangles_first_.begin(), triangles_first_.end() - 1);
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
@@ -179,14 +185,19 @@ void Skin::refit(const Body& body, double T, double reach) {
   const bool same = std::equal(position_.begin(), position_.end(), body.skin_position.begin());
   if (still && still_ && same && reach == reach_) return;
   still_ = still;
+  const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
+  last_step_ = T;
   drift_ = dvec3(0.0);
   for (std::uint32_t v = 0; v < count; ++v) {
+    const dvec3 went = body.skin_position[v] - position_[v];
     position_[v] = body.skin_position[v];
+    ahead_[v] = position_[v] + again * went;
     displacement_[v] = T * body.skin_velocity[v];
     drift_ += displacement_[v];
   }
   drift_ /= static_cast<double>(std::max(count, 1u));
   find_normals();
+  find_curvatures();
   find_live_edges();
   fit_boxes(reach);
 }
@@ -200,6 +211,30 @@ void Skin::find_normals() {
     normal_[t] = unit_or_zero(n);
   }
   for (dvec3& n : vertex_normal_) n = unit_or_zero(n);
+  smooth_.assign(vertex_normal_.size(), 1);
+  for (std::uint32_t t = 0; t < normal_.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t v = mesh_->triangles[t][i];
+      if (dot(vertex_normal_[v], normal_[t]) < kSmooth) smooth_[v] = 0;
+    }
+  for (const SkinEdge& edge : edges_) {
+    const dvec3 across = position_[edge.opposite[1]] - position_[edge.from];
+    const bool hollow = dot(normal_[edge.triangle[0]], across) > 0.0;
+    if (hollow && dot(normal_[edge.triangle[0]], normal_[edge.triangle[1]]) < kHollow)
+      smooth_[edge.from] = smooth_[edge.to] = 0;
+  }
+}
+
+// Normal curvature along every edge that leaves it, dn . dx / dx^2, on average.
+void Skin::find_curvatures() {
+  std::fill(curvature_.begin(), curvature_.end(), 0.0);
+  for (const SkinEdge& edge : edges_) {
+    const dvec3 d = position_[edge.to] - position_[edge.from];
+    const double dd = dot(d, d);
+    const double k = dd > 0.0 ? dot(vertex_normal_[edge.to] - vertex_normal_[edge.from], d) / dd : 0.0;
+    curvature_[edge.from] += k / edge_count_[edge.from];
+    curvature_[edge.to] += k / edge_count_[edge.to];
+  }
 }
 
 // Depth lost to a flat edge that is left out: at most kFlat / 4 of its length.

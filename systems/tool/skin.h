@@ -54,11 +54,16 @@ class Skin {
 
   // --- This step
   Moving vertex(std::uint32_t v) const { return {position_[v], displacement_[v]}; }
+  // [m] Where it will be at the step's end if it goes on as in the last one: contacts included, which displacements
+  // leave out.
+  dvec3 ahead(std::uint32_t v) const { return ahead_[v]; }
   std::array<Moving, 3> triangle(std::uint32_t t) const;
   std::array<Moving, 2> edge(std::uint32_t e) const { return {vertex(edges_[e].from), vertex(edges_[e].to)}; }
   EdgeShape edge_shape(std::uint32_t e) const;
   dvec3 normal(std::uint32_t t) const { return normal_[t]; }                // [1] unit (zero where it has no area)
   dvec3 vertex_normal(std::uint32_t v) const { return vertex_normal_[v]; }  // [1] unit
+  bool smooth(std::uint32_t v) const { return smooth_[v] != 0; }  // no triangle around it leans by more than 37 degrees
+  double curvature(std::uint32_t v) const { return curvature_[v]; }  // [1/m] mean; > 0: bulges
   dvec3 drift() const { return drift_; }  // [m] mean displacement; boxes hold what moves besides
   // Of triangle runs as in Mesh::tree, level 0 the leaves.
   const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
@@ -78,6 +83,7 @@ class Skin {
   void find_neighbours(double distance);
   void fit_boxes(double reach);
   void find_normals();
+  void find_curvatures();
   void find_live_edges();
 
   const Mesh* mesh_;
@@ -89,8 +95,11 @@ class Skin {
   std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
   std::vector<std::uint32_t> near_first_, near_;               // ascending runs per vertex
-  std::vector<dvec3> position_, displacement_;
+  std::vector<dvec3> position_, displacement_, ahead_;
   std::vector<dvec3> normal_, vertex_normal_;
+  std::vector<std::uint8_t> smooth_;
+  std::vector<double> curvature_, edge_count_;
+  double last_step_ = 0.0;  // [s]
   dvec3 drift_{0};
   double reach_ = -1.0;
   bool still_ = false;  // nothing moved in the last step

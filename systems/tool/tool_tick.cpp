@@ -6,6 +6,21 @@
 namespace pliant {
 namespace {
 
+constexpr double kAnywhere = 1e9;    // [m] reach of what has touched: it slides on
+constexpr double kGone = 1.0;        // [m] gap of what will not meet any more
+constexpr double kMostTurned = 0.5;  // [1] tangent: no normal is believed to turn farther between two models
+
+// A contact's axes after a slip, as columns in those that the model was written in: the normal has turned with the
+// surfaces' curvature.
+dmat3 turned_axes(const dmat2& turning, dvec2 slip) {
+  dvec2 lean = turning * slip;
+  const double size = length(lean);
+  if (size > kMostTurned) lean *= kMostTurned / size;
+  const dvec3 n = normalize(dvec3(1.0, lean));
+  const dvec3 t = normalize(dvec3(0.0, 1.0, 0.0) - n.y * n);
+  return dmat3(n, t, cross(n, t));
+}
+
 // w = A^-1 b, or as the handle is told. A: what one tick resists a change of w with.
 Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, const Vector6& flesh_right) {
   return handle.moved ? handle.next : Vector6(factor.solve(handle.right + flesh_right));
@@ -20,7 +35,9 @@ void fill_bias(const CondensedContacts& model, const CondensedState& state, cons
   bias.head(rows) -= state.spring.head(rows) / (tick + model.flexibility_lag);
   for (int i = 0; i < model.count; ++i) {
     const double rate = state.gap[i] / tick;
-    bias[3 * i] += state.gap[i] >= 0.0 ? rate : std::max(rate, model.push[i]);
+    const dvec3 normal = state.problem.own[static_cast<std::size_t>(i)][0];
+    const double closing = state.gap[i] >= 0.0 ? rate : std::max(rate, model.push[i]);
+    for (int k = 0; k < 3; ++k) bias[3 * i + k] += closing * normal[k];
   }
 }
 
@@ -49,8 +66,13 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
   moved.noalias() += model.from_modes.topLeftCorner(rows, modes).lazyProduct(state.rate.head(modes));
   moved.noalias() += model.from_handle.topRows(rows).lazyProduct(handle.velocity);
   for (int i = 0; i < model.count; ++i) {
-    const double before = state.gap[i], after = before + tick * moved[3 * i];
+    const auto k = static_cast<std::size_t>(i);
+    const dvec3 u = dvec3(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]) * state.problem.own[k];
+    state.slip[k] += tick * dvec2(u.y, u.z);
+    const double before = state.gap[i], after = before + tick * u.x;
     state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // what rounding left closed is closed
+    if (lambda[3 * i] > 0.0) state.reach[k] = kAnywhere;
+    if (state.gap[i] > 0.0 && length(state.slip[k]) > state.reach[k]) state.gap[i] = kGone;
   }
 }
 
@@ -78,8 +100,11 @@ void CondensedState::resize(int most_contacts, int most_modes) {
   free_rate.setZero(std::max<Eigen::Index>(most_modes, rows));
   spring.setZero(rows);
   gap.setZero(most_contacts);
+  reach.assign(static_cast<std::size_t>(most_contacts), 0.0);
+  slip.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
   lever.setZero(rows, 6);
   problem.resize(most_contacts);
+  problem.own.assign(static_cast<std::size_t>(most_contacts), dmat3(1.0));
 }
 
 void CondensedState::start(const CondensedContacts& model) {
@@ -89,6 +114,12 @@ void CondensedState::start(const CondensedContacts& model) {
   d.setZero();
   spring.head(rows).noalias() = model.flexibility.topLeftCorner(rows, rows).lazyProduct(model.force.head(rows));
   gap.head(model.count) = model.gap.head(model.count);
+  std::copy_n(model.slip.begin(), model.count, slip.begin());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const bool touches = model.force[3 * row] > 0.0 || model.gap[row] <= 0.0;
+    reach[i] = touches ? kAnywhere : model.reach[i];
+  }
   problem.count = model.count;
   problem.impulse.head(rows) = model.tick * model.force.head(rows);
   std::copy_n(model.mu_static.begin(), model.count, problem.mu_static.begin());
@@ -129,6 +160,8 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
   const Vector6 free_w = free_twist(factor, handle, reduced_right);
 
   // Signorini and Coulomb again.
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i)
+    state.problem.own[i] = turned_axes(model.turning[i], state.slip[i]);
   fill_delassus(model, factor, handle, state);
   fill_bias(model, state, free_w, state.problem.bias);
   state.report = solve(state.problem, limits);

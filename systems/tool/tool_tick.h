@@ -22,9 +22,11 @@ Vector6 linear_tick(const LinearModel& model, const Vector6& w0, const Vector6& 
 
 // What a CondensedContacts has become since its time. Sized once.
 struct CondensedState {
-  Vector q, rate;  // modes
-  Vector spring;   // [m] 3 count: stretch of `flexibility`
-  Vector gap;      // [m] count
+  Vector q, rate;             // modes
+  Vector spring;              // [m] 3 count: stretch of `flexibility`
+  Vector gap;                 // [m] count
+  std::vector<double> reach;  // [m] count: slip beyond which an open contact is gone
+  std::vector<dvec2> slip;    // [m] count: along the contacts' tangents, since their axes were laid
   Vector6 d = Vector6::Zero();
   ContactProblem problem;  // its impulse and sliding flags are the warm start
   SweepReport report;

@@ -24,7 +24,7 @@ inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: a jump between mo
 inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to nothing
 inline constexpr int kLateTicks = 3;              // ticks in a row over budget, then the linear model takes over
 inline constexpr int kTickSweeps = 20;            // a tick's Gauss-Seidel sweeps at most; they start warm
-inline constexpr double kTickTolerance = 1e-4;    // [1] of the largest free contact velocity: good enough, stop
+inline constexpr double kTickTolerance = 1e-3;    // [1] of the fastest closing: good enough, stop
 inline constexpr std::size_t kPathLength = 1024;  // ticks of the handle's path that may wait for the soft clock
 
 // A tick of the handle's path, for the soft clock to bring its model up to date with.

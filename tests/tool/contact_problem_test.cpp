@@ -271,6 +271,29 @@ TEST(ContactProblem, OnlyTheLeadingPartCounts) {
   EXPECT_EQ((part.impulse.head(21) - alone.impulse).norm(), 0.0);
 }
 
+// Contacts with axes of their own are the same problem written in those axes.
+TEST(ContactProblem, TurnedContactsAreTheTurnedProblem) {
+  const ContactProblem base = random_problem(12, 40, 0.5, 11);
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  ContactProblem turned = base, plain = base;
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(36, 36);  // to the axes of their own
+  for (int i = 0; i < 12; ++i) {
+    const dvec3 axis = normalize(dvec3(normal(random), normal(random), normal(random)));
+    const dmat3 own = glm::mat3_cast(glm::angleAxis(0.4 * normal(random), axis));
+    turned.own.push_back(own);
+    for (int row = 0; row < 3; ++row)
+      for (int col = 0; col < 3; ++col) R(3 * i + row, 3 * i + col) = own[row][col];
+  }
+  plain.W = R * base.W * R.transpose();
+  plain.bias = R * base.bias;
+  solve(turned, kThorough);
+  solve(plain, kThorough);
+  EXPECT_LT((R * turned.impulse - plain.impulse).norm(), 1e-8 * plain.impulse.norm());
+  EXPECT_EQ(turned.sliding, plain.sliding);
+  EXPECT_GT((turned.impulse - plain.impulse).norm(), 0.1 * plain.impulse.norm()) << "the turn must matter";
+}
+
 TEST(ContactProblem, SolvingAllocatesNothing) {
   ContactProblem p = random_problem(30, 100, 0.4, 6);
   CountAllocations allocations;

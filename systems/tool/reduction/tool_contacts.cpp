@@ -76,16 +76,20 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
 
     const bool yields = compliance.rows() > row && compliance(row, row) > 0.0;
     const bool touches = p.impulse.x > 0.0;
-    // Of a gap g0, T u is left when it was open; of a penetration, what was not undone.
-    const double u = step.problem.velocity[row];
-    double left = p.gap >= 0.0 || yields ? step.T * u : (1.0 - step.beta) * p.gap + step.T * u;
-    if (touches && (p.gap >= 0.0 || yields)) left = 0.0;
+    // T u is left of a gap that was open; of a penetration, besides, what is not undone.
+    const bool inside = p.depth > 0.0 && !yields;
+    double left = step.T * step.problem.velocity[row];
+    if (inside) left -= (1.0 - step.beta) * p.depth;
+    if (touches && !inside) left = 0.0;
     out.gap[i] = left;
     out.push[i] = std::min(0.0, step.beta * left / step.T);
 
     out.mu_static[static_cast<std::size_t>(i)] = p.mu_static;
     out.mu_sliding[static_cast<std::size_t>(i)] = p.mu_sliding;
     out.sliding[static_cast<std::size_t>(i)] = p.sliding;
+    out.turning[static_cast<std::size_t>(i)] = p.turning;
+    out.slip[static_cast<std::size_t>(i)] = dvec2(0.0);
+    out.reach[static_cast<std::size_t>(i)] = p.reach;
     for (int j = 0; yields && j < out.count; ++j)
       out.flexibility.block<3, 3>(3 * i, 3 * j) =
           step.T * step.T * compliance.block<3, 3>(row, 3 * contacts.in_step(j));

@@ -1,0 +1,155 @@
+#include "systems/tool/contact_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+constexpr double kSameSide = 0.7;    // [1] cosine: normals of one and the same contact
+constexpr double kCrease = 0.5;      // [1] cosine between triangles: no contact slides over a sharper edge
+constexpr int kMostTriangles = 8;    // walked over in a step
+constexpr double kParallel = 1e-2;   // [1] sine below which two edges have no normal of their own
+constexpr double kDeepest = 0.25;    // [mean edges] foretold to be deeper than this: it will not go on as it did
+constexpr double kDifference = 0.5;  // [mean edges]
+constexpr double kReach = 0.3;       // [mean edges] farther, a turning by differences says nothing
+
+struct Touch {
+  SurfacePoint a, b;
+  dvec3 apart{0};  // [m] from b to a, where they are foretold
+  dvec3 normal{0};
+};
+
+// [m] The shorter of their mean edges.
+double edge_of(const FeaturePair& pair) {
+  return static_cast<double>(std::min(pair.a.mesh().mean_edge, pair.b.mesh().mean_edge));
+}
+
+// Of the smooth surface: corners blended, but where a crease meets a corner the facet's own.
+dvec3 smooth_normal(const Skin& skin, const SurfacePoint& point) {
+  const uvec3 corners = skin.mesh().triangles[point.triangle];
+  const dvec3 facet = skin.normal(point.triangle);
+  dvec3 n(0.0);
+  for (int i = 0; i < 3; ++i)
+    n += point.barycentric[i] * (skin.smooth(corners[i]) ? skin.vertex_normal(corners[i]) : facet);
+  return n;
+}
+
+// One side of a contact: the normal of the surface at its point and how curved that is; no normal where it is sharp.
+struct Lean {
+  dvec3 normal{0};
+  double curvature = 0.0;  // [1/m] >= 0
+  bool sharp = true;
+};
+
+Lean lean_at(const Skin& skin, const SurfacePoint& point, bool face) {
+  const uvec3 corners = skin.mesh().triangles[point.triangle];
+  Lean lean;
+  lean.sharp = false;
+  for (int i = 0; i < 3; ++i) {
+    if (point.barycentric[i] == 0.0) continue;
+    lean.sharp |= !face && !skin.smooth(corners[i]);
+    lean.curvature += point.barycentric[i] * std::max(0.0, skin.curvature(corners[i]));
+  }
+  if (!lean.sharp) lean.normal = smooth_normal(skin, point);
+  return lean;
+}
+
+// Out of b; zero where both are sharp.
+dvec3 common_normal(const Lean& a, const Lean& b) {
+  if (a.sharp) return b.normal;
+  if (b.sharp) return -a.normal;
+  const double sum = a.curvature + b.curvature;
+  const double of_b = sum > 0.0 && b.curvature > 0.0 ? a.curvature / sum : 1.0;
+  return of_b * b.normal - (1.0 - of_b) * a.normal;
+}
+
+dvec3 without(dvec3 v, dvec3 along) {
+  return v - dot(v, along) / dot(along, along) * along;
+}
+
+// `offset` [m]: a stands so far aside from where it is foretold.
+std::optional<Touch> vertex_touch(const FeaturePair& pair, dvec3 offset) {
+  const Skin& b = pair.b;
+  const dvec3 p = pair.a.ahead(pair.feature_a) + offset;
+  std::uint32_t t = pair.feature_b;
+  for (int walked = 0; walked < kMostTriangles; ++walked) {
+    const uvec3 c = b.mesh().triangles[t];
+    const dvec3 x0 = b.ahead(c.x), x1 = b.ahead(c.y), x2 = b.ahead(c.z), n = cross(x1 - x0, x2 - x0);
+    const double nn = dot(n, n);
+    if (!(nn > 0.0)) return {};
+    dvec3 w(dot(cross(x1 - p, x2 - p), n) / nn, dot(cross(x2 - p, x0 - p), n) / nn, 0.0);
+    w.z = 1.0 - w.x - w.y;
+    const int outside = w.x <= w.y ? (w.x <= w.z ? 0 : 2) : (w.y <= w.z ? 1 : 2);
+    const std::uint32_t next = w[outside] < 0.0 ? b.mesh().across[t][(outside + 1) % 3] : kBorder;
+    if (next != kBorder && dot(b.normal(next), b.normal(t)) > kCrease) {
+      t = next;
+      continue;
+    }
+    w = glm::max(w, dvec3(0.0));
+    Touch touch{pair.a.point_at_vertex(pair.feature_a), b.point_on_triangle(t, w / (w.x + w.y + w.z))};
+    touch.apart = p - (touch.b.barycentric.x * x0 + touch.b.barycentric.y * x1 + touch.b.barycentric.z * x2);
+    touch.normal = common_normal(lean_at(pair.a, touch.a, false), lean_at(b, touch.b, true));
+    return touch;
+  }
+  return {};
+}
+
+std::optional<Touch> edge_touch(const FeaturePair& pair, dvec3 offset) {
+  const SkinEdge &on_a = pair.a.edges()[pair.feature_a], &on_b = pair.b.edges()[pair.feature_b];
+  const dvec3 a0 = pair.a.ahead(on_a.from) + offset, b0 = pair.b.ahead(on_b.from);
+  const dvec3 e = pair.a.ahead(on_a.to) + offset - a0, f = pair.b.ahead(on_b.to) - b0, r = a0 - b0, n = cross(e, f);
+  const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r), det = ee * ff - ef * ef;
+  if (!(det > kParallel * kParallel * ee * ff)) return {};
+  const double on_e = (ef * fr - er * ff) / det, on_f = (ee * fr - ef * er) / det;
+  const double s = std::clamp(on_e, 0.0, 1.0), t = std::clamp(on_f, 0.0, 1.0);
+  Touch touch{pair.a.point_on_edge(pair.feature_a, s), pair.b.point_on_edge(pair.feature_b, t)};
+  touch.apart = a0 + s * e - (b0 + t * f);
+  const Lean a = lean_at(pair.a, touch.a, false), b = lean_at(pair.b, touch.b, false);
+  touch.normal = common_normal(a, b);
+  // What is sharp is touched across.
+  if (a.sharp && b.sharp)
+    touch.normal = dot(n, pair.normal) < 0.0 ? -n : n;
+  else if (a.sharp || b.sharp)
+    touch.normal = without(touch.normal, a.sharp ? e : f);
+  return touch;
+}
+
+std::optional<Touch> touch_at(const FeaturePair& pair, dvec3 offset) {
+  std::optional<Touch> touch = pair.edges ? edge_touch(pair, offset) : vertex_touch(pair, offset);
+  if (!touch) return {};
+  const double size = length(touch->normal);
+  touch->normal /= size;
+  if (!(size > 0.0 && dot(touch->normal, pair.normal) > kSameSide)) return {};
+  return touch;
+}
+
+}  // namespace
+
+bool look_ahead(const FeaturePair& pair, ContactPoint& contact) {
+  const std::optional<Touch> touch = touch_at(pair, dvec3(0.0));
+  if (!touch || dot(touch->normal, touch->apart) < -kDeepest * edge_of(pair)) return false;
+  contact.a = touch->a;
+  contact.b = touch->b;
+  contact.normal = touch->normal;
+  contact.gap = dot(touch->normal, touch->a.position - touch->b.position);
+  return true;
+}
+
+void find_turning(const FeaturePair& pair, ContactPoint& contact) {
+  const double h = kDifference * edge_of(pair);
+  FeaturePair beside = pair;
+  beside.normal = contact.normal;
+  dmat2 turning(0.0);
+  for (int k = 0; k < 2; ++k) {
+    const dvec3 aside = h * contact.axes[k + 1];
+    const std::optional<Touch> ahead = touch_at(beside, aside), back = touch_at(beside, -aside);
+    if (!ahead || !back) return;
+    const dvec3 change = ahead->normal - back->normal;
+    turning[k] = dvec2(dot(change, contact.axes[1]), dot(change, contact.axes[2])) / (2.0 * h);
+  }
+  contact.turning = turning;
+  contact.reach = kReach * edge_of(pair);
+}
+
+}  // namespace pliant

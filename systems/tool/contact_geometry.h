@@ -1,0 +1,34 @@
+// How a contact lies where the step will end. Proximity finds pairs of features where the step begins; in a step of
+// 1/60 s a finger slides over whole triangles, and planes frozen where it began would stand in its way like stairs. So
+// points and normal are those of the step's end, foretold by the last step's motion. A contact's gap is what its law
+// needs: gap + T u_n is the gap at the end.
+//
+// Normals are those of the smooth surfaces that skins stand for. A vertex or edge that touches beside the point where
+// those would touch, by s, sees b's normal turned by k_b s and a's by k_a s the other way (k: curvature); weighted
+// with each other's curvature the two cancel. Sharp vertices and edges have no normal; what is flat or hollow decides
+// alone.
+#pragma once
+
+#include "systems/tool/contact_point.h"
+#include "systems/tool/skin.h"
+
+namespace pliant {
+
+// A vertex of skin a on a triangle of skin b, or an edge of each.
+struct FeaturePair {
+  const Skin& a;
+  const Skin& b;
+  bool edges = false;
+  std::uint32_t feature_a = 0, feature_b = 0;
+  dvec3 normal{0, 1, 0};  // [1] where the step begins; what is foretold leans at most 45 degrees against it
+};
+
+// Fills a, b, normal and gap of a contact. False: nothing can be foretold (the motion leads too far round the surface);
+// the contact stays as it was found.
+bool look_ahead(const FeaturePair& pair, ContactPoint& contact);
+
+// After look_ahead, with the contact's axes laid: its turning, by differences over half an edge so that facets do not
+// count for more than they are, and its reach, which is nothing where the normal jumps within that distance.
+void find_turning(const FeaturePair& pair, ContactPoint& contact);
+
+}  // namespace pliant
