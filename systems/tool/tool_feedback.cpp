@@ -32,35 +32,23 @@ Vector6 displacement(const RigidMotion& from, const RigidMotion& to) {
   return join(to.pose.position - from.pose.position, vector_of(to.pose.rotation * glm::conjugate(from.pose.rotation)));
 }
 
-// What the model in use says right now, without inertia.
-Vector6 model_wrench(const ToolTouchState& tool, const HandleModel& model) {
-  switch (tool.used) {
-    case ToolForce::kHeld:
-      return model.force;
-    case ToolForce::kLinear:
-      return linear_wrench(model.linear, model.handle.velocity, tool.displacement, tool.handle.velocity);
-    case ToolForce::kContacts:
-      return condensed_wrench(model.contacts, tool.contacts, tool.handle.velocity);
-  }
-  return Vector6::Zero();
-}
-
-// Whatever the wrench was, it goes on from there: the difference to the new description is added and fades.
-void use(ToolTouchState& tool, const HandleModel& model, ToolForce force) {
+// From the next tick on. Whatever the wrench was, it goes on from there: that tick finds by how much the new
+// description differs, all inertia included, and the difference fades.
+void use(ToolTouchState& tool, ToolForce force) {
   tool.used = force;
-  tool.fade = tool.plain - model_wrench(tool, model);
+  tool.joins = true;
 }
 
 void adopt(ToolTouchState& tool, const HandleModel& model) {
   if (!tool.placed) {
     tool.handle = model.handle;
-    tool.plain = model.force;
+    tool.wrench = model.force;
     tool.placed = true;
   }
   tool.displacement = displacement(model.handle, tool.handle);
   tool.contacts.start(model.contacts);
   tool.late = 0;
-  use(tool, model, tool.wanted);
+  use(tool, tool.wanted);
 }
 
 // The model fades to nothing once it is too old to be believed; until then 1.
@@ -84,9 +72,11 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   handle.inertia.diagonal() += bond.matrix;
   // What carries the tool is as old as the flesh's weight in the model: without the one, the other would lift the hand.
   const double believed = trust(model, tick.time);
+  const Vector6 felt = tool.wrench;
+  if (believed < 1.0 && tool.used != ToolForce::kLinear) use(tool, ToolForce::kLinear);
+  if (tool.joins) tool.fade.setZero();
   handle.right =
       model.handle_mass * tool.handle.velocity + bond.right + tick.dt * (believed * model.handle_load + tool.fade);
-  if (believed < 1.0 && tool.used != ToolForce::kLinear) use(tool, model, ToolForce::kLinear);
   switch (tool.used) {
     case ToolForce::kHeld: {
       LinearModel held;
@@ -104,6 +94,8 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
       tool.ticks_late += !tool.contacts.report.in_time;
       break;
   }
+  if (tool.joins) tool.fade = believed * felt - tool.wrench;
+  tool.joins = false;
   tool.wrench += tool.fade;
   tool.fade *= std::exp(-tick.dt / (kFadeShare * model.soft_step));
 
@@ -112,8 +104,7 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   tool.handle.pose.rotation =
       glm::normalize(rotation_of(tick.dt * angular(handle.velocity)) * tool.handle.pose.rotation);
   tool.displacement = displacement(model.handle, tool.handle);
-  tool.plain = model_wrench(tool, model) + tool.fade;
-  if (tool.late >= kLateTicks && tool.used == ToolForce::kContacts) use(tool, model, ToolForce::kLinear);
+  if (tool.late >= kLateTicks && tool.used == ToolForce::kContacts) use(tool, ToolForce::kLinear);
 }
 
 // What the coupling does to the device, at the device's own origin. Before the step: device and handle of one moment. A

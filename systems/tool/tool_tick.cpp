@@ -78,10 +78,6 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
 
 }  // namespace
 
-Vector6 linear_wrench(const LinearModel& model, const Vector6& w0, const Vector6& d, const Vector6& w) {
-  return model.force - model.stiffness * d - model.damping * (w - w0);
-}
-
 Vector6 linear_tick(const LinearModel& model, const Vector6& w0, const Vector6& d, double tick, TickHandle& handle) {
   // (M_h + M + tick B + tick^2 K) w = right + M w_before + tick (force - K d + B w0): methods.md 2.7.
   const Vector6 before = handle.velocity;
@@ -125,16 +121,6 @@ void CondensedState::start(const CondensedContacts& model) {
   std::copy_n(model.mu_static.begin(), model.count, problem.mu_static.begin());
   std::copy_n(model.mu_sliding.begin(), model.count, problem.mu_sliding.begin());
   std::copy_n(model.sliding.begin(), model.count, problem.sliding.begin());
-}
-
-Vector6 condensed_wrench(const CondensedContacts& model, const CondensedState& state, const Vector6& w) {
-  const Eigen::Index rows = 3 * model.count, modes = model.modes;
-  Vector6 wrench = model.flesh_force - model.flesh_stiffness * state.d - model.flesh_damping * w;
-  wrench.noalias() -= model.modal_stiffness.topRows(modes).transpose().lazyProduct(state.q.head(modes));
-  wrench.noalias() -= model.modal_damping.topRows(modes).transpose().lazyProduct(state.rate.head(modes));
-  wrench.noalias() +=
-      model.from_handle.topRows(rows).transpose().lazyProduct(state.problem.impulse.head(rows)) / model.tick;
-  return wrench;
 }
 
 Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, const SweepLimits& limits,

@@ -40,8 +40,4 @@ struct CondensedState {
 Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, const SweepLimits& limits,
                        TickHandle& handle);
 
-// The wrench that the model gives right now, without inertia: what fading compares. [N], [N m]
-Vector6 linear_wrench(const LinearModel& model, const Vector6& w0, const Vector6& d, const Vector6& w);
-Vector6 condensed_wrench(const CondensedContacts& model, const CondensedState& state, const Vector6& w);
-
 }  // namespace pliant

@@ -55,7 +55,7 @@ struct ToolTouchState {
   Vector6 displacement = Vector6::Zero();  // d, of the model in use
   CondensedState contacts;
   Vector6 fade = Vector6::Zero();   // [N], [N m] added to the model's wrench, fading
-  Vector6 plain = Vector6::Zero();  // [N], [N m] the model's wrench plus fade, without inertia, at the tick's end
+  bool joins = false;               // the next tick is the first by `used`, or by a new model
 
   // For display and devices.
   RigidMotion sensed;                       // the device
