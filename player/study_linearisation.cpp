@@ -211,15 +211,16 @@ Status follow_models(Truth& truth, const std::string& level, std::size_t length,
   return Done{};
 }
 
-// The largest change of force at an update over the largest in the two steps around it.
+// The largest change of force at an update, or in the tick after it, over the largest in the two steps around it.
 double jump_share(const std::vector<Vector6>& wrench, std::size_t length) {
   double worst = 0.0;
   const auto change = [&](std::size_t i) { return (wrench[i] - wrench[i - 1]).head<3>().norm(); };
   for (std::size_t at = 2 * length; at + length < wrench.size(); at += length) {
     double slope = 0.0;
     for (std::size_t i = at - length + 1; i < at + length; ++i)
-      if (i != at) slope = std::max(slope, change(i));
-    if (slope > 1e-4) worst = std::max(worst, change(at) / slope);  // [N] below: nothing is felt
+      if (i != at && i != at + 1) slope = std::max(slope, change(i));
+    const double jump = std::max(change(at), change(at + 1));
+    if (slope > 1e-4) worst = std::max(worst, jump / slope);  // [N] below: nothing is felt
   }
   return worst;
 }
