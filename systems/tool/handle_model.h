@@ -59,9 +59,10 @@ struct CondensedContacts {
   Vector push;                   // [m/s] count: <= 0: at this rate
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
-  std::vector<dmat2> turning;  // [1/m] of the normal with slip (contact_point.h)
-  std::vector<double> reach;   // [m] of slip: beyond it an open contact meets nothing (contact_point.h)
-  std::vector<dvec2> slip;     // [m] along the tangents, since the axes were laid
+  std::vector<dmat2> turning;       // [1/m] of the normal with slip (contact_point.h)
+  std::vector<double> reach;        // [m] of slip: beyond it an open contact meets nothing (contact_point.h)
+  std::vector<dvec2> slip;          // [m] along the tangents, since the axes were laid
+  std::vector<std::uint8_t> stiff;  // nothing gives way there: its force is the tick's to find (stiff_contacts.h)
 
   // Of the above, for ticks of `tick` seconds, so that a tick need not make them (methods.md 2.4 with modes for flesh).
   double tick = 1e-3;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "systems/tool/reduce_tool.h"
+#include "systems/tool/reduction/stiff_contacts.h"
 #include "systems/tool/rotation_vector.h"
 #include "systems/tool/soft_body_state.h"
 #include "systems/tool/soft_state.h"
@@ -45,6 +46,7 @@ void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) 
   std::copy_n(state.slip.begin(), c.count, c.slip.begin());
   std::copy_n(state.reach.begin(), c.count, c.reach.begin());
   std::copy_n(state.problem.sliding.begin(), c.count, c.sliding.begin());
+  model.force -= drop_stiff(model.soft_step, kPenetrationShare, Vector6::Zero(), c);
 }
 
 // What the handle has done since the model's time.

@@ -3,6 +3,7 @@
 #include "systems/tool/reduction/condense_bodies.h"
 #include "systems/tool/reduction/handle_and_flesh.h"
 #include "systems/tool/reduction/linear_model.h"
+#include "systems/tool/reduction/stiff_contacts.h"
 
 namespace pliant {
 
@@ -11,8 +12,13 @@ void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, Hand
   describe_contacts(contacts, out.contacts);
   describe_handle_and_flesh(contacts, out);
   const Eigen::MatrixXd W = condense_bodies(contacts, tick, out.contacts);
+  mark_stiff(W, out.contacts);
   out.contacts.prepare_tick(tick);
   out.linear = linear_model(contacts.tool(), out, W);
+  const Vector6 left = contacts.tool().short_of_lead(out.handle);
+  const Vector6 dropped = drop_stiff(step.T, step.beta, left, out.contacts);
+  out.force -= dropped;
+  out.linear.force -= dropped;
 }
 
 }  // namespace pliant

@@ -138,6 +138,12 @@ void SoftBodyState::couple(double T, dvec3 gravity) {
   tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right + T * carry);
 }
 
+Vector6 SoftBodyState::short_of_lead(const RigidMotion& handle) const {
+  if (!led_) return Vector6::Zero();
+  return join(led_->pose.position - handle.pose.position,
+              vector_of(led_->pose.rotation * glm::conjugate(handle.pose.rotation)));
+}
+
 // S and its right-hand side, less what is not flesh.
 void SoftBodyState::separate_flesh(double T) {
   if (!solvable_) {

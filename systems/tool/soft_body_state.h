@@ -53,6 +53,8 @@ class SoftBodyState final : public Body {
   void release_device() { device_.reset(), led_.reset(); }
   // From now on the handle is moved as it is told, whatever pulls at it: its centre to `end` over the next step.
   void lead_handle(const RigidMotion& end) { led_ = end; }
+  // [m], [rad] from where `handle` ends a step to where it was led; zero where it is not led.
+  Vector6 short_of_lead(const RigidMotion& handle) const;
 
   // --- Of the handle; all of the last free_step, at its beginning, unless said otherwise. Only with a handle.
   bool has_handle() const { return handle_.has_value(); }

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 
 #include "systems/tool/reduction/passive.h"
+#include "systems/tool/reduction/stiff_contacts.h"
 
 namespace pliant {
 namespace {
@@ -55,6 +56,9 @@ Answer answer(const ActiveSet& active, const CondensedContacts& c, const Eigen::
   }
   // Redundant contacts share their force; a ridge below what counts keeps the solve regular.
   RWD.diagonal().array() += 1e-9 * RWD.diagonal().cwiseAbs().maxCoeff();
+  // Where nothing gives way, as much as keeps the stiffness a number.
+  for (Eigen::Index k = 0; k < active.size(); ++k)
+    if (c.stiff[static_cast<std::size_t>(active.rows[static_cast<std::size_t>(k)] / 3)]) RWD(k, k) += kRigidCompliance;
   Answer out;
   out.DJ = active.D.transpose() * J;
   out.phi = -RWD.partialPivLu().solve(RJ);
