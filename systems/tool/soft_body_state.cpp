@@ -213,8 +213,10 @@ void SoftBodyState::refresh_skin(const std::vector<dvec3>& of_nodes, std::vector
 template <class Use>
 void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
   for (int corner = 0; corner < 3; ++corner) {
+    if (point.barycentric[corner] == 0.0) continue;
     const Embedding& place = tets_.skin[skin->triangles[point.triangle][corner]];
-    for (std::size_t k = 0; k < 4; ++k) use(tets_.tets[place.tet][k], point.barycentric[corner] * place.weight[k]);
+    for (std::size_t k = 0; k < 4; ++k)
+      if (place.weight[k] != 0.0) use(tets_.tets[place.tet][k], point.barycentric[corner] * place.weight[k]);
   }
 }
 

@@ -84,7 +84,8 @@ class SoftBodyState final : public Body {
   Vector6 handle_wrench() const;
 
  private:
-  // Calls use(node, weight) for the nodes that a point of the skin rides on.
+  // Calls use(node, weight) for the nodes that a point of the skin rides on. Weights of zero are left out: most skins
+  // stand on nodes, and a vertex of such a skin rides on one node of twelve.
   template <class Use>
   void for_each_node(const SurfacePoint& point, Use use) const;
   bool slaved(std::uint32_t node) const { return node >= flesh_.moving() && node < tets_.pinned_begin(); }
