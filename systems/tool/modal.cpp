@@ -69,8 +69,9 @@ Modes find_modes(const PivotedFactor& factor, const Eigen::MatrixXd& mass, const
 Eigen::MatrixXd left_flexibility(const Eigen::MatrixXd& gram, const Modes& modes, const StepSplit& split) {
   const Eigen::MatrixXd share = modes.at_contacts * modes.step_share.cwiseSqrt().asDiagonal();
   Eigen::MatrixXd left = gram;
-  left.noalias() -= share * share.transpose();
-  return split.elastic() * 0.5 * (left + left.transpose());
+  left.selfadjointView<Eigen::Lower>().rankUpdate(share, -1.0);
+  left.triangularView<Eigen::StrictlyUpper>() = left.transpose();
+  return split.elastic() * left;
 }
 
 }  // namespace pliant

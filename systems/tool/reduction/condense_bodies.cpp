@@ -20,7 +20,8 @@ BodyModes modes_of(const BodyAnswers& of, double T, int most, double highest) {
   out.picks = factor.picks;
   const auto picks = static_cast<Eigen::Index>(out.picks.size());
   Rows picked(of.body->size(), picks);
-  for (Eigen::Index k = 0; k < picks; ++k) picked.col(k) = of.answers.col(out.picks[static_cast<std::size_t>(k)]);
+  for (Eigen::Index row = 0; row < picked.rows(); ++row)  // as they are stored
+    for (Eigen::Index k = 0; k < picks; ++k) picked(row, k) = of.answers(row, out.picks[static_cast<std::size_t>(k)]);
   of.body->weigh(picked, out.weighed);
   const Eigen::MatrixXd mass = picked.transpose() * out.weighed;
   out.modes = find_modes(factor, mass, out.split, most, highest);

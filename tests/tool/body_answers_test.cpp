@@ -1,0 +1,54 @@
+// How a pressed finger answers to its contacts and to its own shaking, against the same written out at full length.
+#include "systems/tool/reduction/body_answers.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/tool/press_scene.h"
+
+namespace pliant {
+namespace {
+
+constexpr double T = 1.0 / 60;  // [s]
+
+double distance(const Eigen::MatrixXd& x, const Eigen::MatrixXd& truth) {
+  return (x - truth).norm() / truth.norm();
+}
+
+TEST(BodyAnswers, AreThoseOfTheFleshToItsContactsAndShakesAndTheGramMatrixIsTheirs) {
+  for (const Attachment attachment : {Attachment::kSlave, Attachment::kSpring}) {
+    Handle6 handle = firm_handle();
+    handle.attachment = attachment;
+    PressScene scene(firm_flesh(), handle, 0.4);
+    for (int i = 1; i <= 8; ++i)
+      scene.step(T, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
+    scene.step(T, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));
+    const SoftBodyState& tool = scene.tool();
+    const FinishedStep step{scene.bodies, scene.contacts, scene.delassus, scene.problem, T, kUndonePenetration};
+    const ToolContacts contacts(step, 0);
+    const BodyAnswers of = answers_of(contacts, 0);
+    const Eigen::Index flesh = tool.size() - 6, rows = of.contact_rows(), columns = rows + of.shaken.cols();
+    ASSERT_GT(rows, 6);
+    ASSERT_EQ(of.shaken.cols(), 6 * kShakes);
+    ASSERT_FALSE(std::is_sorted(scene.contacts.begin(), scene.contacts.end(),
+                                [](const ContactPoint& a, const ContactPoint& b) { return a.gap < b.gap; }))
+        << "the chosen contacts stand in another order than the step's";
+
+    Rows pulls = Rows::Zero(tool.size(), columns);
+    for (int i = 0; i < contacts.count(); ++i) tool.spread(contacts[i].a, contacts[i].axes, 1.0, pulls, 3 * i);
+    pulls.rightCols(of.shaken.cols()) = of.shaken;
+    Rows expected = pulls.topRows(flesh);
+    tool.solve_held(expected);
+    EXPECT_LT(distance(of.answers.topRows(flesh), expected), 1e-12);
+    EXPECT_LT(of.answers.bottomRows<6>().cwiseAbs().maxCoeff(), 1e-12 * of.answers.cwiseAbs().maxCoeff());
+
+    const Eigen::MatrixXd gram = pulls.transpose() * of.answers;
+    EXPECT_LT(distance(of.gram, gram), 1e-12);
+    EXPECT_EQ(of.gram, of.gram.transpose());
+    Eigen::MatrixXd gathered(columns, columns);
+    gather_rows(contacts, of, of.answers, gathered);
+    EXPECT_LT(distance(of.gram, gathered), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace pliant
