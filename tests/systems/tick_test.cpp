@@ -12,6 +12,7 @@
 #include "systems/touch/publish.h"
 #include "tests/scenes/scenes.h"
 #include "tests/systems/count_allocations.h"
+#include "tests/systems/touch_laws.h"
 
 namespace pliant {
 namespace {
@@ -19,14 +20,13 @@ namespace {
 using scenes::Stage;
 
 TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
-  for (const SpringLaw law :
-       {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid}) {
+  for (const SpringLaw kind : kLaws) {
     for (const Distance distance : {Distance::kChord, Distance::kSurface}) {
       for (const Response response : {Response::kFollow, Response::kLag}) {
         Stage stage;
         Deformable d;
         d.reach = 0.04;
-        d.spring = law;
+        d.spring = kind;
         d.distance = distance;
         d.response = response;
         stage.add(scenes::sphere(16, 0.1), d);
@@ -39,7 +39,7 @@ TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
           stage.place(b, (0.1 + lift) * normalize(dvec3(std::sin(s) + 0.2, 1, -0.1)));
           stage.tick();
         }
-        EXPECT_EQ(allocations.count(), 0u) << int(law) << ' ' << int(distance) << ' ' << int(response);
+        EXPECT_EQ(allocations.count(), 0u) << int(kind) << ' ' << int(distance) << ' ' << int(response);
       }
     }
   }
@@ -100,7 +100,7 @@ TEST(Publish, AReaderOnAnotherThreadSeesWholeZonesOnly) {
   Deformable d;
   d.reach = 0.2;  // every zone moves
   d.shape = Shape::kWendland;
-  const Entity sheet = stage.add(scenes::sheet(30, 0.1), d);
+  stage.add(scenes::sheet(30, 0.1), d);
   const Entity probe = stage.add_probe({0, 0.001, 0});
   stage.prepare();
   std::atomic<bool> done{false};
@@ -131,7 +131,6 @@ TEST(Publish, AReaderOnAnotherThreadSeesWholeZonesOnly) {
   EXPECT_GE(seen, 10u);
   EXPECT_EQ(backwards, 0u);
   EXPECT_EQ(torn, 0u);
-  (void)sheet;
 }
 
 TEST(Amplitudes, SolveTheComplementarityProblemOfOverlappingFields) {

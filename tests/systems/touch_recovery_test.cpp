@@ -15,8 +15,7 @@ namespace {
 using scenes::Stage;
 
 TEST(Touch, FloatFieldFollowsTheDoublePrecisionRecoveryWithinOnePartIn1e5OfTheAmplitude) {
-  for (const SpringLaw kind :
-       {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid, SpringLaw::kExponential, SpringLaw::kCubic}) {
+  for (const SpringLaw kind : kLaws) {
     for (const double zeta : {0.2, 1.0, 3.0}) {
       Stage stage;
       Deformable d = frictionless(kind);
@@ -88,7 +87,7 @@ TEST(Touch, LaggingResponseApproachesTheSameShapeByTheExactStep) {
   Stage stage;
   Deformable d = frictionless();
   d.response = Response::kLag;
-  const Entity sheet = stage.add(scenes::sheet(40, 0.2), d);
+  stage.add(scenes::sheet(40, 0.2), d);
   const Entity probe = stage.add_probe({0, 0.001, 0});
   stage.prepare();
   stage.tick();
@@ -101,7 +100,6 @@ TEST(Touch, LaggingResponseApproachesTheSameShapeByTheExactStep) {
     ASSERT_NEAR(stage.read(probe).height, truth.height, 1e-6) << n;
   }
   EXPECT_NEAR(stage.read(probe).height, -0.005, 1e-5);
-  (void)sheet;
 }
 
 }  // namespace

@@ -22,15 +22,6 @@ dquat yaw(double angle) {
 double tilt(const RigidState& body) {
   return length(cross(body.rotation() * dvec3(0, 1, 0), dvec3(0, 1, 0)));
 }
-// [N] on body `of`, by body `by`.
-dvec3 force(const ContactLoop& loop, std::uint32_t of, std::uint32_t by) {
-  dvec3 sum(0);
-  for (const ContactPoint& c : loop.contacts) {
-    if (c.body_a == of && c.body_b == by) sum += c.axes * c.impulse / kT;
-    if (c.body_b == of && c.body_a == by) sum -= c.axes * c.impulse / kT;
-  }
-  return sum;
-}
 
 // A cube, a plate and a slender bar, whose mean edge is much longer than it is wide.
 const std::array<vec3, 4> kShapes{vec3(0.1f), vec3(0.3f, 0.02f, 0.2f), vec3(0.02f, 0.3f, 0.02f),
@@ -50,7 +41,7 @@ TEST(CoarseContact, ABoxOfTwelveTrianglesLiesLevelOnAGroundOfTwelve) {
       SCOPED_TRACE(testing::Message() << size.x << " x " << size.y << " x " << size.z << ", turned " << angle);
       EXPECT_NEAR(body.centre().y, 0.5 * size.y, 1e-6);
       EXPECT_LT(tilt(body), 1e-6);
-      EXPECT_LT(length(force(loop, 1, 0) - dvec3(0, 0.3 * kG, 0)), 1e-5 * 0.3 * kG);
+      EXPECT_LT(length(loop.force(1, 0) - dvec3(0, 0.3 * kG, 0)), 1e-5 * 0.3 * kG);
     }
 }
 
@@ -76,8 +67,8 @@ TEST(CoarseContact, BoxesOfAnySizeLieLevelOnEachOther) {
         EXPECT_LT(length(body.centre() - settled), 1e-6);
         EXPECT_NEAR(body.centre().y, 0.1 + 0.5 * high.y, 1e-5);
         EXPECT_LT(tilt(body), 1e-5);
-        EXPECT_LT(length(force(loop, 2, 1) - dvec3(0, 0.3 * kG, 0)), 1e-4 * kG);
-        EXPECT_LT(length(force(loop, 1, 0) - dvec3(0, 0.8 * kG, 0)), 1e-4 * kG);
+        EXPECT_LT(length(loop.force(2, 1) - dvec3(0, 0.3 * kG, 0)), 1e-4 * kG);
+        EXPECT_LT(length(loop.force(1, 0) - dvec3(0, 0.8 * kG, 0)), 1e-4 * kG);
         for (const ContactPoint& c : loop.contacts) {
           const auto inside = [](dvec3 w) { return (w.x > 0.01) + (w.y > 0.01) + (w.z > 0.01) == 2; };
           crossed += c.impulse.x > 0.0 && inside(c.a.barycentric) && inside(c.b.barycentric);
@@ -150,9 +141,9 @@ Pressed press_middle(int squares) {
   loop.set_friction(0.4, 0.3);
   for (int i = 0; i < 150; ++i) loop.step(kT);
   double weight = 0.2 * kG;
-  EXPECT_LT(length(force(loop, 2, 1) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
+  EXPECT_LT(length(loop.force(2, 1) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
   for (const double m : body.flesh().mass()) weight += m * kG;
-  EXPECT_LT(length(force(loop, 1, 0) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
+  EXPECT_LT(length(loop.force(1, 0) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
   EXPECT_LT(tilt(box), 0.01) << squares;
   Pressed out{0.03 - (box.centre().y - 0.015), 0.0};
   for (const dvec3& x : body.flesh().position()) out.flesh = std::max(out.flesh, -x.y);

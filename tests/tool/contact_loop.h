@@ -17,6 +17,7 @@ struct ContactLoop {
   dvec3 gravity{0, -9.81, 0};  // [m/s2]
   double margin = 1e-3;        // [m]
   double beta = 0.15;          // [1]
+  double last = 0.0;           // [s] length of the last step
 
   template <class Kind, class... Args>
   Kind& add(Args&&... args) {
@@ -27,6 +28,7 @@ struct ContactLoop {
     for (auto& body : bodies) body->friction_static = mu_static, body->friction_sliding = mu_sliding;
   }
   void step(double T) {
+    last = T;
     if (!proximity) proximity = std::make_unique<Proximity>(bodies);
     for (auto& body : bodies) body->free_step(T, gravity);
     proximity->find(bodies, T, margin, contacts);
@@ -34,6 +36,15 @@ struct ContactLoop {
     report = solve(problem, limits);
     apply_impulses(bodies, delassus, problem, contacts);
     for (auto& body : bodies) body->advance(T);
+  }
+  // [N] on body `of`, by body `by`, in the last step.
+  dvec3 force(std::uint32_t of, std::uint32_t by) const {
+    dvec3 impulse(0);
+    for (const ContactPoint& c : contacts) {
+      if (c.body_a == of && c.body_b == by) impulse += c.axes * c.impulse;
+      if (c.body_b == of && c.body_a == by) impulse -= c.axes * c.impulse;
+    }
+    return impulse / last;
   }
 };
 

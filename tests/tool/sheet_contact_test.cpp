@@ -41,11 +41,7 @@ struct Flight {
   }
   dvec3 velocity() const { return {body->velocity()[0], body->velocity()[1], body->velocity()[2]}; }
   dvec3 spin() const { return {body->velocity()[3], body->velocity()[4], body->velocity()[5]}; }
-  dvec3 force() const {  // [N] on the body
-    dvec3 sum(0);
-    for (const ContactPoint& c : loop.contacts) sum += (c.body_a == 1 ? 1.0 : -1.0) * (c.axes * c.impulse) / kT;
-    return sum;
-  }
+  dvec3 force() const { return loop.force(1, 0); }  // [N] on the body
   double lowest() const {
     double y = 1.0;
     for (const dvec3& x : body->skin_position) y = std::min(y, x.y);
