@@ -100,7 +100,8 @@ void make_touchable(Level& level);
 
 // Level -> World: nodes become entities (Name, transforms, Hierarchy), meshes are welded, cleaned, put in Hilbert order
 // and zoned, scale is baked in; images and the panorama are decoded; scripts are read. Progress over a second goes to
-// stderr. The World is not yet prepared for touch (prepare_touch).
-Result<World> spawn(const Level& level);
+// stderr. The World is not yet prepared for touch (prepare_touch). `notes` gets what was read differently than a user
+// might expect of the files that the level names.
+Result<World> spawn(const Level& level, std::vector<std::string>* notes = nullptr);
 
 }  // namespace pliant

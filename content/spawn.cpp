@@ -82,6 +82,7 @@ class Spawner {
     return Done{};
   }
   World take() { return std::move(world_); }
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   Error at(std::size_t n, std::string what) const {
@@ -93,7 +94,7 @@ class Spawner {
     world_.environment.intensity = static_cast<float>(level_.environment->intensity);
     world_.environment.rotation = static_cast<float>(level_.environment->rotation);
     if (level_.environment->panorama.empty()) return Done{};
-    Result<Panorama> panorama = load_panorama(folder_ / level_.environment->panorama);
+    Result<Panorama> panorama = load_panorama(folder_ / level_.environment->panorama, &notes_);
     if (!panorama) return panorama.error();
     world_.environment.panorama = std::move(*panorama);
     return Done{};
@@ -175,6 +176,7 @@ class Spawner {
     progress_.say("preparing meshes, now `" + node.name + "`");
     Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * matrices_[n]), folder_);
     if (!parts) return at(n, parts.error().message());
+    for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
     world_.registry.add<Pose>(entities_[n], pose);
     SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
     body.tets = world_.tet_meshes.add(std::move(parts->tets));
@@ -263,14 +265,16 @@ class Spawner {
   std::unordered_map<std::string, std::size_t> by_name_;  // first node in the scene with this name
   std::vector<std::vector<Baked>> baked_;                 // of each mesh of the level
   std::size_t triangles_ = 0;                             // built so far
+  std::vector<std::string> notes_;                        // of panorama and tetrahedra
   Progress progress_;
 };
 
 }  // namespace
 
-Result<World> spawn(const Level& level) {
+Result<World> spawn(const Level& level, std::vector<std::string>* notes) {
   Spawner spawner(level);
   if (Status s = spawner.run(); !s) return s.error();
+  if (notes) notes->insert(notes->end(), spawner.notes().begin(), spawner.notes().end());
   return spawner.take();
 }
 

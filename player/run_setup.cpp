@@ -96,7 +96,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   auto loaded = load_level(*file);
   if (!loaded) return failed(loaded.error());
   Level& level = *loaded;
-  for (const std::string& sentence : level.notes) run.notes.push_back(sentence);
+  std::vector<std::string> notes = level.notes;
 
   const bool bare = !level.has_pliant();
   if (bare) make_touchable(level);
@@ -107,9 +107,10 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
 
-  auto spawned = spawn(level);
+  auto spawned = spawn(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
+  for (const std::string& sentence : notes) say(run, sentence);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   run.world.field_place = choose_field(options, windowed, run.world);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})

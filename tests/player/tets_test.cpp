@@ -27,6 +27,19 @@ TEST_F(Tets, InspectTellsOfAFileWhatItHoldsAndWhatWasMended) {
   expect_refused({"inspect", "cut.vtk"}, 1, "cut.vtk");
 }
 
+TEST_F(Tets, ARunSaysWhatWasMendedOfTheFileThatItsLevelNames) {
+  write_text(folder / "one.vtk", kOne);
+  write_text(folder / "level.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+      "extensionsUsed": ["PLIANT_soft_body"],
+      "nodes": [{"name": "flesh", "extensions": {"PLIANT_soft_body": {"mesh": "one.vtk"}}}]})");
+  const Said said = pliant({"run", "level.gltf", "--seconds", "0.05", "--frames", "0", "--out", "out"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  for (const char* note : {"one.vtk: 1 inverted tetrahedron", "one.vtk: 1 node that no tetrahedron names"}) {
+    EXPECT_NE(said.err.find("pliant: note: " + std::string(note)), std::string::npos) << said.err;
+    EXPECT_NE(report("out")["dropped"].dump().find(note), std::string::npos) << report("out")["dropped"];
+  }
+}
+
 TEST_F(Tets, ConvertMakesTheBoundaryAMesh) {
   write_text(folder / "one.vtk", kOne);
   const Said said = pliant({"convert", "one.vtk", "one.glb"});
