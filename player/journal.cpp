@@ -24,6 +24,7 @@ void Journal::note(const World& world, Tick tick) {
     if (const HapticDevice* device = find_device(world, probes_[i])) {
       row.device_position = device->position;
       row.device_rotation = device->rotation;
+      row.torque = device->torque_sent;
       row.device_ready = device->status == DeviceStatus::kReady;
     }
     recorder_.record(row);

@@ -20,6 +20,7 @@ struct TickRow {
   ProbeReading reading;
   dvec3 device_position{0};  // [m] world, as sensed: what a recording keeps
   dquat device_rotation{1, 0, 0, 0};
+  dvec3 torque{0};  // [N m] world, on the hand
   bool device_ready = false;
 };
 

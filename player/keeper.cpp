@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "systems/tool/rotation_vector.h"
+
 namespace pliant {
 namespace {
 
@@ -92,8 +94,13 @@ void Keeper::keep(const TickRow& row) {
   }
   summary.max_force = std::max(summary.max_force, length(r.force));
   Last& last = last_[row.probe];
-  if (last.any) summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
-  last = {true, r.position, r.force};
+  if (last.any) {
+    summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
+    const dvec3 torque = last.torque + row.torque;  // only tools make any
+    if (torque != dvec3(0))
+      summary.net_work += 0.5 * dot(torque, vector_of(row.device_rotation * glm::conjugate(last.rotation)));
+  }
+  last = {true, r.position, r.force, row.torque, row.device_rotation};
 
   traces_[row.probe].add(row.tick, r);
   if (recording_) record(row);

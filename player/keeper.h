@@ -20,7 +20,7 @@ struct ProbeSummary {
   std::uint64_t contact_ticks = 0;
   double max_depth = 0.0;  // [m]
   double max_force = 0.0;  // [N]
-  double net_work = 0.0;   // [J] done by the force on the hand: trapezoidal over the ticks
+  double net_work = 0.0;   // [J] done by force and torque on the hand: trapezoidal over the ticks
 };
 
 class Keeper {
@@ -43,7 +43,8 @@ class Keeper {
   void record(const TickRow& row);
   struct Last {
     bool any = false;
-    dvec3 position{0}, force{0};
+    dvec3 position{0}, force{0}, torque{0};
+    dquat rotation{1, 0, 0, 0};
   };
   std::filesystem::path csv_path_;
   std::ofstream csv_;

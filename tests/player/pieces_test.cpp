@@ -6,12 +6,17 @@
 #include <fstream>
 #include <random>
 
+#include "components/soft_body.h"
 #include "player/frames.h"
+#include "player/keeper.h"
 #include "player/panorama_preview.h"
 #include "player/plot.h"
 #include "player/recording.h"
 #include "player/sources.h"
 #include "player/trace.h"
+#include "systems/tool/prepare_tools.h"
+#include "systems/tool/rotation_vector.h"
+#include "systems/touch/prepare.h"
 
 namespace pliant {
 namespace {
@@ -73,6 +78,35 @@ ProbeReading reading_at(double depth) {
   r.normal_force = 2 * depth;
   r.in_contact = depth > 0.9;
   return r;
+}
+
+// Springs of 200 N/m and 0.5 N m/rad, loaded to 5 mm and 0.4 rad: k x^2 / 2 of each.
+TEST(Keeper, TheNetWorkOfAToolIsThatOfItsForceAndOfItsTorque) {
+  World world;
+  const Entity tool = world.registry.create();
+  world.registry.add<Name>(tool, {"hand"});
+  world.registry.add<SoftBody>(tool, {});
+  world.registry.add<Pose>(tool, {});
+  world.registry.add<Handle6>(tool, {});
+  HapticDevice& device = world.registry.add(tool, HapticDevice{});
+  ASSERT_TRUE(prepare_touch(world) && prepare_tools(world));
+  Journal journal(world, 1.0);
+  const fs::path csv = fs::temp_directory_path() / ("pliant-keeper-" + std::to_string(::getpid()));
+  auto keeper = Keeper::create(world, journal.probes(), {"script"}, csv);
+  ASSERT_TRUE(keeper);
+  const dvec3 axis = normalize(dvec3(1, -2, 0.5));
+  for (std::uint64_t i = 0; i <= 100; ++i) {
+    const double x = 5e-5 * static_cast<double>(i), angle = 4e-3 * static_cast<double>(i);
+    device.position = x * axis;
+    device.rotation = rotation_of(angle * axis);
+    device.force_sent = -200.0 * x * axis;
+    device.torque_sent = -0.5 * angle * axis;
+    journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
+  }
+  keeper->keep(journal);
+  ASSERT_EQ(keeper->summaries().size(), 1u);
+  EXPECT_NEAR(keeper->summaries()[0].net_work, -0.5 * 200.0 * 5e-3 * 5e-3 - 0.5 * 0.5 * 0.4 * 0.4, 1e-12);
+  fs::remove(csv);
 }
 
 TEST(Trace, KeepsEveryPeakHoweverLongTheRun) {
