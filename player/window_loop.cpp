@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <utility>
 
 #include "player/exit.h"
 #include "systems/device/mouse.h"
@@ -136,7 +135,10 @@ PictureOrder WindowLoop::order(bool shown) {
   next.frame = next_frame();
   next.frame_width = s_.frame_width;
   next.frame_height = s_.frame_height;
-  shooting_ = std::exchange(screenshot_, {});
+  if (screenshots_ > 0) {  // one a picture, so that each has a number of its own
+    --screenshots_;
+    shooting_ = next_screenshot();
+  }
   next.screenshot = shooting_;
   next.shown = shown;
   ordered_options_ = options_;

@@ -67,10 +67,11 @@ class WindowLoop {
   Ray asked_ray_;                              // of the question under way
   std::uint64_t questions_ = 0, decides_ = 0;  // asked so far; the one whose answer decides a press
   bool pointed_ = false, close_ = false, wants_mouse_ = false;
-  std::filesystem::path screenshot_, shooting_;  // wanted, and of the picture under way
-  double frame_time_ = 0.0;                      // [s] smoothed
-  double seconds_ = 0.0, said_at_ = 0.0;         // [s] since the first picture
-  double ordered_at_ = 0.0;                      // [s] when the picture under way was
+  int screenshots_ = 0;                   // asked for, not yet taken
+  std::filesystem::path shooting_;        // of the picture under way
+  double frame_time_ = 0.0;               // [s] smoothed
+  double seconds_ = 0.0, said_at_ = 0.0;  // [s] since the first picture
+  double ordered_at_ = 0.0;               // [s] when the picture under way was
   std::size_t next_frame_ = 0;
   std::future<std::optional<Error>> opening_;
   WindowFigures figures_;

@@ -117,7 +117,7 @@ void WindowLoop::key(int key) {
       state_.figures = !state_.figures;
       break;
     case GLFW_KEY_F12:
-      screenshot_ = next_screenshot();
+      ++screenshots_;
       break;
     case GLFW_KEY_F:
       camera_.frame();

@@ -73,6 +73,14 @@ TEST_F(WindowTest, TheMouseTouchesTheDemoOrganAndAScreenshotShowsIt) {
   expect_no_force_at_the_end();
 }
 
+TEST_F(WindowTest, EveryScreenshotThatIsAskedForIsTaken) {
+  const Said said = shown({"plate.obj"}, "0.5,key,F12\n0.5,key,F12\n0.5,key,F12\n3.0,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  for (const char* file : {"screenshot-001.png", "screenshot-002.png", "screenshot-003.png"})
+    EXPECT_GT(contrast(folder / "out" / file), 1.0) << file;
+  EXPECT_FALSE(fs::exists(folder / "out" / "screenshot-004.png"));
+}
+
 TEST_F(WindowTest, MouseAndScriptPressTogetherAndFeelForce) {
   write_text(folder / "press.csv", press_csv(0.002));
   const Said said = shown({"plate.obj", "--probe", "finger=mouse", "--probe", "tip=script:press.csv"},
