@@ -30,10 +30,12 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // Ready without a pose: no pose at all
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
-  const SafetyResult force = make_safe(tool.force_safety, device, known ? linear(tool.device_wrench) : unknown,
+  const SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew, tool.weight};
+  const SafetyResult force = make_safe(tool.force_safety, device, limits, known ? linear(tool.device_wrench) : unknown,
                                        device.position, tick.time, tick.dt);
   const SafetyLimits torque_limits{handle.max_torque, 0.0,
-                                   device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9)};
+                                   device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9),
+                                   cross(tool.sensed.pose.rotation * tool.balance, tool.weight)};
   const SafetyResult torque = make_safe(tool.torque_safety, device, torque_limits,
                                         known ? angular(tool.device_wrench) : unknown, tool.turned, tick.time, tick.dt);
   for (const SafetyResult& result : {force, torque}) {

@@ -22,13 +22,13 @@ bool stale(const HapticDevice& device, double now) {
          now - device.sensed_at > kStaleAfter;
 }
 
-// Scales the force so that the work done on the hand, counted over the whole history by the trapezoidal rule, cannot
-// become positive, not even if the next step goes on like this one and the contact ends there.
-dvec3 keep_passive(SafetyState& state, dvec3 force, dvec3 dx) {
-  const double spent = state.work + 0.5 * dot(state.force, dx);
-  const double gain = dot(force, dx);
-  if (gain > 0) force *= std::clamp(-spent / ((0.5 + 0.5 * kPassivityReserve) * gain), 0.0, 1.0);
-  state.work = spent + 0.5 * dot(force, dx);
+// Scales the force so that the work done on the hand beside the weight, counted over the whole history by the
+// trapezoidal rule, cannot become positive, not even if the next step goes on like this one and the contact ends there.
+dvec3 keep_passive(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx) {
+  const double spent = state.work + 0.5 * dot(state.force - state.weight, dx);
+  const double gain = dot(force, dx), steps = 0.5 + 0.5 * kPassivityReserve;
+  if (gain > 0) force *= std::clamp(-(spent - steps * dot(weight, dx)) / (steps * gain), 0.0, 1.0);
+  state.work = spent + 0.5 * dot(force - weight, dx);
   return force;
 }
 
@@ -46,31 +46,41 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wan
 SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 wanted,
                        dvec3 position, double now, double dt) {
   SafetyResult result;
-  if (!finite(wanted) || !plausible_position(position)) {
+  if (!finite(wanted) || !finite(limits.weight) || !plausible_position(position)) {
     result.event = SafetyEvent::kNonFinite;
   } else if (device.status != DeviceStatus::kReady || stale(device, now)) {
     result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;
   } else {
     const dvec3 dx = state.placed ? position - state.position : dvec3(0);
-    if (!state.engaged) state.engaged = length(wanted) < kEngageForce;
-    dvec3 force = state.engaged ? clamp_norm(wanted, limits.force) : dvec3(0);
+    if (!state.engaged) {
+      state.hidden = length(wanted - limits.weight) < length(wanted) ? 1.0 : 0.0;
+      state.engaged = length(wanted - state.hidden * limits.weight) < kEngageForce;
+    }
+    dvec3 force(0), weight(0);
+    if (state.engaged) {
+      force = clamp_norm(wanted - state.hidden * limits.weight, limits.force);
+      weight = clamp_norm((1.0 - state.hidden) * limits.weight, limits.force);
+      state.hidden = std::max(0.0, state.hidden - dt / kWeightTime);
+    }
     double most = limits.slew * dt;
     if (limits.stiffness > 0) {
-      // The force may grow no faster with displacement than the device can render stably; it may always fall.
-      const double rise = limits.stiffness * length(dx);
+      // The force may grow no faster with displacement than the device can render stably; it may always fall. What
+      // comes in of a weight is no answer to displacement.
+      const double rise = limits.stiffness * length(dx) + length(weight - state.weight);
       if (length(force) > length(state.force)) most = std::min(most, rise);
     }
     force = state.force + clamp_norm(force - state.force, most);
-    result.force = keep_passive(state, force, dx);
+    result.force = keep_passive(state, force, weight, dx);
     state.position = position;
     state.placed = true;
     state.force = result.force;
+    state.weight = weight;
     return result;
   }
   // Unknown: nothing leaves, at once, and the gate must be passed again. Work stays booked.
   state.engaged = false;
   state.placed = false;
-  state.force = dvec3(0);
+  state.force = state.weight = dvec3(0);
   return result;
 }
 

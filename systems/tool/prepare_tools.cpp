@@ -27,6 +27,26 @@ Entity resting_device(World& world, Entity tool) {
   return tool;
 }
 
+// What the hand feels of a tool that nothing carries. Its nodes have their elements' mass, as in Flesh.
+void find_weight(const World& world, ToolTouchState& tool) {
+  const SoftBody& body = world.registry.get<SoftBody>(tool.entity);
+  if (world.registry.get<Handle6>(tool.entity).carried || !body.tets.valid()) return;
+  const TetMesh& mesh = world.tet_meshes[body.tets];
+  double mass = 0.0;
+  for (const Tet& tet : mesh.tets) {
+    const dvec3 a = mesh.nodes[tet[0]];
+    const double volume = dot(cross(mesh.nodes[tet[1]] - a, mesh.nodes[tet[2]] - a), mesh.nodes[tet[3]] - a) / 6.0;
+    for (const std::uint32_t node : tet) {
+      if (node >= mesh.pinned_begin()) continue;  // the world's to hold
+      mass += body.density * volume / 4.0;
+      tool.balance += body.density * volume / 4.0 * mesh.nodes[node];
+    }
+  }
+  if (!(mass > 0.0)) return;
+  tool.balance /= mass;
+  tool.weight = mass * world.simulation.gravity;
+}
+
 // Two things on one device would each be told that the whole of its force is theirs.
 Status check_free(const World& world, Entity tool, Entity device) {
   const std::string sentence = "its device `" + name_of(world, device) + "` already moves `{}`; give each its own";
@@ -66,6 +86,7 @@ Status prepare_tools(World& world) {
     if (const Pose* pose = world.registry.find<Pose>(entity)) tool->sensed.pose = *pose;
     for (ToolInput& slot : tool->input.slots()) slot.device = tool->sensed;
     tool->limits = {kTickSweeps, kTickTolerance, 0};
+    find_weight(world, *tool);
     world.tools->tools.push_back(std::move(tool));
   }
   return Done{};

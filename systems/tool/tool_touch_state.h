@@ -54,8 +54,8 @@ struct ToolTouchState {
   RigidMotion handle;                      // of its centre
   Vector6 displacement = Vector6::Zero();  // d, of the model in use
   CondensedState contacts;
-  Vector6 fade = Vector6::Zero();   // [N], [N m] added to the model's wrench, fading
-  bool joins = false;               // the next tick is the first by `used`, or by a new model
+  Vector6 fade = Vector6::Zero();  // [N], [N m] added to the model's wrench, fading
+  bool joins = false;              // the next tick is the first by `used`, or by a new model
 
   // For display and devices.
   RigidMotion sensed;                       // the device
@@ -63,7 +63,9 @@ struct ToolTouchState {
   Vector6 wrench = Vector6::Zero();         // [N], [N m] flesh and contacts on the handle, over the last tick
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its own origin
   SafetyState force_safety, torque_safety;
-  dvec3 turned{0};  // [rad] sum of the device's small rotations
+  dvec3 weight{0};   // [N] of the whole tool where nothing carries it, else 0; constant
+  dvec3 balance{0};  // [m] its centre of mass at rest, in the object frame
+  dvec3 turned{0};   // [rad] sum of the device's small rotations
   std::uint64_t ticks_late = 0;
 };
 

@@ -111,6 +111,71 @@ TEST(Safety, PassivityHoldsForAnActiveForceToo) {
   }
 }
 
+SafetyLimits hanging(dvec3 weight) {
+  return {.force = 3.3, .stiffness = 0.0, .slew = 1000.0, .weight = weight};
+}
+
+TEST(Safety, AWeightThatIsKnownComesInFromZeroAndAgainAfterALoss) {
+  const dvec3 weight(0, -2, 0);
+  for (const double stiffness : {0.0, 400.0}) {
+    SafetyState state;
+    HapticDevice device = plain();
+    SafetyLimits limits = hanging(weight);
+    limits.stiffness = stiffness;
+    for (int life = 0; life < 2; ++life) {
+      dvec3 last(0);
+      for (int n = 0; n < 1000; ++n) {
+        const dvec3 f = make_safe(state, device, limits, weight, {0, 0, 0}, 0, 1e-3).force;
+        ASSERT_LE(length(f - last), 2.0 * 1e-3 / kWeightTime * (1 + 1e-9)) << n;
+        ASSERT_NEAR(f.y, -2.0 * std::min(1.0, n * 1e-3 / kWeightTime), 1e-12) << n;
+        last = f;
+      }
+      device.status = DeviceStatus::kLost;
+      EXPECT_EQ(make_safe(state, device, limits, weight, {0, 0, 0}, 0, 1e-3).force, dvec3(0));
+      device.status = DeviceStatus::kReady;
+    }
+  }
+}
+
+TEST(Safety, AWeightOpensTheGateForNothingElse) {
+  const dvec3 weight(0, -2, 0);
+  for (const dvec3 beside : {dvec3(0, 1, 0), dvec3(0, -0.3, 0), dvec3(0.5, 0, 0)}) {
+    SafetyState state;
+    for (int n = 0; n < 1000; ++n)
+      ASSERT_EQ(make_safe(state, plain(), hanging(weight), weight + beside, {}, 0, 1e-3).force, dvec3(0));
+  }
+  // What stands on something is felt at once as it is, and not as a push upwards.
+  SafetyState state;
+  EXPECT_EQ(make_safe(state, plain(), hanging(weight), {0, -0.1, 0}, {}, 0, 1e-3).force, dvec3(0, -0.1, 0));
+  const dvec3 nothing(NAN, 0, 0);
+  EXPECT_EQ(make_safe(state, plain(), hanging(nothing), {0, -0.1, 0}, {}, 0, 1e-3).force, dvec3(0));
+}
+
+// The hand gets no more than lowering the weight as far as it has been lowered gives, once.
+TEST(Safety, AWeightStaysWhereverItIsCarriedAndLendsNothingToOtherForces) {
+  const dvec3 weight(0, -1, 0);
+  for (const double engine : {0.0, 40.0}) {  // [N s/m] besides, a force that pushes along the motion
+    SafetyState state;
+    dvec3 x(0), v(0), last(0), last_x(0);
+    double work = 0, lowered = 0;
+    std::mt19937 random(4);
+    std::normal_distribution<double> g;
+    for (int n = 0; n < 5000; ++n) {
+      v = n < 600 ? dvec3(0) : 0.95 * v + 0.002 * dvec3(g(random), g(random), g(random)) - dvec3(0, 1e-3, 0);
+      x += 1e-3 * v;
+      const dvec3 f = make_safe(state, plain(), hanging(weight), weight + engine * v, x, 0, 1e-3).force;
+      work += 0.5 * dot(f + last, x - last_x);
+      lowered = std::max(lowered, dot(weight, x));
+      last = f, last_x = x;
+      if (n > 600 && engine == 0.0) {
+        ASSERT_LT(length(f - weight), 1e-12) << n;
+      }
+      ASSERT_LT(work, lowered + 2e-6) << n;  // at most what one unforeseen step can carry
+    }
+    EXPECT_LT(x.y, -0.05) << "it went down";
+  }
+}
+
 TEST(Safety, StiffnessLimitBoundsHowFastForceGrowsWithDisplacement) {
   SafetyState state;
   HapticDevice device = plain();

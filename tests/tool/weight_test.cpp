@@ -1,0 +1,84 @@
+// What a hand feels of a tool that nothing carries: its weight and the moment of it, which come in slowly.
+#include <gtest/gtest.h>
+
+#include "systems/device/safety.h"
+#include "systems/tool/rotation_vector.h"
+#include "systems/tool/tool_touch_state.h"
+#include "tests/scenes/tet_shapes.h"
+#include "tests/scenes/tool_stage.h"
+
+namespace pliant {
+namespace {
+
+using scenes::ToolStage;
+
+// A block of 30 mm whose lower half is flesh, held 10 mm beside its middle.
+struct Held {
+  ToolStage stage{1.0 / 60.0};
+  Entity tool;
+  dvec3 weight{0};  // [N]
+
+  explicit Held(bool carried) {
+    TetMesh mesh = tets::box(2, 3, 2, dvec3(0.01, 0, 0) - 0.015, dvec3(0.01, 0, 0) + 0.015);
+    tets::hold(
+        mesh, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 1e-3; });
+    SoftBody body;
+    body.young = 1e5;
+    body.density = 2000.0;
+    body.rayleigh = {1.0, 0.01};
+    Handle6 handle;
+    handle.carried = carried;
+    tool = stage.add_soft(mesh, body, Pose{}, &handle);
+    stage.device_of(tool).max_force = 3.3;
+    stage.prepare();
+    for (const double m : stage.flesh(tool).flesh().mass()) weight += m * stage.world.simulation.gravity;
+  }
+  dvec3 force() { return stage.device_of(tool).force_sent; }
+  dvec3 torque() { return stage.device_of(tool).torque_sent; }
+};
+
+TEST(Weight, OfAToolThatNothingCarriesIsFeltAndComesInAgainAfterALoss) {
+  Held held(false);
+  ASSERT_GT(length(held.weight), 2 * kEngageForce);
+  const auto expect_all_of_it = [&] {
+    EXPECT_LT(length(held.force() - held.weight), 0.01 * length(held.weight));
+    const dvec3 moment = cross(dvec3(0.01, 0, 0), held.weight);
+    EXPECT_LT(length(held.torque() - moment), 0.05 * length(moment));
+  };
+  held.stage.lead(held.tool, dvec3(0), 2.0);
+  expect_all_of_it();
+
+  held.stage.device_of(held.tool).status = DeviceStatus::kLost;
+  held.stage.lead(held.tool, dvec3(0), 0.1, [&] { EXPECT_EQ(held.force(), dvec3(0)); });
+  held.stage.device_of(held.tool).status = DeviceStatus::kReady;
+  dvec3 last(0);
+  double most_change = 0.0;
+  held.stage.lead(held.tool, dvec3(0), 2.0, [&] {
+    most_change = std::max(most_change, length(held.force() - last));
+    last = held.force();
+  });
+  EXPECT_LT(most_change, 0.01) << "it comes in over hundreds of ticks";
+  expect_all_of_it();
+}
+
+TEST(Weight, IsFeltOnTheWayDownAsOnTheWayUp) {
+  Held held(false);
+  held.stage.lead(held.tool, dvec3(0), 2.0);
+  for (const double height : {-0.1, 0.05}) {
+    held.stage.lead(held.tool, dvec3(0, height, 0), 1.0);
+    held.stage.lead(held.tool, dvec3(0, height, 0), 1.0);
+    held.stage.lead(held.tool, dvec3(0, height, 0), 0.3,
+                    [&] { EXPECT_LT(length(held.force() - held.weight), 0.1 * length(held.weight)) << height; });
+  }
+  double least = 10.0;
+  held.stage.lead(held.tool, dvec3(0, -0.2, 0), 5.0, [&] { least = std::min(least, -held.force().y); });
+  EXPECT_GT(least, 0.5 * length(held.weight));
+}
+
+TEST(Weight, OfACarriedToolIsNotFelt) {
+  Held held(true);
+  held.stage.lead(held.tool, dvec3(0), 2.0, [&] { EXPECT_LT(length(held.force()), 0.01); });
+}
+
+}  // namespace
+}  // namespace pliant
