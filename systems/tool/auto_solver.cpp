@@ -53,4 +53,11 @@ void AutoSolver::solve_many(Eigen::Ref<Rows> columns) const {
   iterative_.solve_many(columns);
 }
 
+void AutoSolver::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
+  const auto count = 3.0 * static_cast<double>(b.count());
+  columns_ += count;
+  if (direct_ready_ || (better_direct(count) && have_factor())) return direct_.solve_gram(b, gram);
+  iterative_.solve_gram(b, gram);
+}
+
 }  // namespace pliant

@@ -19,6 +19,7 @@ class AutoSolver final : public LinearSolver {
   bool factorise(const BlockMatrix& a) override;
   void solve(const Vector& b, Vector& x) const override;
   void solve_many(Eigen::Ref<Rows> columns) const override;
+  void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const override;
 
  private:
   bool better_direct(double columns) const;

@@ -62,9 +62,10 @@ void BlockCholesky::analyse(const BlockMatrix& a) {
   const auto rows = static_cast<std::size_t>(most_rows);
   row_from_.resize(rows), row_panel_.resize(rows), row_triangle_.resize(rows);
   x_.resize(3 * a.size + 1), local_.resize(rows + 1), sums_.resize(static_cast<std::size_t>(most_columns) + 1);
-  touched_.resize(fronts_.size());
   place_sources(a, e);
-  old_of_new_ = std::move(e.old_of_new);
+  front_of_.clear();
+  for (std::uint32_t s = 0; s < fronts_.size(); ++s) front_of_.insert(front_of_.end(), e.supernodes[s].count, s);
+  old_of_new_ = std::move(e.old_of_new), new_of_old_ = std::move(e.new_of_old);
 }
 
 void BlockCholesky::place_sources(const BlockMatrix& a, const Elimination& e) {
@@ -179,6 +180,12 @@ void BlockCholesky::solve(const Vector& b, Vector& x) const {
 
 // Eight columns at a time. A subtree in which no right-hand side has numbers is left out on the way up.
 void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
+  if (columns.cols() == 1) {
+    Vector x;
+    solve(columns.col(0), x);
+    columns.col(0) = x;
+    return;
+  }
   for (Eigen::Index from = 0; from < columns.cols(); from += kStrip) {
     auto some = columns.middleCols(from, std::min<Eigen::Index>(kStrip, columns.cols() - from));
     take_columns(some);
@@ -186,13 +193,7 @@ void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
       const Front& f = fronts_[s];
       if (!touched_[s]) continue;
       if (f.parent != kNone) touched_[f.parent] = 1;
-      std::copy_n(&x_[f.first], f.columns, local_.data());
-      std::fill(local_.data() + f.columns, local_.data() + f.strips * kStrip, Strip{});
-      forward_many(panel(f), reciprocal_.data() + f.first, local_.front().lane);
-      std::copy_n(local_.data(), f.columns, &x_[f.first]);
-      for (std::size_t i = 0; i < f.below.size(); ++i)
-        for (int l = 0; l < kStrip; ++l)
-          x_[f.below[i]].lane[l] += local_[static_cast<std::size_t>(f.columns) + i].lane[l];
+      forward_pack(f, x_.data());
     }
     for (std::size_t s = fronts_.size(); s-- > 0;) {
       const Front& f = fronts_[s];
@@ -206,8 +207,84 @@ void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
   }
 }
 
+// One front's forward substitution in a pack of eight right-hand sides: its own rows of x, and what they leave below.
+void BlockCholesky::forward_pack(const Front& f, Strip* x) const {
+  std::copy_n(x + f.first, f.columns, local_.data());
+  std::fill(local_.data() + f.columns, local_.data() + f.strips * kStrip, Strip{});
+  forward_many(panel(f), reciprocal_.data() + f.first, local_.front().lane);
+  std::copy_n(local_.data(), f.columns, x + f.first);
+  for (std::size_t i = 0; i < f.below.size(); ++i)
+    for (int l = 0; l < kStrip; ++l) x[f.below[i]].lane[l] += local_[static_cast<std::size_t>(f.columns) + i].lane[l];
+}
+
+// B^T A^-1 B = Y^T Y with Y = L^-1 B: no substitution backwards, and Y has numbers only on the way from B's rows to the
+// roots of the elimination tree. Threes stand in the order in which their first rows are eliminated, so that few packs
+// of eight columns meet in a front far from the roots.
+void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
+  const std::vector<Eigen::Index> place = place_columns(b);
+  const auto packs = static_cast<std::size_t>((3 * b.count() + kStrip - 1) / kStrip);
+  const std::size_t rows = 3 * old_of_new_.size();
+  packs_.assign(packs * rows, Strip{});
+  tiles_.assign(packs * (packs + 1) / 2 * kStrip, Strip{});
+  touched_.assign(fronts_.size() * packs, 0);
+  for (Eigen::Index three = 0; three < b.count(); ++three)
+    for (const BlockColumns::Entry& entry : b.of(three)) {
+      const std::uint32_t row = new_of_old_[entry.row];
+      for (int c = 0; c < 3; ++c) {
+        const auto column = static_cast<std::size_t>(place[static_cast<std::size_t>(three)] + c);
+        Strip* const x = &packs_[column / kStrip * rows + 3 * row];
+        for (int r = 0; r < 3; ++r) x[r].lane[column % kStrip] += entry.value(r, c);
+        touched_[front_of_[row] * packs + column / kStrip] = 1;
+      }
+    }
+
+  std::vector<std::size_t> here;  // packs with numbers in this front
+  for (std::size_t s = 0; s < fronts_.size(); ++s) {
+    const Front& f = fronts_[s];
+    here.clear();
+    for (std::size_t p = 0; p < packs; ++p) {
+      if (!touched_[s * packs + p]) continue;
+      here.push_back(p);
+      if (f.parent != kNone) touched_[f.parent * packs + p] = 1;
+      forward_pack(f, &packs_[p * rows]);
+    }
+    for (const std::size_t p : here)
+      for (const std::size_t q : here) {
+        if (q > p) break;
+        add_gram(packs_[p * rows + f.first].lane, kStrip, packs_[q * rows + f.first].lane, kStrip, f.columns,
+                 tiles_[(p * (p + 1) / 2 + q) * kStrip].lane);
+      }
+  }
+
+  gram.resize(3 * b.count(), 3 * b.count());
+  const auto of = [&](Eigen::Index i) {
+    return static_cast<std::size_t>(place[static_cast<std::size_t>(i / 3)] + i % 3);
+  };
+  for (Eigen::Index i = 0; i < gram.rows(); ++i)
+    for (Eigen::Index j = 0; j < gram.cols(); ++j) {
+      const std::size_t row = std::max(of(i), of(j)), column = std::min(of(i), of(j)), p = row / kStrip;
+      gram(i, j) = tiles_[(p * (p + 1) / 2 + column / kStrip) * kStrip + column % kStrip].lane[row % kStrip];
+    }
+}
+
+// Where each three's columns go.
+std::vector<Eigen::Index> BlockCholesky::place_columns(const BlockColumns& b) const {
+  std::vector<std::pair<std::uint32_t, Eigen::Index>> order;  // first row, three
+  for (Eigen::Index three = 0; three < b.count(); ++three) {
+    std::uint32_t first = kNone;
+    for (const BlockColumns::Entry& entry : b.of(three)) first = std::min(first, new_of_old_[entry.row]);
+    order.emplace_back(first, three);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Eigen::Index> place(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    place[static_cast<std::size_t>(order[k].second)] = 3 * static_cast<Eigen::Index>(k);
+  return place;
+}
+
 // x_ = up to eight columns in the factor's order; touched_: fronts in which one of them has numbers.
 void BlockCholesky::take_columns(Eigen::Ref<const Rows> some) const {
+  touched_.resize(fronts_.size());
   for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
     const Front& f = fronts_[s];
     touched_[s] = 0;

@@ -20,6 +20,7 @@ class BlockCholesky final : public LinearSolver {
   bool factorise(const BlockMatrix& a) override;
   void solve(const Vector& b, Vector& x) const override;
   void solve_many(Eigen::Ref<Rows> columns) const override;
+  void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const override;
 
   std::size_t factor_size() const { return kStrip * factor_strips_; }  // numbers in L, zeros taken along included
   double flops() const { return flops_; }                              // additions and multiplications of a factorise()
@@ -48,10 +49,13 @@ class BlockCholesky final : public LinearSolver {
   void place_sources(const BlockMatrix& a, const Elimination& e);
   void assemble(const Front& f, const BlockMatrix& a, double* panel) const;
   void add_update(const Front& child, const double* update, const Front& parent, double* panel, double* triangle);
+  void forward_pack(const Front& f, Strip* x) const;
+  std::vector<Eigen::Index> place_columns(const BlockColumns& b) const;
   void take_columns(Eigen::Ref<const Rows> some) const;
   void give_columns(Eigen::Ref<Rows> some) const;
 
   std::vector<std::uint32_t> old_of_new_;
+  std::vector<std::uint32_t> new_of_old_, front_of_;  // of block rows; front_of_ by their new number
   std::vector<Front> fronts_;
   std::vector<Source> sources_;
   std::size_t factor_strips_ = 0, stack_strips_ = 0;
@@ -60,7 +64,7 @@ class BlockCholesky final : public LinearSolver {
   std::vector<double> reciprocal_;  // of L's diagonal
   std::vector<Strip> stack_;        // updates that wait for their parents
   std::vector<std::size_t> row_from_, row_panel_, row_triangle_;
-  mutable std::vector<Strip> x_, local_, sums_;
+  mutable std::vector<Strip> x_, local_, sums_, packs_, tiles_;
   mutable std::vector<char> touched_;
 };
 

@@ -21,6 +21,20 @@ struct SurfacePoint {
   dvec3 position{0};           // [m] world, at the beginning of the step
 };
 
+// A side of a contact, pushed by unit impulses along its axes.
+struct PushedSide {
+  Eigen::Index contact = 0;  // which of the body's contacts
+  const SurfacePoint* point = nullptr;
+  const dmat3* axes = nullptr;
+  double sign = 1.0;
+};
+
+// J A^-1 J^T = held + lever lever^T [1/kg].
+struct Compliance {
+  Eigen::MatrixXd held;  // symmetric; of a body with a handle: with the handle held still
+  Rows lever;            // rows x 6: what the handle's following adds; without a handle no columns
+};
+
 class Body {
  public:
   virtual ~Body() = default;
@@ -42,13 +56,20 @@ class Body {
   virtual void halt() {}
   // v: after free_step v*, after correct() the step's final velocity.
   virtual const Vector& velocity() const = 0;
+  // columns.col(column) += J^T(point) impulse.
+  virtual void push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const = 0;
   // columns.middleCols(first, 3) += sign * J^T(point) [a0 a1 a2], J^T of unit impulses along the axes' columns.
-  virtual void spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const = 0;
+  void spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, Eigen::Index first) const {
+    for (int k = 0; k < 3; ++k) push(point, sign * axes[k], columns, first + k);
+  }
   // out (3 x columns of x) += sign * axes^T J(point) x.
   virtual void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
                       Eigen::Ref<Rows> out) const = 0;
   // columns = A^-1 columns.
   virtual void solve(Rows& columns) const = 0;
+  // J A^-1 J^T of `contacts` contacts, three rows each. `sides`: theirs on this body, by ascending contact (both sides
+  // of one that the body has with itself).
+  virtual void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const;
   // v = v* + dv, dv = A^-1 J^T lambda (already solved).
   virtual void correct(const Vector& dv) = 0;
   // x += T v; refreshes skin_position.

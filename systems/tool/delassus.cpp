@@ -13,32 +13,31 @@ void sort_by_body(const std::vector<ContactPoint>& contacts, std::vector<BodyRes
   }
 }
 
-// z = A^-1 J^T. Side a feels +lambda, side b -lambda; of a self-contact both are this body's.
-void respond(const Body& body, std::uint32_t index, const std::vector<ContactPoint>& contacts, BodyResponse& response) {
-  response.z.setZero(body.size(), 3 * static_cast<Eigen::Index>(response.contacts.size()));
-  int first = 0;
+// Its sides of its contacts. Side a feels +lambda, side b -lambda; of a self-contact both are this body's.
+void list_sides(std::uint32_t index, const std::vector<ContactPoint>& contacts, const BodyResponse& response,
+                std::vector<PushedSide>& sides) {
+  sides.clear();
+  Eigen::Index own = 0;
   for (const int i : response.contacts) {
     const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
-    if (c.body_a == index) body.spread(c.a, c.axes, 1.0, response.z, first);
-    if (c.body_b == index) body.spread(c.b, c.axes, -1.0, response.z, first);
-    first += 3;
+    if (c.body_a == index) sides.push_back({own, &c.a, &c.axes, 1.0});
+    if (c.body_b == index) sides.push_back({own, &c.b, &c.axes, -1.0});
+    ++own;
   }
-  body.solve(response.z);
 }
 
-// W += J z, the lower triangle only: contacts are in ascending order and the mirror image is the same.
-void add_response(const Body& body, std::uint32_t index, const std::vector<ContactPoint>& contacts,
-                  const BodyResponse& response, Rows& rows, Eigen::MatrixXd& w) {
-  const std::size_t count = response.contacts.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const int i = response.contacts[k];
-    const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
-    rows.setZero(3, 3 * static_cast<Eigen::Index>(count));
-    if (c.body_a == index) body.gather(c.a, c.axes, 1.0, response.z, rows);
-    if (c.body_b == index) body.gather(c.b, c.axes, -1.0, response.z, rows);
-    for (std::size_t m = 0; m <= k; ++m)
-      w.block<3, 3>(3 * i, 3 * response.contacts[m]) += rows.middleCols<3>(3 * static_cast<Eigen::Index>(m));
-  }
+// W += J A^-1 J^T, the lower triangle only: contacts are in ascending order and the mirror image is the same.
+void add_response(const BodyResponse& response, Eigen::MatrixXd& w) {
+  const Rows& lever = response.compliance.lever;
+  const auto count = static_cast<Eigen::Index>(response.contacts.size());
+  for (Eigen::Index k = 0; k < count; ++k)
+    for (Eigen::Index m = 0; m <= k; ++m) {
+      const int i = response.contacts[static_cast<std::size_t>(k)], j = response.contacts[static_cast<std::size_t>(m)];
+      auto block = w.block<3, 3>(3 * i, 3 * j);
+      block += response.compliance.held.block<3, 3>(3 * k, 3 * m);
+      if (lever.cols() > 0)
+        block += lever.middleRows<3>(3 * k).leftCols<6>() * lever.middleRows<3>(3 * m).leftCols<6>().transpose();
+    }
 }
 
 void add_compliances(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
@@ -73,11 +72,13 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
   delassus.of.resize(bodies.size());
   sort_by_body(contacts, delassus.of);
 
-  Rows gathered;
+  std::vector<PushedSide> sides;
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b]->size() == 0 || delassus.of[b].contacts.empty()) continue;
-    respond(*bodies[b], b, contacts, delassus.of[b]);
-    add_response(*bodies[b], b, contacts, delassus.of[b], gathered, problem.W);
+    BodyResponse& response = delassus.of[b];
+    if (bodies[b]->size() == 0 || response.contacts.empty()) continue;
+    list_sides(b, contacts, response, sides);
+    bodies[b]->respond(sides, static_cast<Eigen::Index>(response.contacts.size()), response.compliance);
+    add_response(response, problem.W);
   }
   add_compliances(bodies, contacts, T, delassus);
   auto w = problem.W.topLeftCorner(rows, rows);
@@ -102,20 +103,18 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
 
 void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
                     const ContactProblem& problem, std::vector<ContactPoint>& contacts) {
-  Vector lambda, dv;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const BodyResponse& response = delassus.of[b];
+  Rows dv;
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     if (bodies[b]->size() == 0) continue;
-    dv.setZero(bodies[b]->size());
-    if (!response.contacts.empty()) {
-      lambda.resize(3 * static_cast<Eigen::Index>(response.contacts.size()));
-      Eigen::Index row = 0;
-      for (const int i : response.contacts) {
-        lambda.segment<3>(row) = problem.impulse.segment<3>(3 * i);
-        row += 3;
-      }
-      dv.noalias() = response.z * lambda;
+    dv.setZero(bodies[b]->size(), 1);
+    for (const int i : delassus.of[b].contacts) {
+      const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
+      const double* const l = &problem.impulse[3 * static_cast<Eigen::Index>(i)];
+      const dvec3 impulse = c.axes * dvec3(l[0], l[1], l[2]);
+      if (c.body_a == b) bodies[b]->push(c.a, impulse, dv, 0);
+      if (c.body_b == b) bodies[b]->push(c.b, -impulse, dv, 0);
     }
+    if (!delassus.of[b].contacts.empty()) bodies[b]->solve(dv);
     bodies[b]->correct(dv);
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {

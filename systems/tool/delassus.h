@@ -1,6 +1,6 @@
 // From bodies and contacts to the contact problem and back (methods.md 2.5):
 //   W = sum over bodies J A^-1 J^T + compliance,  bias = J v* + g0/T,  v = v* + A^-1 J^T lambda.
-// Bodies are black boxes: all that is asked of them is to spread, solve and gather.
+// Bodies are black boxes: W asks them how their contacts move each other, v* + ... for one solution, of J^T lambda.
 #pragma once
 
 #include <memory>
@@ -12,10 +12,10 @@
 
 namespace pliant {
 
-// How one body answers unit impulses at its contacts.
+// How one body's contacts move each other.
 struct BodyResponse {
   std::vector<int> contacts;  // those it takes part in, ascending
-  Rows z;                     // A^-1 J^T: size() x 3 contacts, three columns each in the order of `contacts`
+  Compliance compliance;      // J A^-1 J^T: three rows each, in the order of `contacts`
 };
 
 // Kept from step to step for its memory. Valid from build_problem to the bodies' next free_step.

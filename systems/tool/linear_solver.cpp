@@ -35,6 +35,18 @@ std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_r
   return nullptr;
 }
 
+void LinearSolver::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
+  Rows x = Rows::Zero(3 * static_cast<Eigen::Index>(b.size), 3 * b.count());
+  for (Eigen::Index i = 0; i < b.count(); ++i)
+    for (const BlockColumns::Entry& entry : b.of(i)) x.block<3, 3>(3 * entry.row, 3 * i) += entry.value;
+  solve_many(x);
+  gram.setZero(3 * b.count(), 3 * b.count());
+  for (Eigen::Index i = 0; i < b.count(); ++i)
+    for (const BlockColumns::Entry& entry : b.of(i))
+      gram.middleRows<3>(3 * i).noalias() += entry.value.transpose() * x.middleRows<3>(3 * entry.row);
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+}
+
 std::vector<SolverKind> available_solvers() {
   std::vector<SolverKind> kinds;
   for (const SolverKind kind : {SolverKind::kBlockCholesky, SolverKind::kEigenCholesky, SolverKind::kCholmod,

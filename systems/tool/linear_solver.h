@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/math.h"
-#include "systems/tool/block_matrix.h"
+#include "systems/tool/block_columns.h"
 
 namespace pliant {
 
@@ -36,6 +36,9 @@ class LinearSolver {
   // columns = A^-1 columns, in place, all right-hand sides at once. The upper rows of a larger matrix will do: a
   // coupled solve hands over the flesh's part of its columns without copying them.
   virtual void solve_many(Eigen::Ref<Rows> columns) const = 0;
+  // gram = B^T A^-1 B, symmetric: how B's columns move what they themselves push. Solves for all of them, unless a
+  // method has something shorter.
+  virtual void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const;
 };
 
 // Null where the build does not have that kind.

@@ -36,22 +36,25 @@ namespace {
 template <int kBytes>
 struct Machine {
   typedef double Pack __attribute__((vector_size(kBytes), may_alias));
+  typedef double Loose __attribute__((vector_size(kBytes), may_alias, aligned(8)));  // the same where none is aligned
   static constexpr int kLanes = kBytes / 8;
   static constexpr int kPacks = kStrip / kLanes;  // packs in a strip
   static constexpr int kGroup = kBytes / 8;  // columns of a tile summed at a time: as many as sixteen registers allow
 };
 
-// tile[j] += sum over p of a[p] * scalar(p, j), j < 8, p < length: strips of 8 times numbers of the
-// panel, which stand
+// tile[j] += sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length: strips of 8, `step`
+// apart, times numbers of the panel, which stand
 //   kRow:    at b[8 p + j], one strip of the panel: its rows j, columns p;
 //   kColumn: at b[(p / 8) * stride + 8 j + p % 8], strip after strip: rows p, columns j.
 enum class Read { kRow, kColumn };
 template <int kBytes, Read kRead>
-PLIANT_INLINE void add_products(const double* a, const double* b, int length, int stride, double* tile) {
+PLIANT_INLINE void add_products(const double* a, const double* b, int length, int stride, double* tile,
+                                int width = kStrip, int step = kStrip) {
   using M = Machine<kBytes>;
   using Pack = typename M::Pack;
+  using Loose = typename M::Loose;
   constexpr int kRun = kRead == Read::kRow ? 1 : kStrip, kNext = kRead == Read::kRow ? 1 : kStrip;
-  for (int group = 0; group < kStrip; group += M::kGroup) {
+  for (int group = 0; group < width; group += M::kGroup) {
     Pack sum[M::kGroup][M::kPacks];
     for (int j = 0; j < M::kGroup; ++j)
       for (int l = 0; l < M::kPacks; ++l)
@@ -60,7 +63,7 @@ PLIANT_INLINE void add_products(const double* a, const double* b, int length, in
     for (int p = 0; p < length; p += kRun, scalar += stride)
       for (int run = 0; run < kRun; ++run)
         for (int l = 0; l < M::kPacks; ++l) {
-          const Pack strip = *reinterpret_cast<const Pack*>(a + (p + run) * kStrip + l * M::kLanes);
+          const Pack strip = *reinterpret_cast<const Loose*>(a + (p + run) * step + l * M::kLanes);
           for (int j = 0; j < M::kGroup; ++j) sum[j][l] += strip * scalar[j * kNext + run];
         }
     for (int j = 0; j < M::kGroup; ++j)
@@ -109,7 +112,7 @@ PLIANT_INLINE bool factorise_panel_for(double* data, Panel panel, double* recipr
       double* const out = strip + begin * kStrip;
       // tile = A - (columns already factorised)
       std::fill(tile, tile + kStrip * kStrip, 0.0);
-      add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile);
+      add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
       for (int c = 0; c < width * kStrip; ++c) tile[c] = out[c] - tile[c];
       if (strip == pivots) {
         if (!factorise_tile<kBytes>(tile, width, reciprocal + begin)) return false;
@@ -209,7 +212,7 @@ PLIANT_INLINE void backward_many_for(Panel panel, const double* reciprocal, doub
     std::fill(tile, tile + kStrip * kStrip, 0.0);
     add_products<kBytes, Read::kColumn>(x + (own + 1) * kStrip * kStrip,
                                         panel.data + static_cast<std::ptrdiff_t>(own + 1) * stride + begin * kStrip,
-                                        (panel.strips - own - 1) * kStrip, stride, tile);
+                                        (panel.strips - own - 1) * kStrip, stride, tile, end - begin);
     const double* const strip = panel.data + static_cast<std::ptrdiff_t>(own) * stride;
     for (int p = end - 1; p >= begin; --p) {
       double* const sum = tile + (p - begin) * kStrip;
@@ -220,6 +223,11 @@ PLIANT_INLINE void backward_many_for(Panel panel, const double* reciprocal, doub
   }
 }
 
+template <int kBytes>
+PLIANT_INLINE void add_gram_for(const double* x, int x_step, const double* y, int y_step, int rows, double* tile) {
+  add_products<kBytes, Read::kRow>(x, y, rows, y_step, tile, kStrip, x_step);
+}
+
 }  // namespace
 
 #define FACTORISE(bytes) factorise_panel_for<bytes>(data, panel, reciprocal)
@@ -228,6 +236,7 @@ PLIANT_INLINE void backward_many_for(Panel panel, const double* reciprocal, doub
 #define BACKWARD(bytes) backward_for<bytes>(panel, reciprocal, x, sums)
 #define FORWARD_MANY(bytes) forward_many_for<bytes>(panel, reciprocal, x)
 #define BACKWARD_MANY(bytes) backward_many_for<bytes>(panel, reciprocal, x)
+#define GRAM(bytes) add_gram_for<bytes>(x, x_step, y, y_step, rows, tile)
 #define BYTES(bytes) bytes
 
 PLIANT_KERNEL(bool, factorise_panel, (double* data, Panel panel, double* reciprocal), (data, panel, reciprocal),
@@ -240,6 +249,8 @@ PLIANT_KERNEL(void, forward_many, (Panel panel, const double* reciprocal, double
               FORWARD_MANY)
 PLIANT_KERNEL(void, backward_many, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
               BACKWARD_MANY)
+PLIANT_KERNEL(void, add_gram, (const double* x, int x_step, const double* y, int y_step, int rows, double* tile),
+              (x, x_step, y, y_step, rows, tile), GRAM)
 PLIANT_KERNEL(int, panel_register_bytes, (), (), BYTES)
 
 }  // namespace pliant

@@ -32,11 +32,15 @@ void update_triangle(Panel panel, double* triangle);
 void forward(Panel panel, const double* reciprocal, double* x);
 void backward(Panel panel, const double* reciprocal, double* x, double* sums);
 
-// The same for packs of 8 right-hand sides: x[8 * row + which]. Backwards, columns are taken by eights, and those beyond
-// the last are read too, for nothing: with strips below a diagonal block whose columns are no multiple of 8, 64 doubles
-// behind the panel must be readable. In a factor the next panel stands there, as the last has no strips below.
+// The same for packs of 8 right-hand sides: x[8 * row + which]. Backwards, columns are taken by eights, and those
+// beyond the last are read too, for nothing: with strips below a diagonal block whose columns are no multiple of 8, 64
+// doubles behind the panel must be readable. In a factor the next panel stands there, as the last has no strips below.
 void forward_many(Panel panel, const double* reciprocal, double* x);
 void backward_many(Panel panel, const double* reciprocal, double* x);
+
+// tile[8 j + i] += x_i . y_j over `rows` rows of eight columns each, whose rows stand `x_step` and `y_step` numbers
+// apart. The tile is 64-byte aligned.
+void add_gram(const double* x, int x_step, const double* y, int y_step, int rows, double* tile);
 
 // Width of the registers that these use on this machine: 32 with AVX2, else 16. [bytes]
 int panel_register_bytes();
@@ -49,6 +53,7 @@ void forward(Panel panel, const double* reciprocal, double* x);
 void backward(Panel panel, const double* reciprocal, double* x, double* sums);
 void forward_many(Panel panel, const double* reciprocal, double* x);
 void backward_many(Panel panel, const double* reciprocal, double* x);
+void add_gram(const double* x, int x_step, const double* y, int y_step, int rows, double* tile);
 int panel_register_bytes();
 }  // namespace plain
 

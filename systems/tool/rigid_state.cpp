@@ -76,14 +76,11 @@ void RigidState::free_step(double T, dvec3 gravity) {
   move_skin(centre_, v, w, *this);
 }
 
-void RigidState::spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const {
-  const dvec3 r = point.position - centre_;
-  for (int c = 0; c < 3; ++c) {
-    const dvec3 f = sign * axes[c], m = cross(r, f);
-    for (int k = 0; k < 3; ++k) {
-      columns(k, first + c) += f[k];
-      columns(3 + k, first + c) += m[k];
-    }
+void RigidState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
+  const dvec3 turn = cross(point.position - centre_, impulse);
+  for (int k = 0; k < 3; ++k) {
+    columns(k, column) += impulse[k];
+    columns(3 + k, column) += turn[k];
   }
 }
 

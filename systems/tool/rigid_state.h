@@ -24,7 +24,7 @@ class RigidState : public Body {
   int size() const override { return 6; }
   void free_step(double T, dvec3 gravity) override;
   const Vector& velocity() const override { return velocity_; }
-  void spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const override;
+  void push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const override;
   void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override;

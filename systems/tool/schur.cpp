@@ -67,4 +67,17 @@ void CoupledSolver::solve_held(Eigen::Ref<Rows> columns) const {
     columns.setZero();
 }
 
+void CoupledSolver::gram_held(const BlockColumns& b, Eigen::MatrixXd& gram) const {
+  ASSERT(3 * static_cast<Eigen::Index>(b.size) == flesh_rows_);
+  if (solvable_)
+    flesh_->solve_gram(b, gram);
+  else
+    gram.setZero(3 * b.count(), 3 * b.count());
+}
+
+Rows CoupledSolver::lever(const Rows& moved) const {
+  if (!solvable_) return Rows::Zero(moved.rows(), 6);
+  return factor_.matrixL().solve(moved.transpose()).transpose();
+}
+
 }  // namespace pliant

@@ -32,6 +32,11 @@ class CoupledSolver {
   void solve(Rows& columns) const;                  // columns = A^-1 columns
   void solve_held(Eigen::Ref<Rows> columns) const;  // columns = A_tt^-1 columns: flesh alone, the handle held still
 
+  // gram = B^T A_tt^-1 B: flesh alone, the handle held still. B: of flesh.
+  void gram_held(const BlockColumns& b, Eigen::MatrixXd& gram) const;
+  // J A^-1 J^T = J_t A_tt^-1 J_t^T + lever lever^T. `moved`: J follow(), rows x 6.
+  Rows lever(const Rows& moved) const;
+
   Eigen::Index size() const { return flesh_rows_ + handle_rows_; }
   const Matrix6& reduced() const { return reduced_; }  // S [kg]
   // [-Z; 1], size() x 6: how the whole tool moves when the handle is moved and flesh follows.

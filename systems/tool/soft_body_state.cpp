@@ -220,14 +220,34 @@ void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
   }
 }
 
-void SoftBodyState::spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const {
-  const Block impulse = to_block(axes);
+void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
   for_each_node(point, [&](std::uint32_t node, double weight) {
+    const dvec3 part = weight * impulse;
     if (node < flesh_.moving())
-      columns.block<3, 3>(3 * node, first) += sign * weight * impulse;
+      for (int k = 0; k < 3; ++k) columns(3 * node + k, column) += part[k];
     else if (slaved(node))
-      columns.block<6, 3>(handle_row(), first) += sign * weight * grip_matrix(arm(node)).transpose() * impulse;
+      columns.block<6, 1>(handle_row(), column) += join(part, cross(arm(node), part));  // G^T
   });
+}
+
+// Half a solve instead of a whole one, and only where the contacts' nodes are (LinearSolver::solve_gram).
+void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
+  pushed_.clear(flesh_.moving());
+  for (const PushedSide& side : sides) {
+    while (pushed_.count() < side.contact) pushed_.close();
+    const Block axes = to_block(*side.axes);
+    for_each_node(*side.point, [&](std::uint32_t node, double weight) {
+      if (node < flesh_.moving()) pushed_.entries.push_back({node, side.sign * weight * axes});
+    });
+  }
+  while (pushed_.count() < contacts) pushed_.close();
+  solver_.gram_held(pushed_, out.held);
+
+  Rows moved = Rows::Zero(3 * contacts, handle_ ? 6 : 0);
+  if (handle_)
+    for (const PushedSide& side : sides)
+      handle_rows(*side.point, *side.axes, side.sign, moved.middleRows<3>(3 * side.contact));
+  out.lever = handle_ ? solver_.lever(moved) : moved;
 }
 
 void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,

@@ -1,6 +1,6 @@
 // A soft body in the soft step, with a rigid handle (a tool) or without one. Degrees of freedom: velocities of its
 // moving nodes, 3 each, then the handle's six. Nodes that are slaved to the handle ride on it, pinned ones stand still.
-// Writer: the soft clock.
+// Writer: the soft clock; one thread at a time, as answers use scratch memory.
 #pragma once
 
 #include <memory>
@@ -29,10 +29,11 @@ class SoftBodyState final : public Body {
   int size() const override { return static_cast<int>(solver_.size()); }
   void free_step(double T, dvec3 gravity) override;
   const Vector& velocity() const override { return velocity_; }
-  void spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, int first) const override;
+  void push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const override;
   void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override { solver_.solve(columns); }
+  void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const override;
   void correct(const Vector& dv) override { velocity_ += dv; }
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
@@ -106,6 +107,7 @@ class SoftBodyState final : public Body {
   double mass_ = 0.0;  // [kg] of flesh and handle
   dvec3 balance_{0};   // [m] from the handle's centre to that mass's, at rest, object axes
   CoupledSolver solver_;
+  mutable BlockColumns pushed_;  // respond()'s
   bool solvable_ = true;
   double T_ = 0.0;  // [s] of the last free_step
   Vector velocity_;

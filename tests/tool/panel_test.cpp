@@ -79,6 +79,12 @@ TEST(PanelKernels, GiveTheSameBitsWithEveryWidth) {
       agree(
           "backward_many", rows * kStrip, [&](double* x) { backward_many(panel, inverse, x); },
           [&](double* x) { plain::backward_many(panel, inverse, x); });
+      const Strips left = random_strips(rows * kStrip, 4), right = random_strips(rows * kStrip, 5);
+      const int step = 2 * kStrip + 1, length = strips * kStrip / 3;  // rows of eight among other columns
+      agree(
+          "add_gram", kStrip,
+          [&](double* x) { add_gram(left.front().lane, step, right.front().lane, kStrip, length, x); },
+          [&](double* x) { plain::add_gram(left.front().lane, step, right.front().lane, kStrip, length, x); });
     }
 }
 

@@ -161,6 +161,41 @@ TEST_P(EverySolver, SolvesManyColumnsAsItSolvesEach) {
   }
 }
 
+// Threes of few block rows, as contacts push: one row, several, one twice, none, and in two parts that do not hang
+// together.
+TEST_P(EverySolver, GramMatrixIsThatOfTheDenseInverse) {
+  Groups groups;
+  for (const auto& tet : brick(3, 4, 5))
+    for (std::uint32_t part = 0; part < 2; ++part)
+      groups.push_back({2 * tet[0] + part, 2 * tet[1] + part, 2 * tet[2] + part, 2 * tet[3] + part});
+  const BlockMatrix a = random_spd(121, groups, 0.1, 5);
+  const auto solver = ready(a);
+  const double promised = GetParam() == SolverKind::kConjugateGradient ? 1e-6 : 1e-12;
+  for (const std::uint32_t count : {0u, 1u, 2u, 3u, 19u}) {
+    BlockColumns b;
+    b.clear(121);
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(363, 3 * count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::uint32_t k = 0; k < i % 4; ++k) {
+        const std::uint32_t row = i == 3 ? 120 : (53 * i + 17 * k) % 121;  // the lone last one, thrice
+        b.entries.push_back({row, Block(Eigen::Map<const Block>(random_vector(3, 10 * i + k).data()))});
+        dense.block<3, 3>(3 * row, 3 * i) += b.entries.back().value;
+      }
+      b.close();
+    }
+    Eigen::MatrixXd gram;
+    solver->solve_gram(b, gram);
+    ASSERT_EQ(gram.rows(), 3 * count);
+    EXPECT_EQ(gram, gram.transpose());
+    if (count < 2) {
+      EXPECT_TRUE(gram.isZero(0));
+      continue;
+    }
+    const Eigen::MatrixXd truth = dense.transpose() * a.dense().llt().solve(dense);
+    EXPECT_LT((gram - truth).norm(), promised * truth.norm()) << count << " threes";
+  }
+}
+
 TEST_P(EverySolver, GivesTheSameBitsForTheSameNumbers) {
   const BlockMatrix a = random_spd(60, brick(3, 4, 5), 0.1, 5);
   const Vector b = random_vector(60, 3);
@@ -287,6 +322,16 @@ TEST(AutoSolver, ChangesItsMethodAndNotItsAnswers) {
     solver.solve_many(many);
     direct.solve_many(right);
     EXPECT_LT((many - right).norm(), 1e-8 * right.norm());
+    BlockColumns pushes;
+    pushes.clear(beam.flesh->moving());
+    for (int three = 0; three < columns / 3; ++three) {
+      pushes.entries.push_back({static_cast<std::uint32_t>(7 * three) % pushes.size, Block::Identity()});
+      pushes.close();
+    }
+    Eigen::MatrixXd gram, direct_gram;
+    solver.solve_gram(pushes, gram);
+    direct.solve_gram(pushes, direct_gram);
+    EXPECT_LE((gram - direct_gram).norm(), 1e-8 * direct_gram.norm());
   }
 }
 

@@ -13,18 +13,14 @@ struct BodyModes {
   StepSplit split;
 };
 
-BodyModes modes_of(const BodyAnswers& of, double T, int most, double highest) {
+BodyModes modes_of(const ToolContacts& contacts, const BodyAnswers& of, int most, double highest) {
   BodyModes out;
-  out.split = {T, of.body->damping()};
+  out.split = {contacts.step().T, of.body->damping()};
   const PivotedFactor factor = factor_pivoted(of.gram, kMostBodyModes, kExplained);
   out.picks = factor.picks;
-  const auto picks = static_cast<Eigen::Index>(out.picks.size());
-  Rows picked(of.body->size(), picks);
-  for (Eigen::Index row = 0; row < picked.rows(); ++row)  // as they are stored
-    for (Eigen::Index k = 0; k < picks; ++k) picked(row, k) = of.answers(row, out.picks[static_cast<std::size_t>(k)]);
+  const Rows picked = answers_to(contacts, of, out.picks);
   of.body->weigh(picked, out.weighed);
-  const Eigen::MatrixXd mass = picked.transpose() * out.weighed;
-  out.modes = find_modes(factor, mass, out.split, most, highest);
+  out.modes = find_modes(factor, picked.transpose() * out.weighed, out.split, most, highest);
   return out;
 }
 
@@ -99,7 +95,7 @@ Eigen::MatrixXd condense_bodies(const ToolContacts& contacts, double tick, Conde
   for (std::uint32_t b = 0; b < step.bodies.size(); ++b) {
     if (step.bodies[b]->size() == 0 || !contacts.takes_part(b)) continue;
     const BodyAnswers answers = answers_of(contacts, b);
-    const BodyModes body = modes_of(answers, step.T, kMaxModes - out.modes, kHighestPerTick / tick);
+    const BodyModes body = modes_of(contacts, answers, kMaxModes - out.modes, kHighestPerTick / tick);
     lag += scatter(answers, body, out, W);
     describe_modes(contacts, answers, body, out);
     out.modes += body.modes.count();
