@@ -1,5 +1,7 @@
 #include "systems/tool/handle_model.h"
 
+#include "systems/tool/symmetric_product.h"
+
 namespace pliant {
 
 void CondensedContacts::resize(int most_contacts, int most_modes) {
@@ -39,8 +41,8 @@ void CondensedContacts::prepare_tick(double seconds) {
   const Rows6 followed = inverse.head(modes).asDiagonal() * border.topRows(modes);
   reduced -= border.topRows(modes).transpose() * followed;
   reduced_handle.topRows(rows).noalias() -= from_modes.topLeftCorner(rows, modes) * followed;
-  const Rows scaled = from_modes.topLeftCorner(rows, modes) * inverse.head(modes).cwiseSqrt().asDiagonal();
-  w.noalias() += scaled * scaled.transpose();
+  const Rows scaled = inverse.head(modes).cwiseSqrt().asDiagonal() * from_modes.topLeftCorner(rows, modes).transpose();
+  w += symmetric_product(scaled, scaled);
 }
 
 }  // namespace pliant

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/tool/symmetric_product.h"
+
 namespace pliant {
 
 PivotedFactor factor_pivoted(const Eigen::MatrixXd& gram, int most, double share) {
@@ -67,11 +69,8 @@ Modes find_modes(const PivotedFactor& factor, const Eigen::MatrixXd& mass, const
 }
 
 Eigen::MatrixXd left_flexibility(const Eigen::MatrixXd& gram, const Modes& modes, const StepSplit& split) {
-  const Eigen::MatrixXd share = modes.at_contacts * modes.step_share.cwiseSqrt().asDiagonal();
-  Eigen::MatrixXd left = gram;
-  left.selfadjointView<Eigen::Lower>().rankUpdate(share, -1.0);
-  left.triangularView<Eigen::StrictlyUpper>() = left.transpose();
-  return split.elastic() * left;
+  const Rows share = (modes.at_contacts * modes.step_share.cwiseSqrt().asDiagonal()).transpose();
+  return split.elastic() * (gram - symmetric_product(share, share));
 }
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
 #include "systems/tool/reduction/condense_bodies.h"
 
 #include "systems/tool/reduction/body_answers.h"
+#include "systems/tool/symmetric_product.h"
 
 namespace pliant {
 namespace {
@@ -20,7 +21,7 @@ BodyModes modes_of(const ToolContacts& contacts, const BodyAnswers& of, int most
   out.picks = factor.picks;
   const Rows picked = answers_to(contacts, of, out.picks);
   of.body->weigh(picked, out.weighed);
-  out.modes = find_modes(factor, picked.transpose() * out.weighed, out.split, most, highest);
+  out.modes = find_modes(factor, symmetric_product(picked, out.weighed), out.split, most, highest);
   return out;
 }
 
