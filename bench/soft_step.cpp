@@ -423,7 +423,11 @@ void print_memory(const std::vector<Costs>& all) {
                per_tetrahedron(c, c.mesh_bytes), per_tetrahedron(c, c.step_bytes), 1e-6 * c.model_bytes);
 }
 
-int run(bool small, int repeats, const std::string& out) {
+// Which rows: every size on the usual bed and every bed under the usual size, those of them up to 2,016 tetrahedra, or
+// the goal's alone.
+enum class Which { kAll, kSmall, kUsual };
+
+int run(Which which, int repeats, const std::string& out) {
   Report report;
   std::vector<Costs> all;
   std::vector<std::pair<const char*, Costs>> ticks;
@@ -433,13 +437,16 @@ int run(bool small, int repeats, const std::string& out) {
   for (const Cells& cells : kSizes)
     for (const Studs& bed : kBeds) {
       const bool usual_size = cells.along == kUsualSize.along, usual_bed = bed.count() == kUsualBed.count();
-      if ((!usual_size && !usual_bed) || (small && cells.along > kUsualSize.along)) continue;
+      const bool wanted = which == Which::kUsual   ? usual_size && usual_bed
+                          : which == Which::kSmall ? cells.along <= kUsualSize.along
+                                                   : true;
+      if ((!usual_size && !usual_bed) || !wanted) continue;
       all.push_back(measure(cells, bed, ToolForce::kContacts, repeats));
       print_row(all.back());
       if (usual_size && bed.count() <= kMaxCondensed) ticks.emplace_back("contacts", all.back());
     }
   const auto usual = std::find_if(all.begin(), all.end(), [](const Costs& c) { return c.usual; });
-  ticks.emplace_back("linear", measure(kUsualSize, kUsualBed, ToolForce::kLinear, repeats));
+  if (which != Which::kUsual) ticks.emplace_back("linear", measure(kUsualSize, kUsualBed, ToolForce::kLinear, repeats));
   print_ticks(ticks);
   print_memory(all);
   const std::vector<double>& step = usual->times[kProcessor];
@@ -474,9 +481,10 @@ int run(bool small, int repeats, const std::string& out) {
 }
 
 constexpr const char* kHelp =
-    "bench_soft_step [--small] [--repeat N] [--out FILE.json]\n"
+    "bench_soft_step [--small | --usual] [--repeat N] [--out FILE.json]\n"
     "What a soft step and a touch tick of a tool cost, stage by stage, beside their errors; with memory.\n"
     "  --small     only up to 2,016 tetrahedra\n"
+    "  --usual     only 2,016 tetrahedra with 60 contacts, the goal's row\n"
     "  --repeat N  every step counts with its least time of so many runs (default 3)\n"
     "  --out FILE  the same as JSON\n"
     "Example:\n"
@@ -488,14 +496,16 @@ constexpr const char* kHelp =
 int main(int argc, char** argv) {
   using namespace pliant;
   int repeats = 3;
+  Which which = Which::kAll;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--help" || argument == "-h") {
       fmt::print("{}", kHelp);
       return 0;
     }
+    if (argument == "--small") which = Which::kSmall;
+    if (argument == "--usual") which = Which::kUsual;
     if (argument == "--repeat" && i + 1 < argc) repeats = std::clamp(std::atoi(argv[++i]), 1, 100);
   }
-  const BenchArguments arguments(argc, argv, "--small");
-  return run(arguments.on, repeats, arguments.out);
+  return run(which, repeats, BenchArguments(argc, argv).out);
 }
