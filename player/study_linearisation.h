@@ -41,7 +41,8 @@ struct LinearisationFigures {
   std::vector<MethodFigures> methods;  // held, linear, contacts, full
   std::vector<ForceSample> samples;
   double touch_p50_us = 0.0, touch_p99_us = 0.0, touch_max_us = 0.0;  // tool_feedback, clocks together
-  double jump_share = 0.0;  // [1] largest change at an update over the largest in the steps around it
+  double jump_share = 0.0;     // [1] largest change in an update's tick or the next five, over the slope around it
+  int updates = 0, jumps = 0;  // jumps: those where it is above 2
 };
 
 // Both end with an error when `interrupt` is requested.

@@ -32,11 +32,19 @@ Vector6 displacement(const RigidMotion& from, const RigidMotion& to) {
   return join(to.pose.position - from.pose.position, vector_of(to.pose.rotation * glm::conjugate(from.pose.rotation)));
 }
 
-// From the next tick on. Whatever the wrench was, it goes on from there: that tick finds by how much the new
-// description differs, all inertia included, and the difference fades.
+// From the next tick on. Whatever the wrench was, it goes on from there, and what the new description differs by fades.
 void use(ToolTouchState& tool, ToolForce force) {
   tool.used = force;
   tool.joins = true;
+  tool.settling = 0;
+}
+
+// Of a short soft step, half. None where only the contacts know what the handle pushes against (stiff_contacts.h).
+int settle_ticks(const HandleModel& model) {
+  const CondensedContacts& contacts = model.contacts;
+  const auto end = contacts.stiff.begin() + contacts.count;
+  if (std::find(contacts.stiff.begin(), end, 1) != end) return 0;
+  return std::clamp(static_cast<int>(0.5 * model.soft_step / contacts.tick), 1, kSettleTicks);
 }
 
 void adopt(ToolTouchState& tool, const HandleModel& model) {
@@ -49,6 +57,7 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   tool.contacts.start(model.contacts);
   tool.late = 0;
   use(tool, tool.wanted);
+  if (tool.used == ToolForce::kContacts) tool.settling = settle_ticks(model);
 }
 
 // The model fades to nothing once it is too old to be believed; until then 1.
@@ -61,7 +70,30 @@ LinearModel scaled(const LinearModel& model, double factor) {
   return {model.force * factor, model.stiffness * factor, model.damping * factor, model.mass * factor};
 }
 
+// What the model says without its contacts solved again, over a tick.
+Vector6 plain_tick(const ToolTouchState& tool, const HandleModel& model, double believed, double dt,
+                   TickHandle& handle) {
+  if (tool.used != ToolForce::kHeld)
+    return linear_tick(scaled(model.linear, believed), model.handle.velocity, tool.displacement, dt, handle);
+  LinearModel held;
+  held.force = model.force;
+  return linear_tick(held, Vector6::Zero(), Vector6::Zero(), dt, handle);
+}
+
+Vector6 contact_tick(ToolTouchState& tool, const HandleModel& model, TickHandle& handle) {
+  const Vector6 wrench = condensed_tick(model.contacts, tool.contacts, tool.limits, handle);
+  tool.late = tool.contacts.report.in_time ? 0 : tool.late + 1;
+  tool.ticks_late += !tool.contacts.report.in_time;
+  return wrench;
+}
+
 // One implicit step of the handle between device and model.
+//
+// A new description of the wrench adds the difference that leaves it as it was if the handle goes on as it did. Found
+// while the handle went by the new description alone, it would hold the flesh's resistance to a jerk that the very next
+// tick does not know. A new model's contacts, besides, stop within a tick or two what still moves into one another at
+// the step's end. So they first go along unseen, the linear model saying only what a change of the handle's motion
+// meets: where contacts slide, it does not know which way the force goes.
 void step(ToolTouchState& tool, const HandleModel& model, const Handle6& settings, Tick tick) {
   const RigidMotion target = tool.sensed.at(model.centre);
   const CouplingForce coupling = coupling_force(settings, tool.handle, target);
@@ -72,33 +104,37 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   handle.inertia.diagonal() += bond.matrix;
   // What carries the tool is as old as the flesh's weight in the model: without the one, the other would lift the hand.
   const double believed = trust(model, tick.time);
-  const Vector6 felt = tool.wrench;
   if (believed < 1.0 && tool.used != ToolForce::kLinear) use(tool, ToolForce::kLinear);
-  if (tool.joins) tool.fade.setZero();
+  const Vector6 felt = believed * tool.wrench;
+  const bool contacts_alone = tool.used == ToolForce::kContacts && tool.settling == 0;
+  if (tool.joins || tool.settling > 0) {
+    TickHandle same;
+    same.velocity = handle.velocity;
+    same.moved = true;
+    same.next = handle.velocity + tool.gained;
+    tool.fade = contacts_alone ? Vector6(Vector6::Zero()) : felt - plain_tick(tool, model, believed, tick.dt, same);
+    tool.fade_left = kJoinShare * model.soft_step / tick.dt;
+  }
   handle.right =
       model.handle_mass * tool.handle.velocity + bond.right + tick.dt * (believed * model.handle_load + tool.fade);
-  switch (tool.used) {
-    case ToolForce::kHeld: {
-      LinearModel held;
-      held.force = model.force;
-      tool.wrench = linear_tick(held, Vector6::Zero(), Vector6::Zero(), tick.dt, handle);
-      break;
-    }
-    case ToolForce::kLinear:
-      tool.wrench =
-          linear_tick(scaled(model.linear, believed), model.handle.velocity, tool.displacement, tick.dt, handle);
-      break;
-    case ToolForce::kContacts:
-      tool.wrench = condensed_tick(model.contacts, tool.contacts, tool.limits, handle);
-      tool.late = tool.contacts.report.in_time ? 0 : tool.late + 1;
-      tool.ticks_late += !tool.contacts.report.in_time;
-      break;
-  }
-  if (tool.joins) tool.fade = believed * felt - tool.wrench;
-  tool.joins = false;
+  tool.wrench = contacts_alone ? contact_tick(tool, model, handle) : plain_tick(tool, model, believed, tick.dt, handle);
+  if (tool.joins && contacts_alone) tool.fade = felt - tool.wrench;
   tool.wrench += tool.fade;
-  tool.fade *= std::exp(-tick.dt / (kFadeShare * model.soft_step));
+  tool.joins = false;
+  if (tool.settling > 0) {
+    TickHandle led;
+    led.velocity = tool.handle.velocity;
+    led.moved = true;
+    led.next = handle.velocity;
+    const Vector6 contacts = contact_tick(tool, model, led);
+    if (--tool.settling == 0) tool.fade = tool.wrench - contacts;
+  }
+  if (tool.settling == 0) {
+    tool.fade *= std::max(0.0, 1.0 - 1.0 / tool.fade_left);
+    tool.fade_left = std::max(1.0, tool.fade_left - 1.0);
+  }
 
+  tool.gained = handle.velocity - tool.handle.velocity;
   tool.handle.velocity = handle.velocity;
   tool.handle.pose.position += tick.dt * linear(handle.velocity);
   tool.handle.pose.rotation =
@@ -126,6 +162,7 @@ bool finite(const RigidMotion& motion) {
 void forget(ToolTouchState& tool) {
   tool.placed = false;
   tool.handle = tool.sensed;
+  tool.gained.setZero();
   tool.fade.setZero();
   tool.wrench.setZero();
   tool.device_wrench.setZero();
@@ -158,6 +195,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
     }
   } else {  // the handle stays where it is until there is a device to go to
     tool.handle.velocity.setZero();
+    tool.gained.setZero();
     tool.sensed.velocity.setZero();
   }
   tell_soft_clock(tool, tick);

@@ -20,7 +20,9 @@ enum class ToolForce : std::uint8_t {
 };
 
 // Tunables of the touch tick. Unit, usual value, and what changing it does.
-inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: a jump between models fades with this time constant
+inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: a model that is too old fades with this time constant
+inline constexpr double kJoinShare = 3.0 / 8.0;   // [1] of T: what two models differ by fades evenly; shorter: steeper
+inline constexpr int kSettleTicks = 3;            // of a new model, its contacts unfelt; fewer: its impacts jump
 inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to nothing
 inline constexpr int kLateTicks = 3;              // ticks in a row over budget, then the linear model takes over
 inline constexpr int kTickSweeps = 20;            // a tick's Gauss-Seidel sweeps at most; they start warm
@@ -54,8 +56,11 @@ struct ToolTouchState {
   RigidMotion handle;                      // of its centre
   Vector6 displacement = Vector6::Zero();  // d, of the model in use
   CondensedState contacts;
-  Vector6 fade = Vector6::Zero();  // [N], [N m] added to the model's wrench, fading
-  bool joins = false;              // the next tick is the first by `used`, or by a new model
+  Vector6 fade = Vector6::Zero();    // [N], [N m] added to the model's wrench, fading
+  double fade_left = 0.0;            // [1] ticks until it is nothing
+  bool joins = false;                // the next tick is the first by `used`, or by a new model
+  int settling = 0;                  // ticks for which the contacts still go along unseen
+  Vector6 gained = Vector6::Zero();  // [m/s], [rad/s] of the handle's velocity, over the last tick
 
   // For display and devices.
   RigidMotion sensed;                       // the device

@@ -4,14 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <vector>
 
 #include "systems/device/devices.h"
 #include "systems/device/safety.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
+#include "tests/scenes/tet_shapes.h"
+#include "tests/scenes/tool_stage.h"
 #include "tests/tool/press_scene.h"
 
 #ifndef PLIANT_SANITIZED
@@ -131,10 +135,60 @@ TEST(ToolFeedback, AModelsUpdateIsNoJump) {
       most = std::max(most, std::abs(stage.state().wrench[1] - before));
       before = stage.state().wrench[1];
     }
-    // Fading over T/3 = 5.6 ms changes at most 1 - e^(-1/5.6) of the difference in a tick.
-    EXPECT_LT(most, 1.0 - std::exp(-kTick * 3.0 * 60.0) + 1e-9);
+    // Fading evenly over 3/8 T = 6.3 ms changes 0.16 of the difference in a tick.
+    EXPECT_LT(most, kTick * 60.0 / kJoinShare + 1e-9);
     EXPECT_NEAR(before, 1.5, 2e-3);
   }
+}
+
+constexpr std::size_t kUpdateTicks = 6;  // an update's own tick and the five after it
+
+// The largest change in the ticks of the update at tick `at`, over the largest in the others `around` it.
+double jump_over_slope(const std::vector<dvec3>& force, std::size_t at, std::size_t before, std::size_t after) {
+  const auto change = [&](std::size_t i) { return length(force[i] - force[i - 1]); };
+  double jump = 0.0, slope = 0.0;
+  for (std::size_t i = before + kUpdateTicks; i < after; ++i)
+    if (i < at || i >= at + kUpdateTicks) slope = std::max(slope, change(i));
+  for (std::size_t i = at; i < at + kUpdateTicks; ++i) jump = std::max(jump, change(i));
+  return jump / slope;
+}
+
+// A soft finger is pressed into a soft block on the ground, then drawn along it.
+TEST(ToolFeedback, NoTickAfterAModelsUpdateChangesTheForceBeyondTwiceTheSlope) {
+  scenes::ToolStage stage(1.0 / 60.0);
+  RigidBody floor;
+  floor.fixed = true;
+  stage.add_rigid(scenes::box(dvec3(0.3, 0.02, 0.3)), floor, Pose{dvec3(0, -0.01, 0), {1, 0, 0, 0}});
+  SoftBody flesh = firm_flesh();
+  flesh.friction_static = flesh.friction_sliding = 0.4;
+  stage.add_soft(tets::box(4, 2, 4, dvec3(-0.04, 0.0, -0.04), dvec3(0.04, 0.03, 0.04)), flesh, Pose{});
+  TetMesh finger = tets::box(2, 3, 2, dvec3(-0.01, -0.015, -0.01), dvec3(0.01, 0.015, 0.01));
+  tets::hold(
+      finger, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 6e-3; });
+  const Handle6 handle;
+  const Entity tool = stage.add_soft(finger, flesh, Pose{dvec3(0, 0.047, 0), {1, 0, 0, 0}}, &handle);
+  stage.prepare();
+  const ToolTouchState& state = *stage.world.tools->tools[0];
+  std::vector<dvec3> force;
+  std::vector<std::size_t> updates;
+  std::uint64_t newest = 0;
+  const auto look = [&] {
+    if (state.model.read().step != newest) updates.push_back(force.size());
+    newest = state.model.read().step;
+    force.push_back(linear(state.wrench));
+  };
+  stage.lead(tool, dvec3(0, 0.047, 0), 0.1, look);
+  stage.lead(tool, dvec3(0, 0.037, 0), 0.31, look);  // so that the device turns between two updates
+  stage.lead(tool, dvec3(0.02, 0.037, 0.005), 0.4, look);
+  ASSERT_GT(length(force.back()), 0.1);
+  const std::size_t touched = 200;
+  int seen = 0;
+  for (std::size_t k = 1; k + 1 < updates.size(); ++k) {
+    if (updates[k - 1] < touched) continue;
+    EXPECT_LT(jump_over_slope(force, updates[k], updates[k - 1], updates[k + 1]), 2.0) << updates[k];
+    ++seen;
+  }
+  EXPECT_GT(seen, 30);
 }
 
 TEST(ToolFeedback, AModelThatGrewOldFadesToNothing) {
