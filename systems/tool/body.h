@@ -72,6 +72,8 @@ class Body {
   virtual void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const;
   // v = v* + dv, dv = A^-1 J^T lambda (already solved).
   virtual void correct(const Vector& dv) = 0;
+  // [m/s] Per skin vertex, by velocity() as it is now.
+  virtual void move_skin(std::vector<dvec3>& out) const { out.assign(skin_position.size(), dvec3(0)); }
   // x += T v; refreshes skin_position.
   virtual void advance(double T) = 0;
   // Yielding surfaces: w += compliance [m/(N s)... per T] between contacts on this body; rows 3 * contact.

@@ -11,6 +11,7 @@ constexpr double kCrease = 0.5;      // [1] cosine between triangles: no contact
 constexpr int kMostTriangles = 8;    // walked over in a step
 constexpr double kParallel = 1e-2;   // [1] sine below which two edges have no normal of their own
 constexpr double kDeepest = 0.25;    // [mean edges] foretold to be deeper than this: it will not go on as it did
+constexpr double kLeast = 5e-3;      // [1] sine: normals that lean less than this are as they were
 constexpr double kDifference = 0.5;  // [mean edges]
 constexpr double kReach = 0.3;       // [mean edges] farther, a turning by differences says nothing
 
@@ -25,15 +26,33 @@ double edge_of(const FeaturePair& pair) {
   return static_cast<double>(std::min(pair.a.mesh().mean_edge, pair.b.mesh().mean_edge));
 }
 
-// Of the smooth surface: corners blended, but where a crease meets a corner the facet's own.
-dvec3 smooth_normal(const Skin& skin, const SurfacePoint& point) {
-  const uvec3 corners = skin.mesh().triangles[point.triangle];
-  const dvec3 facet = skin.normal(point.triangle);
-  dvec3 n(0.0);
-  for (int i = 0; i < 3; ++i)
-    n += point.barycentric[i] * (skin.smooth(corners[i]) ? skin.vertex_normal(corners[i]) : facet);
-  return n;
-}
+// A surface as it is where the step ends; or as it rests, turned to where one of its triangles is.
+class Surface {
+ public:
+  explicit Surface(const Skin& skin) : skin_(skin) {}
+  Surface(const Skin& skin, std::uint32_t triangle) : skin_(skin), resting_(true), turn_(skin.turn(triangle)) {}
+  const Skin& skin() const { return skin_; }
+  bool smooth(std::uint32_t v) const { return resting_ ? skin_.rest().smooth[v] != 0 : skin_.smooth(v); }
+  double curvature(std::uint32_t v) const { return resting_ ? skin_.rest().curvature[v] : skin_.curvature(v); }
+  // Corners blended, but where a crease meets a corner the facet's own.
+  dvec3 normal(const SurfacePoint& point) const {
+    const uvec3 corners = skin_.mesh().triangles[point.triangle];
+    dvec3 n(0.0);
+    for (int i = 0; i < 3; ++i)
+      n += point.barycentric[i] * (smooth(corners[i]) ? vertex_normal(corners[i]) : facet(point.triangle));
+    return resting_ ? turn_ * n : n;
+  }
+
+ private:
+  dvec3 vertex_normal(std::uint32_t v) const {
+    return resting_ ? skin_.rest().vertex_normal[v] : skin_.vertex_normal(v);
+  }
+  dvec3 facet(std::uint32_t t) const { return resting_ ? skin_.rest().normal[t] : skin_.normal(t); }
+
+  const Skin& skin_;
+  bool resting_ = false;
+  dmat3 turn_{1};
+};
 
 // One side of a contact: the normal of the surface at its point and how curved that is; no normal where it is sharp.
 struct Lean {
@@ -42,16 +61,16 @@ struct Lean {
   bool sharp = true;
 };
 
-Lean lean_at(const Skin& skin, const SurfacePoint& point, bool face) {
-  const uvec3 corners = skin.mesh().triangles[point.triangle];
+Lean lean_at(const Surface& surface, const SurfacePoint& point, bool face) {
+  const uvec3 corners = surface.skin().mesh().triangles[point.triangle];
   Lean lean;
   lean.sharp = false;
   for (int i = 0; i < 3; ++i) {
     if (point.barycentric[i] == 0.0) continue;
-    lean.sharp |= !face && !skin.smooth(corners[i]);
-    lean.curvature += point.barycentric[i] * std::max(0.0, skin.curvature(corners[i]));
+    lean.sharp |= !face && !surface.smooth(corners[i]);
+    lean.curvature += point.barycentric[i] * std::max(0.0, surface.curvature(corners[i]));
   }
-  if (!lean.sharp) lean.normal = smooth_normal(skin, point);
+  if (!lean.sharp) lean.normal = surface.normal(point);
   return lean;
 }
 
@@ -69,10 +88,10 @@ dvec3 without(dvec3 v, dvec3 along) {
 }
 
 // `offset` [m]: a stands so far aside from where it is foretold.
-std::optional<Touch> vertex_touch(const FeaturePair& pair, dvec3 offset) {
+std::optional<Touch> vertex_touch(const FeaturePair& pair, const Surface& of_a, const Surface& of_b, dvec3 offset) {
   const Skin& b = pair.b;
   const dvec3 p = pair.a.ahead(pair.feature_a) + offset;
-  std::uint32_t t = pair.feature_b;
+  std::uint32_t t = pair.feature_b, from = kBorder;
   for (int walked = 0; walked < kMostTriangles; ++walked) {
     const uvec3 c = b.mesh().triangles[t];
     const dvec3 x0 = b.ahead(c.x), x1 = b.ahead(c.y), x2 = b.ahead(c.z), n = cross(x1 - x0, x2 - x0);
@@ -82,20 +101,22 @@ std::optional<Touch> vertex_touch(const FeaturePair& pair, dvec3 offset) {
     w.z = 1.0 - w.x - w.y;
     const int outside = w.x <= w.y ? (w.x <= w.z ? 0 : 2) : (w.y <= w.z ? 1 : 2);
     const std::uint32_t next = w[outside] < 0.0 ? b.mesh().across[t][(outside + 1) % 3] : kBorder;
-    if (next != kBorder && dot(b.normal(next), b.normal(t)) > kCrease) {
+    // Over an edge that bulges, each triangle sends to the other.
+    if (next != kBorder && next != from && dot(b.normal(next), b.normal(t)) > kCrease) {
+      from = t;
       t = next;
       continue;
     }
     w = glm::max(w, dvec3(0.0));
     Touch touch{pair.a.point_at_vertex(pair.feature_a), b.point_on_triangle(t, w / (w.x + w.y + w.z))};
     touch.apart = p - (touch.b.barycentric.x * x0 + touch.b.barycentric.y * x1 + touch.b.barycentric.z * x2);
-    touch.normal = common_normal(lean_at(pair.a, touch.a, false), lean_at(b, touch.b, true));
+    touch.normal = common_normal(lean_at(of_a, touch.a, false), lean_at(of_b, touch.b, true));
     return touch;
   }
   return {};
 }
 
-std::optional<Touch> edge_touch(const FeaturePair& pair, dvec3 offset) {
+std::optional<Touch> edge_touch(const FeaturePair& pair, const Surface& of_a, const Surface& of_b, dvec3 offset) {
   const SkinEdge &on_a = pair.a.edges()[pair.feature_a], &on_b = pair.b.edges()[pair.feature_b];
   const dvec3 a0 = pair.a.ahead(on_a.from) + offset, b0 = pair.b.ahead(on_b.from);
   const dvec3 e = pair.a.ahead(on_a.to) + offset - a0, f = pair.b.ahead(on_b.to) - b0, r = a0 - b0, n = cross(e, f);
@@ -105,7 +126,7 @@ std::optional<Touch> edge_touch(const FeaturePair& pair, dvec3 offset) {
   const double s = std::clamp(on_e, 0.0, 1.0), t = std::clamp(on_f, 0.0, 1.0);
   Touch touch{pair.a.point_on_edge(pair.feature_a, s), pair.b.point_on_edge(pair.feature_b, t)};
   touch.apart = a0 + s * e - (b0 + t * f);
-  const Lean a = lean_at(pair.a, touch.a, false), b = lean_at(pair.b, touch.b, false);
+  const Lean a = lean_at(of_a, touch.a, false), b = lean_at(of_b, touch.b, false);
   touch.normal = common_normal(a, b);
   // What is sharp is touched across.
   if (a.sharp && b.sharp)
@@ -115,8 +136,8 @@ std::optional<Touch> edge_touch(const FeaturePair& pair, dvec3 offset) {
   return touch;
 }
 
-std::optional<Touch> touch_at(const FeaturePair& pair, dvec3 offset) {
-  std::optional<Touch> touch = pair.edges ? edge_touch(pair, offset) : vertex_touch(pair, offset);
+std::optional<Touch> touch_at(const FeaturePair& pair, const Surface& a, const Surface& b, dvec3 offset) {
+  std::optional<Touch> touch = pair.edges ? edge_touch(pair, a, b, offset) : vertex_touch(pair, a, b, offset);
   if (!touch) return {};
   const double size = length(touch->normal);
   touch->normal /= size;
@@ -124,11 +145,18 @@ std::optional<Touch> touch_at(const FeaturePair& pair, dvec3 offset) {
   return touch;
 }
 
+// Not where it is so deep that it will not go on as it did.
+std::optional<Touch> touch_ahead(const FeaturePair& pair) {
+  const std::optional<Touch> touch = touch_at(pair, Surface(pair.a), Surface(pair.b), dvec3(0.0));
+  if (!touch || dot(touch->normal, touch->apart) < -kDeepest * edge_of(pair)) return {};
+  return touch;
+}
+
 }  // namespace
 
 bool look_ahead(const FeaturePair& pair, ContactPoint& contact) {
-  const std::optional<Touch> touch = touch_at(pair, dvec3(0.0));
-  if (!touch || dot(touch->normal, touch->apart) < -kDeepest * edge_of(pair)) return false;
+  const std::optional<Touch> touch = touch_ahead(pair);
+  if (!touch) return false;
   contact.a = touch->a;
   contact.b = touch->b;
   contact.normal = touch->normal;
@@ -136,14 +164,26 @@ bool look_ahead(const FeaturePair& pair, ContactPoint& contact) {
   return true;
 }
 
+bool look_again(const FeaturePair& pair, ContactPoint& contact) {
+  const std::optional<Touch> touch = touch_ahead(pair);
+  if (!touch) return false;
+  const dvec3 own = touch->normal * contact.axes;
+  if (!(own.x > kSameSide) || std::max(std::abs(own.y), std::abs(own.z)) < kLeast) return false;
+  contact.normal = touch->normal;
+  contact.lean = dvec2(own.y, own.z) / own.x;
+  contact.end_gap = dot(touch->normal, touch->apart);
+  return true;
+}
+
 void find_turning(const FeaturePair& pair, ContactPoint& contact) {
   const double h = kDifference * edge_of(pair);
+  const Surface a(pair.a, contact.a.triangle), b(pair.b, contact.b.triangle);
   FeaturePair beside = pair;
   beside.normal = contact.normal;
   dmat2 turning(0.0);
   for (int k = 0; k < 2; ++k) {
     const dvec3 aside = h * contact.axes[k + 1];
-    const std::optional<Touch> ahead = touch_at(beside, aside), back = touch_at(beside, -aside);
+    const std::optional<Touch> ahead = touch_at(beside, a, b, aside), back = touch_at(beside, a, b, -aside);
     if (!ahead || !back) return;
     const dvec3 change = ahead->normal - back->normal;
     turning[k] = dvec2(dot(change, contact.axes[1]), dot(change, contact.axes[2])) / (2.0 * h);

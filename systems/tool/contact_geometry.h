@@ -27,8 +27,13 @@ struct FeaturePair {
 // the contact stays as it was found.
 bool look_ahead(const FeaturePair& pair, ContactPoint& contact);
 
+// After look_ahead, where the skins now know better how they end (Skin::foretell): normal and lean, which is against
+// the axes as they were laid, and end_gap. False: all stays as it was.
+bool look_again(const FeaturePair& pair, ContactPoint& contact);
+
 // After look_ahead, with the contact's axes laid: its turning, by differences over half an edge so that facets do not
-// count for more than they are, and its reach, which is nothing where the normal jumps within that distance.
+// count for more than they are, and its reach, which is nothing where the normal jumps within that distance. Curvature
+// is that of the shapes at rest: the dent in soft things comes along with what slides over them.
 void find_turning(const FeaturePair& pair, ContactPoint& contact);
 
 }  // namespace pliant

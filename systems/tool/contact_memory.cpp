@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/tool/contact_problem.h"
+
 namespace pliant {
 namespace {
 
@@ -58,7 +60,7 @@ void carry_over(const ContactPoint* last, ContactPoint& contact) {
   if (last) {
     const dvec3 kept = last->axes[1] - dot(last->axes[1], n) * n;
     if (dot(kept, kept) > 0.25) along = kept;
-    contact.impulse = last->impulse;
+    contact.impulse = last->impulse * leaning_axes(last->lean);
     contact.sliding = last->sliding;
   }
   const dvec3 t = normalize(along - dot(along, n) * n);

@@ -15,6 +15,10 @@ struct ContactPoint {
   dvec3 normal{0, 1, 0};                     // [1] world, unit, from b's outside towards a; where the step will end
   double gap = 0.0;                          // [m] along it, for the step's linear law: at the end it is gap + T u_n
   double depth = 0.0;                        // [m] >= 0: how deep a is behind b where the step begins
+  double end_gap = 0.0;                      // [m] foretold along the normal, after look_again
+  bool foretold = false;                     // normal and gap are those of the step's end
+  bool again = false;                        // foretold once more, with this step's impulses
+  dvec2 lean{0};                             // [1] of the normal against axes[0], along the tangents
   dmat2 turning{0};                          // [1/m] of the normal with slip (contact_geometry.h: find_turning)
   double reach = 0.0;                        // [m] of slip: beyond it, what was open when the step ended meets nothing
   dmat3 axes{1};                             // columns: normal, two tangents (steady from step to step)
@@ -22,6 +26,7 @@ struct ContactPoint {
   std::uint64_t key = 0;                     // the same pair of features has the same key in the next step: warm start
   dvec3 impulse{0};                          // [N s] along the axes, on a; of the last solve
   bool sliding = false;
+  std::uint32_t source = 0;  // whatever Proximity finds it by, in this step
 };
 
 // `out` comes in with the last contacts and their impulses: side, axes, impulse and sliding carry over by key.
@@ -32,6 +37,9 @@ class Proximity {
   explicit Proximity(const std::vector<std::unique_ptr<Body>>& bodies);
   ~Proximity();
   void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, double margin, std::vector<ContactPoint>& out);
+  // The same contacts, as find() gave them, where the step will end by the bodies' velocities as they now are
+  // (contact_geometry.h: look_again). False: nothing to speak of is different there.
+  bool look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts);
 
  private:
   struct Parts;

@@ -185,6 +185,12 @@ class Sweeper {
 
 }  // namespace
 
+dmat3 leaning_axes(dvec2 lean) {
+  const dvec3 n = normalize(dvec3(1.0, lean));
+  const dvec3 t = normalize(dvec3(0.0, 1.0, 0.0) - n.y * n);
+  return dmat3(n, t, cross(n, t));
+}
+
 void ContactProblem::resize(int contacts) {
   count = contacts;
   const Eigen::Index rows = 3 * contacts;

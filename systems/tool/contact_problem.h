@@ -33,6 +33,9 @@ struct ContactProblem {
   void resize(int contacts);
 };
 
+// Axes of a contact whose normal leans by `lean` [1] along its tangents, as columns in the axes that it was laid in.
+dmat3 leaning_axes(dvec2 lean);
+
 struct SweepLimits {
   int sweeps = 50;
   double tolerance = 1e-6;      // [1] of the largest |bias|: stop when the natural residual is below

@@ -62,6 +62,34 @@ dvec3 free_velocity(const Body& body, const SurfacePoint& point) {
          point.barycentric.z * body.skin_velocity[t.z];
 }
 
+// [m] How much less than its gap a contact is to close: what of a penetration this step does not undo, if nothing
+// yields.
+double still_inside(const ContactPoint& c, std::size_t i, double beta, const Delassus& delassus) {
+  const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+  return delassus.compliance(row, row) > 0.0 ? 0.0 : (1.0 - beta) * c.depth;
+}
+
+// The contacts' laws become those of the normals and gaps that they will have. An end gap was foretold with the
+// velocities of the solution that there is, and changes with what a new one does to them.
+void look_again(const std::vector<ContactPoint>& contacts, double T, double beta, const Delassus& delassus,
+                ContactProblem& problem) {
+  problem.own.assign(contacts.size(), dmat3(1.0));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactPoint& c = contacts[i];
+    if (!c.again) continue;
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    const double inside = still_inside(c, i, beta, delassus);
+    problem.own[i] = leaning_axes(c.lean);
+    const dvec3 normal = problem.own[i][0];
+    // Of the velocities alone, those of the solution and those without impulses.
+    problem.velocity[row] -= (c.gap + inside) / T, problem.bias[row] -= (c.gap + inside) / T;
+    const double closing =
+        dot(normal, dvec3(problem.velocity[row], problem.velocity[row + 1], problem.velocity[row + 2]));
+    const double left = (c.end_gap + inside) / T - closing;
+    for (int k = 0; k < 3; ++k) problem.bias[row + k] += left * normal[k];
+  }
+}
+
 }  // namespace
 
 void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
@@ -89,12 +117,11 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
     const ContactPoint& c = contacts[i];
     const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
     const dvec3 u = free_velocity(*bodies[c.body_a], c.a) - free_velocity(*bodies[c.body_b], c.b);
-    const bool yields = delassus.compliance(row, row) > 0.0;
     for (int k = 0; k < 3; ++k) {
       problem.bias[row + k] = dot(c.axes[k], u);
       problem.impulse[row + k] = c.impulse[k];
     }
-    problem.bias[row] += (c.gap + (yields ? 0.0 : (1.0 - beta) * c.depth)) / T;
+    problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus)) / T;
     problem.mu_static[i] = c.mu_static;
     problem.mu_sliding[i] = c.mu_sliding;
     problem.sliding[i] = c.sliding;
@@ -102,14 +129,14 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
 }
 
 void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
-                    const ContactProblem& problem, std::vector<ContactPoint>& contacts) {
+                    const std::vector<ContactPoint>& contacts, const Vector& impulses) {
   Rows dv;
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     if (bodies[b]->size() == 0) continue;
     dv.setZero(bodies[b]->size(), 1);
     for (const int i : delassus.of[b].contacts) {
       const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
-      const double* const l = &problem.impulse[3 * static_cast<Eigen::Index>(i)];
+      const double* const l = &impulses[3 * static_cast<Eigen::Index>(i)];
       const dvec3 impulse = c.axes * dvec3(l[0], l[1], l[2]);
       if (c.body_a == b) bodies[b]->push(c.a, impulse, dv, 0);
       if (c.body_b == b) bodies[b]->push(c.b, -impulse, dv, 0);
@@ -117,10 +144,29 @@ void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Dela
     if (!delassus.of[b].contacts.empty()) bodies[b]->solve(dv);
     bodies[b]->correct(dv);
   }
+}
+
+void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& contacts) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (int k = 0; k < 3; ++k) contacts[i].impulse[k] = problem.impulse[3 * static_cast<Eigen::Index>(i) + k];
     contacts[i].sliding = problem.sliding[i] != 0;
   }
+}
+
+SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
+                            double beta, const SweepLimits& limits, const Delassus& delassus,
+                            std::vector<ContactPoint>& contacts, ContactProblem& problem) {
+  problem.own.clear();
+  SweepReport report = solve(problem, limits);
+  apply_impulses(bodies, delassus, contacts, problem.impulse);
+  if (proximity.look_again(bodies, T, contacts)) {
+    const Vector first = problem.impulse;
+    look_again(contacts, T, beta, delassus, problem);
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, contacts, problem.impulse - first);
+  }
+  keep_impulses(problem, contacts);
+  return report;
 }
 
 }  // namespace pliant

@@ -30,8 +30,18 @@ struct Delassus {
 void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                    double T, double beta, Delassus& delassus, ContactProblem& problem);
 
-// Corrects every body that can move and writes impulse and `sliding` into the contacts.
+// Corrects every body that can move by what impulses [N s] do, three a contact along its axes.
 void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
-                    const ContactProblem& problem, std::vector<ContactPoint>& contacts);
+                    const std::vector<ContactPoint>& contacts, const Vector& impulses);
+// Impulse and `sliding`, into the contacts.
+void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& contacts);
+
+// solve(), and both of the above; twice: the second time
+// the contacts lie where the step will end by the first solution (Proximity::look_again); until then they were where
+// the last step's motion led. One round takes a third off the error of fingers that slide, a further one little. Second
+// sweeps start from the first ones' impulses; of a contact that is not foretold the law stays what it was.
+SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
+                            double beta, const SweepLimits& limits, const Delassus& delassus,
+                            std::vector<ContactPoint>& contacts, ContactProblem& problem);
 
 }  // namespace pliant

@@ -59,6 +59,7 @@ struct CondensedContacts {
   Vector push;                   // [m/s] count: <= 0: at this rate
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
+  std::vector<dvec2> lean;          // [1] of the normal against the axes that all this is written in
   std::vector<dmat2> turning;       // [1/m] of the normal with slip (contact_point.h)
   std::vector<double> reach;        // [m] of slip: beyond it an open contact meets nothing (contact_point.h)
   std::vector<dvec2> slip;          // [m] along the tangents, since the axes were laid

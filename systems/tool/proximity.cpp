@@ -252,6 +252,10 @@ struct Proximity::Parts {
     return std::min({mean_edge[f.body_a], mean_edge[f.body_b], kSlender * shortest});
   }
 
+  FeaturePair pair_of(const Found& f) const {
+    return {skins[f.body_a], skins[f.body_b], f.edges, f.feature_a, f.feature_b, f.meeting.normal};
+  }
+
   ContactPoint contact_of(const std::vector<std::unique_ptr<Body>>& bodies, const Candidate& candidate) const {
     const Found& f = found[candidate.source];
     const Body &a = *bodies[f.body_a], &b = *bodies[f.body_b];
@@ -265,13 +269,14 @@ struct Proximity::Parts {
     c.normal = f.meeting.normal;
     c.gap = f.meeting.gap;
     c.depth = std::max(0.0, -f.meeting.gap);
-    const FeaturePair pair{on_a, on_b, f.edges, f.feature_a, f.feature_b, f.meeting.normal};
-    const bool foretold = look_ahead(pair, c);
+    const FeaturePair pair = pair_of(f);
+    c.foretold = look_ahead(pair, c);
+    c.source = candidate.source;
     c.key = candidate.key;
     c.mu_static = std::sqrt(a.friction_static * b.friction_static);
     c.mu_sliding = std::sqrt(a.friction_sliding * b.friction_sliding);
     carry_over(f.last, c);
-    if (foretold) find_turning(pair, c);
+    if (c.foretold) find_turning(pair, c);
     return c;
   }
 
@@ -326,6 +331,24 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
     out.push_back(p.contact_of(bodies, c));
     p.deepest = std::max(p.deepest, out.back().depth);
   }
+}
+
+bool Proximity::look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                           std::vector<ContactPoint>& contacts) {
+  if (contacts.empty()) return false;
+  Parts& p = *parts_;
+  std::vector<dvec3> velocity;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i]->size() == 0) continue;
+    bodies[i]->move_skin(velocity);
+    p.skins[i].foretell(velocity, T);
+  }
+  bool any = false;
+  for (ContactPoint& contact : contacts) {
+    contact.again = contact.foretold && pliant::look_again(p.pair_of(p.found[contact.source]), contact);
+    any |= contact.again;
+  }
+  return any;
 }
 
 }  // namespace pliant

@@ -17,10 +17,10 @@ void place_skin(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& skin_pos
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) skin_position[v] = pose.position + r * dvec3(mesh.position(v));
 }
 
-// Of points that turn with `angular` about `centre`, which moves with `linear`.
-void move_skin(dvec3 centre, dvec3 linear, dvec3 angular, Body& body) {
-  for (std::size_t v = 0; v < body.skin_position.size(); ++v)
-    body.skin_velocity[v] = linear + cross(angular, body.skin_position[v] - centre);
+// Velocities of points that turn with `angular` about `centre`, which moves with `linear`.
+void move_points(const std::vector<dvec3>& points, dvec3 centre, dvec3 linear, dvec3 angular, std::vector<dvec3>& out) {
+  out.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = linear + cross(angular, points[i] - centre);
 }
 
 }  // namespace
@@ -73,7 +73,12 @@ void RigidState::free_step(double T, dvec3 gravity) {
   start_ << linear_.x, linear_.y, linear_.z, spin.x, spin.y, spin.z;
   const dvec3 v = linear_ + T * gravity, w = free_turn(T);
   velocity_ << v.x, v.y, v.z, w.x, w.y, w.z;
-  move_skin(centre_, v, w, *this);
+  move_skin(skin_velocity);
+}
+
+void RigidState::move_skin(std::vector<dvec3>& out) const {
+  const double* const v = velocity_.data();
+  move_points(skin_position, centre_, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, out);
 }
 
 void RigidState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
@@ -149,7 +154,7 @@ void FixedBody::set_velocity(dvec3 linear, dvec3 angular) {
 }
 
 void FixedBody::free_step(double, dvec3) {
-  move_skin(pose_.position, linear_, angular_, *this);
+  move_points(skin_position, pose_.position, linear_, angular_, skin_velocity);
 }
 
 void FixedBody::advance(double T) {

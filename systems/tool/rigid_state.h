@@ -29,6 +29,7 @@ class RigidState : public Body {
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override;
   void correct(const Vector& dv) override;
+  void move_skin(std::vector<dvec3>& out) const override;
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
   Vector starting_velocity() const override { return start_; }

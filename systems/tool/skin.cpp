@@ -42,6 +42,11 @@ Skin::Skin(const Body& body) : mesh_(body.skin) {
   curvature_.resize(mesh_->vertex_count, 0.0);
   vertex_normal_.resize(mesh_->vertex_count);
   normal_.resize(mesh_->triangles.size());
+  for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) position_[v] = dvec3(mesh_->position(v));
+  find_normals();
+  find_curvatures();
+  rest_ = {normal_, vertex_normal_, smooth_, curvature_};
+  std::fill(position_.begin(), position_.end(), dvec3(0.0));
   triangle_box_.resize(mesh_->triangles.size());
   vertex_box_.resize(mesh_->vertex_count);
   for (const std::vector<Box>& level : mesh_->tree.levels) boxes_.emplace_back(level.size());
@@ -178,13 +183,32 @@ EdgeShape Skin::edge_shape(std::uint32_t e) const {
   return shape;
 }
 
+dmat3 Skin::turn(std::uint32_t t) const {
+  const uvec3 c = mesh_->triangles[t];
+  const auto frame = [](dvec3 along, dvec3 normal) {
+    const dvec3 x = unit_or_zero(along);
+    return dmat3(x, normal, cross(x, normal));
+  };
+  const dvec3 rest = dvec3(mesh_->position(c.y)) - dvec3(mesh_->position(c.x));
+  return frame(position_[c.y] - position_[c.x], normal_[t]) * glm::transpose(frame(rest, rest_.normal[t]));
+}
+
+void Skin::foretell(const std::vector<dvec3>& velocity, double T) {
+  for (std::size_t v = 0; v < ahead_.size(); ++v) ahead_[v] = position_[v] + T * velocity[v];
+  position_.swap(ahead_);
+  find_normals();
+  find_curvatures();
+  position_.swap(ahead_);
+  foretold_ = true;
+}
+
 void Skin::refit(const Body& body, double T, double reach) {
   const std::uint32_t count = mesh_->vertex_count;
   const bool still = body.size() == 0 && std::all_of(body.skin_velocity.begin(), body.skin_velocity.end(),
                                                      [](const dvec3& v) { return v == dvec3(0); });
   const bool same = std::equal(position_.begin(), position_.end(), body.skin_position.begin());
-  if (still && still_ && same && reach == reach_) return;
-  still_ = still;
+  if (still && still_ && same && reach == reach_ && !foretold_) return;
+  still_ = still && same, foretold_ = false;  // a body that has just stopped is foretold to go on, once
   const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
   last_step_ = T;
   drift_ = dvec3(0.0);

@@ -57,6 +57,9 @@ class Skin {
   // [m] Where it will be at the step's end if it goes on as in the last one: contacts included, which displacements
   // leave out.
   dvec3 ahead(std::uint32_t v) const { return ahead_[v]; }
+  // Where it will be if the body keeps `velocity` [m/s, per vertex] for T [s]: ahead(), and normals and curvatures as
+  // they are there. All else stays as it is.
+  void foretell(const std::vector<dvec3>& velocity, double T);
   std::array<Moving, 3> triangle(std::uint32_t t) const;
   std::array<Moving, 2> edge(std::uint32_t e) const { return {vertex(edges_[e].from), vertex(edges_[e].to)}; }
   EdgeShape edge_shape(std::uint32_t e) const;
@@ -64,6 +67,14 @@ class Skin {
   dvec3 vertex_normal(std::uint32_t v) const { return vertex_normal_[v]; }  // [1] unit
   bool smooth(std::uint32_t v) const { return smooth_[v] != 0; }  // no triangle around it leans by more than 37 degrees
   double curvature(std::uint32_t v) const { return curvature_[v]; }  // [1/m] mean; > 0: bulges
+  // Of the shape at rest, object frame.
+  struct Shape {
+    std::vector<dvec3> normal, vertex_normal;
+    std::vector<std::uint8_t> smooth;
+    std::vector<double> curvature;
+  };
+  const Shape& rest() const { return rest_; }
+  dmat3 turn(std::uint32_t t) const;      // of a triangle, from where it rests
   dvec3 drift() const { return drift_; }  // [m] mean displacement; boxes hold what moves besides
   // Of triangle runs as in Mesh::tree, level 0 the leaves.
   const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
@@ -96,13 +107,15 @@ class Skin {
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
   std::vector<std::uint32_t> near_first_, near_;               // ascending runs per vertex
   std::vector<dvec3> position_, displacement_, ahead_;
+  Shape rest_;
   std::vector<dvec3> normal_, vertex_normal_;
   std::vector<std::uint8_t> smooth_;
   std::vector<double> curvature_, edge_count_;
   double last_step_ = 0.0;  // [s]
   dvec3 drift_{0};
   double reach_ = -1.0;
-  bool still_ = false;  // nothing moved in the last step
+  bool still_ = false;     // nothing moved in the last step
+  bool foretold_ = false;  // normals are those of ahead()
   std::vector<Box> vertex_box_, triangle_box_;
   std::vector<std::vector<Box>> boxes_, normal_boxes_;
 };

@@ -83,9 +83,8 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const S
     flesh_.velocity()[i] = dvec3(0);
   }
   velocity_ = Vector::Zero(size());
-  node_velocity_.assign(tets.nodes.size(), dvec3(0));
   refresh_skin(flesh_.position(), skin_position);
-  refresh_skin(node_velocity_, skin_velocity);
+  skin_velocity.assign(skin_position.size(), dvec3(0));
 }
 
 void SoftBodyState::set_device(const Pose& pose, const Vector6& velocity) {
@@ -107,8 +106,13 @@ void SoftBodyState::free_step(double T, dvec3 gravity) {
   } else {
     solvable_ = solver_.factorise(flesh_.inner(), {}, Matrix6::Zero(), flesh_.right(), velocity_);
   }
-  for (std::uint32_t i = 0; i < tets_.node_count(); ++i) node_velocity_[i] = node_velocity(i);
-  refresh_skin(node_velocity_, skin_velocity);
+  move_skin(skin_velocity);
+}
+
+void SoftBodyState::move_skin(std::vector<dvec3>& out) const {
+  std::vector<dvec3> of_nodes(tets_.node_count());
+  for (std::uint32_t i = 0; i < of_nodes.size(); ++i) of_nodes[i] = node_velocity(i);
+  refresh_skin(of_nodes, out);
 }
 
 // What holds up the whole tool in its rest shape. A hand that lifts the weight and lowers it elsewhere would be given

@@ -35,6 +35,7 @@ class SoftBodyState final : public Body {
   void solve(Rows& columns) const override { solver_.solve(columns); }
   void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const override;
   void correct(const Vector& dv) override { velocity_ += dv; }
+  void move_skin(std::vector<dvec3>& out) const override;
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
   RayleighDamping damping() const override { return damping_; }
@@ -111,7 +112,6 @@ class SoftBodyState final : public Body {
   bool solvable_ = true;
   double T_ = 0.0;  // [s] of the last free_step
   Vector velocity_;
-  std::vector<dvec3> node_velocity_;  // [m/s] by velocity_, of the free motion
   std::optional<RigidMotion> device_, led_;
   CouplingForce coupling_;
   CouplingStep coupling_step_;

@@ -72,9 +72,9 @@ void solve_contacts(World& world, Tick tick) {
   build_problem(soft.bodies, soft.contacts, tick.dt, kPenetrationShare, soft.delassus, soft.problem);
   soft.times.delassus = ms_since(begin);
   const std::uint64_t built = now_ns();
-  soft.report = solve(soft.problem, kSweeps);
+  soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, kPenetrationShare, kSweeps, soft.delassus,
+                                soft.contacts, soft.problem);
   soft.times.sweeps = ms_since(built);
-  apply_impulses(soft.bodies, soft.delassus, soft.problem, soft.contacts);
   stop_non_finite(soft);
 }
 

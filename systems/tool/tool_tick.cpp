@@ -10,15 +10,13 @@ constexpr double kAnywhere = 1e9;    // [m] reach of what has touched: it slides
 constexpr double kGone = 1.0;        // [m] gap of what will not meet any more
 constexpr double kMostTurned = 0.5;  // [1] tangent: no normal is believed to turn farther between two models
 
-// A contact's axes after a slip, as columns in those that the model was written in: the normal has turned with the
-// surfaces' curvature.
-dmat3 turned_axes(const dmat2& turning, dvec2 slip) {
-  dvec2 lean = turning * slip;
+// A contact's axes after a slip, in those that the model was written in: the normal has turned with the surfaces'
+// curvature.
+dmat3 turned_axes(dvec2 lean, const dmat2& turning, dvec2 slip) {
+  lean += turning * slip;
   const double size = length(lean);
   if (size > kMostTurned) lean *= kMostTurned / size;
-  const dvec3 n = normalize(dvec3(1.0, lean));
-  const dvec3 t = normalize(dvec3(0.0, 1.0, 0.0) - n.y * n);
-  return dmat3(n, t, cross(n, t));
+  return leaning_axes(lean);
 }
 
 // w = A^-1 b, or as the handle is told. A: what one tick resists a change of w with.
@@ -147,7 +145,7 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
 
   // Signorini and Coulomb again.
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i)
-    state.problem.own[i] = turned_axes(model.turning[i], state.slip[i]);
+    state.problem.own[i] = turned_axes(model.lean[i], model.turning[i], state.slip[i]);
   fill_delassus(model, factor, handle, state);
   fill_bias(model, state, free_w, state.problem.bias);
   state.report = solve(state.problem, limits);

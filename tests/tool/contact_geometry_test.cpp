@@ -45,19 +45,31 @@ double degrees_between(dvec3 a, dvec3 b) {
   return glm::degrees(std::acos(std::min(1.0, dot(normalize(a), normalize(b)))));
 }
 
-// The corner of a block (sharp) slides over a sphere, 3 mm in a step.
-TEST(ContactGeometry, TheNormalIsTheOneWhereTheStepEnds) {
-  const dvec3 went(0.003, 0, 0.001), corner(-0.005, -0.005, -0.005);
-  const dvec3 now = kRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
-  Going block(test::block_mesh(vec3(0.01f)), now - corner, went);
-  const Going sphere(test::sphere_mesh(float(kRadius), 3), dvec3(0), dvec3(0));
-  std::uint32_t vertex = 0;
-  while (length(block.skin.vertex(vertex).x - now) > 1e-6) ASSERT_LT(++vertex, block.mesh.vertex_count);
-  ASSERT_FALSE(block.skin.smooth(vertex));
+// A block's corner (sharp) over a sphere.
+struct CornerOnSphere {
+  Going block, sphere;
+  std::uint32_t vertex = 0, triangle = 0;
+  CornerOnSphere(dvec3 now, dvec3 went)
+      : block(test::block_mesh(vec3(0.01f)), now - dvec3(-0.005), went),
+        sphere(test::sphere_mesh(float(kRadius), 3), dvec3(0), dvec3(0)),
+        triangle(triangle_towards(sphere.mesh, normalize(now))) {
+    while (length(block.skin.vertex(vertex).x - now) > 1e-6 && vertex + 1 < block.mesh.vertex_count) ++vertex;
+  }
+  FeaturePair pair() const { return {block.skin, sphere.skin, false, vertex, triangle, sphere.skin.normal(triangle)}; }
+};
 
-  const std::uint32_t found = triangle_towards(sphere.mesh, normalize(now));
+dmat3 axes_along(dvec3 normal) {
+  const dvec3 t = normalize(cross(normal, dvec3(0, 0, 1)));
+  return dmat3(normal, t, cross(normal, t));
+}
+
+// It slides 3 mm in a step.
+TEST(ContactGeometry, TheNormalIsTheOneWhereTheStepEnds) {
+  const dvec3 went(0.003, 0, 0.001), now = kRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
+  const CornerOnSphere scene(now, went);
+  const FeaturePair pair = scene.pair();
+  ASSERT_FALSE(pair.a.smooth(scene.vertex));
   ContactPoint contact;
-  const FeaturePair pair{block.skin, sphere.skin, false, vertex, found, sphere.skin.normal(found)};
   ASSERT_TRUE(look_ahead(pair, contact));
   EXPECT_LT(degrees_between(contact.normal, end), 0.5);
   EXPECT_GT(degrees_between(pair.normal, end), 4.0) << "where it began";
@@ -66,13 +78,55 @@ TEST(ContactGeometry, TheNormalIsTheOneWhereTheStepEnds) {
   EXPECT_GT(at_end, length(end) - kRadius - 1e-5);
   EXPECT_LT(at_end, length(end) - kRadius + sag);
 
-  contact.axes = dmat3(contact.normal, normalize(cross(contact.normal, dvec3(0, 0, 1))), dvec3(0));
-  contact.axes[2] = cross(contact.axes[0], contact.axes[1]);
+  contact.axes = axes_along(contact.normal);
   find_turning(pair, contact);
   EXPECT_GT(contact.reach, 0.0);
   for (int column = 0; column < 2; ++column)
     for (int row = 0; row < 2; ++row)
       EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kRadius : 0.0, 0.15 / kRadius);
+}
+
+// It has not moved yet, and the step itself tells where it will be.
+TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
+  const dvec3 went(0.003, 0, 0.001), now = kRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
+  CornerOnSphere scene(now, dvec3(0));
+  ContactPoint contact;
+  ASSERT_TRUE(look_ahead(scene.pair(), contact));
+  EXPECT_LT(degrees_between(contact.normal, now), 0.5);
+  contact.axes = axes_along(contact.normal);
+  const SurfacePoint a = contact.a, b = contact.b;
+
+  scene.block.skin.foretell(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kT), kT);
+  ASSERT_TRUE(look_again(scene.pair(), contact));
+  EXPECT_LT(degrees_between(contact.normal, end), 0.5);
+  EXPECT_LT(degrees_between(contact.axes * leaning_axes(contact.lean)[0], contact.normal), 1e-6);
+  EXPECT_NEAR(contact.end_gap, length(end) - kRadius, 1.5e-4);
+  EXPECT_EQ(contact.a.position, a.position) << "what pushes where is the step's first look";
+  EXPECT_EQ(contact.b.position, b.position);
+
+  scene.block.skin.refit(scene.block.body, kT, 1e-3);
+  EXPECT_LT(length(scene.block.skin.ahead(scene.vertex) - now), 1e-9) << "the next step knows nothing of it";
+}
+
+// Soft things are dented by what slides over them, and the dent comes along: curvature is that of the shape at rest.
+TEST(ContactGeometry, ADentDoesNotCountAsCurvature) {
+  const dvec3 now = kRadius * kUp;
+  CornerOnSphere scene(now, dvec3(0));
+  std::vector<dvec3>& skin = scene.sphere.body.skin_position;
+  for (dvec3& x : skin) x.y = std::min(x.y, 0.8 * kRadius);
+  scene.sphere.skin.refit(scene.sphere.body, kT, 1e-3);
+  scene.sphere.skin.refit(scene.sphere.body, kT, 1e-3);
+  scene.block.body.skin_position[scene.vertex].y = 0.8 * kRadius;
+  scene.block.skin.refit(scene.block.body, kT, 1e-3);
+  scene.block.skin.refit(scene.block.body, kT, 1e-3);
+  ContactPoint contact;
+  ASSERT_TRUE(look_ahead(scene.pair(), contact));
+  EXPECT_LT(degrees_between(contact.normal, kUp), 0.1);
+  contact.axes = axes_along(contact.normal);
+  find_turning(scene.pair(), contact);
+  for (int column = 0; column < 2; ++column)
+    for (int row = 0; row < 2; ++row)
+      EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kRadius : 0.0, 0.2 / kRadius);
 }
 
 // Vertices of one sphere beside the point where it touches another: both surfaces lean there, the contact does not.
@@ -93,6 +147,14 @@ TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
     ++looked_at;
   }
   EXPECT_GT(looked_at, 3);
+}
+
+// What has come to rest stays where it is, also in what is foretold of it.
+TEST(ContactGeometry, WhatStopsIsForetoldWhereItStands) {
+  Going block(test::block_mesh(vec3(0.01f)), dvec3(0.02, 0, 0), dvec3(0.003, 0, 0.001));
+  for (int i = 0; i < 3; ++i) block.skin.refit(block.body, kT, 1e-3);
+  for (std::uint32_t v = 0; v < block.mesh.vertex_count; ++v)
+    EXPECT_LT(length(block.skin.ahead(v) - block.skin.vertex(v).x), 1e-12) << v;
 }
 
 // Faster than the surface's triangles are large: such a motion will not go on, and nothing is foretold.

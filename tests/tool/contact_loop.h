@@ -33,8 +33,7 @@ struct ContactLoop {
     for (auto& body : bodies) body->free_step(T, gravity);
     proximity->find(bodies, T, margin, contacts);
     build_problem(bodies, contacts, T, beta, delassus, problem);
-    report = solve(problem, limits);
-    apply_impulses(bodies, delassus, problem, contacts);
+    report = solve_and_apply(bodies, *proximity, T, beta, limits, delassus, contacts, problem);
     for (auto& body : bodies) body->advance(T);
   }
   // [N] on body `of`, by body `by`, in the last step.

@@ -81,7 +81,8 @@ class PressScene {
     find_contacts();
     build_problem(bodies, contacts, T, kUndonePenetration, delassus, problem);
     report = solve(problem, {2000, 1e-12, 0});
-    apply_impulses(bodies, delassus, problem, contacts);
+    apply_impulses(bodies, delassus, contacts, problem.impulse);
+    keep_impulses(problem, contacts);
   }
   // Pressed down by `depth` [m] over the first half of `steps` of T [s]. Reduces the last one for `tick`.
   Pose settle(double T, double depth, int steps, double tick, HandleModel& model) {

@@ -224,7 +224,7 @@ TEST(RigidContact, TheDelassusOperatorIsWhatUnitImpulsesDo) {
     loop.problem.impulse.setZero();
     loop.problem.impulse[k] = 1.0;
     const Vector last = relative_velocity();
-    apply_impulses(loop.bodies, loop.delassus, loop.problem, loop.contacts);
+    apply_impulses(loop.bodies, loop.delassus, loop.contacts, loop.problem.impulse);
     EXPECT_LT((relative_velocity() - last - w.col(k)).norm(), 1e-9 * w.col(k).norm()) << k;
   }
 }

@@ -78,7 +78,8 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     const bool touches = p.impulse.x > 0.0;
     // T u is left of a gap that was open; of a penetration, besides, what is not undone.
     const bool inside = p.depth > 0.0 && !yields;
-    double left = step.T * step.problem.velocity[row];
+    const double* const u = &step.problem.velocity[row];
+    double left = step.T * dot(leaning_axes(p.lean)[0], dvec3(u[0], u[1], u[2]));
     if (inside) left -= (1.0 - step.beta) * p.depth;
     if (touches && !inside) left = 0.0;
     out.gap[i] = left;
@@ -87,6 +88,7 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     out.mu_static[static_cast<std::size_t>(i)] = p.mu_static;
     out.mu_sliding[static_cast<std::size_t>(i)] = p.mu_sliding;
     out.sliding[static_cast<std::size_t>(i)] = p.sliding;
+    out.lean[static_cast<std::size_t>(i)] = p.lean;
     out.turning[static_cast<std::size_t>(i)] = p.turning;
     out.slip[static_cast<std::size_t>(i)] = dvec2(0.0);
     out.reach[static_cast<std::size_t>(i)] = p.reach;
