@@ -32,9 +32,10 @@ void update_triangle(Panel panel, double* triangle);
 void forward(Panel panel, const double* reciprocal, double* x);
 void backward(Panel panel, const double* reciprocal, double* x, double* sums);
 
-// The same for packs of 8 right-hand sides: x[8 * row + which]. Backwards, columns are taken by eights, and those
-// beyond the last are read too, for nothing: with strips below a diagonal block whose columns are no multiple of 8, 64
-// doubles behind the panel must be readable. In a factor the next panel stands there, as the last has no strips below.
+// The same for packs of 8 right-hand sides: x[8 * row + which]. Backwards, columns are taken a few at a time, and
+// those beyond the last are read too, for nothing: with strips below a diagonal block whose columns are no multiple of
+// 8, 64 doubles behind the panel must be readable. In a factor the next panel stands there, as the last has no strips
+// below.
 void forward_many(Panel panel, const double* reciprocal, double* x);
 void backward_many(Panel panel, const double* reciprocal, double* x);
 

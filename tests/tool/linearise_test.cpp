@@ -282,5 +282,17 @@ TEST(Linearise, ARigidBodyUnderManyContactsIsSixModesWithoutStiffness) {
   EXPECT_LT(left_flexibility(gram, modes, split).norm(), 1e-9 * gram.norm() * split.elastic());
 }
 
+// Sixty rows and not one mode: a product over nothing, of a size at which Eigen's rankUpdate divides by that nothing.
+TEST(Linearise, WhatIsTooStiffForAnyModeIsASpringAlone) {
+  const Rows lever = Rows::Random(60, 60);
+  const Eigen::MatrixXd gram = lever.transpose() * lever;
+  const PivotedFactor factor = factor_pivoted(gram, 48, 1e-6);
+  const auto picks = static_cast<Eigen::Index>(factor.picks.size());
+  const StepSplit split{0.01, {}};
+  const Modes modes = find_modes(factor, 1e-9 * Eigen::MatrixXd::Identity(picks, picks), split, 48, 1e2);
+  ASSERT_EQ(modes.count(), 0);
+  EXPECT_EQ(left_flexibility(gram, modes, split), split.elastic() * gram);
+}
+
 }  // namespace
 }  // namespace pliant
