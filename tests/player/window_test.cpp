@@ -121,12 +121,12 @@ double difference(const fs::path& a, const fs::path& b) {
 TEST_F(WindowTest, ShowsWhatARunWithoutOneShows) {
   write_text(folder / "hold.csv", "time_s,x,y,z\n0,0,0.01,0\n0.3,0.01,-0.008,0\n60,0.01,-0.008,0\n");
   const Said said = shown({"plate.obj", "--set", "*.deformable.reach=0.04", "--probe", "tip=script:hold.csv"},
-                          "0.0,key,Tab\n1.5,key,F12\n2.5,close,\n");
+                          "0.0,key,Tab\n4.0,key,F12\n6.0,close,\n");
   ASSERT_EQ(said.status, 0) << said.err;
   auto still = [&](const std::string& script, const std::string& out) {
     const Said drawn =
         pliant({"run", "plate.obj", "--set", "*.deformable.reach=0.04", "--headless", "--probe", "tip=script:" + script,
-                "--seconds", "2", "--frames", "1", "--size", "240x160", "--out", out});
+                "--seconds", "4.5", "--frames", "1", "--size", "240x160", "--out", out});
     ASSERT_EQ(drawn.status, 0) << drawn.err;
   };
   still("hold.csv", "still");
@@ -162,7 +162,7 @@ TEST_F(WindowTest, SlowPicturesDoNotTakeTheForceFromAMouseThatPresses) {
 
 TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
   write_text(folder / "other.obj", plate_obj());
-  const Said said = shown({"plate.obj"}, "0.1,drop,other.obj\n3.0,close,\n");
+  const Said said = shown({"plate.obj"}, "0.1,drop,other.obj\n9.0,close,\n");
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_EQ(report("out")["level"], "plate");
   EXPECT_EQ(report("out/other")["level"], "other");
@@ -174,8 +174,8 @@ TEST_F(WindowTest, EventsOfTheDisplayItselfMoveAndCloseIt) {
                                      " run plate.obj --window --out out --size 240x160 &\n"
                                      "id=$(timeout 40 xdotool search --sync --onlyvisible --class pliant | tail -n 1)\n"
                                      "xdotool mousemove --window $id 200 100; sleep 0.3; xdotool mousemove --window "
-                                     "$id 120 80; xdotool key Tab; sleep 0.5\n"
-                                     "xdotool mousedown 1; sleep 1; xdotool mouseup 1; sleep 0.2\n"
+                                     "$id 120 80; xdotool key Tab; sleep 1\n"
+                                     "xdotool mousedown 1; sleep 2; xdotool mouseup 1; sleep 0.2\n"
                                      "kill -INT $!; wait $!\n");
   const std::string line = std::string("env -u WAYLAND_DISPLAY ") + kDriversLeak +
                            "timeout 60 xvfb-run -a -s '-screen 0 400x300x24' sh " +
