@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "systems/device/safety.h"
 #include "systems/tool/rotation_vector.h"
 
 namespace pliant {
@@ -94,13 +95,14 @@ void Keeper::keep(const TickRow& row) {
   }
   summary.max_force = std::max(summary.max_force, length(r.force));
   Last& last = last_[row.probe];
-  if (last.any) {
+  const bool placed = plausible_position(r.position);  // a lost device may say anything
+  if (last.any && placed) {
     summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
     const dvec3 torque = last.torque + row.torque;  // only tools make any
     if (torque != dvec3(0))
       summary.net_work += 0.5 * dot(torque, vector_of(row.device_rotation * glm::conjugate(last.rotation)));
   }
-  last = {true, r.position, r.force, row.torque, row.device_rotation};
+  last = {placed, r.position, r.force, row.torque, row.device_rotation};
 
   traces_[row.probe].add(row.tick, r);
   if (recording_) record(row);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include "components/soft_body.h"
@@ -103,6 +104,9 @@ TEST(Keeper, TheNetWorkOfAToolIsThatOfItsForceAndOfItsTorque) {
     device.torque_sent = -0.5 * angle * axis;
     journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
   }
+  device.position = dvec3(std::numeric_limits<double>::quiet_NaN());  // lost: nothing that is known of was done
+  device.force_sent = device.torque_sent = dvec3(0);
+  journal.note(world, {101, 1e-3, 0.101});
   keeper->keep(journal);
   ASSERT_EQ(keeper->summaries().size(), 1u);
   EXPECT_NEAR(keeper->summaries()[0].net_work, -0.5 * 200.0 * 5e-3 * 5e-3 - 0.5 * 0.5 * 0.4 * 0.4, 1e-12);
