@@ -13,6 +13,8 @@ constexpr double kParallel = 1e-2;   // [1] sine below which two edges have no n
 constexpr double kDeepest = 0.25;    // [mean edges] foretold to be deeper than this: it will not go on as it did
 constexpr double kLeast = 5e-3;      // [1] sine: normals that lean less than this are as they were
 constexpr double kDifference = 0.5;  // [mean edges]
+constexpr double kFlat = 0.01;       // [1] of both bends: what is flatter, or hollow, counts as if bent by that
+constexpr double kFlattest = 1e-6;   // [1/m] of flat on flat
 constexpr double kReach = 0.3;       // [mean edges] farther, a turning by differences says nothing
 
 struct Touch {
@@ -152,6 +154,68 @@ std::optional<Touch> touch_ahead(const FeaturePair& pair) {
   return touch;
 }
 
+// One side's bend at a contact, as it rests but turned to where it is, along the contact's tangents.
+struct Bend {
+  dmat2 form{0};  // [1/m]
+  bool sharp = false;
+};
+
+Bend bend_at(const Skin& skin, const SurfacePoint& point, bool face, const dmat3& axes) {
+  const uvec3 corners = skin.mesh().triangles[point.triangle];
+  Bend out;
+  dmat3 bend(0.0);
+  for (int i = 0; i < 3; ++i) {
+    if (point.barycentric[i] == 0.0) continue;
+    out.sharp |= !face && !skin.rest().smooth[corners[i]];
+    bend += point.barycentric[i] * skin.rest().bend[corners[i]];
+  }
+  const dmat3 turned = glm::transpose(axes) * skin.turn(point.triangle);
+  const dmat3 local = turned * bend * glm::transpose(turned);
+  out.form = dmat2(local[1][1], local[1][2], local[2][1], local[2][2]);
+  return out;
+}
+
+// m = mean + radius * across, across a reflection: eigenvalues mean + radius and mean - radius.
+struct Eigen2 {
+  double mean = 0.0, radius = 0.0;
+  dmat2 across{0};
+  explicit Eigen2(const dmat2& m) : mean(0.5 * (m[0][0] + m[1][1])) {
+    const double d = 0.5 * (m[0][0] - m[1][1]), off = m[0][1];
+    radius = std::hypot(d, off);
+    if (radius > 0.0) across = dmat2(d, off, off, -d) / radius;
+  }
+};
+
+double largest(const dmat2& symmetric) {
+  const Eigen2 m(symmetric);
+  return std::max(0.0, m.mean + m.radius);
+}
+
+// Eigenvalues raised to `least`.
+dmat2 raised(const dmat2& symmetric, double least) {
+  const Eigen2 m(symmetric);
+  const double high = std::max(m.mean + m.radius, least), low = std::max(m.mean - m.radius, least);
+  return 0.5 * (high + low) * dmat2(1.0) + 0.5 * (high - low) * m.across;
+}
+
+// Where both sides are smooth; else the turning stays what differences say.
+void find_place(const FeaturePair& pair, ContactPoint& contact) {
+  const Bend a = bend_at(pair.a, contact.a, false, contact.axes);
+  const Bend b = bend_at(pair.b, contact.b, !pair.edges, contact.axes);
+  if (a.sharp && b.sharp) return;
+  if (a.sharp) {
+    contact.over_b = dmat2(1.0);
+  } else if (b.sharp) {
+    contact.over_a = dmat2(-1.0);
+  } else {
+    const double least = std::max(kFlat * (largest(a.form) + largest(b.form)), kFlattest);
+    const dmat2 A = raised(a.form, least), B = raised(b.form, least);
+    contact.over_b = glm::inverse(A + B) * A;
+    contact.over_a = contact.over_b - dmat2(1.0);
+    contact.turning = B * contact.over_b;
+  }
+}
+
 }  // namespace
 
 bool look_ahead(const FeaturePair& pair, ContactPoint& contact) {
@@ -189,6 +253,7 @@ void find_turning(const FeaturePair& pair, ContactPoint& contact) {
     turning[k] = dvec2(dot(change, contact.axes[1]), dot(change, contact.axes[2])) / (2.0 * h);
   }
   contact.turning = turning;
+  find_place(pair, contact);
   contact.reach = kReach * edge_of(pair);
 }
 

@@ -31,9 +31,13 @@ bool look_ahead(const FeaturePair& pair, ContactPoint& contact);
 // the axes as they were laid, and end_gap. False: all stays as it was.
 bool look_again(const FeaturePair& pair, ContactPoint& contact);
 
-// After look_ahead, with the contact's axes laid: its turning, by differences over half an edge so that facets do not
-// count for more than they are, and its reach, which is nothing where the normal jumps within that distance. Curvature
-// is that of the shapes at rest: the dent in soft things comes along with what slides over them.
+// After look_ahead, with the contact's axes laid: what changes as it slips. Its reach, which is nothing where the
+// normal jumps within half an edge; how far the place of touch goes over each body, and its turning with that (Montana
+// 1988, eq. 14, without rolling): where both are smooth, with the bends A of a and B of b out of either, and slip s of
+// a,
+//   over_b = (A + B)^-1 A,  over_a = over_b - 1,  turning = B over_b;
+// a sharp a is touched where it is. Curvature is that of the shapes at rest: the dent in soft things comes along with
+// what slides over them.
 void find_turning(const FeaturePair& pair, ContactPoint& contact);
 
 }  // namespace pliant

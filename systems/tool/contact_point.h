@@ -20,6 +20,7 @@ struct ContactPoint {
   bool again = false;                        // foretold once more, with this step's impulses
   dvec2 lean{0};                             // [1] of the normal against axes[0], along the tangents
   dmat2 turning{0};                          // [1/m] of the normal with slip (contact_geometry.h: find_turning)
+  dmat2 over_a{0}, over_b{0};                // [1] how far the place of touch goes over each body, per slip
   double reach = 0.0;                        // [m] of slip: beyond it, what was open when the step ended meets nothing
   dmat3 axes{1};                             // columns: normal, two tangents (steady from step to step)
   double mu_static = 0.4, mu_sliding = 0.3;  // [1] of the pair

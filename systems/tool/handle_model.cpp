@@ -10,6 +10,8 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   for (Rows6* m : {&modal_mass, &modal_damping, &modal_stiffness, &border}) m->setZero(most_modes, 6);
   for (Rows6* m : {&from_handle, &reduced_handle}) m->setZero(rows, 6);
   from_modes.setZero(rows, most_modes);
+  for (Rows6& m : from_handle_by_slip) m.setZero(rows, 6);
+  for (Rows& m : from_modes_by_slip) m.setZero(rows, most_modes);
   flexibility.setZero(rows, rows);
   delassus.setZero(rows, rows);
   force.setZero(rows);
@@ -19,6 +21,7 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   mu_sliding.assign(static_cast<std::size_t>(most_contacts), 0.0);
   lean.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
   turning.assign(static_cast<std::size_t>(most_contacts), dmat2(0.0));
+  farthest.assign(static_cast<std::size_t>(most_contacts), 0.0);
   reach.assign(static_cast<std::size_t>(most_contacts), 0.0);
   slip.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
   sliding.assign(static_cast<std::size_t>(most_contacts), 0);

@@ -12,6 +12,7 @@
 //   inertia, and the contacts between them; the touch tick solves Signorini and Coulomb again with them.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "components/haptic_device.h"
@@ -50,17 +51,20 @@ struct CondensedContacts {
   Rows6 modal_mass;   // modes x 6: between mode and handle; zero for modes of objects
   Rows6 modal_damping, modal_stiffness;
 
-  Rows6 from_handle;             // 3 count x 6: contact velocity per w, modes held
-  Rows from_modes;               // 3 count x modes: contact velocity per q'
-  Eigen::MatrixXd flexibility;   // [m/N] 3 count x 3 count: what the modes leave out, without inertia
-  double flexibility_lag = 0.0;  // [s] its damping: stretch + lag stretch' = flexibility f
-  Vector force;                  // [N] 3 count, at the model's time
-  Vector gap;                    // [m] count: > 0: still open; < 0: penetration that is being undone
-  Vector push;                   // [m/s] count: <= 0: at this rate
+  Rows6 from_handle;                         // 3 count x 6: contact velocity per w, modes held
+  Rows from_modes;                           // 3 count x modes: contact velocity per q'
+  std::array<Rows6, 2> from_handle_by_slip;  // [1/m] their changes with slip along either tangent: what slips is
+  std::array<Rows, 2> from_modes_by_slip;    // pushed elsewhere (contact_geometry.h: find_turning)
+  Eigen::MatrixXd flexibility;               // [m/N] 3 count x 3 count: what the modes leave out, without inertia
+  double flexibility_lag = 0.0;              // [s] its damping: stretch + lag stretch' = flexibility f
+  Vector force;                              // [N] 3 count, at the model's time
+  Vector gap;                                // [m] count: > 0: still open; < 0: penetration that is being undone
+  Vector push;                               // [m/s] count: <= 0: at this rate
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
   std::vector<dvec2> lean;          // [1] of the normal against the axes that all this is written in
   std::vector<dmat2> turning;       // [1/m] of the normal with slip (contact_point.h)
+  std::vector<double> farthest;     // [m] of slip: beyond it those changes are not believed
   std::vector<double> reach;        // [m] of slip: beyond it an open contact meets nothing (contact_point.h)
   std::vector<dvec2> slip;          // [m] along the tangents, since the axes were laid
   std::vector<std::uint8_t> stiff;  // nothing gives way there: its force is the tick's to find (stiff_contacts.h)

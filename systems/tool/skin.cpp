@@ -45,7 +45,8 @@ Skin::Skin(const Body& body) : mesh_(body.skin) {
   for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) position_[v] = dvec3(mesh_->position(v));
   find_normals();
   find_curvatures();
-  rest_ = {normal_, vertex_normal_, smooth_, curvature_};
+  rest_ = {normal_, vertex_normal_, smooth_, curvature_, {}};
+  find_rest_bend();
   std::fill(position_.begin(), position_.end(), dvec3(0.0));
   triangle_box_.resize(mesh_->triangles.size());
   vertex_box_.resize(mesh_->vertex_count);
@@ -259,6 +260,56 @@ void Skin::find_curvatures() {
     curvature_[edge.from] += k / edge_count_[edge.from];
     curvature_[edge.to] += k / edge_count_[edge.to];
   }
+}
+
+namespace {
+
+// Two tangents beside a normal.
+dmat3 frame_of(dvec3 n) {
+  const dvec3 size = glm::abs(n);
+  dvec3 along(0.0);
+  along[size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2] = 1.0;
+  const dvec3 t = unit_or_zero(along - dot(along, n) * n);
+  return dmat3(n, t, cross(n, t));
+}
+
+}  // namespace
+
+// Least squares over the edges that leave a vertex, each as heavy as any; then the mean with its neighbours'.
+void Skin::find_rest_bend() {
+  struct Sums {
+    dmat2 steps{0}, turns{0};  // of tangential steps times steps, turns times steps
+  };
+  const std::uint32_t count = mesh_->vertex_count;
+  std::vector<Sums> sums(count);
+  std::vector<dmat3> frame(count), own(count, dmat3(0.0));
+  for (std::uint32_t v = 0; v < count; ++v) frame[v] = frame_of(rest_.vertex_normal[v]);
+  for (const SkinEdge& edge : edges_)
+    for (const auto& [from, to] : {std::pair(edge.from, edge.to), std::pair(edge.to, edge.from)}) {
+      const dvec3 d = (position_[to] - position_[from]) * frame[from];
+      const dvec3 n = (rest_.vertex_normal[to] - rest_.vertex_normal[from]) * frame[from];
+      const dvec2 step(d.y, d.z), turn(n.y, n.z);
+      const double weight = 1.0 / std::max(dot(step, step), 1e-30);
+      sums[from].steps += weight * glm::outerProduct(step, step);
+      sums[from].turns += weight * glm::outerProduct(turn, step);
+    }
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const dmat2& steps = sums[v].steps;
+    const double trace = steps[0][0] + steps[1][1];
+    if (!(glm::determinant(steps) > 1e-6 * trace * trace)) continue;
+    const dmat2 k = sums[v].turns * glm::inverse(steps);
+    const double off = 0.5 * (k[0][1] + k[1][0]);
+    const dmat3 local(0, 0, 0, 0, k[0][0], off, 0, off, k[1][1]);
+    own[v] = frame[v] * local * glm::transpose(frame[v]);
+  }
+  rest_.bend = own;
+  std::vector<double> weight(count, 1.0);
+  for (const SkinEdge& edge : edges_) {
+    if (!rest_.smooth[edge.from] || !rest_.smooth[edge.to]) continue;
+    rest_.bend[edge.from] += own[edge.to], rest_.bend[edge.to] += own[edge.from];
+    ++weight[edge.from], ++weight[edge.to];
+  }
+  for (std::uint32_t v = 0; v < count; ++v) rest_.bend[v] /= weight[v];
 }
 
 // Depth lost to a flat edge that is left out: at most kFlat / 4 of its length.

@@ -72,6 +72,7 @@ class Skin {
     std::vector<dvec3> normal, vertex_normal;
     std::vector<std::uint8_t> smooth;
     std::vector<double> curvature;
+    std::vector<dmat3> bend;  // [1/m] per vertex: the normal turns by bend dx along the surface; symmetric
   };
   const Shape& rest() const { return rest_; }
   dmat3 turn(std::uint32_t t) const;      // of a triangle, from where it rests
@@ -95,6 +96,7 @@ class Skin {
   void fit_boxes(double reach);
   void find_normals();
   void find_curvatures();
+  void find_rest_bend();
   void find_live_edges();
 
   const Mesh* mesh_;

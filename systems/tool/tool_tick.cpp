@@ -24,6 +24,30 @@ Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, 
   return handle.moved ? handle.next : Vector6(factor.solve(handle.right + flesh_right));
 }
 
+// Adds to the impulses on modes and handle what the contacts' last ones do since they slipped on, and finds what that
+// slip changes of the contacts' velocities. A tick behind: so the contacts' compliance stays what it was made.
+void slide(const CondensedContacts& model, CondensedState& state, const Vector6& w, Vector& on_modes,
+           Vector6& on_handle) {
+  for (int i = 0; i < model.count; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    const auto impulse = state.problem.impulse.segment<3>(3 * i);
+    state.shift[c] = dvec3(0.0);
+    if (!(impulse[0] > 0.0)) continue;
+    const double size = length(state.slip[c]);
+    const dvec2 slip = size > model.farthest[c] ? model.farthest[c] / size * state.slip[c] : state.slip[c];
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Index row = 3 * i + axis;
+      const auto of_modes = slip.x * model.from_modes_by_slip[0].row(row).head(model.modes) +
+                            slip.y * model.from_modes_by_slip[1].row(row).head(model.modes);
+      const auto of_handle =
+          slip.x * model.from_handle_by_slip[0].row(row) + slip.y * model.from_handle_by_slip[1].row(row);
+      state.shift[c][axis] = of_modes.dot(state.rate.head(model.modes)) + of_handle.dot(w);
+      on_modes.head(model.modes) += impulse[axis] * of_modes.transpose();
+      on_handle += impulse[axis] * of_handle.transpose();
+    }
+  }
+}
+
 // Contact velocities without new impulses, plus what is left of each gap.
 void fill_bias(const CondensedContacts& model, const CondensedState& state, const Vector6& w, Vector& bias) {
   const Eigen::Index rows = 3 * model.count;
@@ -35,7 +59,7 @@ void fill_bias(const CondensedContacts& model, const CondensedState& state, cons
     const double rate = state.gap[i] / tick;
     const dvec3 normal = state.problem.own[static_cast<std::size_t>(i)][0];
     const double closing = state.gap[i] >= 0.0 ? rate : std::max(rate, model.push[i]);
-    for (int k = 0; k < 3; ++k) bias[3 * i + k] += closing * normal[k];
+    for (int k = 0; k < 3; ++k) bias[3 * i + k] += closing * normal[k] + state.shift[static_cast<std::size_t>(i)][k];
   }
 }
 
@@ -65,7 +89,7 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
   moved.noalias() += model.from_handle.topRows(rows).lazyProduct(handle.velocity);
   for (int i = 0; i < model.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const dvec3 u = dvec3(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]) * state.problem.own[k];
+    const dvec3 u = (dvec3(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]) + state.shift[k]) * state.problem.own[k];
     state.slip[k] += tick * dvec2(u.y, u.z);
     const double before = state.gap[i], after = before + tick * u.x;
     state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // what rounding left closed is closed
@@ -96,6 +120,7 @@ void CondensedState::resize(int most_contacts, int most_modes) {
   gap.setZero(most_contacts);
   reach.assign(static_cast<std::size_t>(most_contacts), 0.0);
   slip.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
+  shift.assign(static_cast<std::size_t>(most_contacts), dvec3(0.0));
   lever.setZero(rows, 6);
   problem.resize(most_contacts);
   problem.own.assign(static_cast<std::size_t>(most_contacts), dmat3(1.0));
@@ -133,6 +158,7 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
   right.noalias() += model.modal_mass.topRows(modes).transpose().lazyProduct(rate);
   right.noalias() -= tick * model.modal_stiffness.topRows(modes).transpose().lazyProduct(state.q.head(modes));
   free = rate + tick * (model.load.head(modes) - model.frequency2.head(modes).cwiseProduct(state.q.head(modes)));
+  slide(model, state, before, state.free_rate, right);
   free.noalias() += model.modal_mass.topRows(modes).lazyProduct(before);
   free.noalias() -= tick * model.modal_stiffness.topRows(modes).lazyProduct(state.d);
   free.array() *= model.inverse.head(modes).array();

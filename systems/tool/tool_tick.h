@@ -27,6 +27,7 @@ struct CondensedState {
   Vector gap;                 // [m] count
   std::vector<double> reach;  // [m] count: slip beyond which an open contact is gone
   std::vector<dvec2> slip;    // [m] count: along the contacts' tangents, since their axes were laid
+  std::vector<dvec3> shift;   // [m/s] count: of the contacts' velocities, since where they touch has slipped on
   Vector6 d = Vector6::Zero();
   ContactProblem problem;  // its impulse and sliding flags are the warm start
   SweepReport report;

@@ -9,8 +9,9 @@ namespace {
 // A body's modes, and what describes its motion in them.
 struct BodyModes {
   Modes modes;
-  std::vector<int> picks;  // the rows of G that they are made of
-  Rows weighed;            // M V(:, picks)
+  std::vector<int> picks;       // the rows of G that they are made of
+  Rows weighed;                 // M V(:, picks)
+  std::array<Rows, 2> by_slip;  // of modes.at_contacts: contact rows x modes, per slip along either tangent
   StepSplit split;
 };
 
@@ -22,18 +23,27 @@ BodyModes modes_of(const ToolContacts& contacts, const BodyAnswers& of, int most
   const Rows picked = answers_to(contacts, of, out.picks);
   of.body->weigh(picked, out.weighed);
   out.modes = find_modes(factor, symmetric_product(picked, out.weighed), out.split, most, highest);
+  for (int k = 0; k < 2; ++k) {
+    Rows of_picks = Rows::Zero(of.contact_rows(), picked.cols());
+    for (std::size_t i = 0; i < of.local.size(); ++i)
+      contacts.gather_slip(of.index, of.local[i], k, picked, of_picks.middleRows(3 * static_cast<Eigen::Index>(i), 3));
+    out.by_slip[static_cast<std::size_t>(k)] = of_picks * out.modes.transform;
+  }
   return out;
 }
 
-// The body's rows of `from_modes`, and its share of `flexibility` and of `W`. Returns flexibility times damping [s
-// m/N].
+// The body's rows of `from_modes` and of its changes, and its share of `flexibility` and of `W`. Returns flexibility
+// times damping [s m/N].
 double scatter(const BodyAnswers& of, const BodyModes& body, CondensedContacts& out, Eigen::Ref<Eigen::MatrixXd> W) {
   const Eigen::MatrixXd left = left_flexibility(of.gram, body.modes, body.split);
   const Eigen::Index modes = body.modes.count();
   out.from_modes.block(0, out.modes, W.rows(), modes).setZero();
+  for (Rows& m : out.from_modes_by_slip) m.block(0, out.modes, W.rows(), modes).setZero();
   for (std::size_t i = 0; i < of.local.size(); ++i) {
     const Eigen::Index from = 3 * static_cast<Eigen::Index>(i), to = 3 * of.local[i];
     out.from_modes.block(to, out.modes, 3, modes) = body.modes.at_contacts.middleRows(from, 3);
+    for (std::size_t k = 0; k < 2; ++k)
+      out.from_modes_by_slip[k].block(to, out.modes, 3, modes) = body.by_slip[k].middleRows(from, 3);
     for (std::size_t j = 0; j < of.local.size(); ++j) {
       const Eigen::Index from_j = 3 * static_cast<Eigen::Index>(j), to_j = 3 * of.local[j];
       out.flexibility.block<3, 3>(to, to_j) += left.block<3, 3>(from, from_j);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/tool/surface_walk.h"
+
 namespace pliant {
 namespace {
 
@@ -22,6 +24,11 @@ std::vector<std::uint32_t> distances(const FinishedStep& step, std::uint32_t too
     }
   }
   return distance;
+}
+
+// [m] An edge of the finer skin: what is between its vertices says nothing of how a surface gives way.
+double farthest(const FinishedStep& step, const ContactPoint& p) {
+  return static_cast<double>(std::min(step.bodies[p.body_a]->skin->mean_edge, step.bodies[p.body_b]->skin->mean_edge));
 }
 
 }  // namespace
@@ -59,6 +66,22 @@ void ToolContacts::gather(std::uint32_t body, int i, const Rows& x, Eigen::Ref<R
   if (p.body_b == body) step_.bodies[body]->gather(p.b, p.axes, -1.0, x, out);
 }
 
+void ToolContacts::gather_slip(std::uint32_t body, int i, int k, const Rows& x, Eigen::Ref<Rows> out) const {
+  const ContactPoint& p = (*this)[i];
+  const Body& of = *step_.bodies[body];
+  const auto add = [&](const SurfacePoint& point, dvec2 way, double sign) {
+    const double share = length(way), h = farthest(step_, p);
+    if (!(share > 0.0 && h > 0.0)) return;
+    const dvec3 by = h / share * (p.axes * dvec3(0.0, way));
+    const std::optional<SurfacePoint> ahead = walk(of, point, by), back = walk(of, point, -by);
+    if (!ahead || !back) return;
+    of.gather(*ahead, p.axes, sign * share / (2.0 * h), x, out);
+    of.gather(*back, p.axes, -sign * share / (2.0 * h), x, out);
+  };
+  if (p.body_a == body) add(p.a, p.over_a[k], 1.0);
+  if (p.body_b == body) add(p.b, p.over_b[k], -1.0);
+}
+
 void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
   const FinishedStep& step = contacts.step();
   const Eigen::MatrixXd& compliance = step.delassus.compliance;
@@ -73,6 +96,11 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     three.setZero();
     contacts.gather(contacts.tool_index(), i, contacts.tool().follow(), three);
     out.from_handle.middleRows(3 * i, 3) = three;
+    for (int k = 0; k < 2; ++k) {
+      three.setZero();
+      contacts.gather_slip(contacts.tool_index(), i, k, contacts.tool().follow(), three);
+      out.from_handle_by_slip[k].middleRows(3 * i, 3) = three;
+    }
 
     const bool yields = compliance.rows() > row && compliance(row, row) > 0.0;
     const bool touches = p.impulse.x > 0.0;
@@ -91,6 +119,7 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     out.lean[static_cast<std::size_t>(i)] = p.lean;
     out.turning[static_cast<std::size_t>(i)] = p.turning;
     out.slip[static_cast<std::size_t>(i)] = dvec2(0.0);
+    out.farthest[static_cast<std::size_t>(i)] = farthest(step, p);
     out.reach[static_cast<std::size_t>(i)] = p.reach;
     for (int j = 0; yields && j < out.count; ++j)
       out.flexibility.block<3, 3>(3 * i, 3 * j) =
