@@ -32,9 +32,9 @@ bool look_ahead(const FeaturePair& pair, ContactPoint& contact);
 bool look_again(const FeaturePair& pair, ContactPoint& contact);
 
 // After look_ahead, with the contact's axes laid: what changes as it slips. Its reach, which is nothing where the
-// normal jumps within half an edge; how far the place of touch goes over each body, and its turning with that (Montana
-// 1988, eq. 14, without rolling): where both are smooth, with the bends A of a and B of b out of either, and slip s of
-// a,
+// normal jumps within half an edge; how far the place of touch goes over each body, and its turning with that
+// (Montana 1988, the contact equations without rolling): where both are smooth, with A and B the bends of a and b, each
+// seen from outside, and slip s of a,
 //   over_b = (A + B)^-1 A,  over_a = over_b - 1,  turning = B over_b;
 // a sharp a is touched where it is. Curvature is that of the shapes at rest: the dent in soft things comes along with
 // what slides over them.

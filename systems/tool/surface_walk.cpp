@@ -56,8 +56,10 @@ std::optional<SurfacePoint> walk(const Body& body, SurfacePoint p, dvec3 by) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (i != left_behind && beyond.corners[j] == facet.corners[i]) there[j] = std::max(0.0, p.barycentric[i]);
+    const double sum = there.x + there.y + there.z;
+    if (!(sum > 0.0)) return {};  // neighbours that do not share the edge: no surface
     p.triangle = next;
-    p.barycentric = there / (there.x + there.y + there.z);
+    p.barycentric = there / sum;
     by *= 1.0 - share;
   }
   return {};
