@@ -24,6 +24,19 @@ Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, 
   return handle.moved ? handle.next : Vector6(factor.solve(handle.right + flesh_right));
 }
 
+// [1] How far a contact's normal leans since bodies have given way differently where slip would lead: what slip changes
+// of its normal velocity, for the ways that modes and handle have gone. Without it a hand could gain work by sliding
+// one way while it presses and the other way while it does not.
+dvec2 bent(const CondensedContacts& model, const CondensedState& state, int i) {
+  dvec2 lean(0.0);
+  for (int k = 0; k < 2; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    lean[k] = model.from_modes_by_slip[at].row(3 * i).head(model.modes).dot(state.q.head(model.modes)) +
+              model.from_handle_by_slip[at].row(3 * i).dot(state.d);
+  }
+  return lean;
+}
+
 // Adds to the impulses on modes and handle what the contacts' last ones do since they slipped on, and finds what that
 // slip changes of the contacts' velocities. A tick behind: so the contacts' compliance stays what it was made.
 void slide(const CondensedContacts& model, CondensedState& state, const Vector6& w, Vector& on_modes,
@@ -171,7 +184,8 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
 
   // Signorini and Coulomb again.
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i)
-    state.problem.own[i] = turned_axes(model.lean[i], model.turning[i], state.slip[i]);
+    state.problem.own[i] =
+        turned_axes(model.lean[i] + bent(model, state, static_cast<int>(i)), model.turning[i], state.slip[i]);
   fill_delassus(model, factor, handle, state);
   fill_bias(model, state, free_w, state.problem.bias);
   state.report = solve(state.problem, limits);
