@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kLevel = "hand";
 constexpr double kSlow = 1.0, kSwift = 3.2, kBrisk = 4.0;  // [1] of the script's own pace; at 3.2 a held force is off
                                                            // by a fifth
-constexpr double kSeconds = 6.0, kQuickSeconds = 1.0;  // [s] at that pace
+constexpr double kSeconds = 6.0, kQuickSeconds = 1.0;      // [s] at that pace
 
 // Its scripts played `pace` times as fast.
 Result<World> open_level(const std::string& name, double pace) {
@@ -214,17 +214,43 @@ Status follow_models(Truth& truth, const std::string& level, std::size_t length,
 
 constexpr std::size_t kUpdateTicks = 6;  // an update's own tick and the five after it
 
+// What touches and what slides of one model's contacts.
+struct ContactSet {
+  std::uint64_t model = 0;
+  std::vector<std::uint8_t> touches, slides;
+
+  explicit ContactSet(const ToolTouchState& tool) : model(tool.model.read().step) {
+    const ContactProblem& problem = tool.contacts.problem;
+    for (int i = 0; i < problem.count; ++i) {
+      touches.push_back(problem.impulse[3 * i] > 0.0);
+      slides.push_back(touches.back() && problem.sliding[static_cast<std::size_t>(i)]);
+    }
+  }
+  // Between ticks of one model: something touched, let go, or began or ceased to slide.
+  bool differs(const ContactSet& other) const {
+    return model == other.model && (touches != other.touches || slides != other.slides);
+  }
+};
+
 // The force's changes in the ticks of each update, over the largest in the other ticks of the two steps around it.
-void find_jumps(const std::vector<Vector6>& wrench, std::size_t length, LinearisationFigures& out) {
+// `event`: of each tick, something about contacts that are felt changed in it or in the one before.
+void find_jumps(const std::vector<Vector6>& wrench, const std::vector<bool>& event, std::size_t length,
+                LinearisationFigures& out) {
   const auto change = [&](std::size_t i) { return (wrench[i] - wrench[i - 1]).head<3>().norm(); };
   for (std::size_t at = 2 * length; at + length < wrench.size(); at += length) {
     double slope = 0.0, jump = 0.0;
+    std::size_t worst = at;
     for (std::size_t i = at - length + 1; i < at + length; ++i)
       if (i % length >= kUpdateTicks) slope = std::max(slope, change(i));
     if (slope <= 1e-4) continue;  // [N] below: nothing is felt
-    for (std::size_t i = at; i < at + kUpdateTicks; ++i) jump = std::max(jump, change(i) / slope);
+    for (std::size_t i = at; i < at + kUpdateTicks; ++i) {
+      if (!(change(i) / slope > jump)) continue;
+      jump = change(i) / slope;
+      worst = i;
+    }
     out.jump_share = std::max(out.jump_share, jump);
     out.jumps += jump > 2.0;
+    out.jumps_of_contacts += jump > 2.0 && event[worst];
     ++out.updates;
   }
 }
@@ -237,12 +263,21 @@ Status run_together(const std::string& level, int ticks, std::size_t length, con
   Schedule<World> touch(touch_schedule()), soft(soft_schedule());
   const double T = static_cast<double>(length) * out.tick;
   std::vector<Vector6> wrench;
+  std::vector<bool> event;
+  ContactSet last(tool_of(*world));
+  bool changed = false, felt = true;  // while a new model settles its contacts are not felt
   for (int i = 0; i < ticks; ++i) {
     if (interrupt.requested()) return interrupted();
     const auto index = static_cast<std::uint64_t>(i);
     if (index % length == 0) soft.run(*world, Tick{index / length, T, i * out.tick});
     touch.run(*world, Tick{index, out.tick, i * out.tick});
     wrench.push_back(tool_of(*world).wrench);
+    ContactSet now(tool_of(*world));
+    const bool changes = felt && now.differs(last);
+    felt = tool_of(*world).settling == 0;
+    event.push_back(changes || changed);
+    changed = changes;
+    last = std::move(now);
   }
   for (std::size_t i = 0; i < touch.systems().size(); ++i) {
     if (touch.systems()[i].name != "tool_feedback") continue;
@@ -250,7 +285,7 @@ Status run_together(const std::string& level, int ticks, std::size_t length, con
     out.touch_p99_us = touch.cost(i).percentile_us(0.99);
     out.touch_max_us = touch.cost(i).max_us();
   }
-  find_jumps(wrench, length, out);
+  find_jumps(wrench, event, length, out);
   return Done{};
 }
 
@@ -279,6 +314,7 @@ nlohmann::ordered_json to_json(const LinearisationFigures& figures) {
   json["jump_over_slope"] = figures.jump_share;
   json["updates"] = figures.updates;
   json["updates_over_twice_the_slope"] = figures.jumps;
+  json["of_these_contacts_changed"] = figures.jumps_of_contacts;
   return json;
 }
 
@@ -316,9 +352,11 @@ void print(const LinearisationFigures& figures) {
                100.0 * m.rms_share, m.p50_us, m.p99_us, m.max_us);
   fmt::print(
       "tool_feedback in the touch tick: p50 {:.1f}, p99 {:.1f}, max {:.1f} us\n"
-      "change of force in an update's tick or the next five: up to {:.2f} x the slope around; above 2 x in {} of {}\n",
+      "change of force in an update's tick or the next five: up to {:.2f} x the slope around; above 2 x in {} of {}, "
+      "in {} "
+      "of these as a contact touched, let go or changed between sticking and sliding\n",
       figures.touch_p50_us, figures.touch_p99_us, figures.touch_max_us, figures.jump_share, figures.jumps,
-      figures.updates);
+      figures.updates, figures.jumps_of_contacts);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ struct LinearisationFigures {
   double touch_p50_us = 0.0, touch_p99_us = 0.0, touch_max_us = 0.0;  // tool_feedback, clocks together
   double jump_share = 0.0;     // [1] largest change in an update's tick or the next five, over the slope around it
   int updates = 0, jumps = 0;  // jumps: those where it is above 2
+  int jumps_of_contacts = 0;   // of these, as a contact touched, let go or changed between sticking and sliding
 };
 
 // Both end with an error when `interrupt` is requested.
