@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/tool/contact_problem.h"
+#include "systems/tool/farthest_axis.h"
 
 namespace pliant {
 namespace {
@@ -53,10 +54,7 @@ const dvec3* SideMemory::find(std::uint64_t key) const {
 
 void carry_over(const ContactPoint* last, ContactPoint& contact) {
   const dvec3 n = contact.normal;
-  // Without a past: the world axis that is farthest from the normal.
-  dvec3 along(0.0);
-  const dvec3 size = glm::abs(n);
-  along[size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2] = 1.0;
+  dvec3 along = farthest_axis(n);
   if (last) {
     const dvec3 kept = last->axes[1] - dot(last->axes[1], n) * n;
     if (dot(kept, kept) > 0.25) along = kept;

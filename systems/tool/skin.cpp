@@ -5,6 +5,7 @@
 #include <queue>
 
 #include "runtime/assert.h"
+#include "systems/tool/farthest_axis.h"
 
 namespace pliant {
 namespace {
@@ -266,9 +267,7 @@ namespace {
 
 // Two tangents beside a normal.
 dmat3 frame_of(dvec3 n) {
-  const dvec3 size = glm::abs(n);
-  dvec3 along(0.0);
-  along[size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2] = 1.0;
+  const dvec3 along = farthest_axis(n);
   const dvec3 t = unit_or_zero(along - dot(along, n) * n);
   return dmat3(n, t, cross(n, t));
 }
