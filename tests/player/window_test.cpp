@@ -162,8 +162,12 @@ TEST_F(WindowTest, SlowPicturesDoNotTakeTheForceFromAMouseThatPresses) {
 
 TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
   write_text(folder / "other.obj", plate_obj());
-  const Said said = shown({"plate.obj"}, "0.1,drop,other.obj\n9.0,close,\n");
-  ASSERT_EQ(said.status, 0) << said.err;
+  for (const std::string close : {"9.0", "40.0"}) {  // a slow machine is still loading it when the first one closes
+    fs::remove_all(folder / "out");
+    const Said said = shown({"plate.obj"}, "0.1,drop,other.obj\n" + close + ",close,\n");
+    ASSERT_EQ(said.status, 0) << said.err;
+    if (fs::exists(folder / "out" / "other" / "report.json")) break;
+  }
   EXPECT_EQ(report("out")["level"], "plate");
   EXPECT_EQ(report("out/other")["level"], "other");
 }
