@@ -9,9 +9,11 @@
 #include "content/level.h"
 #include "content/mesh_build.h"
 #include "systems/touch/amplitude.h"
+#include "systems/touch/box_tree.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/touch/prepare.h"
 #include "systems/touch/surface_query.h"
+#include "systems/touch/triangle_tree.h"
 #include "tests/scenes/scenes.h"
 
 namespace pliant {
@@ -40,7 +42,7 @@ void step_zone(benchmark::State& state) {
       if (!field.arm.empty()) std::fill_n(field.arm.begin(), kZoneSize, vec4(0));
       truth = {-0.004, 0};
     }
-    benchmark::DoNotOptimize(step_residual(m, field, 0));
+    benchmark::DoNotOptimize(step_residual(m, {}, field, 0));
     truth = m.nonlinear() ? step_restoring(m.law, truth, m.mass, m.damping, 1, 0, m.dt)
                           : step_oscillator(truth, m.mass, m.damping, 1, 0, m.dt);
     if (d.spring != SpringLaw::kStandardLinearSolid)
@@ -69,19 +71,33 @@ void targets(benchmark::State& state) {
     add_targets(mesh, 0, source, out);
     benchmark::ClobberMemory();
   }
+  out = {};
+  add_targets(mesh, 0, source, out);
+  double error = 0;
+  for (std::uint32_t v = mesh.zone_begin(0); v < mesh.zone_end(0); ++v) {
+    const vec4 one = target_at(source, mesh.position(v), mesh.normal(v));
+    error = std::max<double>(error, std::abs(out.h[v] - one.w) / source.amplitude);
+  }
+  state.counters["error"] = error;
 }
 BENCHMARK(targets)->DenseRange(0, 5)->ArgName("shape");
 
-void nearest_query(benchmark::State& state) {
-  Stage stage;
-  const Entity surface = stage.add(scenes::sphere(static_cast<int>(state.range(0)), 0.1), {});
-  const Mesh& mesh = stage.mesh(surface);
+// Points within 4 mm of a sphere, inside and outside.
+std::vector<dvec3> points_near_a_sphere(double radius) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<dvec3> points;
   points.reserve(1000);
   for (int i = 0; i < 1000; ++i)
-    points.push_back((0.1 + 0.004 * unit(random)) * normalize(dvec3(unit(random), unit(random), unit(random))));
+    points.push_back((radius + 0.004 * unit(random)) * normalize(dvec3(unit(random), unit(random), unit(random))));
+  return points;
+}
+
+void nearest_query(benchmark::State& state) {
+  Stage stage;
+  const Entity surface = stage.add(scenes::sphere(static_cast<int>(state.range(0)), 0.1), {});
+  const Mesh& mesh = stage.mesh(surface);
+  const std::vector<dvec3> points = points_near_a_sphere(0.1);
   std::size_t i = 0;
   double error = 0;
   for (auto _ : state) {
@@ -92,6 +108,52 @@ void nearest_query(benchmark::State& state) {
   state.counters["error_m"] = error;
 }
 BENCHMARK(nearest_query)->Arg(41)->Arg(130)->Arg(409)->ArgName("n");
+
+// The closest point of the flat triangles alone; `hint`: with the triangle found for a point 0.1 mm away.
+void closest_query(benchmark::State& state) {
+  Stage stage;
+  const Entity surface = stage.add(scenes::sphere(static_cast<int>(state.range(0)), 0.1), {});
+  const Mesh& mesh = stage.mesh(surface);
+  const std::vector<dvec3> points = points_near_a_sphere(0.1);
+  std::vector<std::uint32_t> hints;
+  for (const dvec3& x : points)
+    hints.push_back(state.range(1) ? closest_flat(mesh, x + dvec3(1e-4, 0, 0), 1).triangle : FlatPoint::kNone);
+  std::size_t i = 0;
+  double error = 0;
+  for (auto _ : state) {
+    const std::size_t k = i++ % points.size();
+    const FlatPoint p = closest_flat(mesh, points[k], 1, hints[k]);
+    error = std::max(error, std::abs(std::sqrt(p.distance2) - std::abs(length(points[k]) - 0.1)));
+  }
+  state.counters["error_m"] = error;
+}
+BENCHMARK(closest_query)->ArgsProduct({{41, 130, 409}, {0, 1}})->ArgNames({"n", "hint"});
+
+// Objects of 20 mm side by side on a table: which ones a probe's box meets; after every second query one moves.
+void boxes_met(benchmark::State& state) {
+  const auto side = static_cast<int>(std::sqrt(static_cast<double>(state.range(0))) + 0.5);
+  std::vector<Box> boxes;
+  for (int i = 0; i < side * side; ++i) {
+    const vec3 at(0.03f * static_cast<float>(i % side), 0, 0.03f * static_cast<float>(i / side));
+    boxes.push_back({at, at + vec3(0.02f)});
+  }
+  BoxTree tree(boxes);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> unit(0, 1);
+  const float across = 0.03f * static_cast<float>(side);
+  std::size_t met = 0, moves = 0;
+  for (auto _ : state) {
+    const vec3 at(across * unit(random), 0.01f, across * unit(random));
+    tree.visit({at - vec3(0.005f), at + vec3(0.005f)}, [&](std::uint32_t) { ++met; });
+    if (++moves % 2 == 0) {
+      const std::uint32_t id = static_cast<std::uint32_t>(random() % boxes.size());
+      const vec3 by(0.004f * unit(random), 0, 0.004f * unit(random));
+      tree.move(id, {boxes[id].min + by, boxes[id].max + by});
+    }
+  }
+  state.counters["met"] = benchmark::Counter(static_cast<double>(met), benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(boxes_met)->Arg(36)->Arg(400)->Arg(4096)->ArgName("objects");
 
 void track_along(benchmark::State& state) {
   Stage stage;

@@ -1,6 +1,7 @@
 // What one touch tick costs on meshes of different sizes with the same number of awake vertices, the step with
 // everything awake, and how far the single-precision field is from a double-precision reference: time and error, side
 // by side.
+// And what many objects, of which one is touched, and many contacts on one object cost.
 //   bench_touch_tick [--large] [--out FILE.json]
 #include <fmt/format.h>
 
@@ -132,7 +133,7 @@ AllAwake measure_all_awake(int n) {
   for (int i = 0; i < 60; ++i) {
     std::uint64_t t0 = now_ns();
     for (std::uint32_t zone = 0; zone < zones; ++zone) {
-      const ZoneRest rest = step_residual(m, field, zone);
+      const ZoneRest rest = step_residual(m, {}, field, zone);
       if (rest.height >= 0) compose_stream(field, zone, nullptr, true);
     }
     step.push_back(static_cast<double>(now_ns() - t0) * 1e-6);
@@ -143,6 +144,47 @@ AllAwake measure_all_awake(int n) {
   }
   out.step_ms = median(std::move(step));
   out.copy_ms = median(std::move(copy));
+  return out;
+}
+
+// Ticks in which `probes` press next to each other into one sheet, or into the first of many balls.
+struct Many {
+  std::uint32_t objects = 1, contacts = 0, awake = 0;
+  double p50 = 0, p99 = 0, feedback_p50 = 0;  // [us] the whole tick; sharing the load and friction alone
+};
+
+Many measure_many(int objects, int probes) {
+  Stage stage;
+  Deformable d;
+  d.reach = 0.005;
+  const Entity surface = stage.add(scenes::sheet(probes > 1 ? 160 : 40, 0.16), d);
+  const int side = static_cast<int>(std::ceil(std::sqrt(objects)));
+  for (int i = 1; i < objects; ++i)
+    stage.add(scenes::sphere(2, 0.02), d, Pose{{0.2 + 0.05 * (i % side), 0.0, 0.05 * (i / side)}});
+  std::vector<Entity> hands;
+  const int row = static_cast<int>(std::ceil(std::sqrt(probes)));
+  const auto place = [&](int i, double time) {  // 4 mm apart: every dent meets its neighbours'
+    return dvec3(0.004 * (i % row - 0.5 * row) + 0.01 * std::sin(time), -0.001, 0.004 * (i / row - 0.5 * row));
+  };
+  for (int i = 0; i < probes; ++i) hands.push_back(stage.add_probe(place(i, 0.0) + dvec3(0, 0.002, 0)));
+  stage.prepare();
+  stage.tick();
+  Many out;
+  out.objects = static_cast<std::uint32_t>(objects);
+  std::vector<double> times;
+  for (int t = 0; t < 6000; ++t) {
+    for (int i = 0; i < probes; ++i) stage.place(hands[static_cast<std::size_t>(i)], place(i, 1e-3 * t));
+    const std::uint64_t t0 = now_ns();
+    stage.tick();
+    if (t > 300) times.push_back(static_cast<double>(now_ns() - t0) * 1e-3);
+  }
+  for (const SourceState& source : stage.world.touch->objects[0].sources) out.contacts += source.tracked;
+  out.awake = stage.field(surface).awake_vertices;
+  for (std::size_t i = 0; i < stage.schedule().systems().size(); ++i)
+    if (std::string(stage.schedule().systems()[i].name) == "friction_feedback")
+      out.feedback_p50 = stage.schedule().cost(i).percentile_us(0.5);
+  out.p50 = percentile(times, 0.5);
+  out.p99 = percentile(times, 0.99);
   return out;
 }
 
@@ -175,6 +217,18 @@ int main(int argc, char** argv) {
       "\ntick at 1e6 / tick at 1e4: {:.2f}\nall awake, {} vertices: {:.2f} ms a step, {:.2f} ms a copy of the same "
       "bytes, ratio {:.2f}\n",
       at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
+  fmt::print("\n{:>8} {:>9} {:>7} {:>9} {:>9} {:>15}\n", "objects", "contacts", "awake", "p50 us", "p99 us",
+             "feedback p50 us");
+  json += "\n  ],\n  \"many\": [";
+  for (const auto& [objects, probes] : {std::pair{1, 1}, {40, 1}, {4000, 1}, {1, 8}, {1, 64}}) {
+    const Many m = measure_many(objects, probes);
+    fmt::print("{:>8} {:>9} {:>7} {:>9.2f} {:>9.2f} {:>15.2f}\n", m.objects, m.contacts, m.awake, m.p50, m.p99,
+               m.feedback_p50);
+    json += fmt::format(
+        "{}\n    {{\"objects\": {}, \"contacts\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, "
+        "\"feedback_p50_us\": {:.3f}}}",
+        objects == 1 && probes == 1 ? "" : ",", m.objects, m.contacts, m.awake, m.p50, m.p99, m.feedback_p50);
+  }
   json += fmt::format(
       "\n  ],\n  \"ratio_1e6_to_1e4\": {:.3f},\n  \"all_awake\": {{\"vertices\": {}, \"step_ms\": {:.3f}, \"copy_ms\": "
       "{:.3f}, "

@@ -1,7 +1,7 @@
-// Where a probe touches a deformable, and how deep. One per (probe, object) pair, never one per object: a second tool
-// far away must not feel the first one's contact. Rate: touch. Writer: collision (geometry), force_field (amplitude,
-// targets), friction_feedback (law, bristle, force). Lives from the level's preparation to its end; `state` says
-// whether it means anything now.
+// Where a probe touches a deformable, and how deep. A probe may touch an object in several places at once: the walls of
+// a groove, the folds of an organ. Contacts are a pool of each object; a contact belongs to a probe while it is
+// tracked. Rate: touch. Writer: collision (geometry), force_field (amplitude), friction_feedback (law, bristle, force).
+// Lives from the level's preparation to its end; `state` says whether it means anything now.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +13,33 @@ namespace pliant {
 
 enum class ContactState : std::uint8_t {
   kFree,     // the probe is outside the rest surface; nothing else here is valid
-  kInside,   // below the rest surface but above the current one (which is still recovering from an earlier press)
-  kTouching  // the probe holds the surface down
+  kInside,   // below the rest surface, but in a dent: another probe's, or one that is still recovering. No force
+  kTouching  // it presses
 };
 
 struct Contact {
-  Entity probe;                   // has a Probe; kNoEntity: flesh presses here (systems/touch/press.h)
+  Entity probe;                   // has a Probe; kNoEntity: nobody's, or flesh presses here (systems/touch/press.h)
+  std::uint8_t tip = 0;           // which of the probe's tips (ProbeState::tips)
   Entity object;                  // has a Deformable
   std::uint32_t object_slot = 0;  // its place in TouchState::objects
   ContactState state = ContactState::kFree;
 
-  // The virtual vertex (P1: interpolated contact vertex), object frame. Written by collision.
+  // The foot (P1: interpolated contact vertex), object frame. Written by collision.
   std::uint32_t triangle = 0;    // undeformed triangle under the probe
-  dvec3 barycentric{1, 0, 0};    // [1]   of the virtual vertex in that triangle
-  dvec3 foot{0};                 // [m]   its rest position P(u,v), object frame
-  dvec3 normal{0, 1, 0};         // [1]   interpolated, unit, outward, object frame
-  double height = 0.0;           // [m]   t: of the probe's lowest point along the normal; < 0: below the rest surface
+  dvec3 barycentric{1, 0, 0};    // [1]   of the foot in that triangle
+  dvec3 foot{0};                 // [m]   its rest position
+  dvec3 normal{0, 1, 0};         // [1]   unit, outward, object frame
+  double height = 0.0;           // [m]   t: of the probe's lowest point over the foot; < 0: below the rest surface
   double previous_height = 0.0;  // [m]   t one tick ago, and two: what the surface would do if the probe let go now
   double older_height = 0.0;     // [m]
-  bool interpolated = true;      // false: no virtual vertex exists here (crease, border); closest point instead
 
-  // Force law (methods.md 1.8). Started by collision at touch, advanced by friction_feedback; rim_height by
-  // force_field.
-  bool just_touched = false;      // this tick is the first of the touch
-  double surface_height = 0.0;    // [m]   h*: height of the surface at the virtual vertex
-  double surface_velocity = 0.0;  // [m/s] its rate
-  double free_height = 0.0;       // [m]   y: what h* would be had the probe not come
-  double free_velocity = 0.0;     // [m/s]
-  double rim_height = 0.0;        // [m]   >= 0: how high other probes' fields hold the surface up here
-  double arm_force = 0.0;         // [N]   q of the standard linear solid
-  double normal_force = 0.0;      // [N]   >= 0
-  dvec3 bristle{0};               // [m]   e: tangential deflection, object frame
+  // Force law (methods.md 1.8, 1.10). Started by collision, advanced by friction_feedback.
+  double free_height = 0.0;    // [m]   y <= 0: what the surface's height would be had the probe not come
+  double free_velocity = 0.0;  // [m/s]
+  double load = 0.0;           // [sqrt J] l: its part of the shared load, last tick
+  double share = 0.0;          // [1]   of its own law: 1 alone, 0 in another's dent
+  double normal_force = 0.0;   // [N]   >= 0
+  dvec3 bristle{0};            // [m]   e: tangential deflection, object frame
   bool sliding = false;
   dvec3 force{0};  // [N]   on the probe, world frame
 

@@ -33,6 +33,7 @@ struct Deformable {
   double volume = 1.0;            // [1] chi: share of the volume that the shape `volume` conserves
   double friction_static = 0.4;   // [1] mu_s
   double friction_sliding = 0.3;  // [1] mu_d <= mu_s
+  double crease_angle = 0.0;      // [rad] edges that turn by more are creases; 0: the file's normals, else 0.7
   double young = 0.0;             // [Pa] with thickness: calibrates stiffness instead of `stiffness`; 0: not given
   double poisson = 0.45;          // [1]
   double thickness = 0.0;         // [m] 0: deep

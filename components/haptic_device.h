@@ -24,6 +24,7 @@ struct PathRow {
 };
 struct Path {
   std::vector<PathRow> rows;
+  bool turns = false;    // the rows say rotations too; else every rotation is the identity
   bool repeats = false;  // starts over after the last row (whose position equals the first's)
 };
 

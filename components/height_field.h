@@ -20,7 +20,9 @@ struct HeightField {
   std::vector<vec4> stream;    // [1,1,1,m] added to N0, and along N0
   std::vector<vec4> residual;  // [1,1,1,m]
   std::vector<vec4> rate;      // [1/s,1/s,1/s,m/s] of the residual
-  std::vector<vec4> arm;       // [N/m scaled by k: m] standard linear solid only, else empty
+  // Standard linear solid only, else empty: the tissue remembers where it was pressed (methods.md 1.2).
+  std::vector<vec4> arm;      // [m] of the residual: force of the arm over k
+  std::vector<vec4> relaxed;  // [1,1,1,m] viscous extension under the targets: where the arm's damper has crept to
 
   std::vector<std::uint8_t> zone_state;  // per zone: bits of ZoneBit
   std::vector<std::uint32_t> awake;      // zones whose stream may change this tick (capacity: all zones)

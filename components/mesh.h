@@ -3,7 +3,7 @@
 // A touch mesh is welded (one vertex per position), its vertices and triangles are in Hilbert order, and it never
 // changes after load: heights live in a HeightField. Every run of kZoneSize vertices is a zone, so the zone of vertex v
 // is v / kZoneSize. One notion serves sleeping, upload to the card, the flood that finds what a contact reaches, and
-// the SIMD batch. Triangles have an implicit tree of their own over runs of kLeafSize (a tree over zones alone would
+// the SIMD batch. Triangles have trees of their own (a tree over zones alone would
 // leave 256 triangles to test in each leaf). Lifetime: from load to unload. Writer: content. Read by every clock.
 #pragma once
 
@@ -17,16 +17,34 @@
 
 namespace pliant {
 
-inline constexpr std::uint32_t kZoneSize = 128;        // vertices
-inline constexpr std::uint32_t kLeafSize = 4;          // triangles in a leaf of the tree
-inline constexpr std::uint32_t kTreeWidth = 4;         // children of an inner box
-inline constexpr std::uint32_t kBorder = 0xffffffffu;  // no triangle across this edge
+inline constexpr std::uint32_t kZoneSize = 128;          // vertices
+inline constexpr std::uint32_t kLeafSize = 4;            // triangles in a leaf of the tree
+inline constexpr std::uint32_t kTreeWidth = 4;           // children of an inner box
+inline constexpr std::uint32_t kBorder = 0xffffffffu;    // no triangle across this edge
+inline constexpr std::uint32_t kNotSplit = 0xffffffffu;  // a triangle whose corners take the normals of their vertices
 
-// Boxes over runs of kLeafSize triangles, then over runs of kTreeWidth boxes, up to one root.
-// levels[0] are the leaves: leaf i holds triangles [i*kLeafSize, min((i+1)*kLeafSize, count)).
-// Box i of level n > 0 holds boxes [i*kTreeWidth, ...) of level n-1. levels.back() has one box.
+// Eight boxes side by side, one array a bound, so that one query meets all eight at once; four cache lines. A place
+// holds a node (count 0) or a run of at most kTreeNodeWidth triangles; places from `used` on hold an empty box.
+inline constexpr std::uint32_t kTreeNodeWidth = 8;
+struct alignas(64) TreeNode {
+  float low[3][kTreeNodeWidth];         // [m] object frame
+  float high[3][kTreeNodeWidth];        // [m]
+  std::uint32_t first[kTreeNodeWidth];  // node, or first triangle
+  std::uint8_t count[kTreeNodeWidth];   // triangles; 0: a node
+  std::uint32_t used = 0;
+};
+
+// Two trees over the triangles in their order.
+// `levels`: boxes over runs of kLeafSize triangles, then over runs of kTreeWidth boxes, up to one root, for what moves
+// (systems/tool/skin.h fits such boxes anew) or sums over runs. levels[0] are the leaves: leaf i holds triangles
+// [i*kLeafSize, min((i+1)*kLeafSize, count)). Box i of level n > 0 holds boxes [i*kTreeWidth, ...) of level n-1.
+// levels.back() has one box.
+// `nodes`: for queries at rest (systems/touch/triangle_tree.h). Its runs are cut where the boxes get small, and its
+// boxes hold the control points of the triangles' curved patches too. nodes[0] is the root, children behind parents.
 struct TriangleTree {
   std::vector<std::vector<Box>> levels;
+  std::vector<TreeNode> nodes;
+  float bulge = 0.0f;  // [m] no control point of a curved patch is farther from its triangle
 };
 
 struct Mesh {
@@ -35,7 +53,7 @@ struct Mesh {
   // Touch vertices, rest state, object frame; padded to whole zones (padding: area 0, never indexed).
   std::uint32_t vertex_count = 0;
   std::vector<float> px, py, pz;  // [m] P0
-  std::vector<float> nx, ny, nz;  // [1] N0: unit, outward, angle-weighted
+  std::vector<float> nx, ny, nz;  // [1] N0: unit, outward; exact on a sphere, but for needles
   std::vector<float> area;        // [m2] a third of the triangles around the vertex
 
   std::vector<uvec3> triangles;  // touch vertices, counter-clockwise seen from outside
@@ -46,8 +64,17 @@ struct Mesh {
   std::vector<std::uint32_t> zone_neighbour_first;  // zones+1: run of each zone in zone_neighbours
   std::vector<std::uint32_t> zone_neighbours;       // zones that share a triangle with it, itself left out
 
-  std::vector<float> stiffness_factor;  // [1] per vertex, painted (_STIFFNESS); empty: 1 everywhere
-  std::vector<float> friction_factor;   // [1] per vertex, painted (_FRICTION); empty: 1 everywhere
+  // Creases: edges over which the surface does not turn smoothly. Both are empty where the mesh has none.
+  std::vector<std::uint8_t> crease;          // per triangle: bit i says that edge i (corner i to (i+1)%3) is a crease
+  std::vector<std::uint32_t> split_normals;  // per triangle: place of its corner 0 in corner_normal, or kNotSplit
+  std::vector<vec3> corner_normal;           // [1] three in a row for every triangle with split normals: unit, outward,
+                                             // of the smooth part of the surface that the corner belongs to
+
+  // Painted per vertex; empty: 1 everywhere.
+  std::vector<float> stiffness_factor;   // [1] _STIFFNESS
+  std::vector<float> friction_factor;    // [1] _FRICTION
+  std::vector<float> damping_factor;     // [1] _DAMPING: of damping_ratio and contact_damping
+  std::vector<float> relaxation_factor;  // [1] _RELAXATION: of relaxation.stiffness (standard linear solid)
 
   Box box;                 // [m] of the rest vertices
   float mean_edge = 0.0f;  // [m]
@@ -58,6 +85,12 @@ struct Mesh {
   std::uint32_t zone_end(std::uint32_t zone) const { return std::min((zone + 1) * kZoneSize, vertex_count); }
   vec3 position(std::uint32_t v) const { return {px[v], py[v], pz[v]}; }
   vec3 normal(std::uint32_t v) const { return {nx[v], ny[v], nz[v]}; }
+  bool is_crease(std::uint32_t triangle, int edge) const { return !crease.empty() && (crease[triangle] >> edge & 1); }
+  // Of the smooth surface on the triangle's side of any crease. [1]
+  vec3 normal(std::uint32_t triangle, int corner) const {
+    if (split_normals.empty() || split_normals[triangle] == kNotSplit) return normal(triangles[triangle][corner]);
+    return corner_normal[split_normals[triangle] + static_cast<std::uint32_t>(corner)];
+  }
 };
 
 // A run of triangles that share a material.

@@ -1,7 +1,10 @@
-// What a person holds against the surface. A point, or a sphere.
+// What a person holds against the surface: a point, a sphere, a capsule (a stylus, an instrument's shaft), or a small
+// set of points or spheres. Each of them is a set of tips: a sphere about a place in the probe's frame, of radius 0 for
+// a point.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "components/math.h"
 #include "runtime/entity.h"
@@ -10,7 +13,9 @@ namespace pliant {
 
 // Rate: touch. Writer: read_devices (pose, velocity), friction_feedback (force).
 struct Probe {
-  double radius = 0.0;            // [m] 0: a point
+  double radius = 0.0;            // [m] of every tip; 0: a point
+  double length = 0.0;            // [m] of a capsule's axis, from the origin along +Y of the probe's frame; 0: none
+  std::vector<vec3> points;       // [m] places of the tips, probe frame; empty: one at the origin, or the capsule's
   vec3 color{0.9f, 0.35f, 0.1f};  // linear RGB
   Entity device = kNoEntity;      // has a HapticDevice; kNoEntity: nobody moves it
 
@@ -18,10 +23,12 @@ struct Probe {
   dquat rotation{1, 0, 0, 0};  // world
   dvec3 velocity{0};           // [m/s] world
   dvec3 previous{0};           // [m] world, one tick ago: the start of the swept segment
-  bool placed = false;         // false until the device has given a first pose; then `previous` means something
-  bool fresh = false;          // this tick's pose is the first one
+  dquat previous_rotation{1, 0, 0, 0};
+  bool placed = false;  // false until the device has given a first pose; then `previous` means something
+  bool fresh = false;   // this tick's pose is the first one
 
-  dvec3 force{0};  // [N] world, on the probe: the sum over its contacts, before the safety layer
+  dvec3 force{0};   // [N] world, on the probe: the sum over its contacts, before the safety layer
+  dvec3 torque{0};  // [N m] world, about the probe's position: what its contacts make at their lever
 };
 
 }  // namespace pliant

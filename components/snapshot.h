@@ -1,8 +1,9 @@
-// What the touch clock shows to the visual clock: the streams of zones that changed, and the probes.
+// What the touch clock shows to the visual clock: the streams of zones that changed, the probes, and what moves.
 // Travels by TripleBuffer. A snapshot carries at most kMaxPublishedZones zones an object, so publishing has a bounded
 // cost; what did not fit, or was replaced before the reader saw it, stays dirty and comes with a later one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,13 @@ struct ObjectSnapshot {
   std::vector<FieldSource> terms;  // capacity for every source and release
 };
 
+// One place where a probe presses.
+struct ProbeContact {
+  dvec3 position{0};  // [m] world, on the undeformed surface
+  dvec3 force{0};     // [N] world, on the probe, before the safety layer
+};
+inline constexpr std::uint32_t kMostShownContacts = 8;  // of a probe, the first ones
+
 struct ProbeSnapshot {
   Entity probe;
   dvec3 position{0};  // [m] world
@@ -33,6 +41,14 @@ struct ProbeSnapshot {
   bool touching = false;
   double depth = 0.0;  // [m] below the undeformed surface, of the deepest contact
   dvec3 normal{0};     // [1] of the surface at the deepest contact, world; 0: it touches nothing
+  std::uint32_t contact_count = 0;
+  std::array<ProbeContact, kMostShownContacts> contacts;
+};
+
+// One Drawable that a prescribed motion carries.
+struct MovedSnapshot {
+  Entity object;
+  mat4 to_world{1};  // object frame to world
 };
 
 struct Snapshot {
@@ -41,6 +57,7 @@ struct Snapshot {
   bool complete = true;  // false: more dirty zones are waiting
   std::vector<ObjectSnapshot> objects;
   std::vector<ProbeSnapshot> probes;
+  std::vector<MovedSnapshot> moved;  // all that can move, each time
 };
 
 }  // namespace pliant

@@ -16,7 +16,9 @@ Entity find_by_name(const World& world, const std::string& name) {
 std::vector<std::string> explain_dropped(std::uint32_t dropped) {
   std::vector<std::string> sentences;
   if (dropped & kDroppedContacts)
-    sentences.push_back("more probes on one object than it can hold; use fewer, or split the object");
+    sentences.push_back(
+        "more contacts on one object than it has room for, and some were not felt; use fewer probes, or split the "
+        "object");
   if (dropped & kDroppedNonFinite)
     sentences.push_back("a pose or force was not a number and was replaced by zero; check the device");
   if (dropped & kDroppedTravel)

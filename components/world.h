@@ -10,6 +10,7 @@
 #include "components/deformable.h"
 #include "components/haptic_device.h"
 #include "components/height_field.h"
+#include "components/kinematic.h"
 #include "components/mesh.h"
 #include "components/name.h"
 #include "components/probe.h"
@@ -27,7 +28,7 @@ namespace pliant {
 
 // What a step had to leave out, as bits; each says its cure.
 enum DroppedBit : std::uint32_t {
-  kDroppedContacts = 1,   // more probes on one object than kMaxContactsPerObject: use fewer, or split the object
+  kDroppedContacts = 1,   // more contacts on one object than it has room for: use fewer probes, or split the object
   kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check the device
   kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
   kDroppedFlood = 8,      // a contact reached more zones than the flood holds: reduce `reach`
@@ -67,6 +68,7 @@ struct World {
   Store<DrawMesh> draw_meshes;
   Store<HeightField> fields;
   Store<Path> paths;
+  Store<PrescribedMotion> motions;
   std::vector<Material> materials;
   std::vector<Image> images;
   Environment environment;

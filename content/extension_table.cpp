@@ -148,6 +148,9 @@ std::vector<Key> deformable_keys() {
   };
   keys.push_back(both);
   keys.push_back(
+      number("crease_angle", "rad", {0.0, 3.1416}, d(&D::crease_angle),
+             "edges whose faces turn by more are creases; 0: where the file's own normals are split, else 0.7"));
+  keys.push_back(
       number("young", "Pa", {0.0, 1e12}, d(&D::young), "Young's modulus, instead of `stiffness`; 0: not given"));
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
   keys.push_back(
@@ -166,7 +169,10 @@ std::string settle_deformable(void* owner) {
 
 std::vector<Key> probe_keys() {
   std::vector<Key> keys;
-  keys.push_back(number("radius", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::radius), "radius; 0: a point"));
+  keys.push_back(
+      number("radius", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::radius), "radius of every tip; 0: a point"));
+  keys.push_back(number("length", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::length),
+                        "length of a capsule's axis, from the node along its +Y; 0: none"));
   Key color = key(
       "color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
       [](vec3 c) {
@@ -250,6 +256,19 @@ std::vector<Key> rigid_body_keys() {
   return keys;
 }
 
+std::vector<Key> motion_keys() {
+  using M = NodeMotion;
+  const auto m = [](auto member) { return at(&LevelNode::motion, member); };
+  std::vector<Key> keys;
+  keys.push_back(text("script", KeyType::kText, m(&M::script),
+                      "CSV of where the node is in its parent's frame, relative to the level; instead of animations"));
+  keys.push_back(text("animation", KeyType::kText, m(&M::animation),
+                      "name of the glTF animation that moves it; left out: every one that names the node"));
+  keys.push_back(flag("repeat", m(&M::repeat), "starts over at the end; else the end holds"));
+  keys.push_back(number("speed", "1", {0.0, 1e3}, m(&M::speed), "of the motion's clock; 0: stands at its beginning"));
+  return keys;
+}
+
 std::vector<Key> environment_keys() {
   using E = LevelEnvironment;
   const auto e = [](auto member) { return at(&Level::environment, member); };
@@ -305,6 +324,11 @@ std::string settle_friction(const T& it) {
   return it.friction_sliding > it.friction_static ? "friction_sliding is above friction_static; lower it" : "";
 }
 
+std::string settle_motion(void* owner) {
+  const NodeMotion& it = *static_cast<LevelNode*>(owner)->motion;
+  return it.script.empty() || it.animation.empty() ? "" : "gives both script and animation; keep one";
+}
+
 std::vector<Extension> make_table() {
   std::vector<Extension> table;
   table.push_back(extension("deformable", "The node's mesh gives way.", &LevelNode::deformable, deformable_keys()));
@@ -319,6 +343,9 @@ std::vector<Extension> make_table() {
       extension("handle", "The rigid part that a person holds a soft body by.", &LevelNode::handle, handle_keys()));
   table.push_back(extension("rigid_body", "The node's mesh is rigid.", &LevelNode::rigid_body, rigid_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->rigid_body); };
+  table.push_back(extension("motion", "How an animation or a script carries the node, and all below it.",
+                            &LevelNode::motion, motion_keys()));
+  table.back().settle = settle_motion;
   table.push_back(extension("environment", "What surrounds the scene.", &Level::environment, environment_keys()));
   Extension simulation;
   simulation.name = "simulation";

@@ -31,6 +31,7 @@ class Builder {
     for (const LevelMesh& mesh : level_.meshes)
       if (const Status status = add_mesh(mesh); !status) return status.error();
     nodes();
+    animations();
     SourceDocument document;
     if (!bytes_.empty()) {
       json_["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
@@ -106,8 +107,8 @@ class Builder {
                            int target) {
     bytes_.resize((bytes_.size() + 7) / 8 * 8);
     const auto* begin = static_cast<const std::uint8_t*>(data);
-    json_["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", count * element}, {"target", target}});
+    json_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", count * element}});
+    if (target != 0) json_["bufferViews"].back()["target"] = target;
     bytes_.insert(bytes_.end(), begin, begin + count * element);
     json_["accessors"].push_back({{"bufferView", json_["bufferViews"].size() - 1},
                                   {"componentType", component},
@@ -134,7 +135,8 @@ class Builder {
       const std::size_t count = primitive.position.size();
       const auto fits = [&](const auto& values) { return values.empty() || values.size() == count; };
       if (!fits(primitive.normal) || !fits(primitive.tangent) || !fits(primitive.uv) || !fits(primitive.stiffness) ||
-          !fits(primitive.friction) || !fits(primitive.pinned) || !fits(primitive.handle))
+          !fits(primitive.friction) || !fits(primitive.damping) || !fits(primitive.relaxation) ||
+          !fits(primitive.pinned) || !fits(primitive.handle))
         return Error{mesh.name, "has attributes of different lengths and cannot be saved"};
       Box box;
       for (const vec3 p : primitive.position) {
@@ -156,6 +158,8 @@ class Builder {
         attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), "VEC2");
       if (!primitive.stiffness.empty()) attributes["_STIFFNESS"] = add_attribute(primitive.stiffness, "SCALAR");
       if (!primitive.friction.empty()) attributes["_FRICTION"] = add_attribute(primitive.friction, "SCALAR");
+      if (!primitive.damping.empty()) attributes["_DAMPING"] = add_attribute(primitive.damping, "SCALAR");
+      if (!primitive.relaxation.empty()) attributes["_RELAXATION"] = add_attribute(primitive.relaxation, "SCALAR");
       if (!primitive.pinned.empty()) attributes["_PINNED"] = add_attribute(primitive.pinned, "SCALAR");
       if (!primitive.handle.empty()) attributes["_HANDLE"] = add_attribute(primitive.handle, "SCALAR");
       if (count < 65535) {
@@ -213,6 +217,34 @@ class Builder {
     Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
     lights.push_back(std::move(json));
     return lights.size() - 1;
+  }
+
+  // Every channel has accessors of its own; the times' bounds are as glTF wants them.
+  void animations() {
+    constexpr const char* kPaths[] = {"translation", "rotation", "scale"};
+    constexpr const char* kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
+    for (const LevelAnimation& animation : level_.animations) {
+      Json json = {{"channels", Json::array()}, {"samplers", Json::array()}};
+      if (!animation.name.empty()) json["name"] = animation.name;
+      for (const LevelChannel& channel : animation.channels) {
+        const Track& track = channel.track;
+        const bool turns = channel.property == NodeProperty::kRotation;
+        const std::vector<float> times(track.times.begin(), track.times.end());
+        std::vector<float> values;
+        for (const glm::dvec4& value : track.values)
+          for (int i = 0; i < (turns ? 4 : 3); ++i) values.push_back(static_cast<float>(value[i]));
+        const std::size_t input = add_accessor(times.data(), times.size(), 4, kFloat, "SCALAR", 0);
+        json_["accessors"][input]["min"] = Json::array({times.front()});
+        json_["accessors"][input]["max"] = Json::array({times.back()});
+        const std::size_t output = turns ? add_accessor(values.data(), track.values.size(), 16, kFloat, "VEC4", 0)
+                                         : add_accessor(values.data(), track.values.size(), 12, kFloat, "VEC3", 0);
+        json["channels"].push_back({{"sampler", json["samplers"].size()},
+                                    {"target", {{"node", channel.node}, {"path", kPaths[int(channel.property)]}}}});
+        json["samplers"].push_back(
+            {{"input", input}, {"output", output}, {"interpolation", kInterpolations[int(track.interpolation)]}});
+      }
+      if (!json["channels"].empty()) json_["animations"].push_back(std::move(json));
+    }
   }
 
   const Level& level_;

@@ -18,7 +18,7 @@ namespace {
 constexpr float kUnitTolerance = 0.00674f;
 constexpr float kWeightTolerance = 0.01f;
 
-enum class Role { kNormal, kTangent, kColor, kIndex, kJoints, kBindMatrices, kTimes };
+enum class Role { kNormal, kTangent, kColor, kIndex, kJoints, kBindMatrices, kTimes, kRotations, kRotationSplines };
 
 class DataCheck {
  public:
@@ -197,8 +197,10 @@ class DataCheck {
       for (const Json& channel : animation["channels"]) {
         const Json& sampler = animation["samplers"][channel["sampler"].get<std::size_t>()];
         const std::size_t output = sampler["output"].get<std::size_t>();
-        if (channel["target"]["path"] != "rotation" || !has_data(document_, output)) continue;
         const bool cubic = value_of<std::string>(sampler, "interpolation", "LINEAR") == "CUBICSPLINE";
+        if (channel["target"]["path"] != "rotation" ||
+            !first(output, cubic ? Role::kRotationSplines : Role::kRotations))
+          continue;
         const std::vector<float> q = read_floats(document_, output);
         for (std::size_t k = 0; k * 4 + 4 <= q.size(); ++k) {
           if (cubic && k % 3 != 1) continue;  // tangents stand before and after each value

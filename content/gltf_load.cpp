@@ -7,6 +7,7 @@
 
 #include "content/assimp_import.h"
 #include "content/extensions.h"
+#include "content/gltf_animation.h"
 #include "content/gltf_appearance.h"
 #include "content/gltf_document.h"
 #include "content/gltf_mesh.h"
@@ -180,6 +181,7 @@ Status fill(SourceDocument& document, Level& level) {
     level.meshes.push_back(std::move(*mesh));
   }
   if (const Status status = read_nodes(document, meshes, level); !status) return status;
+  if (const Status status = read_animations(document, level); !status) return status;
   if (const Status status = read_scene(document, level); !status) return status;
   level.notes.insert(level.notes.end(), meshes.notes().begin(), meshes.notes().end());
   // The same note once, in order of first appearance.

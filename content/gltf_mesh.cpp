@@ -171,8 +171,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     if (index >= source.vertices)
       return Error{pointer, fmt::format("refers to vertex {} of {}; export the mesh again", index, source.vertices)};
   out.index = as_triangles(source.draco ? static_cast<int>(kTriangles) : mode, std::move(source.index));
-  for (const char* name :
-       {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "_STIFFNESS", "_FRICTION", "_PINNED", "_HANDLE"}) {
+  for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "_STIFFNESS", "_FRICTION", "_DAMPING",
+                           "_RELAXATION", "_PINNED", "_HANDLE"}) {
     const std::vector<float> values = attribute(source, name);
     if (!all_finite(values)) return Error{pointer, fmt::format("has a number in {} that is not finite", name)};
     const std::string_view which = name;
@@ -190,6 +190,8 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     if (which == "TEXCOORD_0") out.uv = as_vectors<vec2>(values);
     if (which == "_STIFFNESS") out.stiffness = values;
     if (which == "_FRICTION") out.friction = values;
+    if (which == "_DAMPING") out.damping = values;
+    if (which == "_RELAXATION") out.relaxation = values;
     if (which == "_PINNED") out.pinned = values;
     if (which == "_HANDLE") out.handle = values;
   }

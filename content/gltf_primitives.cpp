@@ -205,7 +205,7 @@ void check_meshes(const Json& json, Meaning& check) {
   check_node_meshes(json, check);
 }
 
-// Animations are not played; what they refer to must still be sound, since saving keeps them.
+// What animations refer to must be sound also where they are not played: saving keeps them.
 void check_animations(const Json& json, Meaning& check) {
   const Json& animations = array_of(json, "animations");
   for (std::size_t a = 0; a < animations.size(); ++a) {

@@ -220,6 +220,7 @@ node PLIANT_haptic_device ext any
 node PLIANT_soft_body ext any
 node PLIANT_handle ext any
 node PLIANT_rigid_body ext any
+node PLIANT_motion ext any
 scene PLIANT_environment ext any
 scene PLIANT_simulation ext any
 )";

@@ -5,7 +5,8 @@ namespace pliant {
 bool Level::has_pliant() const {
   if (environment) return true;
   for (const LevelNode& node : nodes)
-    if (node.deformable || node.probe || node.device || node.soft_body || node.handle || node.rigid_body) return true;
+    if (node.deformable || node.probe || node.device || node.soft_body || node.handle || node.rigid_body || node.motion)
+      return true;
   return false;
 }
 

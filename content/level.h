@@ -11,6 +11,7 @@
 #include "components/appearance.h"
 #include "components/deformable.h"
 #include "components/haptic_device.h"
+#include "components/kinematic.h"
 #include "components/probe.h"
 #include "components/soft_body.h"
 #include "components/transform.h"
@@ -28,10 +29,19 @@ struct Primitive {
   std::vector<vec2> uv;
   std::vector<float> stiffness;      // _STIFFNESS
   std::vector<float> friction;       // _FRICTION
+  std::vector<float> damping;        // _DAMPING
+  std::vector<float> relaxation;     // _RELAXATION
   std::vector<float> pinned;         // _PINNED
   std::vector<float> handle;         // _HANDLE
   std::vector<std::uint32_t> index;  // three per triangle
   std::int32_t material = -1;
+};
+
+struct NodeMotion {       // PLIANT_motion
+  std::string script;     // .csv, relative to the level; "": animations
+  std::string animation;  // its name; "": every one that names the node
+  bool repeat = true;
+  double speed = 1.0;  // [1]
 };
 
 struct LevelMesh {
@@ -55,6 +65,20 @@ struct LevelNode {
   std::optional<SoftBody> soft_body;     // PLIANT_soft_body
   std::optional<Handle6> handle;         // PLIANT_handle
   std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
+  std::optional<NodeMotion> motion;      // PLIANT_motion
+};
+
+// What an animation does to one node. Times in seconds from 0; values as glTF has them, rotations x, y, z, w.
+enum class NodeProperty : std::uint8_t { kTranslation, kRotation, kScale };
+struct LevelChannel {
+  std::int32_t node = -1;  // into Level::nodes
+  NodeProperty property = NodeProperty::kTranslation;
+  Track track;
+};
+struct LevelAnimation {
+  std::string name;
+  double length = 0.0;  // [s] of the longest channel: all of them start over together
+  std::vector<LevelChannel> channels;
 };
 
 struct LevelEnvironment {  // PLIANT_environment
@@ -72,11 +96,12 @@ struct Level {
   std::vector<LevelMesh> meshes;
   std::vector<Material> materials;
   std::vector<Image> images;
+  std::vector<LevelAnimation> animations;
   std::optional<LevelEnvironment> environment;
   Simulation simulation;           // PLIANT_simulation
   std::vector<std::string> notes;  // what was read differently than a user might expect (skins, skipped points...)
-  // The glTF it came from: while it is there, save_level keeps meshes, materials and pictures from it. Whoever changes
-  // one of those resets it, and everything is then written from the Level alone.
+  // The glTF it came from: while it is there, save_level keeps meshes, materials, pictures and animations from it.
+  // Whoever changes one of those resets it, and everything is then written from the Level alone.
   std::shared_ptr<SourceDocument> source;
 
   bool has_pliant() const;  // any PLIANT_* extension; false: a bare mesh

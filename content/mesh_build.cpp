@@ -1,10 +1,16 @@
 #include "content/mesh_build.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
+#include "content/mesh_crease.h"
 #include "content/mesh_draw.h"
+#include "content/mesh_finer.h"
 #include "content/mesh_surface.h"
 #include "content/mesh_weld.h"
+#include "content/mesh_winding.h"
 #include "content/zones.h"
 
 namespace pliant {
@@ -69,41 +75,144 @@ double mean_edge_length(const Mesh& mesh) {
 
 }  // namespace
 
-Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object) {
+std::string winding_note(const MeshReport& report) {
+  std::string what;
+  const auto add = [&](std::uint32_t count, const char* one, const char* many) {
+    if (count != 0) what += fmt::format("{}{} {}", what.empty() ? "" : " and ", count, count == 1 ? one : many);
+  };
+  add(report.turned_triangles, "triangle wound against its neighbours", "triangles wound against their neighbours");
+  add(report.turned_parts, "part that was inside out", "parts that were inside out");
+  const bool one = report.turned_triangles + report.turned_parts == 1;
+  return what.empty() ? what
+                      : what + (one ? " is" : " are") + " turned over; `pliant convert --reorder` writes it mended";
+}
+
+std::string winding_doubt(const MeshReport& report) {
+  std::string what;
+  const auto add = [&](std::uint32_t count, const char* one, const char* many) {
+    if (count != 0) what += fmt::format("{}{} {}", what.empty() ? "" : ", and ", count, count == 1 ? one : many);
+  };
+  add(report.unorientable_parts, "part has one side only", "parts have one side only");
+  add(report.undecided_parts, "part may be inside out", "parts may be inside out");
+  return what.empty() ? what : what + ", which nothing in the file decides; check the winding where it feels wrong";
+}
+
+namespace {
+
+// What no longer depends on how the surface was found: the tree, zones, paint and what is drawn.
+Status finish(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
+              const Welded& welded, BuiltMesh& built) {
+  Mesh& mesh = built.mesh;
+  mesh.mean_edge = static_cast<float>(mean_edge_length(mesh));
+  mesh.tree = build_tree(mesh);
+  build_zones(mesh);
+  const struct {
+    const char* attribute;
+    std::vector<float> Primitive::*painted;
+    std::vector<float>* factor;
+    float unpainted;
+  } factors[] = {{"_STIFFNESS", &Primitive::stiffness, &mesh.stiffness_factor, 1.0f},
+                 {"_FRICTION", &Primitive::friction, &mesh.friction_factor, 1.0f},
+                 {"_DAMPING", &Primitive::damping, &mesh.damping_factor, 1.0f},
+                 {"_RELAXATION", &Primitive::relaxation, &mesh.relaxation_factor, 1.0f},
+                 {"_PINNED", &Primitive::pinned, &built.pinned, 0.0f},
+                 {"_HANDLE", &Primitive::handle, &built.handle, 0.0f}};
+  for (const auto& each : factors) {
+    auto mean =
+        paint(mesh.name, each.attribute, primitives, each.painted, gathered, welded, mesh.px.size(), each.unpainted);
+    if (!mean) return mean.error();
+    *each.factor = std::move(*mean);
+  }
+  built.draw = build_draw_mesh(primitives, to_object, gathered, welded, mesh, built.report);
+  return Done{};
+}
+
+// Creases and normals as they were before the surface was cut finer, not as the pieces' own angles would have them.
+void take_creases(const FinerMesh& finer, const Welded& welded, const Corners& corners, Mesh& mesh) {
+  const auto given = [&](std::uint32_t corner) {
+    return finer.normal[3 * std::size_t{welded.source_triangle[corner / 3]} + corner % 3];
+  };
+  mesh.crease.resize(mesh.triangles.size());
+  mesh.split_normals.resize(mesh.triangles.size());
+  mesh.corner_normal.resize(3 * mesh.triangles.size());
+  bool any = false;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    mesh.crease[t] = finer.crease[welded.source_triangle[t]];
+    any = any || mesh.crease[t] != 0;
+    mesh.split_normals[t] = 3 * t;
+    for (std::uint32_t i = 0; i < 3; ++i) mesh.corner_normal[3 * t + i] = given(3 * t + i);
+  }
+  if (!any) mesh.crease.clear();
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const std::uint32_t* begin = corners.corner.data() + corners.first[v];
+    const std::uint32_t* end = corners.corner.data() + corners.first[v + 1];
+    const vec3 normal = given(*begin);
+    if (!std::all_of(begin, end, [&](std::uint32_t corner) { return given(corner) == normal; })) continue;
+    mesh.nx[v] = normal.x;
+    mesh.ny[v] = normal.y;
+    mesh.nz[v] = normal.z;
+  }
+  keep_split_normals(mesh);
+}
+
+Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
+  const mat4 as_it_is(1.0f);
+  const Result<Gathered> gathered = gather(coarse.mesh.name, finer.primitives, as_it_is);
+  if (!gathered) return gathered.error();
+  BuiltMesh built;
+  Mesh& mesh = built.mesh;
+  mesh.name = coarse.mesh.name;
+  MeshReport of_pieces;  // what the file lacked is in the report of the coarse mesh
+  const Welded welded = weld(*gathered, of_pieces);
+  lay_out(welded, mesh);
+  const Corners corners = corners_of(mesh);
+  connect_triangles(mesh, corners, of_pieces);
+  measure_vertices(mesh, corners, of_pieces);
+  take_creases(finer, welded, corners, mesh);
+  built.report = coarse.report;
+  built.report.refined_from = static_cast<std::uint32_t>(coarse.mesh.triangles.size());
+  if (Status s = finish(finer.primitives, as_it_is, *gathered, welded, built); !s) return s.error();
+  return built;
+}
+
+}  // namespace
+
+Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object,
+                             const MeshOptions& options) {
   Result<Gathered> gathered = gather(name, primitives, to_object);
   if (!gathered) return gathered.error();
   BuiltMesh built;
   Mesh& mesh = built.mesh;
   mesh.name = name;
 
-  const Welded welded = weld(*gathered, built.report);
+  Welded welded = weld(*gathered, built.report);
   if (welded.triangle.empty())
     return Error{"mesh `" + name + "`",
                  "no triangle with an area is left; give it a surface, or remove the mesh from its node"};
   lay_out(welded, mesh);
   {
-    const Corners corners = corners_of(mesh);
+    Corners corners = corners_of(mesh);
+    const std::vector<SideAgainst> against = connect_triangles(mesh, corners, built.report);
+    if (options.mend_winding) {
+      const std::vector<std::uint8_t> turned =
+          find_wrong_winding(primitives, to_object, welded, against, mesh, *gathered, built.report);
+      if (!turned.empty()) {
+        turn_over(turned, mesh, welded, *gathered);
+        corners = corners_of(mesh);
+        connect_triangles(mesh, corners, built.report);
+      }
+    }
     measure_vertices(mesh, corners, built.report);
-    connect_triangles(mesh, corners, built.report);
+    find_creases(primitives, to_object, *gathered, welded, options.crease_angle, mesh);
+    split_at_creases(corners, mesh);
   }
-  mesh.mean_edge = static_cast<float>(mean_edge_length(mesh));
-  mesh.tree = build_tree(mesh);
-  build_zones(mesh);
-
-  auto stiffness = paint(name, "_STIFFNESS", primitives, &Primitive::stiffness, *gathered, welded, mesh.px.size());
-  if (!stiffness) return stiffness.error();
-  auto friction = paint(name, "_FRICTION", primitives, &Primitive::friction, *gathered, welded, mesh.px.size());
-  if (!friction) return friction.error();
-  mesh.stiffness_factor = std::move(*stiffness);
-  mesh.friction_factor = std::move(*friction);
-  auto pinned = paint(name, "_PINNED", primitives, &Primitive::pinned, *gathered, welded, mesh.px.size(), 0.0f);
-  if (!pinned) return pinned.error();
-  auto handle = paint(name, "_HANDLE", primitives, &Primitive::handle, *gathered, welded, mesh.px.size(), 0.0f);
-  if (!handle) return handle.error();
-  built.pinned = std::move(*pinned);
-  built.handle = std::move(*handle);
-
-  built.draw = build_draw_mesh(primitives, to_object, *gathered, welded, mesh, built.report);
+  if (options.reach) {
+    const double reach =
+        *options.reach > 0.0 ? *options.reach : kDefaultReach * static_cast<double>(mesh.box.diagonal());
+    const FinerMesh finer = make_finer(primitives, to_object, *gathered, welded, mesh, reach);
+    if (!finer.primitives.empty()) return build_finer(finer, std::move(built));
+  }
+  if (Status s = finish(primitives, to_object, *gathered, welded, built); !s) return s.error();
   return built;
 }
 

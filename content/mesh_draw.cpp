@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 namespace pliant {
@@ -13,38 +14,27 @@ vec3 unit_or(dvec3 v, vec3 otherwise) {
   return std::isfinite(l) && l > 1e-30 ? vec3(v / l) : otherwise;
 }
 
-// How directions of the file's mesh frame arrive in the object frame.
-struct Directions {
-  dmat3 tangent;  // the linear part itself
-  dmat3 normal;   // its cofactors, which point outward under a mirroring too
-  float hand;     // -1: mirrors
-  explicit Directions(const mat4& to_object) : tangent(dmat4(to_object)) {
-    const double determinant = glm::determinant(tangent);
-    hand = determinant < 0.0 ? -1.0f : 1.0f;
-    normal = dmat3(cross(tangent[1], tangent[2]), cross(tangent[2], tangent[0]), cross(tangent[0], tangent[1])) *
-             static_cast<double>(hand);
-  }
-};
-
 auto looks(const DrawVertex& v) {
   return std::make_tuple(v.normal.x, v.normal.y, v.normal.z, v.uv.x, v.uv.y, v.tangent.x, v.tangent.y, v.tangent.z,
                          v.tangent.w);
 }
 
 // What the file says of source vertex `v` of `p`. tangent.w 0: still to be made.
-DrawVertex drawn(const Primitive& p, std::size_t v, std::uint32_t touch_vertex, const Mesh& mesh,
-                 const Directions& to) {
+DrawVertex drawn(const Primitive& p, std::size_t v, std::uint32_t touch_vertex, const Mesh& mesh, const Directions& to,
+                 bool turned) {
   DrawVertex d;
   d.position = mesh.position(touch_vertex);
   d.touch_vertex = touch_vertex;
   d.normal = mesh.normal(touch_vertex);
-  if (p.normal.size() == p.position.size()) d.normal = unit_or(to.normal * dvec3(p.normal[v]), d.normal);
+  if (p.normal.size() == p.position.size())
+    d.normal = unit_or(to.normal * dvec3(p.normal[v]) * (turned ? -1.0 : 1.0), d.normal);
   const bool has_uv = p.uv.size() == p.position.size();
   if (has_uv && std::isfinite(p.uv[v].x) && std::isfinite(p.uv[v].y)) d.uv = p.uv[v] + vec2(0.0f);
   const vec3 x = std::abs(d.normal.x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
   const vec3 any = normalize(x - d.normal * dot(x, d.normal));
   if (p.tangent.size() == p.position.size())
-    d.tangent = vec4(unit_or(to.tangent * dvec3(vec3(p.tangent[v])), any), p.tangent[v].w < 0.0f ? -to.hand : to.hand);
+    d.tangent = vec4(unit_or(to.tangent * dvec3(vec3(p.tangent[v])), any),
+                     (p.tangent[v].w < 0.0f) != turned ? -to.hand : to.hand);
   else
     d.tangent = vec4(any, has_uv ? 0.0f : 1.0f);
   return d;
@@ -69,6 +59,40 @@ void group_by_material(DrawMesh& draw, const std::vector<uvec3>& triangles, cons
     for (int corner = 0; corner < 3; ++corner) draw.indices[place++] = triangles[i][corner];
   }
 }
+
+// Where the file has no normals, those that were made are split at creases, so that what is drawn is what is touched.
+class SplitNormals {
+ public:
+  SplitNormals(const Mesh& mesh, DrawMesh& draw) : mesh_(mesh), draw_(draw) {}
+
+  // `vertex`, or its copy with the normal of this corner.
+  std::uint32_t of(std::uint32_t vertex, std::uint32_t triangle, int corner) {
+    const vec3 normal = mesh_.normal(triangle, corner);
+    if (normal == draw_.vertices[vertex].normal) return vertex;
+    const auto [known, fresh] =
+        copies_.try_emplace({vertex, normal.x, normal.y, normal.z}, static_cast<std::uint32_t>(draw_.vertices.size()));
+    if (fresh) {
+      DrawVertex copy = draw_.vertices[vertex];
+      copy.normal = normal;
+      const vec3 along(copy.tangent);
+      copy.tangent = vec4(across(normal, along), copy.tangent.w);
+      draw_.vertices.push_back(copy);
+    }
+    return known->second;
+  }
+
+ private:
+  // A unit vector in the tangent plane, along `wish` where it has a share in it.
+  static vec3 across(vec3 normal, vec3 wish) {
+    const vec3 x = std::abs(normal.x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    const vec3 any = normalize(x - normal * dot(x, normal));
+    return unit_or(dvec3(wish - normal * dot(wish, normal)), any);
+  }
+
+  const Mesh& mesh_;
+  DrawMesh& draw_;
+  std::map<std::tuple<std::uint32_t, float, float, float>, std::uint32_t> copies_;
+};
 
 }  // namespace
 
@@ -98,7 +122,8 @@ DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_o
       if (!shown[source]) continue;
       const auto after = std::upper_bound(gathered.first_vertex.begin(), gathered.first_vertex.end(), source);
       const auto n = static_cast<std::size_t>(after - gathered.first_vertex.begin()) - 1;
-      copies.emplace_back(drawn(primitives[n], source - gathered.first_vertex[n], touch_vertex, mesh, directions),
+      copies.emplace_back(drawn(primitives[n], source - gathered.first_vertex[n], touch_vertex, mesh, directions,
+                                !gathered.turned_normal.empty() && gathered.turned_normal[source] != 0),
                           source);
     }
     if (copies.size() > 1)
@@ -117,9 +142,17 @@ DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_o
   std::vector<std::int32_t> material;
   triangles.reserve(source_triangles.size());
   material.reserve(source_triangles.size());
-  for (const std::uint32_t s : source_triangles) {
+  SplitNormals split(mesh, draw);
+  for (std::size_t i = 0; i < source_triangles.size(); ++i) {
+    const std::uint32_t s = source_triangles[i];
     const uvec3 t = gathered.triangle[s];
     triangles.emplace_back(draw_vertex[t.x], draw_vertex[t.y], draw_vertex[t.z]);
+    const Primitive& p = primitives[gathered.primitive[s]];
+    const bool touched = i < mesh.triangles.size();
+    if (touched && !mesh.split_normals.empty() && mesh.split_normals[i] != kNotSplit &&
+        p.normal.size() != p.position.size())
+      for (int corner = 0; corner < 3; ++corner)
+        triangles.back()[corner] = split.of(triangles.back()[corner], static_cast<std::uint32_t>(i), corner);
     material.push_back(primitives[gathered.primitive[s]].material);
   }
   group_by_material(draw, triangles, material);

@@ -6,6 +6,19 @@
 
 namespace pliant {
 
+// How directions of the file's mesh frame arrive in the object frame.
+struct Directions {
+  dmat3 tangent;  // the linear part itself
+  dmat3 normal;   // its cofactors, which point outward under a mirroring too
+  float hand;     // -1: mirrors
+  explicit Directions(const mat4& to_object) : tangent(dmat4(to_object)) {
+    const double determinant = glm::determinant(tangent);
+    hand = determinant < 0.0 ? -1.0f : 1.0f;
+    normal = dmat3(cross(tangent[1], tangent[2]), cross(tangent[2], tangent[0]), cross(tangent[0], tangent[1])) *
+             static_cast<double>(hand);
+  }
+};
+
 DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
                          const Welded& welded, const Mesh& mesh, MeshReport& report);
 

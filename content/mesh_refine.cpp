@@ -66,7 +66,8 @@ class Pass {
       const float l = length(v);
       return l > 0.0f ? v / l : otherwise;
     };
-    mean(p_.position), mean(p_.uv), mean(p_.stiffness), mean(p_.friction), mean(p_.pinned), mean(p_.handle);
+    mean(p_.position), mean(p_.uv), mean(p_.stiffness), mean(p_.friction), mean(p_.damping), mean(p_.relaxation),
+        mean(p_.pinned), mean(p_.handle);
     if (!p_.normal.empty()) p_.normal.push_back(direction(p_.normal[a] + p_.normal[b], p_.normal[a]));
     if (!p_.tangent.empty()) {
       const vec4 first = p_.tangent[a], second = p_.tangent[b];

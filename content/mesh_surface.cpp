@@ -1,7 +1,9 @@
 #include "content/mesh_surface.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "runtime/parallel.h"
 
@@ -36,44 +38,49 @@ Corners corners_of(const Mesh& mesh) {
   return c;
 }
 
+void NormalSum::add(const Mesh& mesh, std::uint32_t corner) {
+  const uvec3 t = mesh.triangles[corner / 3];
+  const int i = static_cast<int>(corner % 3);
+  const dvec3 p(mesh.position(t[i]));
+  const dvec3 e = dvec3(mesh.position(t[(i + 1) % 3])) - p, f = dvec3(mesh.position(t[(i + 2) % 3])) - p;
+  const dvec3 n = cross(e, f);
+  const double twice_area = length(n), angle = std::atan2(twice_area, dot(e, f));
+  // sin / (|e| |f|), which is exact on a sphere however it is cut into triangles (Max 1999, Weights for computing
+  // vertex normals from facet normals); a needle's short side counts no more than a fourth of its long one.
+  const double a = length(e), b = length(f), longest = std::max(a, b),
+               shortest = std::max(std::min(a, b), 0.25 * longest);
+  const double weight = std::sin(angle) / (longest * shortest);
+  sum_ += n * (weight / twice_area);
+  weights_ += weight;
+  area_ += twice_area / 6.0;
+  if (twice_area > largest_area_) {
+    largest_area_ = twice_area;
+    largest_ = n / twice_area;
+  }
+}
+
 void measure_vertices(Mesh& mesh, const Corners& corners, MeshReport& report) {
   std::atomic<std::uint32_t> cancelled{0};
   parallel_for(mesh.vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      dvec3 sum(0), largest(0);
-      double angles = 0.0, area = 0.0, largest_area = -1.0;
-      for (std::uint32_t c = corners.first[v]; c < corners.first[v + 1]; ++c) {
-        const uvec3 t = mesh.triangles[corners.corner[c] / 3];
-        const int i = static_cast<int>(corners.corner[c] % 3);
-        const dvec3 p(mesh.position(t[i]));
-        const dvec3 e = dvec3(mesh.position(t[(i + 1) % 3])) - p, f = dvec3(mesh.position(t[(i + 2) % 3])) - p;
-        const dvec3 n = cross(e, f);
-        const double twice_area = length(n), angle = std::atan2(twice_area, dot(e, f));
-        sum += n * (angle / twice_area);
-        angles += angle;
-        area += twice_area / 6.0;
-        if (twice_area > largest_area) {
-          largest_area = twice_area;
-          largest = n / twice_area;
-        }
-      }
-      // Faces that cancel (a fold back onto itself) leave no direction: the largest face's is the nearest sensible one.
-      const double l = length(sum);
-      const bool cancels = !(l > 1e-6 * angles);
-      if (cancels) cancelled.fetch_add(1, std::memory_order_relaxed);
-      const vec3 normal(cancels ? largest : sum / l);
+      NormalSum sum;
+      for (std::uint32_t c = corners.first[v]; c < corners.first[v + 1]; ++c) sum.add(mesh, corners.corner[c]);
+      if (sum.cancels()) cancelled.fetch_add(1, std::memory_order_relaxed);
+      const vec3 normal = sum.normal();
       mesh.nx[v] = normal.x;
       mesh.ny[v] = normal.y;
       mesh.nz[v] = normal.z;
-      mesh.area[v] = static_cast<float>(area);
+      mesh.area[v] = static_cast<float>(sum.area());
     }
   });
   report.cancelled_normals = cancelled;
 }
 
-void connect_triangles(Mesh& mesh, const Corners& corners, MeshReport& report) {
+std::vector<SideAgainst> connect_triangles(Mesh& mesh, const Corners& corners, MeshReport& report) {
   mesh.across.assign(mesh.triangles.size(), uvec3(kBorder));
   std::atomic<std::uint32_t> border{0}, non_manifold{0};
+  std::vector<SideAgainst> against;
+  std::mutex against_mutex;
   parallel_for(mesh.vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Side> sides;
     std::uint32_t borders = 0, non_manifolds = 0;
@@ -98,6 +105,11 @@ void connect_triangles(Mesh& mesh, const Corners& corners, MeshReport& report) {
           across_of(mesh, sides[i + 1].edge) = sides[i].edge / 3;
         } else {
           ++(j - i == 1 ? borders : non_manifolds);
+          if (j - i == 2) {
+            const std::scoped_lock lock(against_mutex);  // rare
+            against.push_back({sides[i].edge, sides[i + 1].edge});
+            against.push_back({sides[i + 1].edge, sides[i].edge});
+          }
         }
         i = j;
       }
@@ -108,6 +120,8 @@ void connect_triangles(Mesh& mesh, const Corners& corners, MeshReport& report) {
   report.border_edges = border;
   report.non_manifold_edges = non_manifold;
   mesh.closed = border == 0 && non_manifold == 0;
+  std::sort(against.begin(), against.end());
+  return against;
 }
 
 }  // namespace pliant

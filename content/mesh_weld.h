@@ -19,6 +19,7 @@ struct Gathered {
   std::vector<uvec3> triangle;              // source vertices, winding already flipped where the frame mirrors
   std::vector<std::uint32_t> primitive;     // of each triangle
   std::vector<std::uint32_t> first_vertex;  // of each primitive, and one past the last
+  std::vector<std::uint8_t> turned_normal;  // by vertex: the file's normal points inward; empty: none does
 };
 Result<Gathered> gather(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object);
 

@@ -69,6 +69,7 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
       return error("more than 4,000,000 rows; split the script or sample it more coarsely");
     path.rows.push_back({v[0], {v[1], v[2], v[3]}, rotation * (1.0 / norm)});
   }
+  path.turns = columns == 8;
   if (path.rows.empty())
     return Error{where, "holds no rows; write a header `time_s,x,y,z` and at least one row below it"};
   return path;

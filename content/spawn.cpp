@@ -1,5 +1,7 @@
 // Level -> World. Nodes become entities in order; meshes are built once for every way in which a node scales them.
 #include <cmath>
+#include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "components/mass_properties.h"
@@ -8,40 +10,17 @@
 #include "content/exr.h"
 #include "content/level.h"
 #include "content/mesh_build.h"
+#include "content/mesh_finer.h"
 #include "content/progress.h"
 #include "content/script.h"
+#include "content/spawn_motion.h"
 #include "content/spawn_soft.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kDefaultReach = 0.08;                        // [1] of the object's diagonal
 constexpr double kFlat = 1e-9;                                // [1] of the diagonal cubed: no volume
 constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // over all instances: a small file can name a mesh often
-
-dmat4 matrix(const LocalTransform& local) {
-  dmat4 m = glm::mat4_cast(glm::normalize(dquat(local.rotation)));
-  for (int i = 0; i < 3; ++i) m[i] *= static_cast<double>(local.scale[i]);
-  m[3] = glm::dvec4(dvec3(local.translation), 1.0);
-  return m;
-}
-
-// The direction of v, or of the axis least along `avoid` and perpendicular to it where v has none.
-dvec3 direction(dvec3 v, dvec3 avoid) {
-  const double l = length(v);
-  if (l > 0.0 && std::isfinite(l)) return v / l;
-  const dvec3 axis = std::abs(avoid.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-  return normalize(axis - avoid * dot(axis, avoid));
-}
-
-// The rigid part of a node's frame, by Gram-Schmidt on its columns: exact where there is only rotation and scale;
-// shear, mirroring and a scale of zero stay in what is left, Pose^-1 * world.
-Pose rigid_part(const dmat4& world) {
-  const dvec3 x = direction(dvec3(world[0]), dvec3(0));
-  const dvec3 along_y(world[1]);
-  const dvec3 y = direction(along_y - x * dot(x, along_y), x);
-  return {dvec3(world[3]), glm::normalize(glm::quat_cast(dmat3(x, y, cross(x, y))))};
-}
 
 dmat4 inverse(const Pose& pose) {
   const dquat back = glm::conjugate(pose.rotation);
@@ -50,10 +29,19 @@ dmat4 inverse(const Pose& pose) {
   return m;
 }
 
+std::string with_commas(std::size_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, ",");
+  return text;
+}
+
 // A mesh as some node wants it. Nodes that bake the same frame into the same mesh share what was built.
 struct Baked {
   bool touchable;
   mat4 to_object;
+  double crease_angle;          // [rad]
+  std::optional<double> reach;  // [m] of the dents that must show, 0: the default; nothing: none need
+  bool refined = false;         // cut finer for that
   Handle<Mesh> touch;
   Handle<DrawMesh> draw;
 };
@@ -69,10 +57,14 @@ class Spawner {
     world_.images = level_.images;
     if (Status s = environment(); !s) return s;
     entities_.assign(level_.nodes.size(), kNoEntity);
-    matrices_.assign(level_.nodes.size(), dmat4(1.0));
+    Result<LevelMotions> motions = make_motions(level_, folder_);
+    if (!motions) return motions.error();
+    motions_ = std::move(*motions);
+    notes_.insert(notes_.end(), motions_.notes.begin(), motions_.notes.end());
     baked_.resize(level_.meshes.size());
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = node(n); !s) return s;
+    say_refinement();
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = link_probe(n); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
@@ -104,15 +96,16 @@ class Spawner {
     const LevelNode& node = level_.nodes[n];
     const auto parent = static_cast<std::size_t>(node.parent);
     ASSERT(node.parent < 0 || parent < n);
-    matrices_[n] = (node.parent < 0 ? dmat4(1.0) : matrices_[parent]) * matrix(node.local);
     if (!node.in_scene) return Done{};
 
     Registry& registry = world_.registry;
     const Entity entity = entities_[n] = registry.create();
     world_.hierarchy.add(entity, node.parent < 0 ? kNoEntity : entities_[parent]);
     registry.add<Name>(entity, {node.name});
-    registry.add<LocalTransform>(entity, node.local);
-    registry.add<WorldTransform>(entity, {mat4(matrices_[n])});
+    registry.add<LocalTransform>(entity, motions_.local[n]);
+    registry.add<WorldTransform>(entity, {mat4(motions_.world[n])});
+    if (std::optional<PrescribedMotion>& motion = motions_.motion[n])
+      registry.add<Kinematic>(entity, {world_.motions.add(std::move(*motion))});
     if (!by_name_.count(node.name)) by_name_[node.name] = n;
     if (node.light) registry.add<Light>(entity, *node.light);
     if (node.camera) registry.add<Camera>(entity, *node.camera);
@@ -121,7 +114,7 @@ class Spawner {
     if (Status s = surface(n); !s) return s;
     if (Status s = device(n); !s) return s;
     if (node.probe) {
-      const Pose pose = rigid_part(matrices_[n]);
+      const Pose pose = rigid_part(motions_.world[n]);
       Probe& probe = registry.add<Probe>(entity, *node.probe);
       probe.position = probe.previous = pose.position;
       probe.rotation = pose.rotation;
@@ -139,10 +132,12 @@ class Spawner {
       return Done{};
     }
     if (!is_touched(node) && level_.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty()) return Done{};
-    const Pose pose = rigid_part(matrices_[n]);
-    Result<Baked> baked = bake(n, mat4(inverse(pose) * matrices_[n]));
+    // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
+    const bool has_pose = is_touched(node) || !motions_.moves[n];
+    const Pose pose = rigid_part(motions_.world[n]);
+    Result<Baked> baked = bake(n, has_pose ? mat4(inverse(pose) * motions_.world[n]) : mat4(1));
     if (!baked) return baked.error();
-    world_.registry.add<Pose>(entities_[n], pose);
+    if (has_pose) world_.registry.add<Pose>(entities_[n], pose);
     world_.registry.add<Drawable>(entities_[n], {baked->draw});
     if (node.deformable) {
       Deformable& deformable = world_.registry.add<Deformable>(entities_[n], *node.deformable);
@@ -172,11 +167,12 @@ class Spawner {
     const LevelMesh* mesh = node.mesh < 0 ? nullptr : &level_.meshes[static_cast<std::size_t>(node.mesh)];
     if (mesh)
       if (Status s = count_triangles(n, *mesh); !s) return s;
-    const Pose pose = rigid_part(matrices_[n]);
+    const Pose pose = rigid_part(motions_.world[n]);
     progress_.say("preparing meshes, now `" + node.name + "`");
-    Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * matrices_[n]), folder_);
+    Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
     if (!parts) return at(n, parts.error().message());
     for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
+    note_winding(node.mesh, parts->surface);
     world_.registry.add<Pose>(entities_[n], pose);
     SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
     body.tets = world_.tet_meshes.add(std::move(parts->tets));
@@ -192,18 +188,56 @@ class Spawner {
               "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
   }
 
+  // Once a mesh, however many nodes show it.
+  void note_winding(std::int32_t mesh, const BuiltMesh& built) {
+    const std::string turned = winding_note(built.report);
+    if (!turned.empty() && noted_.insert(mesh).second) notes_.push_back("mesh `" + built.mesh.name + "`: " + turned);
+  }
+
+  void note_refinement(const LevelNode& node, const BuiltMesh& built) {
+    if (built.report.refined_from == 0) return;
+    constexpr std::size_t kNamed = 3;
+    if (refined_.count++ < kNamed) refined_.names += (refined_.names.empty() ? "`" : ", `") + node.name + "`";
+    if (refined_.count > kNamed) refined_.more = " and " + with_commas(refined_.count - kNamed) + " more";
+    refined_.from += built.report.refined_from;
+    refined_.to += built.mesh.triangles.size();
+  }
+  // One sentence, however many nodes there are.
+  void say_refinement() {
+    if (refined_.count == 0) return;
+    notes_.push_back(refined_.names + refined_.more + ": " + with_commas(refined_.from) + " triangles refined to " +
+                     with_commas(refined_.to) + " so that dents can show");
+  }
+
+  // Whether what was built for one node's dents is what another node wants.
+  bool serves(const Baked& built, const Baked& wanted) const {
+    if (built.reach == wanted.reach) return true;
+    if (built.refined || !wanted.reach) return !built.refined;
+    const Mesh& mesh = world_.meshes[built.touch];
+    return !is_coarse(mesh,
+                      *wanted.reach > 0.0 ? *wanted.reach : kDefaultReach * static_cast<double>(mesh.box.diagonal()));
+  }
+
   Result<Baked> bake(std::size_t n, const mat4& to_object) {
     const LevelNode& node = level_.nodes[n];
-    Baked wanted{is_touched(node), to_object, {}, {}};
+    Baked wanted{is_touched(node), to_object, node.deformable ? node.deformable->crease_angle : 0.0, {}, false, {}, {}};
+    if (node.deformable) wanted.reach = std::max(node.deformable->reach, 0.0);
     std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)];
     for (const Baked& b : known)
-      if (b.touchable == wanted.touchable && b.to_object == to_object) return b;
+      if (b.touchable == wanted.touchable && b.to_object == to_object && b.crease_angle == wanted.crease_angle &&
+          serves(b, wanted))
+        return b;
 
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
     progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
     if (Status s = count_triangles(n, mesh); !s) return s.error();
-    Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, to_object);
+    Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, to_object,
+                                         {wanted.crease_angle, wanted.reach, wanted.touchable});
     if (!built) return at(n, built.error().message());
+    note_winding(node.mesh, *built);
+    note_refinement(node, *built);
+    wanted.refined = built->report.refined_from != 0;
+    if (wanted.refined) triangles_ += built->mesh.triangles.size();
     if (wanted.touchable)
       wanted.touch = world_.meshes.add(std::move(built->mesh));
     else
@@ -223,7 +257,7 @@ class Spawner {
       if (!path) return path.error();
       device.path = world_.paths.add(std::move(*path));
     }
-    device.position = dvec3(matrices_[n][3]);
+    device.position = dvec3(motions_.world[n][3]);
     world_.registry.add<HapticDevice>(entities_[n], std::move(device));
     return Done{};
   }
@@ -260,12 +294,17 @@ class Spawner {
   const Level& level_;
   const std::filesystem::path folder_;
   World world_;
-  std::vector<Entity> entities_;                          // of each node; kNoEntity: not in the scene
-  std::vector<dmat4> matrices_;                           // node to world
+  std::vector<Entity> entities_;  // of each node; kNoEntity: not in the scene
+  LevelMotions motions_;
   std::unordered_map<std::string, std::size_t> by_name_;  // first node in the scene with this name
   std::vector<std::vector<Baked>> baked_;                 // of each mesh of the level
+  std::set<std::int32_t> noted_;                          // meshes whose winding a note speaks of
   std::size_t triangles_ = 0;                             // built so far
-  std::vector<std::string> notes_;                        // of panorama and tetrahedra
+  struct {
+    std::size_t count = 0, from = 0, to = 0;  // nodes, triangles
+    std::string names, more;
+  } refined_;                       // meshes that were cut finer
+  std::vector<std::string> notes_;  // of panorama, tetrahedra and winding, finer meshes
   Progress progress_;
 };
 

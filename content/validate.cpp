@@ -67,7 +67,8 @@ Finding from_spawn(const Level& level, const Error& error) {
 
 // How a deformable will feel where its mesh does not suit it.
 void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::string& pointer, Findings& findings) {
-  const Result<BuiltMesh> built = build_mesh(node.name, mesh.primitives, mat4(1));
+  const Result<BuiltMesh> built =
+      build_mesh(node.name, mesh.primitives, mat4(1), {node.deformable ? node.deformable->crease_angle : 0.0});
   if (!built) return findings.push_back({Severity::kError, pointer, built.error().what});
   const auto warn = [&](std::string message) { findings.push_back({Severity::kWarning, pointer, std::move(message)}); };
   const MeshReport& report = built->report;
@@ -79,6 +80,8 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
   if (report.non_manifold_edges > 0)
     warn(fmt::format("has {} edges where more than two triangles, or two of opposite orientation, meet",
                      report.non_manifold_edges));
+  if (const std::string turned = winding_note(report); !turned.empty()) warn(turned);
+  if (const std::string doubt = winding_doubt(report); !doubt.empty()) warn(doubt);
   if (node.deformable && node.deformable->reach > 0.0 &&
       node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
     warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices",
@@ -107,6 +110,9 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
 void find_in_scripts(const Level& level, const fs::path& folder, Findings& findings) {
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
+    if (node.motion && !node.motion->script.empty() && !fs::is_regular_file(folder / node.motion->script))
+      findings.push_back({Severity::kError, pointer_of(level, i) + "/extensions/PLIANT_motion/script",
+                          "names the script " + node.motion->script + ", which does not exist"});
     if (!node.device || node.device->file.empty()) continue;
     const std::string pointer = pointer_of(level, i) + "/extensions/PLIANT_haptic_device/file";
     const fs::path file = folder / node.device->file;

@@ -18,7 +18,8 @@ inline void assert_sound(const Level& level) {
       for (const vec3 position : p.position)
         ASSERT(std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z));
       ASSERT(fits(p.normal, count) && fits(p.tangent, count) && fits(p.uv, count) && fits(p.stiffness, count) &&
-             fits(p.friction, count) && fits(p.pinned, count) && fits(p.handle, count));
+             fits(p.friction, count) && fits(p.damping, count) && fits(p.relaxation, count) && fits(p.pinned, count) &&
+             fits(p.handle, count));
       ASSERT(p.material < static_cast<std::int32_t>(level.materials.size()));
     }
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {

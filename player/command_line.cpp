@@ -9,6 +9,7 @@
 
 #include "player/exit.h"
 #include "player/study.h"
+#include "player/unit.h"
 #include "player/verbs.h"
 
 namespace pliant {
@@ -41,6 +42,19 @@ std::string parse_size(const std::string& text, RunOptions& run) {
   return {};
 }
 
+// --unit of `run` and of `convert`.
+void add_unit(CLI::App* verb, double& unit, const char* what) {
+  verb->add_option_function<std::string>(
+          "--unit",
+          [&unit](const std::string& text) {
+            const auto metres = parse_unit(text);
+            if (!metres) throw CLI::ValidationError(metres.error().where + " " + metres.error().what);
+            unit = *metres;
+          },
+          what)
+      ->type_name("m|cm|mm|in|METRES");
+}
+
 void add_run(CLI::App& app, RunOptions& run) {
   CLI::App* verb = app.add_subcommand("run", "run a level or touch a bare mesh; writes forces, plot, pictures, report");
   verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)");
@@ -50,6 +64,7 @@ void add_run(CLI::App& app, RunOptions& run) {
   verb->add_option("--set", run.sets, "NODE.EXT.KEY=VALUE for this run; NODE may be *; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
+  add_unit(verb, run.unit, "what one unit of a bare mesh is (m)");
   verb->add_option("--seconds", run.seconds, "how long [s]; default: the longest script, at most 60, else 4")
       ->check(within(1e-4, 86400.0));
   verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")->check(within(10.0, 20000.0));
@@ -82,6 +97,7 @@ void add_run(CLI::App& app, RunOptions& run) {
       "Examples:\n"
       "  pliant run\n"
       "  pliant run organ.glb --probe finger=orbit --set '*.deformable.stiffness=500' --frames 4\n"
+      "  pliant run scan_in_millimetres.stl --unit mm\n"
       "  pliant run level.gltf --probe tip=script:press.csv --record press.pose --out out/press");
 }
 
@@ -100,8 +116,7 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
   verb->add_option("--draco", conversion.draco_bits, "compress with this many bits per position (8 to 24)")
       ->check(within(8, 24));
   verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
-  verb->add_option("--unit", conversion.unit, "what one unit of the input is: m, cm, mm")
-      ->check(CLI::IsMember({"m", "cm", "mm"}));
+  add_unit(verb, conversion.unit, "what one unit of the input is (m)");
   verb->footer(
       "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
 

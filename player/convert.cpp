@@ -1,6 +1,7 @@
 // pliant convert: any mesh format to glTF or GLB; an EXR panorama to a picture of its cube map.
 #include <fmt/format.h>
 
+#include <set>
 #include <string>
 
 #include "content/exr.h"
@@ -10,6 +11,7 @@
 #include "content/mesh_build.h"
 #include "player/exit.h"
 #include "player/panorama_preview.h"
+#include "player/unit.h"
 #include "player/verbs.h"
 
 namespace pliant {
@@ -22,21 +24,6 @@ std::string lower_extension(const fs::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
-}
-
-// Metres for one unit of the input.
-float metres(const std::string& unit) {
-  return unit == "mm" ? 1e-3f : unit == "cm" ? 1e-2f : 1.0f;
-}
-
-// Scales the whole scene about the world's origin: what the roots say, their children inherit.
-void scale_roots(Level& level, float factor) {
-  if (factor == 1.0f) return;
-  for (LevelNode& node : level.nodes) {
-    if (node.parent >= 0) continue;
-    node.local.translation *= factor;
-    node.local.scale *= factor;
-  }
 }
 
 // The drawn half of a built mesh, back as primitives: welded, without degenerate triangles, in spatial order.
@@ -58,6 +45,9 @@ LevelMesh from_built(const BuiltMesh& built, const LevelMesh& source) {
         out.uv.push_back(v.uv);
         if (!built.mesh.stiffness_factor.empty()) out.stiffness.push_back(built.mesh.stiffness_factor[v.touch_vertex]);
         if (!built.mesh.friction_factor.empty()) out.friction.push_back(built.mesh.friction_factor[v.touch_vertex]);
+        if (!built.mesh.damping_factor.empty()) out.damping.push_back(built.mesh.damping_factor[v.touch_vertex]);
+        if (!built.mesh.relaxation_factor.empty())
+          out.relaxation.push_back(built.mesh.relaxation_factor[v.touch_vertex]);
         if (!built.pinned.empty()) out.pinned.push_back(built.pinned[v.touch_vertex]);
         if (!built.handle.empty()) out.handle.push_back(built.handle[v.touch_vertex]);
       }
@@ -70,9 +60,15 @@ LevelMesh from_built(const BuiltMesh& built, const LevelMesh& source) {
 
 Status reorder(Level& level) {
   level.source.reset();  // the document it came from holds the meshes in their old order
+  // What is only drawn keeps its winding: a room is seen from within.
+  std::set<std::ptrdiff_t> touched;
+  for (const LevelNode& node : level.nodes)
+    if (!level.has_pliant() || node.deformable || node.rigid_body || node.soft_body) touched.insert(node.mesh);
   for (LevelMesh& mesh : level.meshes) {
     if (mesh.primitives.empty()) continue;
-    auto built = build_mesh(mesh.name, mesh.primitives, mat4(1));
+    MeshOptions as_touched;
+    as_touched.mend_winding = touched.count(&mesh - level.meshes.data()) != 0;
+    auto built = build_mesh(mesh.name, mesh.primitives, mat4(1), as_touched);
     if (!built) return built.error();
     mesh = from_built(*built, mesh);
   }
@@ -101,7 +97,7 @@ int convert(const ConvertOptions& options) {
   auto level = load_level(options.in);
   if (!level) return fail(kFailed, level.error());
   for (const std::string& sentence : level->notes) note(sentence);
-  scale_roots(*level, metres(options.unit));
+  scale_roots(*level, options.unit);
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
   if (const Status s = save_level(*level, options.out, SaveOptions{options.draco_bits}); !s)

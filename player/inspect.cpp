@@ -1,7 +1,7 @@
 // pliant inspect: what is in a file, whether it can be touched, and what is wrong with it.
 #include <fmt/format.h>
 
-#include <glm/gtc/matrix_transform.hpp>
+#include <bit>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -12,14 +12,13 @@
 #include "player/exit.h"
 #include "player/inspect_panorama.h"
 #include "player/inspect_tets.h"
+#include "player/unit.h"
 #include "player/verbs.h"
 
 namespace pliant {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr float kLargest = 10.0f, kSmallest = 1e-3f;  // [m] diagonal beyond which the unit is probably wrong
 
 // One node with a mesh, as it would be touched: in world scale, welded and cleaned.
 struct ObjectReport {
@@ -31,17 +30,6 @@ struct ObjectReport {
   MeshReport report;
   Box box;  // [m] world
 };
-
-// Parents stand before children, so one pass places every node.
-std::vector<mat4> world_matrices(const Level& level) {
-  std::vector<mat4> world;
-  for (const LevelNode& node : level.nodes) {
-    const mat4 local = glm::translate(mat4(1), node.local.translation) * glm::mat4_cast(node.local.rotation) *
-                       glm::scale(mat4(1), node.local.scale);
-    world.push_back(node.parent < 0 ? local : world[static_cast<std::size_t>(node.parent)] * local);
-  }
-  return world;
-}
 
 std::vector<ObjectReport> inspect_objects(const Level& level) {
   std::vector<ObjectReport> objects;
@@ -57,7 +45,10 @@ std::vector<ObjectReport> inspect_objects(const Level& level) {
       object.file_vertices += primitive.position.size();
       object.file_triangles += primitive.index.size() / 3;
     }
-    auto built = build_mesh(object.name, source.primitives, world[i]);
+    // A room that is only drawn is seen from within.
+    const bool touched = !level.has_pliant() || node.deformable || node.rigid_body || node.soft_body;
+    auto built = build_mesh(object.name, source.primitives, world[i],
+                            {node.deformable ? node.deformable->crease_angle : 0.0, std::nullopt, touched});
     if (built) {
       object.mesh = std::move(built->mesh);
       object.report = built->report;
@@ -83,20 +74,17 @@ std::vector<std::string> problems(const ObjectReport& object) {
       "the surface is open there: it can be touched, but does not enclose a volume");
   add(r.non_manifold_edges, "non-manifold edge", "non-manifold edges",
       "more than two triangles, or two of opposite orientation, meet there");
+  if (const std::string turned = winding_note(r); !turned.empty()) list.push_back(turned);
+  if (const std::string doubt = winding_doubt(r); !doubt.empty()) list.push_back(doubt);
   if (r.made_normals) list.push_back("no normals in the file; made from the faces");
   return list;
 }
 
-std::string unit_hint(const Box& box) {
-  const float diagonal = box.diagonal();
-  if (box.empty()) return {};
-  if (diagonal > kLargest)
-    return fmt::format(
-        "the diagonal is {:.4g} m: is the file in millimetres or centimetres? `pliant convert IN OUT --unit mm`",
-        diagonal);
-  if (diagonal < kSmallest)
-    return fmt::format("the diagonal is {:.4g} m: is the file in another unit than metres?", diagonal);
-  return {};
+// Every crease is there from both sides.
+std::size_t count_creases(const Mesh& mesh) {
+  std::size_t sides = 0;
+  for (const std::uint8_t edges : mesh.crease) sides += static_cast<std::size_t>(std::popcount(edges));
+  return sides / 2;
 }
 
 Json to_json(const Box& box) {
@@ -130,6 +118,11 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
                     {"duplicate_triangles", object.report.duplicate_triangles},
                     {"border_edges", object.report.border_edges},
                     {"non_manifold_edges", object.report.non_manifold_edges},
+                    {"turned_triangles", object.report.turned_triangles},
+                    {"turned_parts", object.report.turned_parts},
+                    {"unorientable_parts", object.report.unorientable_parts},
+                    {"undecided_parts", object.report.undecided_parts},
+                    {"creases", count_creases(object.mesh)},
                     {"bounds_m", to_json(object.box)},
                     {"problems", problems(object)}});
   }
@@ -144,6 +137,7 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
     if (node.soft_body) extensions.insert("PLIANT_soft_body");
     if (node.handle) extensions.insert("PLIANT_handle");
     if (node.rigid_body) extensions.insert("PLIANT_rigid_body");
+    if (node.motion) extensions.insert("PLIANT_motion");
   }
   if (level.environment) extensions.insert("PLIANT_environment");
 

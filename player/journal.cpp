@@ -7,10 +7,12 @@
 #include "systems/touch/hash_state.h"
 
 namespace pliant {
+
 Journal::Journal(const World& world, double seconds)
     : probes_(hands(world)),
       recorder_(static_cast<std::size_t>(std::ceil(seconds * world.simulation.touch_rate)) *
                 std::max<std::size_t>(probes_.size(), 1)) {
+  for (const Entity probe : probes_) safety_.push_back(find_safety(world, probe));
   for (auto [entity, deformable] : world.registry.view<Deformable>()) awake_.push_back({entity, 0, 0});
 }
 
@@ -27,6 +29,7 @@ void Journal::note(const World& world, Tick tick) {
       row.torque = device->torque_sent;
       row.device_ready = device->status == DeviceStatus::kReady;
     }
+    row.limited = safety_[i].now();
     recorder_.record(row);
   }
   for (AwakeStats& stats : awake_) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "components/world.h"
+#include "player/limits.h"
 #include "runtime/hash.h"
 #include "runtime/recorder.h"
 #include "systems/touch/reading.h"
@@ -22,6 +23,7 @@ struct TickRow {
   dquat device_rotation{1, 0, 0, 0};
   dvec3 torque{0};  // [N m] world, on the hand
   bool device_ready = false;
+  std::uint8_t limited = 0;  // 1 << SafetyLimit: what kept the hand from what the law says (systems/device/safety.h)
 };
 
 struct AwakeStats {
@@ -47,6 +49,7 @@ class Journal {
 
  private:
   std::vector<Entity> probes_;
+  std::vector<HandSafety> safety_;  // of each
   std::vector<AwakeStats> awake_;
   Recorder<TickRow> recorder_;
   Hash hash_;

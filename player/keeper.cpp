@@ -59,6 +59,7 @@ Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& pro
   }
   keeper.traces_.resize(probes.size());
   keeper.last_.resize(probes.size());
+  keeper.touchable_ = touchable_boxes(world);
   for (auto [object, deformable] : world.registry.view<Deformable>()) {
     if (object.index >= keeper.objects_.size()) keeper.objects_.resize(object.index + 1);
     keeper.objects_[object.index] = csv_text(name_of(world, object));
@@ -104,7 +105,9 @@ void Keeper::keep(const TickRow& row) {
   }
   last = {placed, r.position, r.force, row.torque, row.device_rotation};
 
-  traces_[row.probe].add(row.tick, r);
+  if (placed && summary.contact_ticks == 0) summary.approach.add(r.position, touchable_);
+
+  traces_[row.probe].add(row.tick, r, row.limited);
   if (recording_) record(row);
 }
 

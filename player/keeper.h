@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "components/world.h"
+#include "player/approach.h"
 #include "player/journal.h"
 #include "player/recording.h"
 #include "player/trace.h"
@@ -21,6 +22,7 @@ struct ProbeSummary {
   double max_depth = 0.0;  // [m]
   double max_force = 0.0;  // [N]
   double net_work = 0.0;   // [J] done by force and torque on the hand: trapezoidal over the ticks
+  Approach approach;       // of a probe, until it touches
 };
 
 class Keeper {
@@ -53,6 +55,7 @@ class Keeper {
   std::vector<ProbeSummary> summaries_;
   std::vector<Trace> traces_;
   std::vector<Last> last_;
+  std::vector<TouchableBox> touchable_;
   std::vector<std::string> names_;    // of the probes, quoted for CSV
   std::vector<std::string> objects_;  // by entity index, quoted
   std::optional<RecordingWriter> recording_;

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "systems/device/safety.h"
+
 namespace pliant {
 namespace {
 
@@ -111,6 +113,19 @@ void probe_line(const ProbeLine& probe, float scale) {
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", force.c_str());
   ImGui::SameLine(right - wide);
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDepthColor), "%s", depth.c_str());
+}
+
+// Why the force is not what the law says, while it is not.
+void limit_line(const ProbeLine& probe, float scale) {
+  const std::uint8_t limited = probe.history.limited();
+  const auto say = [&](SafetyLimit limit, const char* words) {
+    if (!(limited & bit(limit))) return;
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 17 * scale);
+    ImGui::TextColored(kBad, "%s", words);
+  };
+  say(SafetyLimit::kClipped, "clipped at max_force");
+  say(SafetyLimit::kWithheld, "damped: it gave out energy");
+  say(SafetyLimit::kGated, "no force until it is let go");
 }
 
 void plot(const ProbeLine& probe, float scale) {
@@ -235,10 +250,18 @@ void draw_cursor(const OverlayState& state, float scale) {
 void ProbeHistory::add(const TickRow& row) {
   const auto number = static_cast<std::int64_t>(row.time / kSeconds * static_cast<double>(kBins));
   Bin& bin = bins_[static_cast<std::size_t>(number) % kBins];
-  if (bin.number != number) bin = {number, 0, 0};
+  if (bin.number != number) bin = {number, 0, 0, 0};
+  bin.limited = static_cast<std::uint8_t>(bin.limited | row.limited);
   newest_ = number;
   bin.force = std::max(bin.force, static_cast<float>(length(row.reading.force)));
   if (row.reading.in_contact) bin.depth = std::max(bin.depth, static_cast<float>(row.reading.depth));
+}
+
+std::uint8_t ProbeHistory::limited() const {
+  std::uint8_t bits = 0;
+  for (std::size_t age = 0; static_cast<double>(age) * kSeconds < kLimitSeconds * static_cast<double>(kBins); ++age)
+    if (const Bin* each = bin(age)) bits = static_cast<std::uint8_t>(bits | each->limited);
+  return bits;
 }
 
 const ProbeHistory::Bin* ProbeHistory::bin(std::size_t age) const {
@@ -291,6 +314,7 @@ void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, floa
   for (const ProbeLine& probe : state.probes) {
     if (large_) ImGui::Separator();
     (large_ ? plot : probe_line)(probe, scale_);
+    limit_line(probe, scale_);
   }
   if (large_) draw_switches(options, tint, scale_);
   // Small at first, so that it does not stand before what there is to touch.

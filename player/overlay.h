@@ -20,15 +20,18 @@ class ProbeHistory {
  public:
   static constexpr double kSeconds = 5.0;  // [s]
   static constexpr std::size_t kBins = 500;
+  static constexpr double kLimitSeconds = 0.5;  // [s] long enough to be read
 
   void add(const TickRow& row);
   struct Bin {
     std::int64_t number = -1;  // which bin since the start; another number in its place: nothing happened here
     float force = 0;           // [N]
     float depth = 0;           // [m] of a contact, else 0
+    std::uint8_t limited = 0;  // 1 << SafetyLimit: what acted
   };
   // `age` 0 is the newest bin, kBins - 1 the oldest; null where nothing was noted.
   const Bin* bin(std::size_t age) const;
+  std::uint8_t limited() const;  // what acted in the last kLimitSeconds, as bits
   const Bin& newest() const { return bins_[static_cast<std::size_t>(newest_) % kBins]; }
 
  private:

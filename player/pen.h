@@ -14,6 +14,7 @@ struct Color {
   friend bool operator==(const Color&, const Color&) = default;
 };
 inline constexpr Color kBlue{0.0, 0.447, 0.698}, kVermilion{0.835, 0.369, 0.0}, kGreen{0.0, 0.62, 0.451};
+inline constexpr Color kOrange{0.902, 0.624, 0.0}, kPurple{0.8, 0.475, 0.655};
 inline constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContact{1.0, 0.945, 0.79}, kPaper{1, 1, 1};
 
 // Lengths in pixels.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "player/pen.h"
+#include "systems/device/safety.h"
 
 namespace pliant {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 // [pixel]
 constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
 constexpr double kLeft = 84, kRight = 28, kBetween = 100, kAbove = 40, kBelow = 52;
+constexpr double kBand = 6;  // high
 
 struct Panel {
   double x, y, w, h;     // [pixel] of the plotting area
@@ -21,21 +23,27 @@ struct Panel {
   double py(double v) const { return y + h - h * v / high; }
 };
 
-// Where the probe was in contact, then grid and axes with numbers: what lies under the curves.
-void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, const char* quantity) {
+// Fills the columns that `marked` says yes to, from y on downwards; a stretch is at least a pixel wide.
+template <typename Marked>
+void fill_columns(Pen& pen, const Panel& panel, const Trace& trace, double dt, double y, double h, Marked marked) {
   const double column = trace.ticks_per_column() * dt;
   const std::vector<TraceColumn>& columns = trace.columns();
-  pen.color(kContact);
   for (std::size_t i = 0; i < columns.size();) {
     std::size_t end = i;
-    while (end < columns.size() && columns[end].contact) ++end;
+    while (end < columns.size() && marked(columns[end])) ++end;
     if (end > i) {
       const double x0 = panel.px(static_cast<double>(i) * column), x1 = panel.px(static_cast<double>(end) * column);
-      cairo_rectangle(pen.get(), x0, panel.y, std::min(x1, panel.x + panel.w) - x0, panel.h);
+      cairo_rectangle(pen.get(), x0, y, std::max(1.0, std::min(x1, panel.x + panel.w) - x0), h);
       cairo_fill(pen.get());
     }
     i = std::max(end, i + 1);
   }
+}
+
+// Where the probe was in contact, then grid and axes with numbers: what lies under the curves.
+void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, const char* quantity) {
+  pen.color(kContact);
+  fill_columns(pen, panel, trace, dt, panel.y, panel.h, [](const TraceColumn& column) { return column.contact; });
   const double time_step = tick_step(panel.seconds, 8), value_step = tick_step(panel.high, 5);
   for (double t = 0; t <= panel.seconds * (1 + 1e-9); t += time_step) {
     pen.color(kFaint);
@@ -75,14 +83,19 @@ void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Ran
   cairo_stroke(pen.get());
 }
 
+struct LegendEntry {
+  Color color;
+  const char* words;
+};
+
 // From right to left; what is shaded shows a box, what is drawn a line.
-void draw_legend(Pen& pen, double right, double y, const std::vector<std::pair<Color, const char*>>& entries) {
+void draw_legend(Pen& pen, double right, double y, const std::vector<LegendEntry>& entries) {
   double x = right;
   for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
     pen.color(kInk);
-    x -= pen.text(x, y, 14, 1.0, entry->second) + 8;
-    pen.color(entry->first);
-    if (entry->first == kContact) {
+    x -= pen.text(x, y, 14, 1.0, entry->words) + 8;
+    pen.color(entry->color);
+    if (entry->color == kContact) {
       cairo_rectangle(pen.get(), x - 26, y - 12, 26, 14);
       cairo_fill_preserve(pen.get());
       pen.color(kFaint);
@@ -92,6 +105,24 @@ void draw_legend(Pen& pen, double right, double y, const std::vector<std::pair<C
       pen.line(x - 26, y - 5, x, y - 5, 4);
     }
     x -= 26 + 22;
+  }
+}
+
+// Thin bands along the time axis, one above the other, where a limit kept the force from what the law says. Adds those
+// that are there to the legend.
+void draw_limits(Pen& pen, const Panel& panel, const Trace& trace, double dt, std::vector<LegendEntry>& legend) {
+  const struct {
+    SafetyLimit limit;
+    LegendEntry entry;
+  } bands[] = {{SafetyLimit::kClipped, {kOrange, "clipped"}}, {SafetyLimit::kWithheld, {kPurple, "withheld"}}};
+  double y = panel.y + panel.h;
+  for (const auto& band : bands) {
+    const auto marked = [&](const TraceColumn& column) { return (column.limited & bit(band.limit)) != 0; };
+    y -= kBand;
+    if (std::none_of(trace.columns().begin(), trace.columns().end(), marked)) continue;
+    pen.color(band.entry.color);
+    fill_columns(pen, panel, trace, dt, y, kBand, marked);
+    legend.push_back(band.entry);
   }
 }
 
@@ -124,11 +155,13 @@ void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double d
   pen.text(kLeft + name + 14, top + 28, 14, 0, row.source);
   draw_frame(pen, depth, *row.trace, dt, "depth [mm]");
   draw_frame(pen, force, *row.trace, dt, "force [N]");
+  std::vector<LegendEntry> force_legend{{kVermilion, "normal"}, {kGreen, "tangential"}};
+  draw_limits(pen, force, *row.trace, dt, force_legend);
   draw_curve(pen, depth, *row.trace, dt, &TraceColumn::depth, 1e3, kBlue);
   draw_curve(pen, force, *row.trace, dt, &TraceColumn::tangential, 1.0, kGreen);
   draw_curve(pen, force, *row.trace, dt, &TraceColumn::normal, 1.0, kVermilion);
   draw_legend(pen, depth.x + depth.w, top + 28, {{kContact, "in contact"}, {kBlue, "depth"}});
-  draw_legend(pen, force.x + force.w, top + 28, {{kVermilion, "normal"}, {kGreen, "tangential"}});
+  draw_legend(pen, force.x + force.w, top + 28, force_legend);
 }
 
 }  // namespace

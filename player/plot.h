@@ -16,7 +16,8 @@ struct PlotRow {
   const Trace* trace = nullptr;
 };
 
-// Two panels a probe: depth [mm], and normal and tangential force [N], over time [s]; contact is shaded. More than
+// Two panels a probe: depth [mm], and normal and tangential force [N], over time [s]; contact is shaded, and bands
+// along the time axis show where the force was clipped or withheld. More than
 // kMaxPlotRows probes: the first ones, and a line that says so. `dt` [s] is the length of a tick, `seconds` of the run.
 inline constexpr std::size_t kMaxPlotRows = 8;
 Status plot_forces(const std::filesystem::path& file, const std::string& title, const std::vector<PlotRow>& rows,

@@ -37,15 +37,34 @@ Json objects(const RunFigures& figures) {
   return list;
 }
 
+// How often each limit acted: clipped and withheld always, the others where they did.
+Json limits(const SafetyTally& tally) {
+  Json json;
+  for (std::size_t i = 0; i < kSafetyLimits; ++i) {
+    const auto limit = static_cast<SafetyLimit>(i);
+    const LimitCount& count = tally.of(limit);
+    if (count.ticks > 0 || limit == SafetyLimit::kClipped || limit == SafetyLimit::kWithheld)
+      json[key_of(limit)] = {{"ticks", count.ticks}, {"largest_share", count.largest_share}};
+  }
+  return json;
+}
+
 Json probes(const RunFigures& figures) {
   Json list = Json::array();
-  for (const ProbeSummary& probe : figures.keeper.summaries())
-    list.push_back({{"name", probe.name},
-                    {"source", probe.source},
-                    {"contact_ticks", probe.contact_ticks},
-                    {"max_depth_m", probe.max_depth},
-                    {"max_force_N", probe.max_force},
-                    {"net_work_J", probe.net_work}});
+  for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i) {
+    const ProbeSummary& probe = figures.keeper.summaries()[i];
+    Json entry{{"name", probe.name},
+               {"source", probe.source},
+               {"contact_ticks", probe.contact_ticks},
+               {"max_depth_m", probe.max_depth},
+               {"max_force_N", probe.max_force},
+               {"net_work_J", probe.net_work}};
+    const HandSafety safety = find_safety(figures.world, figures.journal.probes()[i]);
+    if (safety.force) entry.update(limits(safety.force->tally));
+    if (safety.torque) entry["torque"] = limits(safety.torque->tally);
+    if (const std::optional<Miss>& miss = figures.misses[i]) entry["missed_by_m"] = miss->distance;
+    list.push_back(std::move(entry));
+  }
   return list;
 }
 

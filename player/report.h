@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,10 @@ struct RunFigures {
   std::string field;                     // cpu
   double rate = 1000.0;                  // [Hz]
   std::uint64_t overruns = 0;
-  std::vector<std::string> dropped;  // sentences
-  std::string hash;                  // hex
-  const SoftClock* soft = nullptr;   // null: the level has nothing soft or rigid that moves
+  std::vector<std::string> dropped;         // sentences
+  std::string hash;                         // hex
+  const SoftClock* soft = nullptr;          // null: the level has nothing soft or rigid that moves
+  std::vector<std::optional<Miss>> misses;  // of each probe of the journal: nothing where it touched, or no surface is
 };
 
 std::string report_json(const RunFigures& figures);

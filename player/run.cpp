@@ -116,6 +116,25 @@ Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Fr
   return {};
 }
 
+// Nothing silent: what kept a hand from what the law says, and who touched nothing at all.
+std::vector<std::string> explain_hands(RunFigures& figures) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < figures.journal.probes().size(); ++i) {
+    const Entity hand = figures.journal.probes()[i];
+    const ProbeSummary& summary = figures.keeper.summaries()[i];
+    figures.misses.emplace_back();
+    if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
+      figures.misses.back() = find_miss(figures.world, summary.approach, probe->radius);
+      sentences.push_back(explain_miss(summary.name, figures.misses.back()));
+    } else if (summary.contact_ticks == 0) {
+      sentences.push_back("tool `" + summary.name + "` never touched anything; lead its device to what it shall touch");
+    }
+    for (std::string& sentence : explain_limits(figures.world, hand, summary.name))
+      sentences.push_back(std::move(sentence));
+  }
+  return sentences;
+}
+
 Outcome write_reports(const RunFigures& figures, OutputFolder& out) {
   std::vector<PlotRow> rows;
   for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
@@ -140,6 +159,7 @@ RunOptions another_level(const RunOptions& options, const std::string& file) {
   other.probes.clear();
   other.sets.clear();
   other.record.clear();
+  other.unit = 1.0;
   if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
   return other;
 }
@@ -250,7 +270,12 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
                      ran->overruns,
                      explain_dropped(world.dropped),
                      fmt::format("{:016x}", hash.value()),
-                     loop.soft};
+                     loop.soft,
+                     {}};
+  for (const std::string& sentence : explain_hands(figures)) {
+    note(sentence);
+    figures.dropped.push_back(sentence);
+  }
   if (journal.lost() > 0)
     figures.dropped.push_back(
         fmt::format("{} rows of forces.csv were lost because writing fell behind: take fewer or "

@@ -7,9 +7,12 @@
 #include "content/level.h"
 #include "player/content_folder.h"
 #include "player/sources.h"
+#include "player/unfelt.h"
+#include "player/unit.h"
 #include "systems/device/hands.h"
 #include "systems/tool/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
+#include "systems/touch/local_model.h"
 #include "systems/touch/prepare.h"
 #include "systems/visual/field_cost.h"
 
@@ -78,6 +81,27 @@ FieldPlace choose_field(const RunOptions& options, bool windowed, const World& w
   return cost && cost->card_us < cost->processor_us ? FieldPlace::kCard : FieldPlace::kProcessor;
 }
 
+// Once, however many surfaces there are: which of them settle so slowly that they have another damping than their own.
+void say_creeping(Prepared& run) {
+  std::size_t more = 0;
+  std::string sentence;
+  for (auto [entity, deformable] : run.world.registry.view<const Deformable>()) {
+    const double ratio = damping_of(deformable);
+    if (!(ratio > deformable.damping_ratio)) continue;
+    if (!sentence.empty()) {
+      ++more;
+      continue;
+    }
+    const Name* name = run.world.registry.find<Name>(entity);
+    sentence = fmt::format(
+        "`{}`: a surface that settles in {:g} s creeps and does not coast: damping_ratio {:.3g} is "
+        "taken instead of {:g}; give a shorter settling_time to have your own",
+        name ? name->value : std::string(), deformable.settling_time, ratio, deformable.damping_ratio);
+  }
+  if (more > 0) sentence += fmt::format(" ({} more surfaces too)", more);
+  if (!sentence.empty()) say(run, sentence);
+}
+
 }  // namespace
 
 void say(Prepared& run, const std::string& sentence) {
@@ -99,7 +123,14 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   std::vector<std::string> notes = level.notes;
 
   const bool bare = !level.has_pliant();
-  if (bare) make_touchable(level);
+  if (options.unit != 1.0 && !bare)
+    return wrong_arguments(
+        {"--unit", "is for bare meshes; this level's PLIANT extensions name lengths in metres: scale its nodes"});
+  scale_roots(level, options.unit);
+  if (bare) {
+    make_touchable(level);
+    if (const std::string hint = unit_hint(bounds(level)); !hint.empty()) say(run, hint);
+  }
   std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
   for (const std::string& assignment : options.sets)
@@ -116,6 +147,8 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (const Status status = prepare_system(run.world); !status) return failed(status.error());
   for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);
+  if (const auto unfelt = unfelt_bodies(run.world)) say(run, *unfelt);
+  say_creeping(run);
   if (run.replay) {
     if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
     if (run.replay->header.rate != run.world.simulation.touch_rate)

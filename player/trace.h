@@ -28,13 +28,14 @@ struct TraceColumn {
   Range normal, tangential;  // [N]
   std::uint32_t ticks = 0;   // 0: nothing happened here (an overrun)
   bool contact = false;
+  std::uint8_t limited = 0;  // 1 << SafetyLimit: what acted in any of its ticks
 };
 
 class Trace {
  public:
   static constexpr std::size_t kColumns = 2048;
 
-  void add(std::uint64_t tick, const ProbeReading& reading) {
+  void add(std::uint64_t tick, const ProbeReading& reading, std::uint8_t limited = 0) {
     while ((tick >> shift_) >= kColumns) halve();
     columns_.resize(std::max<std::size_t>(columns_.size(), (tick >> shift_) + 1));
     TraceColumn& column = columns_[tick >> shift_];
@@ -42,6 +43,7 @@ class Trace {
     column.normal.add(reading.normal_force);
     column.tangential.add(reading.tangential_force);
     column.contact = column.contact || reading.in_contact;
+    column.limited = static_cast<std::uint8_t>(column.limited | limited);
     ++column.ticks;
   }
 
@@ -60,6 +62,7 @@ class Trace {
         merged.tangential.add(other.tangential);
         merged.ticks += other.ticks;
         merged.contact = merged.contact || other.contact;
+        merged.limited = static_cast<std::uint8_t>(merged.limited | other.limited);
       }
       columns_[i] = merged;
     }

@@ -8,6 +8,7 @@
 namespace pliant {
 
 struct RunOptions {
+  double unit = 1.0;                // [m] that one unit of a bare mesh is
   std::string level;                // file, name of a shipped level, or empty: the demo level
   std::vector<std::string> probes;  // NAME=SOURCE
   std::vector<std::string> sets;    // KEY=VALUE
@@ -34,7 +35,7 @@ struct ConvertOptions {
   std::string in, out;
   int draco_bits = 0;  // 0: no Draco
   bool reorder = false;
-  std::string unit = "m";
+  double unit = 1.0;  // [m] that one unit of the input is
 };
 int convert(const ConvertOptions& options);
 

@@ -9,6 +9,7 @@
 #include "systems/touch/dynamics.h"
 #include "systems/touch/force_field.h"
 #include "systems/touch/friction_feedback.h"
+#include "systems/touch/move_objects.h"
 #include "systems/touch/press.h"
 #include "systems/touch/publish.h"
 
@@ -18,11 +19,12 @@ namespace pliant {
 std::vector<System<World>> touch_schedule() {
   return {
       {"read_devices", read_devices},  // HapticDevice -> Probe pose and velocity
-      {"collision", collision},        // Probe x Deformable -> Contact {triangle, barycentrics, normal, height}
+      {"move_objects", move_objects},  // Kinematic -> Pose, velocity and box of what animations and scripts carry
+      {"collision", collision},        // Probe x Deformable -> Contacts {foot, normal, height}
       {"press", press},                // flesh of tools x Deformable -> Contact
       {"force_field", force_field},    // Contacts -> amplitudes (small LCP); wakes the zones within reach
       {"dynamics", dynamics},          // awake zones: exact step, stream = targets + residual; rest sleeps
-      {"friction_feedback", friction_feedback},  // local law at the virtual vertex, bristle friction -> Probe force
+      {"friction_feedback", friction_feedback},  // minus the gradient of one stored energy, friction -> Probe force
       {"tool_feedback", tool_feedback},          // device pose -> 6-DoF handle on its model -> Handle6 wrench
       {"write_devices", write_devices},          // safety: finite, clamp, slew, engage, passivity -> device
       {"publish", publish_paced},                // dirty zones, probe poses and forces -> TripleBuffer

@@ -96,6 +96,24 @@ std::vector<NamedStroke> cushion_strokes() {
           {"b", "presses 10 mm deep on the right, slides to the middle and forward", b}};
 }
 
+// A finger that stays where it is while the ball goes by under it.
+std::vector<NamedStroke> ball_strokes() {
+  const Stroke a{8.0, 0.005, 0.030, 0.005, 0.4, 1.6, 6.4, 7.6, {{0, 0.004, 0.05}, {0, 0.006, 0.05}}, {1.6, 6.4}};
+  return {{"a", "presses 5 mm deep at the front of the turning ball and stays there", a}};
+}
+
+// Once around +Y, one key a quarter turn.
+LevelAnimation turn_of(std::int32_t node, double seconds) {
+  LevelChannel channel{node, NodeProperty::kRotation, {}};
+  for (int quarter = 0; quarter <= 4; ++quarter) {
+    const double half = 0.25 * 3.14159265358979323846 * quarter;
+    channel.track.times.push_back(0.25 * seconds * quarter);
+    channel.track.values.emplace_back(0.0, std::sin(half), 0.0, std::cos(half));
+  }
+  channel.track.length = seconds;
+  return {"turn", seconds, {channel}};
+}
+
 Status save_strokes(const Level& level, const Solid& solid, const std::vector<NamedStroke>& strokes,
                     const std::filesystem::path& folder) {
   for (const NamedStroke& s : strokes) {
@@ -225,6 +243,27 @@ Level chrome_cushion(const Detail& detail) {
   return level;
 }
 
+Level turning_ball(const Detail& detail) {
+  Level level;
+  level.name = "turning_ball";
+  Material clay;
+  clay.name = "soft clay";
+  clay.base_color = vec4(0.62f, 0.28f, 0.20f, 1.0f);
+  clay.roughness = 0.4f;
+  LevelNode& node = add_body(level, ridged_ball(), clay, detail);
+  node.deformable->stiffness = 250.0;
+  node.deformable->reach = 0.016;
+  node.deformable->shape = Shape::kVolume;
+  // The ball hangs from a table that turns: the node above carries it.
+  add_node(level, "turntable").children = {1};
+  std::swap(level.nodes[0], level.nodes[1]);
+  level.nodes[1].parent = 0;
+  level.animations.push_back(turn_of(0, 8.0));
+  add_probe(level, "finger_a", 0.005, kTeal);
+  add_view(level, {0.06, 0.07, 0.24}, {0.0, 0.0, 0.0}, "sky.exr", {0.74, 0.60, 0.30});
+  return level;
+}
+
 Status generate(const std::filesystem::path& folder, const Detail& detail) {
   const std::filesystem::path levels = folder / "levels", environments = folder / "environments";
   std::error_code code;
@@ -245,6 +284,9 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = save_strokes(heart_level, heart(), heart_strokes(), levels); !s) return s;
   if (Status s = save_level(cushion_level, levels / "chrome_cushion.glb", draco); !s) return s;
   if (Status s = save_strokes(cushion_level, cushion(), cushion_strokes(), levels); !s) return s;
+  const Level ball_level = turning_ball(detail);
+  if (Status s = save_level(ball_level, levels / "turning_ball.glb", draco); !s) return s;
+  if (Status s = save_strokes(ball_level, ridged_ball(), ball_strokes(), levels); !s) return s;
   if (Status s = write_tool_levels(levels); !s) return s;
   return write_minimal(levels);
 }

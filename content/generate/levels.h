@@ -19,6 +19,7 @@ Level three_probes(const Detail& detail);
 Level inclusion(const Detail& detail);
 Level glass_heart(const Detail& detail);
 Level chrome_cushion(const Detail& detail);
+Level turning_ball(const Detail& detail);
 
 // Writes levels/ and environments/ below `folder`: every file that ships. Each appears whole or not at all.
 Status generate(const std::filesystem::path& folder, const Detail& detail = {});

@@ -97,4 +97,14 @@ Solid cushion() {
   };
 }
 
+Solid ridged_ball() {
+  return [](dvec3 p) {
+    const double r = length(p);
+    if (r == 0.0) return -0.05;
+    // s^6 cos(6 phi) is a polynomial of the direction: smooth at the poles too.
+    const double s = std::hypot(p.x, p.z) / r, phi = std::atan2(p.x, p.z);
+    return r - 0.0485 - 0.0015 * std::pow(s, 6.0) * std::cos(6.0 * phi);
+  };
+}
+
 }  // namespace pliant::generate

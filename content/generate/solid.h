@@ -24,5 +24,7 @@ Solid pad();
 Solid heart();
 // A square pillow 0.2 m x 0.07 m x 0.2 m, thin towards its edges.
 Solid cushion();
+// A ball 0.1 m wide with six soft ridges 3 mm high from pole to pole (+Y), the first at +Z.
+Solid ridged_ball();
 
 }  // namespace pliant::generate

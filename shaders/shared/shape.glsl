@@ -33,9 +33,19 @@ SHARED vec2 shape_windowed(vec2 f, float u) {
   return vec2(f.x * w.x, f.y * w.x + f.x * w.y);
 }
 
+// e^x for x in [-80, 0] to float precision (the polynomial of Cephes' expf): GLSL promises less for its own, and a
+// library's cannot be computed eight at a time.
+SHARED float shape_exp(float x) {
+  int n = int(x * 1.44269504f - 0.5f);
+  float k = float(n);
+  float r = (x - k * 0.693359375f) + k * 2.12194440e-4f;
+  float p = ((((1.9875691500e-4f * r + 1.3981999507e-3f) * r + 8.3334519073e-3f) * r + 4.1665795894e-2f) * r + 1.6666665459e-1f) * r + 5.0000001201e-1f;
+  return (p * r * r + r + 1.0f) * intBitsToFloat((n + 127) << 23);
+}
+
 // exp(-(3 rho)^2), windowed.
 SHARED vec2 shape_gaussian(float u) {
-  float e = exp(-9.0f * u);
+  float e = shape_exp(-9.0f * u);
   return shape_windowed(vec2(e, -9.0f * e), u);
 }
 
@@ -50,20 +60,24 @@ SHARED float shape_asin(float x) {
 }
 
 // Rigid flat punch of radius a on a half-space, inner = (a/R)^2: 1 inside, (2/pi) asin(a/r) outside; windowed.
+// Both sides are computed and one is taken: a branch would keep the CPU from eight vertices at a time.
 SHARED vec2 shape_punch(float u, float inner) {
-  if (u <= inner) return shape_windowed(vec2(1.0f, 0.0f), u);
-  float q = inner / u;
-  float slope = -0.31830989f * sqrt(q / max(1.0f - q, 1e-6f)) / u;
-  return shape_windowed(vec2(0.63661977f * shape_asin(sqrt(q)), slope), u);
+  bool inside = u <= inner;
+  float q = inside ? 1.0f : inner / u;
+  float value = inside ? 1.0f : 0.63661977f * shape_asin(sqrt(q));
+  float slope = inside ? 0.0f : -0.31830989f * sqrt(q / max(1.0f - q, 1e-6f)) / u;
+  return shape_windowed(vec2(value, slope), u);
 }
 
 // Hertz: sphere on a half-space, contact radius a, inner = (a/R)^2; windowed.
 SHARED vec2 shape_hertz(float u, float inner) {
-  if (u <= inner) return shape_windowed(vec2(1.0f - 0.5f * u / inner, -0.5f / inner), u);
-  float q = u / inner;
-  float s = shape_asin(sqrt(inner / u));
+  bool inside = u <= inner;
+  float q = inside ? 1.0f : u / inner;
+  float s = shape_asin(inside ? 1.0f : sqrt(inner / u));
   float root = sqrt(q - 1.0f);
-  return shape_windowed(vec2(0.31830989f * ((2.0f - q) * s + root), 0.31830989f * (root / q - s) / inner), u);
+  float value = inside ? 1.0f - 0.5f * u / inner : 0.31830989f * ((2.0f - q) * s + root);
+  float slope = (inside ? -0.5f : 0.31830989f * (root / q - s)) / inner;
+  return shape_windowed(vec2(value, slope), u);
 }
 
 // How much of the field a vertex takes whose normal makes an angle with the contact's: all up to 75 degrees, nothing

@@ -7,7 +7,7 @@
 #include "systems/device/mouse.h"
 #include "systems/device/path.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/contacts_of.h"
 
 namespace pliant {
 namespace {
@@ -22,8 +22,26 @@ void sense(const World& world, HapticDevice& device, double time) {
   device.sensed_at = time;
 }
 
+// How far what a probe touches has been carried in this tick, where it touches: the mean over its contacts, by their
+// forces. [m] world
+dvec3 surface_displacement(const World& world, Entity probe, double dt) {
+  const Registry& registry = world.registry;
+  dvec3 sum(0);
+  double forces = 0.0;
+  for_contacts_of(world, probe, [&](const Contact& contact) {
+    const double force = length(contact.force);
+    if (!(force > 0.0)) return;
+    forces += force;
+    if (!registry.has<MovingPose>(contact.object)) return;
+    const dvec3 at = registry.get<Pose>(contact.object).to_world(contact.foot);
+    sum += force * dt * surface_velocity(registry, contact.object, at);
+  });
+  return forces > 0.0 ? sum / forces : dvec3(0);
+}
+
 // A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is
-// unknown of the one is unknown of the other, so that both are let go and engaged together.
+// unknown of the one is unknown of the other, so that both are let go and engaged together. They share one account of
+// energy: a push at a fingertip is a force and a torque about the wrist, which give and take only together.
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
@@ -31,11 +49,13 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
   const SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew, tool.weight};
+  tool.force_safety.work = tool.torque_safety.work;
   const SafetyResult force = make_safe(tool.force_safety, device, limits, known ? linear(tool.device_wrench) : unknown,
                                        device.position, tick.time, tick.dt);
   const SafetyLimits torque_limits{handle.max_torque, 0.0,
                                    device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9),
-                                   cross(tool.sensed.pose.rotation * tool.balance, tool.weight)};
+                                   cross(tool.sensed.pose.rotation * tool.balance, tool.weight), kSlowTurn};
+  tool.torque_safety.work = tool.force_safety.work;
   const SafetyResult torque = make_safe(tool.torque_safety, device, torque_limits,
                                         known ? angular(tool.device_wrench) : unknown, tool.turned, tick.time, tick.dt);
   for (const SafetyResult& result : {force, torque}) {
@@ -53,15 +73,18 @@ void read_devices(World& world, Tick tick) {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) sense(world, device, tick.time);
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     const HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-    if (!plausible_position(device.position)) {
+    if (!plausible_position(device.position) || !plausible_rotation(device.rotation)) {
       world.dropped |= kDroppedNonFinite;  // the probe stays where it was; safety sends nothing
       probe.velocity = dvec3(0);
+      probe.previous = probe.position;
+      probe.previous_rotation = probe.rotation;
       continue;
     }
     probe.fresh = !probe.placed;
     probe.previous = probe.placed ? probe.position : device.position;
+    probe.previous_rotation = probe.placed ? probe.rotation : glm::normalize(device.rotation);
     probe.position = device.position;
-    probe.rotation = device.rotation;
+    probe.rotation = glm::normalize(device.rotation);
     probe.velocity = (probe.position - probe.previous) / tick.dt;
     probe.placed = true;
     if (length(probe.position - probe.previous) > world.touch->extent) world.dropped |= kDroppedTravel;
@@ -72,7 +95,11 @@ void write_devices(World& world, Tick tick) {
   for (ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-    const SafetyResult safe = make_safe(state.safety, device, probe.force, device.position, tick.time, tick.dt);
+    SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew};
+    limits.carried = surface_displacement(world, state.entity, tick.dt);
+    const dvec3 wanted =
+        plausible_rotation(device.rotation) ? probe.force : dvec3(std::numeric_limits<double>::quiet_NaN());
+    const SafetyResult safe = make_safe(state.safety, device, limits, wanted, device.position, tick.time, tick.dt);
     if (safe.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
     if (safe.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
     device.force_sent = safe.force;

@@ -1,12 +1,24 @@
 // What may leave for a hand: finite, clamped, slew-limited, passive force, and nothing at all while anything is
-// unknown. Order: finite -> status -> engage gate -> norm clamp -> stiffness limit -> slew -> passivity.
+// unknown. Order: finite -> status -> engage gate -> norm clamp -> passivity -> stiffness limit -> slew. Whatever is
+// taken from the wanted force while the pose is known is counted (SafetyTally), so that a run can report it.
+//
+// Passivity (methods.md 1.9). An observer adds up the work on the hand over the whole history, trapezoidal. The force
+// may give back what it took, and kPassivityShare of the most that the hand had stored beside. What would go beyond is
+// taken out by damping: only the component along the motion is reduced, and early enough that the slew limit suffices.
+// Setting the force to zero instead lost: in the middle of a contact that is a jump, and the hand feels a hole.
 //
 // A tool that nothing carries hangs in the hand: what is wanted of a device that comes back to it is never small. As
 // its weight is known beforehand, the gate also opens on what is wanted beside it; then the weight comes in from zero
-// over kWeightTime. Passivity books what is done beside it: lowered, it may give what lifting it took. Where something
-// else bears it while it is lifted, the books stand above zero, and no force goes along with the hand until they do
+// over kWeightTime. The observer counts work beside the weight: lowered, it may give what lifting it took. Where
+// something else bears it while it is lifted, the observer stands above zero, and lowering it is damped until it does
 // not.
+//
+// A surface that a prescribed motion carries may push a hand, as an engine would: passivity and the limit on stiffness
+// hold for the hand's motion against that surface. Clamp and slew bound what the engine can do.
 #pragma once
+
+#include <array>
+#include <cstddef>
 
 #include "components/haptic_device.h"
 
@@ -17,11 +29,47 @@ inline constexpr double kEngageForce = 0.2;        // [N] the gate opens once th
 inline constexpr double kWeightTime = 0.5;         // [s] in which a weight comes into the hand, once the gate is open
 inline constexpr double kStaleAfter = 0.010;       // [s] a pose older than this counts as lost
 inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
+inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy, which the hand may get beside
+inline constexpr double kPassivityFloor = 1e-12;   // [J] what rounding may add
+inline constexpr double kCountedShare = 0.01;      // [1] of the wanted force: less missing is not counted
+inline constexpr double kCountedForce = 1e-3;      // [N] less missing is not counted
+inline constexpr double kSlowHand = 0.01;          // [m/s] a slower hand is damped in proportion to its speed
+inline constexpr double kSlowTurn = 0.2;           // [rad/s] the same of what turns
 
 inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
 
+// A rotation that means something: finite and of about unit length.
+bool plausible_rotation(dquat rotation);
+
 // Finite and not absurdly far away: a position that means something.
 bool plausible_position(dvec3 position);
+
+// Why a hand got less than, or other than, what was wanted.
+enum class SafetyLimit : std::uint8_t {
+  kClipped,   // wanted more than the device's largest force
+  kWithheld,  // taken out by damping, because the hand would have got more energy than it gave
+  kGated,     // the gate is closed until the wanted force has been small
+  kSlewed     // the wanted force changed faster than the slew limit or the stiffness limit lets it
+};
+inline constexpr std::size_t kSafetyLimits = 4;
+
+// In how many ticks a limit acted, and how much was missing at most, as a share of what was wanted [1].
+struct LimitCount {
+  std::uint64_t ticks = 0;
+  double largest_share = 0.0;
+};
+
+// Since the start. Clipped ticks all count; the others where both kCountedShare and kCountedForce are missing.
+struct SafetyTally {
+  std::array<LimitCount, kSafetyLimits> counts;
+  std::uint8_t now = 0;  // the last tick's, as bits: 1 << SafetyLimit
+
+  const LimitCount& of(SafetyLimit limit) const { return counts[static_cast<std::size_t>(limit)]; }
+  void add(SafetyLimit limit, double share);
+};
+constexpr std::uint8_t bit(SafetyLimit limit) {
+  return static_cast<std::uint8_t>(1u << static_cast<unsigned>(limit));
+}
 
 struct SafetyState {
   bool engaged = false;  // gate: closed at start and after every loss, opens on a small computed force
@@ -30,7 +78,10 @@ struct SafetyState {
   bool placed = false;   // `position` means something
   dvec3 position{0};     // [m] last tick's
   dvec3 force{0};        // [N] last tick's, as sent
-  double work = 0.0;     // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx; kept <= 0 without
+  dvec3 wanted{0};       // [N] last tick's beside the weight, clamped to the device's limit
+  double work = 0.0;     // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
+  double stored = 0.0;   // [J] the largest that -work has been
+  SafetyTally tally;
 };
 
 enum class SafetyEvent : std::uint8_t { kNone, kNonFinite, kStale };
@@ -40,12 +91,14 @@ struct SafetyResult {
   SafetyEvent event = SafetyEvent::kNone;
 };
 
-// What the layer holds to. A torque has the same, in [N m], [N m/rad] and [N m/s].
+// What the layer holds to. A torque has the same, in [N m], [N m/rad], [N m/s] and [rad/s].
 struct SafetyLimits {
-  double force = 0.0;      // [N]
-  double stiffness = 0.0;  // [N/m] 0: none
-  double slew = 0.0;       // [N/s]
-  dvec3 weight{0};         // [N] part of what is wanted: of a tool that nothing carries
+  double force = 0.0;       // [N]
+  double stiffness = 0.0;   // [N/m] 0: none
+  double slew = 0.0;        // [N/s]
+  dvec3 weight{0};          // [N] part of what is wanted: of a tool that nothing carries
+  double slow = kSlowHand;  // [m/s]
+  dvec3 carried{0};         // [m] how far the surface that is touched has come along in this tick; 0: it stands
 };
 
 // `wanted` [N] world, `position` [m] world, now [s], dt [s]. Without limits: the device's for forces.

@@ -1,144 +1,406 @@
 // Where each probe is on each surface. A contact is found by sweeping the tick's segment (so nothing is tunnelled
-// through) and from then on followed from its last place, which keeps it on the side it came from however thin the part
-// is.
+// through) and from then on followed downhill from its last foot, which keeps it on the side it came from however thin
+// the part is. A sphere has a contact at every local minimum of the distance within its radius: both walls of a groove.
+// Everything happens in the object's frame, from where the tip was on the object a tick ago to where it is now, so that
+// it does not matter which of the two has moved.
 #include "systems/touch/collision.h"
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "systems/touch/around_vertex.h"
+#include "systems/touch/contact_place.h"
 #include "systems/touch/field.h"
+#include "systems/touch/seams.h"
 #include "systems/touch/surface_query.h"
+#include "systems/touch/triangle_tree.h"
 
 namespace pliant {
 namespace {
 
-struct Surface {
+// Walls are looked for within this share of a sphere's radius beyond it, and again once it has moved half as far: so a
+// contact is known before it presses, and begins at no depth.
+constexpr double kAhead = 0.1;
+// Two feet of a tip are one where they are nearer than this. [1] of the mean edge
+constexpr double kSameFoot = 1e-6;
+constexpr std::size_t kMostSeeds = 32;
+// A tip that came to rest within rounding of the surface must not slip through: sweeps begin this much earlier.
+constexpr double kEarly = 1e-6;  // [1] of the object's diagonal
+
+// One tip of a probe, as its contacts name it.
+struct ProbeTip {
+  Entity probe;
+  std::uint8_t index = 0;
+  Tip tip;
+};
+
+struct Search {
+  World& world;
+  ObjectState& object;
   const Mesh& mesh;
   const HeightField& field;
-  const ObjectState& object;
+  Tick tick;
 
-  // The surface as it is now at a point: height [m], and the rate of its residual [m/s].
-  HeightState at(const SurfaceFoot& p) const {
-    const uvec3 t = mesh.triangles[p.triangle];
-    HeightState mean;
-    for (int i = 0; i < 3; ++i) {
-      const HeightState corner = surface_at(object, mesh, field, t[i]);
-      mean.height += p.barycentric[i] * corner.height;
-      mean.velocity += p.barycentric[i] * corner.velocity;
-    }
-    return mean;
+  Foot downhill(std::uint32_t triangle, dvec3 barycentric, dvec3 x) const {
+    return descend(mesh, triangle, barycentric, x, true, object.closed);
+  }
+  SourceState* free_source() const {
+    for (std::uint32_t i = 0; i < object.probe_sources; ++i)
+      if (!object.sources[i].tracked) return &object.sources[i];
+    return nullptr;
   }
 };
 
-void place(Contact& contact, const SurfaceFoot& p, double radius) {
-  contact.triangle = p.triangle;
-  contact.barycentric = p.barycentric;
-  contact.foot = p.foot;
-  contact.normal = p.normal;
-  contact.height = p.height - radius;
-  contact.interpolated = p.interpolated;
+void drop(SourceState& source, Contact& contact) {
+  source.tracked = false;
+  contact.state = ContactState::kFree;
+  contact.probe = kNoEntity;
+  contact.load = contact.share = contact.normal_force = 0.0;
+  contact.force = dvec3(0);
 }
 
-SurfaceFoot last_place(const Contact& contact, double radius) {
-  SurfaceFoot p;
-  p.triangle = contact.triangle;
-  p.barycentric = contact.barycentric;
-  p.foot = contact.foot;
-  p.normal = contact.normal;
-  p.height = contact.height + radius;
-  return p;
-}
-
-// Touching if the probe is below the surface as it is now; inside if only below where it was at rest.
-void settle(Contact& contact, const Surface& surface, const SurfaceFoot& p) {
-  const HeightState now = surface.at(p);
-  contact.surface_height = now.height;
-  contact.surface_velocity = now.velocity;
-  if (contact.state == ContactState::kTouching) return;  // friction_feedback decides when it ends
-  if (contact.height < now.height) {
-    contact.state = ContactState::kTouching;
-    contact.just_touched = true;
-    contact.free_height = now.height;
-    contact.free_velocity = now.velocity;
-    contact.previous_height = contact.older_height = now.height;
-    contact.arm_force = 0.0;
-    contact.bristle = dvec3(0);
-    contact.sliding = false;
-  } else {
-    contact.state = contact.height < 0 ? ContactState::kInside : ContactState::kFree;
+void put(SourceState& source, Contact& contact, const FootBlend& place, dvec3 x) {
+  source.x = x;
+  source.place = place;
+  const Foot& main = place.main();
+  contact.triangle = main.triangle;
+  contact.barycentric = main.barycentric;
+  contact.foot = place.p;
+  contact.normal = place.normal;
+  contact.height = place.height - source.tip.radius;
+  if (contact.height >= 0) {
+    contact.state = ContactState::kFree;
+  } else if (contact.state == ContactState::kFree) {
+    contact.state = ContactState::kInside;  // friction_feedback says whether it presses
   }
 }
 
-void follow(Contact& contact, const Surface& surface, dvec3 x, double radius) {
-  const Tracked tracked = track(surface.mesh, last_place(contact, radius), x);
-  contact.older_height = contact.previous_height;
-  contact.previous_height = contact.height;
-  // Past the rim of an open surface, or so far away that no place on it means anything any more.
-  if (tracked.left_border || tracked.point.distance() > surface.mesh.box.diagonal() + radius) {
-    contact.state = ContactState::kFree;
+// Height and rate of the surface under a foot, without what contacts hold down: what is still recovering. Where the
+// tissue holds it down itself (the arm of the standard linear solid), the law of the contact knows of it already.
+HeightState recovering(const Search& s, const Foot& foot) {
+  const uvec3 t = s.mesh.triangles[foot.triangle];
+  HeightState mean;
+  for (int i = 0; i < 3; ++i) {
+    const HeightState corner = residual_before(s.object, s.mesh, s.field, t[i], s.tick);
+    const double held = s.field.arm.empty() ? 0.0 : static_cast<double>(s.field.arm[t[i]].w);
+    mean.height += foot.barycentric[i] * (corner.height + held);
+    mean.velocity += foot.barycentric[i] * corner.velocity;
+  }
+  return mean;
+}
+
+// A contact that begins. What it did not have to be pushed through is not pushed back: its force starts from zero.
+void begin(const Search& s, const ProbeTip& tip, const Foot& foot, dvec3 from, dvec3 x) {
+  SourceState* source = s.free_source();
+  if (!source) {
+    s.world.dropped |= kDroppedContacts;
     return;
   }
-  place(contact, tracked.point, radius);
-  settle(contact, surface, tracked.point);
+  Contact& contact = s.world.registry.get<Contact>(source->contact);
+  source->tracked = true;
+  source->born = s.tick.index + 1;
+  source->tip = tip.tip;
+  contact.probe = tip.probe;
+  contact.tip = tip.index;
+  contact.state = ContactState::kFree;
+  contact.load = contact.share = contact.normal_force = 0.0;
+  contact.bristle = dvec3(0);
+  contact.sliding = false;
+  put(*source, contact, contact_place(s.object, s.mesh, foot, x), x);
+  const HeightState surface = recovering(s, foot);
+  const double pushed = length(x - from), unpushed = -contact.height - pushed;
+  contact.free_height = std::min(0.0, surface.height);
+  contact.free_velocity = contact.free_height < 0 ? surface.velocity : 0.0;
+  if (unpushed > 1e-9 * static_cast<double>(s.mesh.box.diagonal()) && -unpushed < contact.free_height) {
+    contact.free_height = -unpushed;
+    contact.free_velocity = 0.0;
+  }
+  contact.previous_height = contact.older_height = std::max(contact.height, std::min(0.0, surface.height));
+  if (!s.object.listed) {
+    s.object.listed = true;
+    s.world.touch->awake.push_back(static_cast<std::uint32_t>(&s.object - s.world.touch->objects.data()));
+  }
 }
 
-// Contacts of a surface that the probe was not on a tick ago.
-void find(Contact& contact, const Surface& surface, dvec3 from, dvec3 to, const Probe& probe) {
-  const double radius = probe.radius, band = radius + surface.object.peak;
-  const Box& box = surface.mesh.box;
+bool beyond_border(const Mesh& mesh, const Foot& foot, dvec3 x) {
+  if (!foot.at_border) return false;
+  bool beyond = false;
+  const auto check = [&](std::uint32_t t, int edge) {
+    if (mesh.across[t][edge] != kBorder) return;
+    const uvec3 corner = mesh.triangles[t];
+    const dvec3 a(mesh.position(corner[edge])), b(mesh.position(corner[(edge + 1) % 3])),
+        c(mesh.position(corner[(edge + 2) % 3]));
+    const dvec3 outward = cross(b - a, cross(b - a, c - a));
+    const double size = length(outward);
+    beyond = beyond || dot(x - foot.p, outward) > 1e-9 * size * (1e-3 * length(b - a) + length(x - foot.p));
+  };
+  if (foot.place == FootPlace::kEdge) {
+    check(foot.triangle, foot.edge);
+  } else {
+    const int corner = foot.barycentric.x > 0.5 ? 0 : foot.barycentric.y > 0.5 ? 1 : 2;
+    around_vertex(mesh, mesh.triangles[foot.triangle][corner], foot.triangle, [&](std::uint32_t t) {
+      for (int edge = 0; edge < 3; ++edge) check(t, edge);
+    });
+  }
+  return beyond;
+}
+
+// The foot goes along with x, in steps over which the surface hardly bends.
+Foot follow_foot(const Search& s, Foot foot, dvec3 from, dvec3 to) {
+  const double step = std::max({std::abs(foot.height), static_cast<double>(s.mesh.mean_edge), 1e-12});
+  const int steps = std::clamp(static_cast<int>(std::ceil(length(to - from) / step)), 1, 8);
+  for (int i = 1; i <= steps; ++i)
+    foot = s.downhill(foot.triangle, foot.barycentric, from + (to - from) * (double(i) / steps));
+  return foot;
+}
+
+bool is_known(const Search& s, const ProbeTip& tip, const Foot& foot) {
+  const double same = 1e-3 * static_cast<double>(s.mesh.mean_edge);
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    const SourceState& source = s.object.sources[i];
+    if (!source.tracked) continue;
+    const Contact& contact = s.world.registry.get<Contact>(source.contact);
+    if (contact.probe != tip.probe || contact.tip != tip.index) continue;
+    for (std::uint32_t f = 0; f < source.place.count; ++f)
+      if (length(source.place.foot[f].p - foot.p) < same) return true;
+  }
+  return false;
+}
+
+// A foot that has come to a seam goes on upon the other surface, with all that belongs to the contact.
+bool carry_over(const Search& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
+  TouchState& touch = *s.world.touch;
+  ObjectState& object = touch.objects[seam.object];
+  const ProbeTip tip{contact.probe, contact.tip, source.tip};
+  const Deformable& deformable = s.world.registry.get<Deformable>(object.entity);
+  const Search there{s.world, object, s.world.meshes[deformable.mesh], s.world.fields[deformable.field], s.tick};
+  const Pose& pose = s.world.registry.get<Pose>(object.entity);
+  const dvec3 x = pose.to_local(world);
+  Foot foot = there.downhill(seam.triangle, closest_on_triangle(there.mesh, seam.triangle, x).barycentric, x);
+  // Between both, and not yet over the other one.
+  if (seam_at(object, foot) && &object != &s.object) return false;
+  if (foot.height >= tip.tip.radius * (1 + kAhead) || (foot.height < 0) != (source.place.height < 0)) return false;
+  if (!is_known(there, tip, foot)) {
+    const Contact before = contact;
+    SourceState* to = there.free_source();
+    if (!to) return false;
+    begin(there, tip, foot, x, x);
+    Contact& after = s.world.registry.get<Contact>(to->contact);
+    const dquat turn = glm::conjugate(pose.rotation) * s.world.registry.get<Pose>(s.object.entity).rotation;
+    after.free_height = before.free_height;
+    after.free_velocity = before.free_velocity;
+    after.previous_height = before.previous_height;
+    after.older_height = before.older_height;
+    after.bristle = turn * before.bristle;
+    after.sliding = before.sliding;
+    after.load = before.load;
+  }
+  drop(source, contact);
+  return true;
+}
+
+void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
+  const double radius = source.tip.radius;
+  const Foot before = source.place.main();
+  const double last = source.place.height;
+  const double moved = length(x - source.x);
+  const Foot foot = follow_foot(s, before, source.x, x);
+  contact.older_height = contact.previous_height;
+  contact.previous_height = contact.height;
+  const bool front = foot.height >= 0;
+  if (const Seam* seam = seam_at(s.object, foot))
+    if (carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x))) return;
+  // Past the rim of an open surface, or so far away that no place on it means anything any more.
+  if ((beyond_border(s.mesh, foot, x) && !(front && radius > 0)) ||
+      std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
+      foot.height > radius * (1 + 2 * kAhead))
+    return drop(source, contact);
+  put(source, contact, contact_place(s.object, s.mesh, foot, x), x);
+  // A depth changes no faster than the tip moves, unless the minimum that was followed has gone and the foot went
+  // downhill to another one. What it then is deeper than before was not pushed.
+  const double deeper = last - source.place.height - moved;
+  if (deeper > 1e-9 * static_cast<double>(s.mesh.box.diagonal())) {
+    contact.free_height = std::min(contact.free_height, -std::max(0.0, deeper));
+    contact.free_velocity = 0.0;
+  }
+}
+
+// Feet of the walls within `within` of x: triangles that no neighbour is nearer than.
+void find_walls(const Search& s, dvec3 x, double within, std::array<Foot, kMostSeeds>& feet, std::size_t& count) {
+  const Mesh& mesh = s.mesh;
+  const double limit = within + static_cast<double>(mesh.tree.bulge);
+  const float limit2 = static_cast<float>(limit * limit * 1.0001);
+  const double same = 1e-3 * static_cast<double>(mesh.mean_edge);
+  visit_runs_near(
+      mesh, x, [&] { return limit; },
+      [&](std::uint32_t first, std::uint32_t run) {
+        TriangleDistances distance2;
+        triangle_distances2(mesh, first, run, x, distance2);
+        for (std::uint32_t i = 0; i < run && count < kMostSeeds; ++i) {
+          if (!(distance2[i] <= limit2)) continue;
+          const std::uint32_t t = first + i;
+          const FlatPoint at = closest_on_triangle(mesh, t, x);
+          const double enough = at.distance2 * (1 - 1e-9);
+          bool lowest = true;
+          for (int edge = 0; edge < 3 && lowest; ++edge) {
+            if (at.barycentric[(edge + 2) % 3] > 1e-9) continue;  // not on this edge
+            const std::uint32_t next = mesh.across[t][edge];
+            if (next == kBorder) continue;
+            const double other = closest_on_triangle(mesh, next, x).distance2;
+            lowest = other >= enough && !(next < t && other <= at.distance2 * (1 + 1e-9));
+          }
+          if (!lowest) continue;
+          const Foot foot = s.downhill(t, at.barycentric, x);
+          if (!(foot.height >= 0) || foot.height > within || at_seam(s.object, foot)) continue;
+          const auto is_same = [&](const Foot& f) { return length(f.p - foot.p) < same; };
+          if (std::none_of(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(count), is_same))
+            feet[count++] = foot;
+        }
+      });
+}
+
+// Whether the tip is already behind this surface or one that it goes on: then the walls between them are no surface.
+bool inside_neighbour(const Search& s, const ProbeTip& tip) {
+  if (s.object.seams.empty()) return false;
+  const auto behind = [&](const ObjectState& object) {
+    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+      if (!object.sources[i].tracked || object.sources[i].place.height >= 0) continue;
+      const Contact& contact = s.world.registry.get<Contact>(object.sources[i].contact);
+      if (contact.probe == tip.probe && contact.tip == tip.index) return true;
+    }
+    return false;
+  };
+  return behind(s.object) || std::any_of(s.object.neighbours.begin(), s.object.neighbours.end(),
+                                         [&](std::uint32_t slot) { return behind(s.world.touch->objects[slot]); });
+}
+
+// A point has gone through the surface.
+void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
+  const dvec3 d = to - from;
+  if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
+  Foot foot;
+  const double early = kEarly * static_cast<double>(s.mesh.box.diagonal()) / length(d);
+  const pliant::Entry entry = first_entry(s.mesh, from - early * d, to);
+  if (entry.valid()) {
+    foot =
+        s.downhill(entry.triangle, entry.barycentric, from + std::max(0.0, entry.fraction * (1 + early) - early) * d);
+    foot = follow_foot(s, foot, foot.p, to);
+  } else if (const double bulge = static_cast<double>(s.mesh.tree.bulge); bulge > 0 && tip.tip.radius == 0) {
+    // The curved surface stands a little before or behind its triangles.
+    const FlatPoint near = closest_flat(s.mesh, to, 1.5 * bulge);
+    if (!near.valid()) return;
+    if (s.downhill(near.triangle, near.barycentric, from).height < 0) return;
+    foot = s.downhill(near.triangle, near.barycentric, to);
+  }
+  if (!foot.valid() || !(foot.height < 0) || beyond_border(s.mesh, foot, to) || is_known(s, tip, foot)) return;
+  begin(s, tip, foot, from, to);
+}
+
+// The first pose may lie inside a body; only a closed one has an inside.
+void find_inside(const Search& s, const ProbeTip& tip, dvec3 x) {
+  if (!s.mesh.closed) return;
+  const FlatPoint near =
+      closest_flat(s.mesh, x, std::max(tip.tip.radius, 0.1 * static_cast<double>(s.mesh.box.diagonal())));
+  if (!near.valid()) return;
+  const Foot foot = s.downhill(near.triangle, near.barycentric, x);
+  if (foot.height < tip.tip.radius && !is_known(s, tip, foot)) begin(s, tip, foot, x, x);
+}
+
+// `searched`: where this tip last looked for walls of the object.
+void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dvec3 from, dvec3 to) {
+  const double radius = tip.tip.radius, within = radius * (1 + kAhead);
+  const double band =
+      within + static_cast<double>(s.mesh.tree.bulge) + 2 * kEarly * static_cast<double>(s.mesh.box.diagonal());
+  const Box& box = s.mesh.box;
   const dvec3 low = glm::min(from, to) - dvec3(band), high = glm::max(from, to) + dvec3(band);
   if (low.x > box.max.x || low.y > box.max.y || low.z > box.max.z || high.x < box.min.x || high.y < box.min.y ||
       high.z < box.min.z)
     return;
+  if (fresh) return find_inside(s, tip, to);
+  find_entry(s, tip, from, to);
+  if (radius == 0 || inside_neighbour(s, tip)) return;
 
-  SurfaceFoot p;
-  if (probe.fresh) {
-    // The first pose may lie inside a body; only a closed one has an inside.
-    if (!surface.mesh.closed) return;
-    p = nearest(surface.mesh, to, std::max(band, 0.1 * double(box.diagonal())));
-    if (!p.valid() || p.height - radius >= 0) return;
-  } else if (const dvec3 d = to - from; dot(d, d) > 0) {
-    // Begin a little earlier: a probe that came to rest within rounding of the surface must not slip through.
-    const double early = 1e-6 * box.diagonal() / length(d);
-    const Entry entry = first_entry(surface.mesh, from - early * d, to);
-    if (entry.valid()) {
-      const SurfaceFoot at =
-          surface_point(corners(surface.mesh, entry.triangle), entry.triangle, entry.barycentric, 0.0);
-      const Tracked tracked = track(surface.mesh, at, to);
-      if (!tracked.left_border) p = tracked.point;
-    } else if (band > 0) {
-      // A sphere touches before its centre crosses, and a rim stands above rest: look around the segment's end, and for
-      // a fast sphere along it.
-      const int steps = radius > 0 ? std::clamp(int(std::ceil(2 * length(d) / radius)), 1, 16) : 1;
-      for (int i = 1; i <= steps && !p.valid(); ++i) {
-        const dvec3 x = from + d * (double(i) / steps);
-        p = nearest(surface.mesh, x, band);
-        if (p.valid() && !(p.height >= 0 && p.height - radius < surface.at(p).height)) p = {};
-        if (p.valid() && i < steps) p = track(surface.mesh, p, to).point;
-      }
+  if (length(to - searched) < 0.5 * kAhead * radius) return;
+  searched = to;
+  // A sphere touches before its centre crosses: look around the segment's end, and for a fast one along it.
+  const int steps = std::clamp(static_cast<int>(std::ceil(2 * length(to - from) / radius)), 1, 16);
+  for (int i = 1; i <= steps; ++i) {
+    const dvec3 x = from + (to - from) * (double(i) / steps);
+    std::array<Foot, kMostSeeds> feet;
+    std::size_t count = 0;
+    find_walls(s, x, within, feet, count);
+    for (std::size_t f = 0; f < count; ++f) {
+      const Foot foot = i == steps ? feet[f] : follow_foot(s, feet[f], x, to);
+      if (foot.height > within || is_known(s, tip, foot)) continue;
+      begin(s, tip, foot, from, to);
     }
   }
-  if (!p.valid()) return;
-  place(contact, p, radius);
-  settle(contact, surface, p);
+}
+
+// Of contacts of one tip that have come to the same foot, the older one stays.
+void merge(const Search& s) {
+  const double same = kSameFoot * static_cast<double>(s.mesh.mean_edge);
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    if (!s.object.sources[i].tracked) continue;
+    const Contact& a = s.world.registry.get<Contact>(s.object.sources[i].contact);
+    for (std::uint32_t j = i + 1; j < s.object.probe_sources; ++j) {
+      if (!s.object.sources[j].tracked) continue;
+      Contact& b = s.world.registry.get<Contact>(s.object.sources[j].contact);
+      if (a.probe == b.probe && a.tip == b.tip &&
+          length(s.object.sources[i].place.p - s.object.sources[j].place.p) < same)
+        drop(s.object.sources[j], b);
+    }
+  }
 }
 
 }  // namespace
 
-void collision(World& world, Tick) {
-  for (auto [entity, contact] : world.registry.view<Contact>()) {
-    if (contact.probe == kNoEntity) continue;  // `press` places it
-    const Probe& probe = world.registry.get<Probe>(contact.probe);
+dvec3 tip_position(const Probe& probe, const Tip& tip) {
+  return probe.position + probe.rotation * tip.place;
+}
+
+dvec3 tip_position_before(const Probe& probe, const Tip& tip) {
+  return probe.previous + probe.previous_rotation * tip.place;
+}
+
+void collision(World& world, Tick tick) {
+  TouchState& touch = *world.touch;
+  Registry& registry = world.registry;
+  for (const std::uint32_t slot : touch.awake) {
+    ObjectState& object = touch.objects[slot];
+    const Deformable& deformable = registry.get<Deformable>(object.entity);
+    const Search search{world, object, world.meshes[deformable.mesh], world.fields[deformable.field], tick};
+    const Pose& pose = registry.get<Pose>(object.entity);
+    std::uint32_t followed = 0;
+    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+      SourceState& source = object.sources[i];
+      if (!source.tracked || source.born == tick.index + 1) continue;  // carried over a seam in this very tick
+      Contact& contact = registry.get<Contact>(source.contact);
+      const Probe& probe = registry.get<Probe>(contact.probe);
+      follow(search, source, contact, pose.to_local(tip_position(probe, source.tip)));
+      ++followed;
+    }
+    if (followed > 1) merge(search);
+  }
+  for (const ProbeState& state : touch.probes) {
+    const Probe& probe = registry.get<Probe>(state.entity);
     if (!probe.placed) continue;
-    const Pose& pose = world.registry.get<Pose>(contact.object);
-    const Deformable& deformable = world.registry.get<Deformable>(contact.object);
-    const Surface surface{world.meshes[deformable.mesh], world.fields[deformable.field],
-                          world.touch->objects[contact.object_slot]};
-    const dvec3 to = pose.to_local(probe.position);
-    if (contact.state == ContactState::kFree) {
-      find(contact, surface, pose.to_local(probe.previous), to, probe);
-    } else {
-      follow(contact, surface, to, probe.radius);
+    for (std::size_t t = 0; t < state.tips.size(); ++t) {
+      const Tip& tip = state.tips[t];
+      const dvec3 to = tip_position(probe, tip), from = probe.fresh ? to : tip_position_before(probe, tip);
+      const double band = tip.radius * (1 + kAhead) + 2 * kEarly * touch.extent;
+      Box swept;
+      swept.add(vec3(glm::min(from, to) - dvec3(band)));
+      swept.add(vec3(glm::max(from, to) + dvec3(band)));
+      touch.object_boxes.visit(swept, [&](std::uint32_t slot) {
+        ObjectState& object = touch.objects[slot];
+        const Deformable& deformable = registry.get<Deformable>(object.entity);
+        const Search search{world, object, world.meshes[deformable.mesh], world.fields[deformable.field], tick};
+        find(search, {state.entity, static_cast<std::uint8_t>(t), tip}, object.searched[state.first_tip + t],
+             probe.fresh, pose_before(registry, object.entity).to_local(from),
+             registry.get<Pose>(object.entity).to_local(to));
+      });
     }
   }
 }

@@ -1,5 +1,8 @@
 #include "systems/touch/contact_law.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace pliant {
 
 double law_force(const RestoringLaw& law, double stiffness, double depth) {
@@ -12,32 +15,66 @@ double painted(const std::vector<float>& factor, const Mesh& mesh, std::uint32_t
   return barycentric.x * factor[t.x] + barycentric.y * factor[t.y] + barycentric.z * factor[t.z];
 }
 
-double advance_contact_law(Contact& contact, const Deformable& deformable, const Motion& motion, double stiffness,
-                           double rest_height) {
-  if (!contact.just_touched) {
-    HeightState y{contact.free_height - rest_height, contact.free_velocity};
-    if (motion.nonlinear()) {
-      y = step_restoring(motion.law, y, motion.mass, motion.damping, 1.0, 0.0, motion.dt);
-    } else {
-      y = {motion.linear.hh * y.height + motion.linear.hv * y.velocity,
-           motion.linear.vh * y.height + motion.linear.vv * y.velocity};
+double ContactLaw::force(double depth) const {
+  const double z = -law.force(-depth);
+  return hertz > 0 ? hertz * z * std::sqrt(std::max(0.0, z)) : stiffness * z;
+}
+
+double ContactLaw::potential(double depth) const {
+  if (hertz == 0.0) return stiffness * law.potential(-depth);
+  if (law.kind != SpringLaw::kCubic && law.kind != SpringLaw::kExponential)
+    return 0.4 * hertz * depth * depth * std::sqrt(std::max(0.0, depth));
+  // Gauss-Legendre in sqrt(depth), which takes away the root at zero: d = s^2, dd = 2 s ds.
+  constexpr double kAt[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+  constexpr double kWeight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+  const double half = 0.5 * std::sqrt(std::max(0.0, depth));
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i)
+    for (const double side : {-1.0, 1.0}) {
+      const double s = half * (1 + side * kAt[i]);
+      sum += kWeight[i] * 2 * s * force(s * s);
     }
-    contact.free_height = y.height + rest_height;
-    contact.free_velocity = y.velocity;
+  return half * sum;
+}
+
+StoredEnergy ContactLaw::stored(double depth) const {
+  StoredEnergy out;
+  if (!(depth > 0)) return out;
+  const double offset = force(free_depth);
+  double from = free_depth;  // where the force is zero
+  if (arm > 0) {
+    // force(d) + arm (d - q) rises with d, from at most zero at 0 (q, y >= 0) to what it is at max(q, y).
+    double low = 0.0, high = std::max(relaxed_depth, free_depth);
+    for (int i = 0; i < 60 && high - low > 1e-15 * high; ++i) {
+      from = law.kind == SpringLaw::kStandardLinearSolid && hertz == 0.0
+                 ? (arm * relaxed_depth + offset) / (arm + stiffness)
+                 : 0.5 * (low + high);
+      const double r = force(from) - offset + arm * (from - relaxed_depth);
+      if (std::abs(r) <= 1e-14 * (offset + arm * relaxed_depth)) break;
+      (r > 0 ? high : low) = from;
+    }
   }
-  // On the tick of touch the spring has been pressed from y to t within the tick.
-  const double from = contact.just_touched ? contact.free_height : contact.previous_height;
-  const double pressed = from - contact.height;  // [m] > 0: deeper
-  double force =
-      law_force(motion.law, stiffness, -contact.height) - law_force(motion.law, stiffness, -contact.free_height);
-  if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
-    // q' = k1 h' - q/tau, exact for a constant rate over the tick.
-    const double k1 = motion.arm_stiffness * stiffness, E = motion.arm_decay;
-    contact.arm_force = contact.arm_force * E + k1 * (motion.arm_time / motion.dt) * (1 - E) * pressed;
-    force += contact.arm_force;
-  }
-  const double c = deformable.contact_damping_material ? motion.damping * stiffness : deformable.contact_damping;
-  return force + c * pressed / motion.dt;
+  if (depth <= from) return out;
+  const double q = relaxed_depth;
+  out.force = force(depth) - offset + arm * (depth - q);
+  out.energy = potential(depth) - potential(from) - offset * (depth - from) +
+               0.5 * arm * ((depth - q) * (depth - q) - (from - q) * (from - q));
+  out.by_relaxed = -arm * (depth - from);
+  return out;
+}
+
+double plane_modulus(const Deformable& deformable) {
+  return deformable.young / (1 - deformable.poisson * deformable.poisson);
+}
+
+ContactLaw contact_law(const Deformable& deformable, const Motion& motion, double factor, double radius) {
+  ContactLaw out;
+  out.law = motion.law;
+  out.stiffness = deformable.stiffness * factor;
+  if (deformable.young > 0 && radius > 0)
+    out.hertz = 4.0 / 3.0 * plane_modulus(deformable) * std::sqrt(radius) * factor;
+  out.arm = motion.arm_stiffness * out.stiffness;
+  return out;
 }
 
 }  // namespace pliant

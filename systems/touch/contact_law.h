@@ -1,10 +1,13 @@
-// The contact law in one place (methods.md 1.8): how hard a surface pushes back at the virtual vertex.
-//   F_n = law(-t) - law(-y) + q + contact_damping * rate, never negative,
-// t the probe's height, y the free height: the surface's at the moment of touch, advancing freely since; q the arm of
-// the standard linear solid. On a surface at rest y = 0 and this is the plain law.
+// What one contact stores, as if it were alone (methods.md 1.8, 1.10): the law of the depth d behind the rest surface,
+//   F(d) = law(d) - law(y) + k1 (d - q),   never negative,   W = its integral from where it is zero,
+// y the depth of the free surface (0 at rest; what a surface that is still recovering would be at had nobody come), q
+// the tissue's viscous extension at the foot (standard linear solid).
+//
+// With Young's modulus and a sphere, law(d) is Hertz's, 4/3 E* sqrt(r) z(d)^1.5, z the law's own stiffening of the
+// depth; a point presses as a flat punch of the least radius, which is `stiffness`.
 #pragma once
 
-#include "components/contact.h"
+#include "components/deformable.h"
 #include "systems/touch/local_model.h"
 
 namespace pliant {
@@ -15,9 +18,29 @@ double law_force(const RestoringLaw& law, double stiffness, double depth);
 // A painted factor (Mesh::stiffness_factor, friction_factor) at a place on the surface. [1]
 double painted(const std::vector<float>& factor, const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
 
-// Advances y and q by one tick and returns the unclamped force [N]. `rest_height` [m] is where the free surface would
-// come to rest: 0, or the rim that other probes hold up.
-double advance_contact_law(Contact& contact, const Deformable& deformable, const Motion& motion, double stiffness,
-                           double rest_height);
+struct StoredEnergy {
+  double energy = 0.0;      // [J]  W
+  double force = 0.0;       // [N]  dW/dd >= 0
+  double by_relaxed = 0.0;  // [N]  dW/dq <= 0
+};
+
+struct ContactLaw {
+  RestoringLaw law;
+  double stiffness = 0.0;    // [N/m] at the foot, painted factor included
+  double hertz = 0.0;        // [N/m^1.5] 4/3 E* sqrt(r), painted factor included; 0: not a sphere of known modulus
+  double arm = 0.0;          // [N/m] k1 at the foot, painted factors included
+  double relaxed_depth = 0;  // [m]   q >= 0
+  double free_depth = 0.0;   // [m]   y >= 0
+
+  double force(double depth) const;      // [N] law(d)
+  double potential(double depth) const;  // [J] its integral from 0
+  StoredEnergy stored(double depth) const;
+};
+
+// E* = E / (1 - nu^2). [Pa]
+double plane_modulus(const Deformable& deformable);
+
+// The law at a place whose painted stiffness factor is `factor` [1], for a tip of this radius [m].
+ContactLaw contact_law(const Deformable& deformable, const Motion& motion, double factor, double radius);
 
 }  // namespace pliant

@@ -19,6 +19,7 @@ void set_to_rest(HeightField& field, std::uint32_t zone) {
   clear(field.residual);
   clear(field.rate);
   clear(field.arm);
+  clear(field.relaxed);
   field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneResidual);
 }
 
@@ -37,10 +38,34 @@ void gather_targets(const ObjectState& object, const Mesh& mesh, std::uint32_t z
   }
 }
 
+// An object leaves the list once nothing touches it and nothing of it moves.
+void put_to_sleep(TouchState& touch, World& world) {
+  for (std::size_t i = 0; i < touch.awake.size();) {
+    ObjectState& object = touch.objects[touch.awake[i]];
+    HeightField& field = world.fields[world.registry.get<Deformable>(object.entity).field];
+    const auto used = [](const SourceState& source) {
+      return source.tracked || source.active || !source.zones.empty();
+    };
+    const bool moves =
+        !field.awake.empty() || !object.releases.empty() || !object.terms.empty() ||
+        std::any_of(object.sources.begin(), object.sources.end(), used) ||
+        std::any_of(object.presses.begin(), object.presses.end(), [](const PressState& p) { return p.used; });
+    if (moves) {
+      ++i;
+      continue;
+    }
+    object.listed = false;
+    field.awake_vertices = 0;
+    touch.awake[i] = touch.awake.back();
+    touch.awake.pop_back();
+  }
+}
+
 }  // namespace
 
 void dynamics(World& world, Tick tick) {
-  for (ObjectState& object : world.touch->objects) {
+  for (const std::uint32_t slot : world.touch->awake) {
+    ObjectState& object = world.touch->objects[slot];
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
     HeightField& field = world.fields[deformable.field];
     if (object.on_card) {  // the card draws it; what has to move here is the list
@@ -52,14 +77,12 @@ void dynamics(World& world, Tick tick) {
       continue;
     }
     if (field.awake.empty()) {
-      object.peak = 0.0f;
       field.awake_vertices = 0;
       continue;
     }
     const Mesh& mesh = world.meshes[deformable.mesh];
     const bool lag = deformable.response == Response::kLag;
     const float rest_height = kRest * static_cast<float>(deformable.reach);
-    float peak = 0.0f;
     std::uint32_t vertices = 0;
     for (std::size_t i = 0; i < field.awake.size();) {
       const std::uint32_t zone = field.awake[i];
@@ -72,17 +95,21 @@ void dynamics(World& world, Tick tick) {
       ZoneTargets targets;
       if (reached || lag) gather_targets(object, mesh, zone, targets);
 
+      if (!field.relaxed.empty() && (reached || (field.zone_state[zone] & kZoneResidual)) &&
+          step_relaxed(object.motion, mesh, field, zone, targets, reached))
+        field.zone_state[zone] |= kZoneResidual;
+
       // The residual moves; once at rest it is exactly zero.
       bool moving = lag || (field.zone_state[zone] & kZoneResidual);
       if (moving) {
-        const ZoneRest rest =
-            lag ? step_lagging(object.motion, field, zone, targets) : step_residual(object.motion, field, zone);
+        const ZoneRest rest = lag ? step_lagging(object.motion, object.painted, field, zone, targets)
+                                  : step_residual(object.motion, object.painted, field, zone);
         if (rest.height < rest_height && rest.normal < kRest && !(lag && reached)) {
           set_to_rest(field, zone);
           moving = false;
         }
       }
-      peak = std::max(peak, compose_stream(field, zone, reached && !lag ? &targets : nullptr, moving));
+      compose_stream(field, zone, reached && !lag ? &targets : nullptr, moving);
       if (reached || moving) {
         ++i;
         continue;
@@ -91,9 +118,9 @@ void dynamics(World& world, Tick tick) {
       field.awake[i] = field.awake.back();
       field.awake.pop_back();
     }
-    object.peak = peak;
     field.awake_vertices = vertices;
   }
+  put_to_sleep(*world.touch, world);
 }
 
 }  // namespace pliant

@@ -13,25 +13,17 @@ struct Factors {
   double rate_now = 0, rate_before = 0;  // [1/s]
 };
 
-Factors factors_at(const Motion& motion, const Release& release, double age) {
-  double hh, hv, vh, vv, arm = 0, arm_rate = 0;
-  if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
-    const auto M = solid_step(motion.mass, motion.damping, 1.0, motion.arm_stiffness, motion.arm_time, age);
-    hh = M[0][0], hv = M[0][1], vh = M[1][0], vv = M[1][1];
-    arm = M[0][2] * release.arm, arm_rate = M[1][2] * release.arm;
-  } else {
-    const StepCoefficients c = exact_step(motion.mass, motion.damping, 1.0, age);
-    hh = c.hh, hv = c.hv, vh = c.vh, vv = c.vv;
-  }
+Factors factors_at(const Motion& motion, double age) {
+  const StepCoefficients c = exact_step(motion.mass, motion.damping, 1.0, age);
   // It began as height `now` with rate (now - before) / dt.
   const double r = 1 / motion.dt;
-  return {hh + hv * r + arm, -hv * r, vh + vv * r + arm_rate, -vv * r};
+  return {c.hh + c.hv * r, -c.hv * r, c.vh + c.vv * r, -c.vv * r};
 }
 
 HeightState released_at(const ObjectState& object, const Mesh& mesh, std::uint32_t vertex, double time) {
   HeightState state;
   for (const Release& release : object.releases) {
-    const Factors f = factors_at(object.motion, release, time - release.time);
+    const Factors f = factors_at(object.motion, time - release.time);
     const double now = target_at(release.now, mesh.position(vertex), mesh.normal(vertex)).w;
     const double before = target_at(release.before, mesh.position(vertex), mesh.normal(vertex)).w;
     state.height += f.now * now + f.before * before;
@@ -50,14 +42,30 @@ HeightState surface_at(const ObjectState& object, const Mesh& mesh, const Height
   return state;
 }
 
+HeightState residual_before(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
+                            Tick tick) {
+  if (object.on_card) return released_at(object, mesh, vertex, tick.time);
+  return {field.residual[vertex].w, field.rate[vertex].w};
+}
+
 double residual_after(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
                       Tick tick) {
   if (object.on_card) return released_at(object, mesh, vertex, tick.time + tick.dt).height;
   const Motion& motion = object.motion;
+  const PaintedMotion& painted = object.painted;
   const double h = field.residual[vertex].w, r = field.rate[vertex].w;
   if (h == 0.0 && r == 0.0) return 0.0;
-  if (motion.nonlinear())
-    return step_restoring(motion.law, {h, r}, motion.mass, motion.damping, 1.0, 0.0, motion.dt).height;
+  if (motion.nonlinear()) {
+    const bool plain = painted.mass.empty();
+    return step_restoring(motion.law, {h, r}, plain ? motion.mass : painted.mass[vertex],
+                          plain ? motion.damping : painted.damping[vertex], 1.0, 0.0, motion.dt)
+        .height;
+  }
+  if (!painted.solid.empty()) {
+    const auto& m = painted.solid[vertex];
+    return m[0] * h + m[1] * r + m[2] * field.arm[vertex].w;
+  }
+  if (!painted.linear.empty()) return painted.linear[vertex].x * h + painted.linear[vertex].y * r;
   if (motion.law.kind == SpringLaw::kStandardLinearSolid)
     return motion.solid[0][0] * h + motion.solid[0][1] * r + motion.solid[0][2] * field.arm[vertex].w;
   return motion.linear.hh * h + motion.linear.hv * r;
@@ -75,15 +83,13 @@ void list_terms(ObjectState& object, const Deformable& deformable, Tick tick) {
   object.time = tick.time + tick.dt;
   object.terms.clear();
   const double rest = kRest * deformable.reach;
-  float peak = 0.0f;
   const auto add = [&](FieldSource term, double factor) {
     term.amplitude *= static_cast<float>(factor);
     object.terms.push_back(term);  // capacity: every release and source
-    peak += std::abs(term.amplitude);
   };
   for (std::size_t i = 0; i < object.releases.size();) {
     const Release& release = object.releases[i];
-    const Factors f = factors_at(object.motion, release, object.time - release.time);
+    const Factors f = factors_at(object.motion, object.time - release.time);
     const double w = 1 / std::sqrt(object.motion.mass);
     const double left = std::abs(f.now * release.now.amplitude + f.before * release.before.amplitude) +
                         std::abs(f.rate_now * release.now.amplitude + f.rate_before * release.before.amplitude) / w;
@@ -97,7 +103,6 @@ void list_terms(ObjectState& object, const Deformable& deformable, Tick tick) {
   }
   for (const SourceState& source : object.sources)
     if (source.active) add(source.now, 1.0);
-  object.peak = object.terms.empty() ? 0.0f : 0.5f * peak;  // a bound: rims are lower than half of the dent
 }
 
 }  // namespace pliant

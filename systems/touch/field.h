@@ -14,6 +14,10 @@ namespace pliant {
 // The surface at a vertex after the last tick: height above rest [m] and rate of its residual [m/s].
 HeightState surface_at(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex);
 
+// Height and rate of the residual at a vertex before this tick: what is still recovering there.
+HeightState residual_before(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
+                            Tick tick);
+
 // Height of the residual (without any contact's target) at a vertex after this tick. [m]
 double residual_after(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
                       Tick tick);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/kernel.h"
+#include "systems/touch/nonlinear_step.h"
 
 namespace pliant {
 namespace {
@@ -45,6 +46,37 @@ PLIANT_KERNEL void add_volume(const Mesh& mesh, std::uint32_t begin, const Field
 }
 PLIANT_KERNEL void add_wendland(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
   add_radial(mesh, begin, s, out, [](float u) { return shared::shape_wendland(u); });
+}
+
+PLIANT_KERNEL void add_punch(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+  const float inner = s.parameter;
+  add_radial(mesh, begin, s, out, [inner](float u) { return shared::shape_punch(u, inner); });
+}
+PLIANT_KERNEL void add_hertz(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+  const float inner = s.parameter;
+  add_radial(mesh, begin, s, out, [inner](float u) { return shared::shape_hertz(u, inner); });
+}
+PLIANT_KERNEL void add_gaussian(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+  add_radial(mesh, begin, s, out, [](float u) { return shared::shape_gaussian(u); });
+}
+
+PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const vec3 center = s.center, normal = s.normal;
+  const float inv = s.inv_reach2, alpha = s.amplitude, e = s.parameter;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const vec3 d(px[i] - center.x, py[i] - center.y, pz[i] - center.z), n(nx[i], ny[i], nz[i]);
+    const vec4 t = shared::field_kelvinlet(d, n, normal, inv, alpha, e);
+    out.nx[i] += t.x;
+    out.ny[i] += t.y;
+    out.nz[i] += t.z;
+    out.h[i] += t.w;
+  }
 }
 
 constexpr std::uint32_t kLanes = 8;
@@ -119,32 +151,28 @@ PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, f
   }
 }
 
-// Non-linear laws, one vertex at a time: the height by the passive step; the normal correction is the gradient of the
-// height, so it obeys the law linearised there (implicit midpoint with the slope at the middle).
-void step_nonlinear(const Motion& motion, vec4* state, vec4* rate, const ZoneTargets* targets) {
-  const double T = motion.dt, m = motion.mass, b = motion.damping;
+// The same where every vertex has coefficients of its own.
+PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, const vec4* __restrict step) {
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
-    vec4& s = state[i];
-    vec4& r = rate[i];
-    double f = 0.0, f_slope = 0.0;
-    vec3 target_normal(0);
-    if (targets) {
-      f = motion.law.force(targets->h[i]);  // the spring force of the target: its equilibrium is the shape itself
-      f_slope = motion.law.slope(targets->h[i]);
-      target_normal = vec3(targets->nx[i], targets->ny[i], targets->nz[i]);
+    const float hh = step[i].x, hv = step[i].y, vh = step[i].z, vv = step[i].w;
+    for (std::uint32_t c = 4 * i; c < 4 * i + 4; ++c) {
+      const float x = state[c], v = rate[c];
+      state[c] = hh * x + hv * v;
+      rate[c] = vh * x + vv * v;
     }
-    if (s == vec4(0) && r == vec4(0) && f == 0.0) continue;
-    const HeightState next = step_restoring(motion.law, {s.w, r.w}, m, b, 1.0, f, T);
-    const double slope = motion.law.slope(0.5 * (s.w + next.height));
-    const double den = 2 * m / T + b + 0.5 * T * slope;
-    for (int c = 0; c < 3; ++c) {
-      // 2 m (vm - v0)/T + b vm + slope (n0 + T vm / 2) = f_n, with vm the mean rate of the step
-      const double vm = (2 * m / T * r[c] - slope * s[c] + f_slope * target_normal[c]) / den;
-      s[c] = static_cast<float>(s[c] + T * vm);
-      r[c] = static_cast<float>(2 * vm - r[c]);
+  }
+}
+
+PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm,
+                              const std::array<float, 9>* __restrict step) {
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const std::array<float, 9>& m = step[i];
+    for (std::uint32_t c = 4 * i; c < 4 * i + 4; ++c) {
+      const float x = state[c], v = rate[c], q = arm[c];
+      state[c] = m[0] * x + m[1] * v + m[2] * q;
+      rate[c] = m[3] * x + m[4] * v + m[5] * q;
+      arm[c] = m[6] * x + m[7] * v + m[8] * q;
     }
-    s.w = static_cast<float>(next.height);
-    r.w = static_cast<float>(next.velocity);
   }
 }
 
@@ -159,25 +187,9 @@ PLIANT_KERNEL void largest(const float* __restrict state, const float* __restric
   }
 }
 
-// The largest height of a zone, 0 at least. Of a stream, lanes 3 and 7 of eight floats are heights; of targets, all.
-PLIANT_KERNEL float highest(const float* __restrict stream) {
+ZoneRest rest_of(double mass, const vec4* state, const vec4* rate) {
   float best[kLanes] = {};
-  for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes)
-    for (std::uint32_t l = 0; l < kLanes; ++l) best[l] = best[l] > stream[i + l] ? best[l] : stream[i + l];
-  return best[3] > best[7] ? best[3] : best[7];
-}
-PLIANT_KERNEL float highest_target(const float* __restrict h) {
-  float best[kLanes] = {};
-  for (std::uint32_t i = 0; i < kZoneSize; i += kLanes)
-    for (std::uint32_t l = 0; l < kLanes; ++l) best[l] = best[l] > h[i + l] ? best[l] : h[i + l];
-  float most = 0.0f;
-  for (const float b : best) most = b > most ? b : most;
-  return most;
-}
-
-ZoneRest rest_of(const Motion& motion, const vec4* state, const vec4* rate) {
-  float best[kLanes] = {};
-  largest(&state->x, &rate->x, static_cast<float>(std::sqrt(motion.mass)), best);
+  largest(&state->x, &rate->x, static_cast<float>(std::sqrt(mass)), best);
   // Lanes 3 and 7 are heights, the others normal corrections.
   return {std::max(best[3], best[7]), std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
 }
@@ -218,15 +230,19 @@ float share_at(const FieldSource& source, vec3 position, vec3 normal) {
 
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, ZoneTargets& targets) {
   const std::uint32_t begin = mesh.zone_begin(zone);
-  if (source.shape == Shape::kVolume) return add_volume(mesh, begin, source, targets);
-  if (source.shape == Shape::kWendland) return add_wendland(mesh, begin, source, targets);
-  const std::uint32_t count = mesh.zone_end(zone) - begin;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const vec4 t = target_at(source, mesh.position(begin + i), mesh.normal(begin + i));
-    targets.nx[i] += t.x;
-    targets.ny[i] += t.y;
-    targets.nz[i] += t.z;
-    targets.h[i] += t.w;
+  switch (source.shape) {
+    case Shape::kPunch:
+      return add_punch(mesh, begin, source, targets);
+    case Shape::kHertz:
+      return add_hertz(mesh, begin, source, targets);
+    case Shape::kGaussian:
+      return add_gaussian(mesh, begin, source, targets);
+    case Shape::kWendland:
+      return add_wendland(mesh, begin, source, targets);
+    case Shape::kVolume:
+      return add_volume(mesh, begin, source, targets);
+    case Shape::kKelvinlet:
+      return add_kelvinlet(mesh, begin, source, targets);
   }
 }
 
@@ -234,54 +250,85 @@ void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& so
   sum_volume(mesh, mesh.zone_begin(zone), source, sums);
 }
 
-ZoneRest step_residual(const Motion& motion, HeightField& field, std::uint32_t zone) {
-  vec4* state = field.residual.data() + zone * kZoneSize;
-  vec4* rate = field.rate.data() + zone * kZoneSize;
+ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone) {
+  const std::size_t first = std::size_t{zone} * kZoneSize;
+  vec4* state = field.residual.data() + first;
+  vec4* rate = field.rate.data() + first;
   if (motion.nonlinear()) {
-    step_nonlinear(motion, state, rate, nullptr);
+    step_nonlinear(motion, painted, zone, state, rate, nullptr);
+  } else if (!painted.solid.empty()) {
+    step_solid(&state->x, &rate->x, &field.arm[first].x, painted.solid.data() + first);
+  } else if (!painted.linear.empty()) {
+    step_linear(&state->x, &rate->x, painted.linear.data() + first);
   } else if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
     float m[9];
     solid_matrix(motion, m);
-    step_solid(&state->x, &rate->x, &field.arm[zone * kZoneSize].x, m);
+    step_solid(&state->x, &rate->x, &field.arm[first].x, m);
   } else {
     const StepCoefficients& c = motion.linear;
     step_linear(&state->x, &rate->x, static_cast<float>(c.hh), static_cast<float>(c.hv), static_cast<float>(c.vh),
                 static_cast<float>(c.vv));
   }
-  return rest_of(motion, state, rate);
+  return rest_of(painted.empty() ? motion.mass : painted.most_mass, state, rate);
 }
 
-ZoneRest step_lagging(const Motion& motion, HeightField& field, std::uint32_t zone, const ZoneTargets& targets) {
+bool step_relaxed(const Motion& motion, const Mesh& mesh, HeightField& field, std::uint32_t zone,
+                  const ZoneTargets& targets, bool reached) {
+  const float E = static_cast<float>(motion.arm_decay),
+              ramp = static_cast<float>(motion.arm_time / motion.dt * (1 - motion.arm_decay));
+  bool took = false;
+  for (std::uint32_t v = mesh.zone_begin(zone), i = 0; v < mesh.zone_end(zone); ++v, ++i) {
+    vec4& z = field.relaxed[v];
+    const vec4 now = reached ? vec4(targets.nx[i], targets.ny[i], targets.nz[i], targets.h[i]) : vec4(0);
+    if (now == vec4(0) && z == vec4(0)) continue;
+    const vec4 before = field.stream[v] - field.residual[v];
+    z = now - (E * (before - z) + ramp * (now - before));
+    // The free surface would stand where k h + k1 (h - z) = 0: no deeper than the target, or it is left behind there.
+    const float r1 = arm_stiffness(motion, mesh, v);
+    const float held = r1 > 0 && now.w < 0 ? now.w * (1 + 1 / r1) : 0.0f;
+    if (!(z.w < held) || !(z.w < 0)) {
+      if (now == vec4(0)) z = vec4(0);
+      continue;
+    }
+    const vec4 left = (1 - held / z.w) * z;
+    field.arm[v] -= r1 * left;
+    z -= left;
+    took = true;
+  }
+  return took;
+}
+
+ZoneRest step_lagging(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone,
+                      const ZoneTargets& targets) {
+  const double mass = painted.empty() ? motion.mass : painted.most_mass;
   vec4* state = field.residual.data() + zone * kZoneSize;
   if (motion.nonlinear()) {
     vec4* rate = field.rate.data() + zone * kZoneSize;
-    step_nonlinear(motion, state, rate, &targets);
-    return rest_of(motion, state, rate);
+    step_nonlinear(motion, painted, zone, state, rate, &targets);
+    return rest_of(mass, state, rate);
   }
   // The law is linear, so the state measured from the target moves freely.
   const float* const t[4] = {targets.nx.data(), targets.ny.data(), targets.nz.data(), targets.h.data()};
   for (std::uint32_t i = 0; i < kZoneSize; ++i)
     for (int c = 0; c < 4; ++c) state[i][c] -= t[c][i];
-  step_residual(motion, field, zone);
+  step_residual(motion, painted, field, zone);
   for (std::uint32_t i = 0; i < kZoneSize; ++i)
     for (int c = 0; c < 4; ++c) state[i][c] += t[c][i];
-  return rest_of(motion, state, field.rate.data() + zone * kZoneSize);
+  return rest_of(mass, state, field.rate.data() + zone * kZoneSize);
 }
 
-float compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual) {
+void compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual) {
   vec4* stream = field.stream.data() + zone * kZoneSize;
   const vec4* residual = field.residual.data() + zone * kZoneSize;
   if (targets && with_residual) {
     interleave(*targets, &residual->x, &stream->x);
   } else if (targets) {
     interleave(*targets, &stream->x);
-    return highest_target(targets->h.data());
   } else if (with_residual) {
     std::copy(residual, residual + kZoneSize, stream);
   } else {
     std::fill(stream, stream + kZoneSize, vec4(0));
   }
-  return highest(&stream->x);
 }
 
 }  // namespace pliant

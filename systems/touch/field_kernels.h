@@ -6,6 +6,7 @@
 #include "components/height_field.h"
 #include "components/mesh.h"
 #include "systems/touch/local_model.h"
+#include "systems/touch/painted_motion.h"
 #include "systems/touch/shape.h"
 
 namespace pliant {
@@ -30,12 +31,19 @@ void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& so
 struct ZoneRest {
   float height = 0, normal = 0;
 };
-ZoneRest step_residual(const Motion& motion, HeightField& field, std::uint32_t zone);
+ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone);
+
+// The viscous extension under the targets follows them (q' = (h - q) / tau, exact for targets that change evenly over
+// the tick). Where a target has gone, or is less deep than the arm holds the surface down, the residual takes the rest
+// over: a trail that recovers by itself. True if it took anything. Standard linear solid with Response::kFollow.
+bool step_relaxed(const Motion& motion, const Mesh& mesh, HeightField& field, std::uint32_t zone,
+                  const ZoneTargets& targets, bool reached);
 
 // The same for Response::kLag: the targets act as a force on the whole state.
-ZoneRest step_lagging(const Motion& motion, HeightField& field, std::uint32_t zone, const ZoneTargets& targets);
+ZoneRest step_lagging(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone,
+                      const ZoneTargets& targets);
 
-// stream = residual + targets; returns max h over the zone (how high anything stands out).
-float compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual);
+// stream = residual + targets.
+void compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual);
 
 }  // namespace pliant

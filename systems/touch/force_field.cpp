@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "systems/touch/amplitude.h"
+#include "systems/touch/contact_law.h"
 #include "systems/touch/field.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/touch/surface_distance.h"
@@ -24,8 +25,6 @@ void wake(HeightField& field, std::uint32_t zone, std::uint8_t why) {
 
 // Half-space shapes have an inner radius: the contact circle of a sphere, and at least this share of the reach.
 constexpr double kInnerShare = 0.2;
-// A reach below a few edges would fall between the vertices.
-constexpr double kLeastReach = 1.5;  // mean edges
 // How much of the reach a bulge may count for under a probe.
 constexpr double kMostBulge = 0.25;
 
@@ -72,15 +71,14 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
 }
 
 // The contact has ended, or the surface is left behind: what was held down is now on its own way back to rest.
-void fold(SourceState& source, ObjectState& object, const Contact& contact, const Deformable& deformable,
-          const Mesh& mesh, HeightField& field, Tick tick, std::uint32_t& dropped) {
+void fold(SourceState& source, ObjectState& object, const Deformable& deformable, const Mesh& mesh, HeightField& field,
+          Tick tick, std::uint32_t& dropped) {
   source.active = false;
   if (source.now.amplitude == 0.0f && source.before.amplitude == 0.0f) return;
+  // A tip that stops does not throw the surface on: left behind, it starts with no speed inwards.
+  if (source.now.amplitude > source.before.amplitude) source.before = source.now;
   if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
-  double arm = 0.0;  // how much of the arm's spring is still stretched, per unit of depth and stiffness
-  if (deformable.spring == SpringLaw::kStandardLinearSolid && contact.height < 0)
-    arm = std::clamp(contact.arm_force / (deformable.stiffness * -contact.height), 0.0, object.motion.arm_stiffness);
-  if (object.on_card) return remember_release(object, {source.now, source.before, arm, tick.time}, dropped);
+  if (object.on_card) return remember_release(object, {source.now, source.before, tick.time}, dropped);
   const float inv_dt = static_cast<float>(1 / tick.dt);
   for (const std::uint32_t zone : source.zones) {
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
@@ -88,7 +86,8 @@ void fold(SourceState& source, ObjectState& object, const Contact& contact, cons
       const vec4 before = source_at(source, source.before, mesh, v);
       field.residual[v] += now;
       field.rate[v] += (now - before) * inv_dt;
-      if (arm > 0) field.arm[v] += static_cast<float>(arm) * now;
+      // As if the arm had not relaxed at all; what it has, dynamics hands over (field_kernels.h, step_relaxed).
+      if (!field.arm.empty()) field.arm[v] += arm_stiffness(object.motion, mesh, v) * now;
     }
     wake(field, zone, kZoneResidual);
   }
@@ -96,13 +95,13 @@ void fold(SourceState& source, ObjectState& object, const Contact& contact, cons
 
 // A probe can press the surface down but not pull it up: when it lifts faster than the surface would rise by itself,
 // the surface is left behind, while the force goes on by the law of the depth until the probe is out.
-bool leaves_behind(const Contact& contact, const Motion& motion) {
-  const double h = contact.previous_height, v = (contact.previous_height - contact.older_height) / motion.dt;
+bool leaves_behind(const Contact& contact, const Mesh& mesh, const Motion& motion) {
+  const double h = contact.previous_height,
+               v = std::max(0.0, contact.previous_height - contact.older_height) / motion.dt;
   if (contact.height <= h) return false;
-  const double free = motion.nonlinear()
-                          ? step_restoring(motion.law, {h, v}, motion.mass, motion.damping, 1.0, 0.0, motion.dt).height
-                          : motion.linear.hh * h + motion.linear.hv * v;
-  return contact.height > free;
+  const double stiffness = painted(mesh.stiffness_factor, mesh, contact.triangle, contact.barycentric),
+               damping = painted(mesh.damping_factor, mesh, contact.triangle, contact.barycentric);
+  return contact.height > step_free(motion, stiffness, damping, {h, v}).height;
 }
 
 struct Active {
@@ -110,7 +109,7 @@ struct Active {
   Contact* contact;
 };
 
-// Amplitudes of all touching contacts of one object, and the rims they hold up under each other.
+// Amplitudes of all contacts that dent one object.
 void solve(std::span<const Active> active, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
            const ObjectState& object, Tick tick) {
   const std::size_t n = active.size();
@@ -146,10 +145,6 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
   for (std::size_t i = 0; i < n; ++i) {
     active[i].source->now.amplitude = static_cast<float>(alpha[i]);
     active[i].contact->amplitude = alpha[i];
-    double rim = 0.0;
-    for (std::size_t j = 0; j < n; ++j)
-      if (j != i) rim -= A[i * n + j] * alpha[j];
-    active[i].contact->rim_height = active[i].contact->height > 0 ? std::max(0.0, rim) : 0.0;
   }
 }
 
@@ -170,7 +165,8 @@ void aim(FieldSource& source, const Contact& contact, const Deformable& deformab
 }
 
 void force_field(World& world, Tick tick) {
-  for (ObjectState& object : world.touch->objects) {
+  for (const std::uint32_t slot : world.touch->awake) {
+    ObjectState& object = world.touch->objects[slot];
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
     const Mesh& mesh = world.meshes[deformable.mesh];
     HeightField& field = world.fields[deformable.field];
@@ -184,10 +180,10 @@ void force_field(World& world, Tick tick) {
         if (!object.on_card) field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneReached);
       }
       Contact& contact = world.registry.get<Contact>(source.contact);
-      const bool touching = contact.state == ContactState::kTouching;
-      const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, object.motion);
+      const bool touching = contact.state != ContactState::kFree && contact.height < 0;
+      const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, mesh, object.motion);
       if (source.active && (!touching || left_behind))
-        fold(source, object, contact, deformable, mesh, field, tick, world.dropped);
+        fold(source, object, deformable, mesh, field, tick, world.dropped);
       if (!touching) {
         if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
         source.zones.clear();

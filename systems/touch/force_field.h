@@ -6,6 +6,9 @@
 
 namespace pliant {
 
+// A reach below a few edges would fall between the vertices. [1] mean edges
+inline constexpr double kLeastReach = 1.5;
+
 void force_field(World& world, Tick tick);
 
 // The field around a contact of a probe of `radius` [m]: everything but its amplitude and the volume coefficient that

@@ -20,6 +20,7 @@ void hash_state(const World& world, Hash& hash) {
     add(hash, field.residual);
     add(hash, field.rate);
     add(hash, field.arm);
+    add(hash, field.relaxed);
     for (const FieldSource& term : object.terms) {
       add(hash, dvec3(term.center));
       add(hash, dvec3(term.normal));
@@ -28,19 +29,26 @@ void hash_state(const World& world, Hash& hash) {
       hash.add(term.parameter);
     }
   }
+  for (const MovingNode& node : world.touch->moving)
+    for (int column = 0; column < 4; ++column) add(hash, dvec3(node.world[column]));
   for (const ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);
     add(hash, probe.position);
     add(hash, probe.velocity);
     add(hash, probe.force);
-    for (const Entity entity : state.contacts) {
-      const Contact& contact = world.registry.get<Contact>(entity);
+    add(hash, probe.torque);
+  }
+  for (const ObjectState& object : world.touch->objects) {
+    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+      if (!object.sources[i].tracked) continue;
+      const Contact& contact = world.registry.get<Contact>(object.sources[i].contact);
+      hash.add(i);
       hash.add(static_cast<std::uint32_t>(contact.state));
       hash.add(contact.triangle);
       add(hash, contact.barycentric);
       hash.add(contact.height);
       hash.add(contact.free_height);
-      hash.add(contact.arm_force);
+      hash.add(contact.load);
       hash.add(contact.amplitude);
       add(hash, contact.bristle);
       add(hash, contact.force);

@@ -1,4 +1,5 @@
-// "Same input, same bits": a hash over every field's stream, residual and rate, every probe and every contact.
+// "Same input, same bits": a hash over every field's stream, residual and rate, every probe, every contact
+// and every node that moves.
 #pragma once
 
 #include "components/world.h"

@@ -81,11 +81,33 @@ double natural_frequency(double zeta, double settling_time) {
   // found on the exact response in units of 1/w0.
   if (zeta < 0.1) return -std::log(0.02) / zeta / settling_time;
   const double slowest = zeta > 1.0 ? 1.0 / (zeta + std::sqrt(zeta * zeta - 1.0)) : zeta;
-  const double horizon = 8.0 / slowest, step = horizon / 20000;
-  double last = step;
-  for (double t = step; t < horizon; t += step)
-    if (std::abs(exact_step(1.0, 2 * zeta, 1.0, t).hh) > 0.02) last = t;
-  return last / settling_time;
+  const auto above = [&](double t) { return std::abs(exact_step(1.0, 2 * zeta, 1.0, t).hh) > 0.02; };
+  const double step = 8.0 / slowest / 1000;
+  double low = 1000 * step;
+  while (low > step && !above(low)) low -= step;
+  double high = low + step;
+  for (int i = 0; i < 50; ++i) {
+    const double t = 0.5 * (low + high);
+    (above(t) ? low : high) = t;
+  }
+  return low / settling_time;
+}
+
+double creep_ratio(double w0, double settling_time) {
+  // From rest, x(t) = (r2 e^(-r1 t) - r1 e^(-r2 t)) / (r2 - r1) with r1 r2 = w0^2; the slower r1, by bisection.
+  double low = 0.0, high = w0;
+  for (int i = 0; i < 100; ++i) {
+    const double r1 = 0.5 * (low + high), r2 = w0 * w0 / r1;
+    const double left = (r2 * std::exp(-r1 * settling_time) - r1 * std::exp(-r2 * settling_time)) / (r2 - r1);
+    (left > 0.02 ? low : high) = r1;
+  }
+  const double r1 = 0.5 * (low + high);
+  return 0.5 * (r1 + w0 * w0 / r1) / w0;
+}
+
+double damping_of(const Deformable& d) {
+  const bool slow = natural_frequency(d.damping_ratio, d.settling_time) < kSlowest;
+  return slow ? creep_ratio(kSlowest, d.settling_time) : d.damping_ratio;
 }
 
 double RestoringLaw::force(double h) const {
@@ -170,9 +192,9 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
 Motion motion(const Deformable& deformable, double dt) {
   Motion result;
   result.dt = dt;
-  const double w0 = natural_frequency(deformable.damping_ratio, deformable.settling_time);
+  const double w0 = std::max(kSlowest, natural_frequency(deformable.damping_ratio, deformable.settling_time));
   result.mass = 1.0 / (w0 * w0);
-  result.damping = 2 * deformable.damping_ratio / w0;
+  result.damping = 2 * damping_of(deformable) / w0;
   result.law = restoring_law(deformable);
   result.linear = exact_step(result.mass, result.damping, 1.0, dt);
   if (deformable.spring == SpringLaw::kStandardLinearSolid) {

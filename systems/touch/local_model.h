@@ -39,6 +39,13 @@ std::array<std::array<double, 3>, 3> solid_step(double mass, double damping, dou
 // (5.83 / settling_time at 1; an undamped one never settles and gets the frequency of the critically damped).
 double natural_frequency(double damping_ratio, double settling_time);
 
+// A slow surface creeps, it does not coast: its mass is never more than this frequency allows [rad/s] (10 Hz); the rest
+// of a long settling time comes from damping, by this ratio.
+inline constexpr double kSlowest = 2 * 3.14159265358979 * 10;
+double creep_ratio(double w0, double settling_time);
+// The damping ratio that a surface moves with: its own, or what its settling time needs.
+double damping_of(const Deformable& deformable);
+
 // The restoring law per unit of small-depth stiffness: F(h) = k * restoring(h); odd, except that the exponential law
 // stiffens under compression only (a bulge is linear). [m]
 struct RestoringLaw {

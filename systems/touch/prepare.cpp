@@ -2,8 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "components/soft_body.h"
 #include "systems/touch/field.h"
+#include "systems/touch/force_field.h"
+#include "systems/touch/seams.h"
 
 namespace pliant {
 namespace {
@@ -21,20 +27,11 @@ void size_field(HeightField& field, const Mesh& mesh, const Deformable& deformab
     field.residual.assign(size, vec4(0));
     field.rate.assign(size, vec4(0));
     field.arm.assign(arm ? size : 0, vec4(0));
+    field.relaxed.assign(arm ? size : 0, vec4(0));
     field.zone_state.assign(mesh.zone_count(), 0);
     field.awake.clear();
   }
   field.awake.reserve(mesh.zone_count());
-}
-
-Box world_box(const Mesh& mesh, const Pose& pose) {
-  Box box;
-  for (int i = 0; i < 8; ++i) {
-    const vec3 corner(i & 1 ? mesh.box.max.x : mesh.box.min.x, i & 2 ? mesh.box.max.y : mesh.box.min.y,
-                      i & 4 ? mesh.box.max.z : mesh.box.min.z);
-    box.add(vec3(pose.to_world(dvec3(corner))));
-  }
-  return box;
 }
 
 // Every probe needs a device, if only one that never moves it: safety stands between every force and whoever reads it.
@@ -52,6 +49,49 @@ void give_devices(Registry& registry) {
   }
 }
 
+bool is_convex(const Mesh& mesh, std::uint32_t triangle, int edge) {
+  const uvec3 t = mesh.triangles[triangle], o = mesh.triangles[mesh.across[triangle][edge]];
+  const dvec3 a(mesh.position(t[edge])), b(mesh.position(t[(edge + 1) % 3])), c(mesh.position(t[(edge + 2) % 3]));
+  for (int i = 0; i < 3; ++i)
+    if (o[i] != t[edge] && o[i] != t[(edge + 1) % 3])
+      return dot(dvec3(mesh.position(o[i])) - a, cross(b - a, c - a)) < 0;
+  return false;
+}
+
+void list_creases(const Mesh& mesh, ObjectState& object) {
+  std::vector<Box> boxes;
+  for (std::uint32_t t = 0; t < mesh.crease.size(); ++t) {
+    for (int edge = 0; edge < 3; ++edge) {
+      const std::uint32_t key = 3 * t + static_cast<std::uint32_t>(edge);
+      if (!mesh.is_crease(t, edge) || mesh.across[t][edge] == kBorder || !is_convex(mesh, t, edge)) continue;
+      if (std::binary_search(object.closed.begin(), object.closed.end(), key)) continue;  // another surface goes on
+      Box box;
+      box.add(mesh.position(mesh.triangles[t][edge]));
+      box.add(mesh.position(mesh.triangles[t][(edge + 1) % 3]));
+      boxes.push_back(box);
+      object.creases.push_back(key);
+    }
+  }
+  object.crease_boxes.build(boxes);
+}
+
+constexpr std::size_t kMostTips = 16;  // of a capsule
+// Places where a tip of a probe may touch one object at once: the walls of a corner, and one more.
+constexpr std::size_t kContactsOfASphere = 4, kContactsOfAPoint = 2;
+
+// A capsule is a row of spheres half a radius apart, or as many as there may be.
+std::vector<Tip> tips_of(const Probe& probe) {
+  std::vector<Tip> tips;
+  for (const vec3& place : probe.points) tips.push_back({dvec3(place), probe.radius});
+  if (probe.length > 0) {
+    const double apart = std::max(0.5 * probe.radius, probe.length / (kMostTips - 1));
+    const int count = std::max(1, static_cast<int>(std::ceil(probe.length / apart)));
+    for (int i = 0; i <= count; ++i) tips.push_back({dvec3(0, probe.length * i / count, 0), probe.radius});
+  }
+  if (tips.empty()) tips.push_back({dvec3(0), probe.radius});
+  return tips;
+}
+
 SourceState make_source(Entity contact, const Mesh& mesh, const Deformable& deformable) {
   SourceState source;
   source.contact = contact;
@@ -63,10 +103,9 @@ SourceState make_source(Entity contact, const Mesh& mesh, const Deformable& defo
   return source;
 }
 
-Entity make_contact(Registry& registry, Entity probe, Entity object, std::size_t slot) {
+Entity make_contact(Registry& registry, Entity object, std::size_t slot) {
   const Entity entity = registry.create();
   Contact contact;
-  contact.probe = probe;
   contact.object = object;
   contact.object_slot = static_cast<std::uint32_t>(slot);
   registry.add(entity, contact);
@@ -85,8 +124,7 @@ void make_presses(World& world, TouchState& touch) {
   for (ObjectState& object : touch.objects) {
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
     while (object.presses.size() < kMaxPresses && object.sources.size() < kMaxContactsPerObject) {
-      const Entity contact =
-          make_contact(world.registry, kNoEntity, object.entity, std::size_t(&object - touch.objects.data()));
+      const Entity contact = make_contact(world.registry, object.entity, std::size_t(&object - touch.objects.data()));
       object.sources.push_back(make_source(contact, world.meshes[deformable.mesh], deformable));
       object.presses.push_back({contact, false, {}});
     }
@@ -97,6 +135,16 @@ void make_presses(World& world, TouchState& touch) {
 
 }  // namespace
 
+Box touch_box(const Mesh& mesh, const Pose& pose) {
+  const vec3 low = mesh.box.min - mesh.tree.bulge, high = mesh.box.max + mesh.tree.bulge;
+  Box box;
+  for (int i = 0; i < 8; ++i) {
+    const vec3 corner(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
+    box.add(vec3(pose.to_world(dvec3(corner))));
+  }
+  return box;
+}
+
 Status prepare_touch(World& world) {
   Registry& registry = world.registry;
   give_devices(registry);
@@ -106,7 +154,15 @@ Status prepare_touch(World& world) {
 
   auto touch = std::make_shared<TouchState>();
   touch->dt = 1.0 / world.simulation.touch_rate;
-  for (auto [entity, probe] : registry.view<Probe>()) touch->probes.push_back({entity, {}, {}});
+  std::uint32_t tip_count = 0;
+  std::size_t contacts_wanted = 0;
+  for (auto [entity, probe] : registry.view<Probe>()) {
+    touch->probes.push_back({entity, {}, tips_of(probe), tip_count});
+    for (const Tip& tip : touch->probes.back().tips)
+      contacts_wanted += tip.radius > 0 ? kContactsOfASphere : kContactsOfAPoint;
+    tip_count += static_cast<std::uint32_t>(touch->probes.back().tips.size());
+  }
+  contacts_wanted = std::min<std::size_t>(contacts_wanted, kMaxContactsPerObject);
 
   Box extent;
   Snapshot snapshot;
@@ -126,7 +182,12 @@ Status prepare_touch(World& world) {
       size_field(field, mesh, deformable);
     }
     object.motion = motion(deformable, touch->dt);
-    object.world_box = world_box(mesh, pose);
+    object.painted = paint_motion(object.motion, mesh);
+    object.kernel =
+        share_kernel(deformable.shape, std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge)),
+                     deformable.volume);
+    object.searched.assign(tip_count, dvec3(std::numeric_limits<double>::max()));
+    object.world_box = touch_box(mesh, pose);
     object.zone_sources.assign(mesh.zone_count(), 0);
     object.visited.assign(mesh.zone_count(), 0);
     object.dirty.reserve(mesh.zone_count());
@@ -147,22 +208,30 @@ Status prepare_touch(World& world) {
   }
   touch->extent = extent.empty() ? 1.0 : extent.diagonal();
 
-  // One contact per (probe, object) pair.
+  touch->awake.reserve(touch->objects.size());
+  touch->loaded.resize(kMaxContactsPerObject);
+  std::vector<Box> boxes;
+  for (const ObjectState& object : touch->objects) boxes.push_back(object.world_box);
+  touch->object_boxes.build(boxes);
+  find_seams(world, *touch);
+  for (ObjectState& object : touch->objects)
+    list_creases(world.meshes[registry.get<Deformable>(object.entity).mesh], object);
   for (ObjectState& object : touch->objects) {
     const Deformable& deformable = registry.get<Deformable>(object.entity);
-    for (ProbeState& probe : touch->probes) {
-      if (object.sources.size() == kMaxContactsPerObject) {
-        world.dropped |= kDroppedContacts;
-        break;
-      }
-      const Entity entity =
-          make_contact(registry, probe.entity, object.entity, std::size_t(&object - touch->objects.data()));
-      object.sources.push_back(make_source(entity, world.meshes[deformable.mesh], deformable));
-      probe.contacts.push_back(entity);
+    const std::size_t slot = std::size_t(&object - touch->objects.data());
+    while (object.sources.size() < contacts_wanted)
+      object.sources.push_back(
+          make_source(make_contact(registry, object.entity, slot), world.meshes[deformable.mesh], deformable));
+    object.probe_sources = static_cast<std::uint32_t>(object.sources.size());
+    if (!world.fields[deformable.field].awake.empty()) {  // what was recovering goes on
+      object.listed = true;
+      touch->awake.push_back(static_cast<std::uint32_t>(slot));
     }
   }
   if (something_presses(registry)) make_presses(world, *touch);
   snapshot.probes.resize(touch->probes.size());
+  touch->moving = find_moving(world, *touch);
+  snapshot.moved = moved_snapshots(world, *touch);
   world.snapshots = std::make_unique<TripleBuffer<Snapshot>>(snapshot);
   world.touch = std::move(touch);
   return Done{};
@@ -170,10 +239,10 @@ Status prepare_touch(World& world) {
 
 std::size_t touch_bytes(const Mesh& mesh, const HeightField& field) {
   const auto bytes = [](const auto&... vectors) { return ((vectors.capacity() * sizeof(vectors[0])) + ...); };
-  std::size_t total =
-      bytes(mesh.px, mesh.py, mesh.pz, mesh.nx, mesh.ny, mesh.nz, mesh.area, mesh.triangles, mesh.across, mesh.zone_box,
-            mesh.zone_neighbour_first, mesh.zone_neighbours, mesh.stiffness_factor, mesh.friction_factor, field.stream,
-            field.residual, field.rate, field.arm, field.zone_state, field.awake);
+  std::size_t total = bytes(mesh.px, mesh.py, mesh.pz, mesh.nx, mesh.ny, mesh.nz, mesh.area, mesh.triangles,
+                            mesh.across, mesh.zone_box, mesh.tree.nodes, mesh.zone_neighbour_first,
+                            mesh.zone_neighbours, mesh.stiffness_factor, mesh.friction_factor, field.stream,
+                            field.residual, field.rate, field.arm, field.relaxed, field.zone_state, field.awake);
   for (const auto& level : mesh.tree.levels) total += bytes(level);
   return total;
 }

@@ -11,6 +11,9 @@ namespace pliant {
 // Keeps the heights of fields that already have the right size.
 Status prepare_touch(World& world);
 
+// The box of an object's rest surface in world, with room for its curved patches.
+Box touch_box(const Mesh& mesh, const Pose& pose);
+
 // Bytes of touch state of one mesh and its field (for reports): everything a tick may read or write.
 std::size_t touch_bytes(const Mesh& mesh, const HeightField& field);
 

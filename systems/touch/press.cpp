@@ -54,7 +54,6 @@ void follow(const PressState& state, const Mesh& mesh, double left, Contact& con
   contact.foot = tracked.point.foot;
   contact.normal = tracked.point.normal;
   contact.height = tracked.point.height;
-  contact.interpolated = tracked.point.interpolated;
   contact.state = contact.height < 0 ? ContactState::kTouching : ContactState::kInside;
 }
 
@@ -71,6 +70,11 @@ void press(World& world, Tick tick) {
   const double left = std::max(0.0, touch.pressed_at + touch.presses->read().soft_step - tick.time);
   for (ObjectState& object : touch.objects) {
     const Mesh& mesh = world.meshes[world.registry.get<Deformable>(object.entity).mesh];
+    if (!object.listed &&
+        std::any_of(object.presses.begin(), object.presses.end(), [](const PressState& state) { return state.used; })) {
+      object.listed = true;
+      touch.awake.push_back(static_cast<std::uint32_t>(&object - touch.objects.data()));
+    }
     for (const PressState& state : object.presses)
       if (state.used) follow(state, mesh, left, world.registry.get<Contact>(state.contact));
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/touch/touch_state.h"
+#include "systems/touch/contacts_of.h"
 
 namespace pliant {
 namespace {
@@ -55,16 +55,20 @@ void publish(World& world, Tick tick) {
            world.registry.get<HapticDevice>(probe.device).force_sent,
            false,
            0.0,
-           dvec3(0)};
-    for (const Entity entity : touch.probes[i].contacts) {
-      const Contact& contact = world.registry.get<Contact>(entity);
-      if (contact.state != ContactState::kTouching) continue;
-      if (!out.touching || -contact.height > out.depth)
-        out.normal = world.registry.get<Pose>(contact.object).rotation * contact.normal;
+           dvec3(0),
+           0,
+           {}};
+    for_contacts_of(world, touch.probes[i].entity, [&](const Contact& contact) {
+      if (contact.state != ContactState::kTouching) return;
+      const Pose& pose = world.registry.get<Pose>(contact.object);
+      if (!out.touching || -contact.height > out.depth) out.normal = pose.rotation * contact.normal;
+      if (out.contact_count < kMostShownContacts)
+        out.contacts[out.contact_count++] = {pose.to_world(contact.foot), contact.force};
       out.touching = true;
       out.depth = std::max(out.depth, -contact.height);
-    }
+    });
   }
+  publish_moved(world, snapshot);
   const bool last_was_seen = world.snapshots->publish();
   touch.unseen = last_was_seen ? 0 : touch.unseen + 1;
   for (std::size_t i = 0; i < touch.objects.size(); ++i) {

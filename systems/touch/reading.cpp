@@ -1,6 +1,7 @@
 #include "systems/touch/reading.h"
 
 #include "systems/tool/tool_reading.h"
+#include "systems/touch/contacts_of.h"
 #include "systems/touch/field.h"
 
 namespace pliant {
@@ -27,16 +28,11 @@ ProbeReading reading(const World& world, Entity entity) {
   out.position = probe.position;
   out.force = world.registry.get<HapticDevice>(probe.device).force_sent;
   const Contact* main = nullptr;
-  for (const ProbeState& state : world.touch->probes) {
-    if (state.entity != entity) continue;
-    for (const Entity contact_entity : state.contacts) {
-      const Contact& contact = world.registry.get<Contact>(contact_entity);
-      if (contact.state == ContactState::kFree) continue;
-      const bool touching = contact.state == ContactState::kTouching,
-                 had = main && main->state == ContactState::kTouching;
-      if (!main || touching > had || (touching == had && contact.normal_force > main->normal_force)) main = &contact;
-    }
-  }
+  for_contacts_of(world, entity, [&](const Contact& contact) {
+    const bool touching = contact.state == ContactState::kTouching,
+               had = main && main->state == ContactState::kTouching;
+    if (!main || touching > had || (touching == had && contact.normal_force > main->normal_force)) main = &contact;
+  });
   if (main) {
     out.in_contact = main->state == ContactState::kTouching;
     out.object = main->object;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/touch/around_vertex.h"
+
 namespace pliant {
 namespace {
 
@@ -36,29 +38,6 @@ Arrival arrive(vec3 a, vec3 b, vec3 v, float ra, float rb) {
 
 bool later(const MarchItem& x, const MarchItem& y) {
   return x.distance != y.distance ? x.distance > y.distance : x.vertex > y.vertex;
-}
-
-int corner_of(const uvec3& t, std::uint32_t v) {
-  return t.x == v ? 0 : t.y == v ? 1 : 2;
-}
-
-// Calls visit(triangle) for the triangles around a vertex, starting at one of them: round by the left edges, and at a
-// border back by the right ones.
-template <class Visit>
-void around_vertex(const Mesh& mesh, std::uint32_t vertex, std::uint32_t first, Visit visit) {
-  constexpr int kMost = 256;
-  std::uint32_t t = first;
-  for (int n = 0; n < kMost; ++n) {
-    visit(t);
-    t = mesh.across[t][(corner_of(mesh.triangles[t], vertex) + 2) % 3];
-    if (t == first) return;
-    if (t == kBorder) break;
-  }
-  t = mesh.across[first][corner_of(mesh.triangles[first], vertex)];
-  for (int n = 0; n < kMost && t != kBorder && t != first; ++n) {
-    visit(t);
-    t = mesh.across[t][corner_of(mesh.triangles[t], vertex)];
-  }
 }
 
 }  // namespace

@@ -4,62 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "systems/touch/triangle_tree.h"
+
 namespace pliant {
 namespace {
-
-double distance2(const Box& box, const vec3& x) {
-  const vec3 d = glm::max(glm::max(box.min - x, x - box.max), vec3(0));
-  return double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z;
-}
-
-std::uint32_t run_end(std::uint32_t begin, std::uint32_t width, std::size_t count) {
-  return static_cast<std::uint32_t>(std::min<std::size_t>(begin + width, count));
-}
-
-struct Node {
-  std::uint32_t level, index;
-  double key;  // lower bound of what is inside
-};
-
-// Boxes are single precision; queries round. A box is only left out when it is farther by more than that rounding.
-double slack(const Mesh& mesh, const vec3& x) {
-  const vec3 reach = glm::max(glm::abs(mesh.box.min), glm::max(glm::abs(mesh.box.max), glm::abs(x)));
-  return 4e-7 * std::max({reach.x, reach.y, reach.z});
-}
-
-// Visits leaf triangles whose boxes are nearer than bound(), nearest children first. A fixed stack: levels * width.
-template <class Bound, class Visit>
-void visit_near(const Mesh& mesh, dvec3 x, Bound bound, Visit visit) {
-  const auto& levels = mesh.tree.levels;
-  if (levels.empty()) return;
-  const vec3 xf(x);
-  const double round = slack(mesh, xf);
-  std::array<Node, 128> stack;
-  std::uint32_t top = 0;
-  stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0, 0.0};
-  while (top > 0) {
-    const Node node = stack[--top];
-    if (node.key > bound() + round) continue;
-    if (node.level == 0) {
-      const std::uint32_t begin = node.index * kLeafSize, end = run_end(begin, kLeafSize, mesh.triangles.size());
-      for (std::uint32_t t = begin; t < end; ++t) visit(t);
-      continue;
-    }
-    const auto& children = levels[node.level - 1];
-    const std::uint32_t begin = node.index * kTreeWidth, end = run_end(begin, kTreeWidth, children.size());
-    std::array<Node, kTreeWidth> found;
-    std::uint32_t count = 0;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const double key = std::sqrt(distance2(children[i], xf));
-      if (key > bound() + round) continue;
-      std::uint32_t place = count++;
-      for (; place > 0 && found[place - 1].key < key; --place) found[place] = found[place - 1];
-      found[place] = {node.level - 1, i, key};
-    }
-    for (std::uint32_t i = 0; i < count; ++i)
-      stack[top++] = found[i];  // farthest first, so the nearest is popped first
-  }
-}
 
 void keep_nearer(SurfaceFoot& best, const SurfaceFoot& candidate) {
   if (candidate.valid() && (!best.valid() || candidate.distance() < best.distance())) best = candidate;
@@ -83,23 +31,90 @@ SurfaceFoot prefer_virtual(const SurfaceFoot& vertex, const SurfaceFoot& closest
   return vertex.valid() && vertex.distance() <= kSamePart * closest.distance() ? vertex : closest;
 }
 
+namespace {
+
+// Where normals are smooth a virtual vertex is hardly farther than the closest point. What one pass meets within this
+// many times the closest distance is kept in a list, and a second pass is only made where that was not enough.
+constexpr double kBand = 1.02;
+
+struct NearTriangles {
+  struct Near {
+    std::uint32_t triangle;
+    float distance2;  // [m2] single precision
+  };
+  std::array<Near, 96> list;
+  std::uint32_t count = 0;
+  bool complete = true;  // nothing within the last limit is missing
+
+  void add(std::uint32_t triangle, float distance2, float limit) {
+    if (count == list.size()) {
+      std::uint32_t kept = 0;
+      for (const Near& near : list)
+        if (near.distance2 <= limit) list[kept++] = near;
+      count = kept;
+    }
+    if (count < list.size())
+      list[count++] = {triangle, distance2};
+    else
+      complete = false;
+  }
+};
+
+// Looks for a nearer virtual vertex on one triangle. Heights are distances to points of the triangle, so the distance
+// to it is a lower bound of them.
+void try_virtual(const Mesh& mesh, dvec3 x, std::uint32_t triangle, double farthest, SurfaceFoot& best) {
+  const double distance2 = closest_on_triangle(mesh, triangle, x).distance2;
+  const double bound = best.valid() ? best.distance() : farthest;
+  if (distance2 > bound * bound * 1.0000001 || !may_have_virtual_vertex(mesh, triangle, x, distance2)) return;
+  const SurfaceFoot p = virtual_vertex(mesh, triangle, x);
+  if (p.valid() && p.distance() <= farthest) keep_nearer(best, p);
+}
+
+}  // namespace
+
 SurfaceFoot nearest(const Mesh& mesh, dvec3 x, double within) {
-  SurfaceFoot vertex, closest;
-  visit_near(
-      mesh, x, [&] { return closest.valid() ? closest.distance() : within; },
-      [&](std::uint32_t t) {
-        const SurfaceFoot p = closest_point(mesh, t, x);
-        if (p.distance() <= within) keep_nearer(closest, p);
+  const double round = rounding(mesh, x);
+  FlatPoint flat;
+  double distance = within;
+  float limit = distance2_limit(distance, round), band = distance2_limit(kBand * distance, round);
+  NearTriangles near;
+  TriangleDistances d2;
+  visit_runs_near(
+      mesh, x, [&] { return kBand * distance; },
+      [&](std::uint32_t first, std::uint32_t count) {
+        triangle_distances2(mesh, first, count, x, d2);
+        TriangleDistances left = d2;
+        for (;;) {  // the nearest in double, until single precision says that none can be nearer
+          const auto least = static_cast<std::uint32_t>(std::min_element(left.begin(), left.end()) - left.begin());
+          if (!(left[least] <= limit)) break;
+          left[least] = std::numeric_limits<float>::infinity();
+          const FlatPoint p = closest_on_triangle(mesh, first + least, x);
+          if (!(p.distance2 < flat.distance2) || p.distance2 > within * within) continue;
+          flat = p;
+          distance = std::sqrt(p.distance2);
+          limit = distance2_limit(distance, round);
+          band = distance2_limit(kBand * distance, round);
+        }
+        for (std::uint32_t l = 0; l < count; ++l)
+          if (d2[l] <= band) near.add(first + l, d2[l], band);
       });
-  if (!closest.valid()) return closest;
-  // A height is a distance to a point of the triangle, so box distance is a lower bound for it too.
+  if (!flat.valid()) return {};
+  const SurfaceFoot closest = closest_point(mesh, flat.triangle, x);
   const double farthest = std::min(within, kSamePart * closest.distance());
-  visit_near(
-      mesh, x, [&] { return vertex.valid() ? vertex.distance() : farthest; },
-      [&](std::uint32_t t) {
-        const SurfaceFoot p = virtual_vertex(mesh, t, x);
-        if (p.valid() && p.distance() <= within) keep_nearer(vertex, p);
-      });
+  SurfaceFoot vertex;
+  try_virtual(mesh, x, flat.triangle, farthest, vertex);
+  for (std::uint32_t i = 0; i < near.count; ++i) {
+    const float most = distance2_limit(vertex.valid() ? vertex.distance() : farthest, round);
+    if (near.list[i].distance2 <= most) try_virtual(mesh, x, near.list[i].triangle, farthest, vertex);
+  }
+  if (near.complete && vertex.valid() && vertex.distance() <= kBand * distance) return prefer_virtual(vertex, closest);
+
+  const auto bound = [&] { return vertex.valid() ? vertex.distance() : farthest; };
+  visit_runs_near(mesh, x, bound, [&](std::uint32_t first, std::uint32_t count) {
+    triangle_distances2(mesh, first, count, x, d2);
+    for (std::uint32_t l = 0; l < count; ++l)
+      if (d2[l] <= distance2_limit(bound(), round)) try_virtual(mesh, x, first + l, farthest, vertex);
+  });
   return prefer_virtual(vertex, closest);
 }
 
@@ -172,52 +187,22 @@ Tracked track(const Mesh& mesh, const SurfaceFoot& last, dvec3 x) {
 
 Entry first_entry(const Mesh& mesh, dvec3 from, dvec3 to) {
   Entry best;
-  const auto& levels = mesh.tree.levels;
   const dvec3 d = to - from;
-  if (levels.empty() || !(dot(d, d) > 0)) return best;
-  const double round = slack(mesh, glm::max(glm::abs(vec3(from)), glm::abs(vec3(to))));
-  const auto enters = [&](const Box& box) {  // first fraction inside the box, or 2
-    double t0 = 0.0, t1 = std::min(best.fraction, 1.0);
-    for (int i = 0; i < 3; ++i) {
-      const double low = box.min[i] - round, high = box.max[i] + round;
-      if (d[i] == 0.0) {
-        if (from[i] < low || from[i] > high) return 2.0;
-        continue;
-      }
-      double a = (low - from[i]) / d[i], b = (high - from[i]) / d[i];
-      if (a > b) std::swap(a, b);
-      t0 = std::max(t0, a);
-      t1 = std::min(t1, b);
-    }
-    return t0 <= t1 ? t0 : 2.0;
-  };
-  std::array<Node, 128> stack;
-  std::uint32_t top = 0;
-  stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0, 0.0};
-  while (top > 0) {
-    const Node node = stack[--top];
-    if (node.key > best.fraction) continue;
-    if (node.level > 0) {
-      const auto& children = levels[node.level - 1];
-      const std::uint32_t begin = node.index * kTreeWidth, end = run_end(begin, kTreeWidth, children.size());
-      for (std::uint32_t i = begin; i < end; ++i)
-        if (const double key = enters(children[i]); key <= 1.0) stack[top++] = {node.level - 1, i, key};
-      continue;
-    }
-    const std::uint32_t begin = node.index * kLeafSize, end = run_end(begin, kLeafSize, mesh.triangles.size());
-    for (std::uint32_t t = begin; t < end; ++t) {
-      const Corner3 c = corners(mesh, t);
-      const dvec3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0], p = cross(d, e2);
-      const double det = dot(e1, p);
-      if (!(det > 0)) continue;  // parallel, or leaving through the outer side
-      const dvec3 s = from - c.p[0], q = cross(s, e1);
-      const double u = dot(s, p) / det, v = dot(d, q) / det, fraction = dot(e2, q) / det;
-      // A crossing on an edge belongs to both triangles, so none can be missed between them.
-      constexpr double kEdge = 1e-7;
-      if (u < -kEdge || v < -kEdge || u + v > 1 + kEdge || fraction < 0 || fraction > 1) continue;
-      if (fraction < best.fraction) best = {t, fraction, {1 - u - v, u, v}};
-    }
-  }
+  if (!(dot(d, d) > 0)) return best;
+  visit_along(
+      mesh, from, to, [&] { return best.fraction; },
+      [&](std::uint32_t t) {
+        const Corner3 c = corners(mesh, t);
+        const dvec3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0], p = cross(d, e2);
+        const double det = dot(e1, p);
+        if (!(det > 0)) return;  // parallel, or leaving through the outer side
+        const dvec3 s = from - c.p[0], q = cross(s, e1);
+        const double u = dot(s, p) / det, v = dot(d, q) / det, fraction = dot(e2, q) / det;
+        // A crossing on an edge belongs to both triangles, so none can be missed between them.
+        constexpr double kEdge = 1e-7;
+        if (u < -kEdge || v < -kEdge || u + v > 1 + kEdge || fraction < 0 || fraction > 1) return;
+        if (fraction < best.fraction) best = {t, fraction, {1 - u - v, u, v}};
+      });
   return best;
 }
 

@@ -8,7 +8,12 @@
 
 #include "components/world.h"
 #include "systems/device/safety.h"
+#include "systems/touch/box_tree.h"
+#include "systems/touch/contact_energy.h"
+#include "systems/touch/foot_blend.h"
 #include "systems/touch/local_model.h"
+#include "systems/touch/move_objects.h"
+#include "systems/touch/painted_motion.h"
 #include "systems/touch/press.h"
 #include "systems/touch/shape.h"
 #include "systems/touch/surface_distance.h"
@@ -17,10 +22,21 @@ namespace pliant {
 
 inline constexpr std::uint32_t kMaxContactsPerObject = 64;  // one bit each in ObjectState::zone_sources
 
-// A contact's share in its object's field.
+// A sphere that a probe touches with.
+struct Tip {
+  dvec3 place{0};     // [m] its centre, probe frame
+  double radius = 0;  // [m] 0: a point
+};
+
+// One place of an object's pool: a contact, where it is, and its share in the object's field.
 struct SourceState {
-  Entity contact;                    // has a Contact; one without a probe is a press
-  bool active = false;               // the contact touched in the last tick
+  Entity contact;                    // has a Contact
+  std::uint64_t born = 0;            // tick after which it was first followed
+  bool tracked = false;              // collision follows it: a probe's, near the surface or behind it
+  dvec3 x{0};                        // [m] the tip's centre last tick, object frame
+  Tip tip;                           // which the contact is of
+  FootBlend place;                   // of the tip's centre
+  bool active = false;               // the contact dented the surface in the last tick
   FieldSource now, before;           // this tick's and the last tick's: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
   std::vector<vec3> offset;          // [m] Distance::kSurface only, per vertex: see surface_distance.h
@@ -30,7 +46,6 @@ struct SourceState {
 // Card only: what a contact left behind at a moment. See field.h.
 struct Release {
   FieldSource now, before;  // the target at that moment and one tick earlier
-  double arm = 0.0;         // [1] how much of the standard linear solid's arm was stretched, per unit of height
   double time = 0.0;        // [s] of that moment
 };
 inline constexpr std::size_t kMaxReleases = 64;
@@ -46,17 +61,34 @@ struct PressState {
 // it.
 inline constexpr float kRest = 1e-6f;
 
+// An edge where another surface goes on: a node flush with this one, or the far side of a crack (seams.h).
+struct Seam {
+  std::uint32_t edge = 0;      // 3 * triangle + edge
+  std::uint32_t object = 0;    // its place in TouchState::objects
+  std::uint32_t triangle = 0;  // of that object, where it goes on
+};
+
 // One Deformable, as the systems need it.
 struct ObjectState {
   Entity entity;
-  Motion motion;
+  Motion motion;  // where nothing is painted
+  PaintedMotion painted;
+  std::vector<Seam> seams;                  // by edge, ascending
+  std::vector<std::uint32_t> neighbours;    // objects that seams lead to, each once
+  std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot goes over them
+  BoxTree crease_boxes;                     // of `creases`, object frame
+  std::vector<std::uint32_t> creases;       // convex ones, from both sides: 3 * triangle + edge
+  ShareKernel kernel;                       // how contacts share their load
   Box world_box;                            // of the rest surface, for the broad phase
+  std::uint32_t probe_sources = 0;          // how many of `sources` are for probes; presses come after
+  double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
+  bool listed = false;                      // it stands in TouchState::awake
+  std::vector<dvec3> searched;              // [m] per tip of every probe: where other walls were last looked for
   bool on_card = false;                     // the field is drawn by the card from `terms`; there is no HeightField
   std::vector<Release> releases;            // card only; capacity kMaxReleases
   std::vector<FieldSource> terms;           // card only: the whole field at `time`
   double time = 0.0;                        // [s] end of the last tick
-  float peak = 0.0f;                        // [m] how high any part of the field stands above rest, last tick
-  std::vector<SourceState> sources;         // one per probe, then one per press; capacity kMaxContactsPerObject
+  std::vector<SourceState> sources;         // a pool for probes, then one per press; capacity kMaxContactsPerObject
   std::vector<PressState> presses;          // empty unless the level has something soft or rigid that moves
   std::vector<std::uint64_t> zone_sources;  // per zone: which sources reach it this tick
   std::vector<std::uint32_t> visited;       // per zone: stamp of the last flood that came by
@@ -68,16 +100,21 @@ struct ObjectState {
 struct ProbeState {
   Entity entity;
   SafetyState safety;
-  std::vector<Entity> contacts;  // one per object
+  std::vector<Tip> tips;
+  std::uint32_t first_tip = 0;  // of all probes' tips: its place in ObjectState::searched
 };
 
 struct TouchState {
   std::vector<ObjectState> objects;
+  BoxTree object_boxes;  // world boxes of the objects, with room for curved patches
   std::vector<ProbeState> probes;
-  std::uint32_t unseen = 0;                        // snapshots in a row that nobody took
-  double extent = 1.0;                             // [m] diagonal of everything that can be touched
-  double dt = 1e-3;                                // [s] the step that `motion` was computed for
+  std::vector<std::uint32_t> awake;  // objects with a tracked contact or a field that moves; capacity: all
+  std::uint32_t unseen = 0;          // snapshots in a row that nobody took
+  double extent = 1.0;               // [m] diagonal of everything that can be touched
+  double dt = 1e-3;                  // [s] the step that `motion` was computed for
+  std::vector<MovingNode> moving;    // every node under a prescribed motion that carries something
   std::unique_ptr<TripleBuffer<Presses>> presses;  // soft clock -> touch clock; null where nothing could press
+  std::vector<LoadedContact> loaded;               // of the object in hand; size kMaxContactsPerObject
   double pressed_at = 0.0;                         // [s] when the newest of them came
 };
 

@@ -126,33 +126,47 @@ bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, doub
 }
 
 // Voronoi regions of the triangle, after Ericson, Real-Time Collision Detection 5.1.5.
-SurfaceFoot closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
-  const Corner3 c = corners(mesh, triangle);
-  const dvec3 ab = c.p[1] - c.p[0], ac = c.p[2] - c.p[0], ap = x - c.p[0];
+dvec3 closest_barycentric(const dvec3 (&p)[3], dvec3 x) {
+  const dvec3 ab = p[1] - p[0], ac = p[2] - p[0], ap = x - p[0];
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  const dvec3 bp = x - c.p[1], cp = x - c.p[2];
+  const dvec3 bp = x - p[1], cp = x - p[2];
   const double d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-  dvec3 b;
-  if (d1 <= 0 && d2 <= 0) {
-    b = {1, 0, 0};
-  } else if (d3 >= 0 && d4 <= d3) {
-    b = {0, 1, 0};
-  } else if (d6 >= 0 && d5 <= d6) {
-    b = {0, 0, 1};
-  } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
     const double v = d1 / (d1 - d3);
-    b = {1 - v, v, 0};
-  } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-    const double w = d2 / (d2 - d6);
-    b = {1 - w, 0, w};
-  } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    b = {0, 1 - w, w};
-  } else {
-    const double sum = va + vb + vc;
-    b = {va / sum, vb / sum, vc / sum};
+    return {1 - v, v, 0};
   }
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double w = d2 / (d2 - d6);
+    return {1 - w, 0, w};
+  }
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - w, w};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+bool may_have_virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x, double distance2) {
+  const Corner3 c = corners(mesh, triangle);
+  const dvec3 n = cross(c.p[1] - c.p[0], c.p[2] - c.p[0]);
+  // cos of the widest angle between the plane's normal and a corner's: no mixture of the three leans more.
+  const double size2 = dot(n, n);
+  double least = std::numeric_limits<double>::max();
+  for (const dvec3& normal : c.n) least = std::min(least, dot(normal, n) / length(normal));
+  if (!(least > 0) || !(size2 > 0)) return true;
+  const double above = dot(x - c.p[0], n);  // |n| times the height over the plane
+  const double room = kInside * kInside * size2 * dot(c.p[1] - c.p[0], c.p[1] - c.p[0]);
+  return (above * above + 100 * room) * 1.000001 >= distance2 * least * least;
+}
+
+SurfaceFoot closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
+  const Corner3 c = corners(mesh, triangle);
+  const dvec3 b = closest_barycentric(c.p, x);
   SurfaceFoot point = surface_point(c, triangle, b, 0.0);
   const dvec3 d = x - point.foot;
   point.height = std::copysign(length(d), dot(d, point.normal));

@@ -43,6 +43,13 @@ SurfaceFoot virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 // say which edge to cross). False where the normals meet (focal distance) or the iteration does not settle.
 bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, double& height);
 
+// Barycentrics of the closest point of a flat triangle.
+dvec3 closest_barycentric(const dvec3 (&corner)[3], dvec3 x);
+
+// False only where no interpolated normal of the triangle can reach x: x then stands farther beside the triangle's
+// plane (its closest point is sqrt(distance2) away [m]) than the widest of the corner normals leans. Spares the cubic.
+bool may_have_virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x, double distance2);
+
 // The closest point of the triangle, with the interpolated normal there; its height is signed by the side of that
 // normal.
 SurfaceFoot closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x);

@@ -22,9 +22,10 @@ constexpr float kSmallestForce = 0.01f;  // [N] below: no arrow
 constexpr float kFrameLength = 0.09f, kFrameRadius = 0.004f;
 constexpr float kNormalLength = 0.045f, kNormalRadius = 0.004f, kThinArrow = 0.4f;
 constexpr float kWantedBall = 0.008f, kShortestCoupling = 1e-4f;
-constexpr std::size_t kMostInstances = 7;  // of a probe: ball, stylus, arrow of two, frame of three
-constexpr std::size_t kMostOfContact = 3;  // normal, arrow of two
-constexpr std::size_t kMostOfHandle = 7;   // frame of three, coupling, the device's end, arrow of two
+constexpr std::size_t kMostInstances = 9 + 2 * kMostShownContacts;  // of a probe: ball, stylus, arrow of two, frame of
+                                                                    // three, shaft and its end, arrows of two
+constexpr std::size_t kMostOfContact = 3;                           // normal, arrow of two
+constexpr std::size_t kMostOfHandle = 7;  // frame of three, coupling, the device's end, arrow of two
 const vec3 kFrameColors[3] = {{0.85f, 0.06f, 0.04f}, {0.08f, 0.75f, 0.06f}, {0.05f, 0.15f, 0.90f}};
 const vec3 kArrowColor{0.95f, 0.70f, 0.03f};
 const vec3 kRodColor{0.55f, 0.57f, 0.60f};
@@ -46,8 +47,18 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   if (!scene.empty()) made.diagonal_ = std::max(scene.diagonal(), 1e-6f);
   made.boxes_ = std::move(boxes);
   for (auto [entity, probe] : world.registry.view<Probe>())
-    made.probes_.push_back(
-        {entity, static_cast<float>(probe.radius), probe.color, probe.placed, probe.position, probe.force, dvec3(0)});
+    made.probes_.push_back({entity,
+                            static_cast<float>(probe.radius),
+                            probe.color,
+                            probe.placed,
+                            probe.position,
+                            probe.force,
+                            dvec3(0),
+                            probe.rotation,
+                            static_cast<float>(probe.length),
+                            probe.points,
+                            0,
+                            {}});
 
   MarkerMesh all;
   const MarkerMesh meshes[kKinds] = {make_ball(), make_rod(), make_cone()};
@@ -64,8 +75,10 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   for ([[maybe_unused]] auto [entity, soft] : world.registry.view<SoftBody>()) made.most_contacts_ = kMaxShownContacts;
   for ([[maybe_unused]] auto [entity, rigid] : world.registry.view<RigidBody>())
     made.most_contacts_ = kMaxShownContacts;
-  const std::size_t most =
-      made.probes_.size() * kMostInstances + made.most_contacts_ * kMostOfContact + made.most_handles_ * kMostOfHandle;
+  std::size_t tips = 0;
+  for (const Known& probe : made.probes_) tips += probe.points.size();
+  const std::size_t most = made.probes_.size() * kMostInstances + tips + made.most_contacts_ * kMostOfContact +
+                           made.most_handles_ * kMostOfHandle;
   made.instances_ = gpu::Buffer::writable(nullptr, most * sizeof(Instance));
 
   made.layout_ = gpu::VertexArray::make();
@@ -89,6 +102,9 @@ void Markers::take(const std::vector<ProbeSnapshot>& probes) {
         probe.position = now.position;
         probe.force = now.force;
         probe.normal = now.normal;
+        probe.rotation = now.rotation;
+        probe.contact_count = now.contact_count;
+        probe.contacts = now.contacts;
       }
 }
 
@@ -133,12 +149,24 @@ void Markers::place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, flo
 
 void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint) {
   const vec3 out = outward(probe);
+  if (probe.length > 0 || !probe.points.empty()) return lay_out_tips(probe, radius);
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
   // The stylus leans away from the arrow, always clockwise as seen, so that both can be told apart.
   const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye));
   const vec3 lean =
       normalize(std::cos(kLean) * out + std::sin(kLean) * cross(forward, out) + 0.2f * vec3(viewpoint.up));
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
+}
+
+// A capsule's shaft between its two ends, and a ball at every tip of a set.
+void Markers::lay_out_tips(const Known& probe, float radius) {
+  const vec3 from(probe.position), up(probe.rotation * dvec3(0, 1, 0));
+  const auto ball = [&](vec3 at) { place(kBall, at, at + radius * up, radius, probe.color, 0.25f); };
+  for (const vec3& point : probe.points) ball(from + vec3(probe.rotation * dvec3(point)));
+  if (!(probe.length > 0)) return;
+  ball(from);
+  ball(from + probe.length * up);
+  place(kRod, from, from + probe.length * up, radius, kRodColor, 0.35f);
 }
 
 // From `from` along the force, as long as the force is large.
@@ -153,6 +181,12 @@ void Markers::lay_out_arrow(vec3 from, vec3 force, float thickness) {
 }
 
 void Markers::lay_out_force(const Known& probe, vec3 ball, float radius) {
+  // Where it touches in several places, what each of them gives too, from the far side of its tip.
+  for (std::uint32_t i = 0; i < probe.contact_count && probe.contact_count > 1; ++i) {
+    const vec3 own(probe.contacts[i].force);
+    if (length(own) >= kSmallestForce)
+      lay_out_arrow(vec3(probe.contacts[i].position) + 2.0f * radius * normalize(own), own, kThinArrow);
+  }
   const vec3 force(probe.force);
   if (length(force) >= kSmallestForce) lay_out_arrow(ball + radius * normalize(force), force, 1.0f);
 }

@@ -2,6 +2,7 @@
 // handles of tools with what holds them, for looking closer.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -37,6 +38,11 @@ class Markers {
     dvec3 position{0};  // [m] world
     dvec3 force{0};     // [N] world
     dvec3 normal{0};    // [1] of the surface it touches, world; 0: none
+    dquat rotation{1, 0, 0, 0};
+    float length = 0.0f;       // [m] of a capsule
+    std::vector<vec3> points;  // [m] of tips, probe frame
+    std::uint32_t contact_count = 0;
+    std::array<ProbeContact, kMostShownContacts> contacts;
   };
   struct Instance {  // as shaders/marker.vert reads it
     vec4 row_x, row_y, row_z, tint;
@@ -50,6 +56,7 @@ class Markers {
   vec3 outward(const Known& probe) const;
   void lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint);
   void lay_out_force(const Known& probe, vec3 ball, float radius);
+  void lay_out_tips(const Known& probe, float radius);
   void lay_out_frame(const Known& probe);
   void lay_out_contact(const ContactMark& contact);
   void lay_out_handle(const HandleMark& handle);

@@ -77,7 +77,7 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create(const World& world);
   ~Renderer();
 
-  // Takes the newest zones and probes; call for every snapshot that was acquired, before draw.
+  // Takes the newest zones, probes and poses; call for every snapshot that was acquired, before draw.
   void update(const Snapshot& snapshot);
   void update(const SoftSnapshot& snapshot);
   RenderOptions& options();

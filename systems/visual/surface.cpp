@@ -196,6 +196,16 @@ void Surfaces::take(const SoftObjectSnapshot& object) {
   item->to_world = to_world;
 }
 
+// A carried drawable without anything to touch may also be scaled, and mirrored by that.
+void Surfaces::take(const MovedSnapshot& object) {
+  Item* item = find(object.object);
+  if (!item || item->rides) return;
+  item->moved = item->moved || object.to_world != item->to_world;
+  item->moves = true;
+  item->to_world = object.to_world;
+  item->mirrored = glm::determinant(mat3(object.to_world)) < 0;
+}
+
 std::size_t Surfaces::upload() {
   std::size_t travelled = 0;
   changed_ = false;

@@ -23,10 +23,11 @@ class Surfaces {
   // where its level puts it.
   static Result<Surfaces> make(const World& world);
 
-  // Takes an object's changed zones, or where a soft or rigid body is; upload() sends them. Objects that are not drawn
-  // are ignored.
+  // Takes an object's changed zones, where a soft or rigid body is, or what carries a drawable; upload() sends them.
+  // Objects that are not drawn are ignored.
   void take(const ObjectSnapshot& object);
   void take(const SoftObjectSnapshot& object);
+  void take(const MovedSnapshot& object);
   std::size_t upload();                      // returns the bytes that travelled
   bool changed() const { return changed_; }  // something looks different since the upload before
 
@@ -64,7 +65,7 @@ class Surfaces {
     Skin skin;                         // of a soft body, else of no vertex
     Box rest;                          // [m] object frame
     mat4 to_world{1};
-    bool moves = false;  // a soft or rigid body
+    bool moves = false;  // a soft or rigid body, or carried by a prescribed motion
     std::uint32_t number = 0;
     bool rides = false;  // its vertices are where the skin says
     bool moved = false;  // its placement is newer here

@@ -29,9 +29,7 @@ Viewpoint from_camera(const Camera& camera, const mat4& m, const Box& scene) {
 }  // namespace
 
 mat4 matrix_of(const Pose& pose) {
-  mat4 m(glm::mat4_cast(quat(pose.rotation)));
-  m[3] = vec4(vec3(pose.position), 1.0f);
-  return m;
+  return pose.matrix();
 }
 
 mat4 placement_of(const World& world, Entity entity) {

@@ -29,6 +29,9 @@ class Difference {
       d.same(at + " height", a.images[i].height, b.images[i].height);
       d.array(at + " pixels", a.images[i].rgba, b.images[i].rgba);
     }
+    d.same("animation count", a.animations.size(), b.animations.size());
+    for (std::size_t i = 0; d.first_.empty() && i < a.animations.size(); ++i)
+      d.animation("animation " + std::to_string(i), a.animations[i], b.animations[i]);
     d.same("environment", a.environment.has_value(), b.environment.has_value());
     if (a.environment && b.environment) {
       d.same("panorama", a.environment->panorama, b.environment->panorama);
@@ -51,6 +54,19 @@ class Difference {
     if (first_.empty() &&
         (a.size() != b.size() || (!a.empty() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) != 0)))
       first_ = what;
+  }
+  void animation(const std::string& at, const LevelAnimation& a, const LevelAnimation& b) {
+    same(at + " name", a.name, b.name);
+    same(at + " length", a.length, b.length);
+    same(at + " channels", a.channels.size(), b.channels.size());
+    for (std::size_t i = 0; first_.empty() && i < a.channels.size(); ++i) {
+      const LevelChannel &x = a.channels[i], &y = b.channels[i];
+      same(at + " node", x.node, y.node);
+      same(at + " property", x.property, y.property);
+      same(at + " interpolation", x.track.interpolation, y.track.interpolation);
+      array(at + " times", x.track.times, y.track.times);
+      array(at + " values", x.track.values, y.track.values);
+    }
   }
   void node(const std::string& at, const LevelNode& a, const LevelNode& b) {
     same(at + " name", a.name, b.name);
@@ -128,6 +144,13 @@ class Difference {
       same(at + " max torque", a.handle->max_torque, b.handle->max_torque);
       same(at + " handle device", a.handle->device, b.handle->device);
     }
+    same(at + " motion", a.motion.has_value(), b.motion.has_value());
+    if (a.motion && b.motion) {
+      same(at + " motion script", a.motion->script, b.motion->script);
+      same(at + " motion animation", a.motion->animation, b.motion->animation);
+      same(at + " motion repeat", a.motion->repeat, b.motion->repeat);
+      same(at + " motion speed", a.motion->speed, b.motion->speed);
+    }
     same(at + " rigid body", a.rigid_body.has_value(), b.rigid_body.has_value());
     if (a.rigid_body && b.rigid_body) {
       same(at + " mass", a.rigid_body->mass, b.rigid_body->mass);
@@ -145,6 +168,8 @@ class Difference {
       array(at + " uv", p.uv, q.uv);
       array(at + " stiffness", p.stiffness, q.stiffness);
       array(at + " friction", p.friction, q.friction);
+      array(at + " damping", p.damping, q.damping);
+      array(at + " relaxation", p.relaxation, q.relaxation);
       array(at + " pinned", p.pinned, q.pinned);
       array(at + " handle", p.handle, q.handle);
       array(at + " indices", p.index, q.index);

@@ -48,6 +48,8 @@ Primitive sheet(std::uint32_t n) {
       out.uv.emplace_back(u, v);
       out.stiffness.push_back(0.5f + u);
       out.friction.push_back(1.0f + v);
+      out.damping.push_back(2.0f + v);
+      out.relaxation.push_back(3.0f + v);
     }
   for (std::uint32_t j = 0; j + 1 < n; ++j)
     for (std::uint32_t i = 0; i + 1 < n; ++i) {

@@ -52,7 +52,8 @@ TEST(Extension, EveryKeyOfADeformableIsRead) {
                                           {"volume", 0.5},
                                           {"distance", "surface"},
                                           {"friction_static", 0.6},
-                                          {"friction_sliding", 0.2}})
+                                          {"friction_sliding", 0.2},
+                                          {"crease_angle", 0.4}})
                                   .load();
   ASSERT_TRUE(level.ok()) << level.error().message();
   const Deformable& it = *level->nodes[0].deformable;
@@ -72,6 +73,7 @@ TEST(Extension, EveryKeyOfADeformableIsRead) {
   EXPECT_EQ(it.volume, 0.5);
   EXPECT_EQ(it.friction_static, 0.6);
   EXPECT_EQ(it.friction_sliding, 0.2);
+  EXPECT_EQ(it.crease_angle, 0.4);
 }
 
 TEST(Extension, YoungsModulusBecomesTheStiffnessOfAPointContact) {

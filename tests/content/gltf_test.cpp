@@ -82,13 +82,17 @@ TEST(Gltf, QuantisedPositionsAndTextureCoordinatesAreScaledAsTheSpecificationSay
   EXPECT_FLOAT_EQ(primitive.uv[1].x, 0.2f);
 }
 
-TEST(Gltf, PaintedStiffnessAndFrictionComeWithTheVertices) {
+TEST(Gltf, PaintedFactorsComeWithTheVertices) {
   Gltf gltf;
   gltf.primitive({{"POSITION", gltf.positions(kSquare)},
                   {"_STIFFNESS", gltf.accessor(std::vector<float>{1, 2, 3, 4}, "SCALAR", kFloat)},
-                  {"_FRICTION", gltf.accessor(std::vector<float>{0.5f, 0, 1, 2}, "SCALAR", kFloat)}})["mode"] = 5;
+                  {"_FRICTION", gltf.accessor(std::vector<float>{0.5f, 0, 1, 2}, "SCALAR", kFloat)},
+                  {"_DAMPING", gltf.accessor(std::vector<float>{3, 0, 1, 2}, "SCALAR", kFloat)},
+                  {"_RELAXATION", gltf.accessor(std::vector<float>{0, 5, 1, 2}, "SCALAR", kFloat)}})["mode"] = 5;
   EXPECT_EQ(only_primitive(gltf).stiffness, (std::vector<float>{1, 2, 3, 4}));
   EXPECT_EQ(only_primitive(gltf).friction, (std::vector<float>{0.5f, 0, 1, 2}));
+  EXPECT_EQ(only_primitive(gltf).damping, (std::vector<float>{3, 0, 1, 2}));
+  EXPECT_EQ(only_primitive(gltf).relaxation, (std::vector<float>{0, 5, 1, 2}));
   Gltf negative;
   negative.primitive({{"POSITION", negative.positions(kSquare)},
                       {"_STIFFNESS", negative.accessor(std::vector<float>{1, -2, 3, 4}, "SCALAR", kFloat)}});

@@ -48,6 +48,8 @@ TEST(MeshRefine, GivesNewVerticesTheMeanOfWhatTheirEdgesCarry) {
   for (const vec3& x : p.position) {
     p.stiffness.push_back(1.0f + x.x);
     p.friction.push_back(x.y);
+    p.damping.push_back(x.x);
+    p.relaxation.push_back(1.0f + x.y);
     p.pinned.push_back(x.x);
     p.handle.push_back(x.y);
     p.normal.push_back(normalize(vec3(x.x, 0, 1)));
@@ -62,6 +64,8 @@ TEST(MeshRefine, GivesNewVerticesTheMeanOfWhatTheirEdgesCarry) {
     EXPECT_LT(length(f.uv[v] - vec2(x)), 1e-6f);
     EXPECT_NEAR(f.stiffness[v], 1.0f + x.x, 1e-6f);
     EXPECT_NEAR(f.friction[v], x.y, 1e-6f);
+    EXPECT_NEAR(f.damping[v], x.x, 1e-6f);
+    EXPECT_NEAR(f.relaxation[v], 1.0f + x.y, 1e-6f);
     EXPECT_NEAR(f.pinned[v], x.x, 1e-6f);
     EXPECT_NEAR(f.handle[v], x.y, 1e-6f);
     EXPECT_NEAR(length(f.normal[v]), 1.0f, 1e-6f);

@@ -33,7 +33,7 @@ TEST(Spawn, BakesScaleAndMirrorSoThatTouchNormalsPointOutwardAndTheWorldPosition
     local.translation = {1, 2, 3};
     local.rotation = glm::angleAxis(0.7f, normalize(vec3(1, 2, -1)));
     local.scale = scale;
-    const Primitive sphere = icosphere(3);
+    const Primitive sphere = icosphere(5);  // fine enough not to be cut finer
     const World world = spawned(level_of(sphere, local));
     const Entity thing = find_by_name(world, "thing");
     const Deformable& deformable = world.registry.get<Deformable>(thing);
@@ -55,6 +55,7 @@ TEST(Spawn, BakesScaleAndMirrorSoThatTouchNormalsPointOutwardAndTheWorldPosition
 
 TEST(Spawn, ShearFromANonUniformParentIsBakedIntoTheMesh) {
   Level level = level_of(icosphere(2));
+  level.nodes[0].deformable->reach = 100.0;  // so wide that the mesh is not cut finer
   LevelNode parent = named("parent");
   parent.local.scale = {1, 3, 1};
   parent.children = {1};

@@ -56,6 +56,9 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"convert", "plate.obj", "plate.stl"}, 2, ".glb");
   expect_refused({"convert", "plate.obj", "plate.glb", "--draco", "99"}, 2, "--draco");
   expect_refused({"convert", "plate.obj", "plate.glb", "--unit", "inch"}, 2, "inch");
+  expect_refused({"convert", "plate.obj", "plate.glb", "--unit", "-1"}, 2, "-1");
+  expect_refused({"run", "plate.obj", "--unit", "furlong"}, 2, "furlong");
+  expect_refused({"run", "three_probes", "--unit", "mm"}, 2, "bare");
   expect_refused({"convert", "plate.obj"}, 2, "out");
   expect_refused({"inspect"}, 2, "file");
   for (const char* verb : {"inspect", "validate"}) expect_refused({verb, ""}, 2, "empty");

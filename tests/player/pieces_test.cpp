@@ -8,13 +8,17 @@
 #include <random>
 
 #include "components/soft_body.h"
+#include "content/image.h"
 #include "player/frames.h"
 #include "player/keeper.h"
 #include "player/panorama_preview.h"
+#include "player/pen.h"
 #include "player/plot.h"
 #include "player/recording.h"
 #include "player/sources.h"
 #include "player/trace.h"
+#include "player/unit.h"
+#include "systems/device/safety.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/rotation_vector.h"
 #include "systems/touch/prepare.h"
@@ -135,6 +139,65 @@ TEST(Trace, KeepsEveryPeakHoweverLongTheRun) {
     ticks += column.ticks;
   }
   EXPECT_EQ(ticks, kTicks);
+}
+
+TEST(Trace, KeepsWhichLimitsActedHoweverLongTheRun) {
+  Trace trace;
+  for (std::uint64_t t = 0; t < 50000; ++t) trace.add(t, reading_at(0.1), t == 30000 ? bit(SafetyLimit::kWithheld) : 0);
+  std::size_t marked = 0;
+  for (const TraceColumn& column : trace.columns()) marked += column.limited == bit(SafetyLimit::kWithheld);
+  EXPECT_EQ(marked, 1u);
+}
+
+// The bands have colours that nothing else has.
+TEST(Plot, ShowsWhereTheForceWasClippedAndWhereItWasWithheld) {
+  const fs::path file = fs::temp_directory_path() / ("pliant-plot-" + std::to_string(::getpid()) + ".png");
+  const auto count = [&](std::uint8_t limited, Color color) {
+    Trace trace;
+    for (std::uint64_t t = 0; t < 1000; ++t) trace.add(t, reading_at(0.002), t > 500 && t < 600 ? limited : 0);
+    EXPECT_TRUE(plot_forces(file, "level", {{"probe", "orbit", &trace}}, 1e-3, 1.0));
+    const auto image = load_image(file);
+    EXPECT_TRUE(image);
+    std::size_t pixels = 0;
+    for (std::size_t i = 0; image && i < image->rgba.size(); i += 4) {
+      const auto is = [&](std::size_t k, double value) { return std::abs(image->rgba[i + k] - 255 * value) < 2.0; };
+      pixels += is(0, color.r) && is(1, color.g) && is(2, color.b);
+    }
+    return pixels;
+  };
+  for (const Color color : {kOrange, kPurple}) {
+    const SafetyLimit limit = color == kOrange ? SafetyLimit::kClipped : SafetyLimit::kWithheld;
+    EXPECT_EQ(count(0, color), 0u);
+    EXPECT_GT(count(bit(limit), color), 300u) << "a tenth of the axis, and a line in the legend";
+  }
+  fs::remove(file);
+}
+
+TEST(Unit, IsANameOrMetresForOne) {
+  EXPECT_EQ(*parse_unit("m"), 1.0);
+  EXPECT_EQ(*parse_unit("cm"), 0.01);
+  EXPECT_EQ(*parse_unit("mm"), 0.001);
+  EXPECT_EQ(*parse_unit("in"), 0.0254);
+  EXPECT_EQ(*parse_unit("0.3048"), 0.3048);
+  for (const char* wrong : {"", "inch", "0", "-1", "nan", "inf", "1e9", "1e-30", "1 m", "mm "})
+    EXPECT_FALSE(parse_unit(wrong)) << wrong;
+  Box organ;
+  organ.add(vec3(0));
+  organ.add(vec3(0.1f));
+  EXPECT_EQ(unit_hint(organ), "");
+  EXPECT_EQ(unit_hint(Box{}), "");
+  organ.add(vec3(100.0f));
+  EXPECT_NE(unit_hint(organ).find("--unit mm"), std::string::npos);
+}
+
+TEST(Approach, RemembersTheNearestPlaceOfAPathOfAnyLength) {
+  const std::vector<TouchableBox> boxes{{Pose{}, Box{vec3(-1), vec3(1)}}};
+  Approach approach;
+  for (int n = 0; n < 30000; ++n) approach.add({0.1, n == 12345 ? 1.25 : 3.0, 0.0}, boxes);
+  double nearest = 10.0;
+  for (const Approach::Place& place : approach.places()) nearest = std::min(nearest, place.bound);
+  EXPECT_NEAR(nearest, 0.25, 1e-12);
+  EXPECT_LE(approach.places().size(), Approach::kKept);
 }
 
 TEST(Plot, TicksAreRoundAndNeverTooMany) {

@@ -95,6 +95,70 @@ TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {
   EXPECT_NEAR(deepest, 0.002, 1e-6);
 }
 
+TEST_F(Run, WhatLimitsTheForceIsCountedSaidAndCured) {
+  const Said free = press("free"), clipped = press("clipped", {"--set", "tip.haptic_device.max_force=0.3"});
+  ASSERT_EQ(free.status, 0) << free.err;
+  ASSERT_EQ(clipped.status, 0) << clipped.err;
+  for (const char* limit : {"clipped", "withheld"}) {
+    EXPECT_EQ(report("free")["probes"][0][limit]["ticks"], 0) << limit;
+    EXPECT_EQ(report("free")["probes"][0][limit]["largest_share"], 0.0) << limit;
+  }
+  EXPECT_EQ(free.err.find("probe `tip`"), std::string::npos) << free.err;
+  EXPECT_FALSE(report("free")["probes"][0].contains("gated"));
+  EXPECT_FALSE(report("free")["probes"][0].contains("missed_by_m"));
+
+  const Json json = report("clipped");
+  EXPECT_GT(json["probes"][0]["clipped"]["ticks"], 600);
+  EXPECT_NEAR(json["probes"][0]["clipped"]["largest_share"], 0.5, 0.1) << "0.6 N and friction, of which 0.3 N are left";
+  EXPECT_EQ(json["probes"][0]["withheld"]["ticks"], 0);
+  EXPECT_NE(clipped.err.find("probe `tip`: the force was clipped at max_force 0.3 N in "), std::string::npos)
+      << clipped.err;
+  EXPECT_NE(json["dropped"].dump().find("clipped at max_force 0.3 N"), std::string::npos);
+}
+
+TEST_F(Run, AProbeThatTouchesNothingSaysByHowMuchItMissed) {
+  write_text(folder / "above.csv", "time_s,x,y,z\n0,0.1,0.08,0\n1,0.01,0.02,0\n2,0,0.09,0\n");
+  const Said said = pliant({"run", "plate.obj", "--probe", "tip=script:above.csv", "--set", "tip.probe.radius=0.005",
+                            "--out", "out", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Json json = report("out");
+  EXPECT_EQ(json["probes"][0]["contact_ticks"], 0);
+  EXPECT_NEAR(json["probes"][0]["missed_by_m"], 0.015, 2e-4);
+  EXPECT_NE(said.err.find("`tip` never touched anything"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("`plate` (1681 vertices, 141.4 mm across)"), std::string::npos) << said.err;
+  EXPECT_NE(json["dropped"].dump().find("never touched anything"), std::string::npos);
+}
+
+TEST_F(Run, AMeshInMillimetresIsHintedAtAndTouchedInItsUnit) {
+  std::istringstream metres(plate_obj());
+  std::ostringstream millimetres;
+  for (std::string line; std::getline(metres, line);) {
+    double x = 0, y = 0, z = 0;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3)
+      millimetres << "v " << 1000 * x << ' ' << 1000 * y << ' ' << 1000 * z << '\n';
+    else
+      millimetres << line << '\n';
+  }
+  write_text(folder / "big.obj", millimetres.str());
+  const auto touch = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"run",   "big.obj", "--probe",  "tip=script:press.csv",
+                                       "--out", out,       "--frames", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return pliant(arguments);
+  };
+  const Said wrong = touch("wrong", {}), said = touch("mm", {"--unit", "mm"}), number = touch("f", {"--unit", "0.001"});
+  ASSERT_EQ(wrong.status, 0) << wrong.err;
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(wrong.err.find("millimetres"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find(Json::parse(pliant({"inspect", "big.obj", "--json"}).out)["unit_hint"].get<std::string>()),
+            std::string::npos)
+      << "one sentence for both: " << wrong.err;
+  EXPECT_EQ(said.err.find("millimetres"), std::string::npos) << said.err;
+  EXPECT_NEAR(report("mm")["probes"][0]["max_depth_m"], 0.002, 1e-6);
+  ASSERT_EQ(number.status, 0) << number.err;
+  EXPECT_EQ(report("f")["hash"], report("mm")["hash"]);
+}
+
 TEST_F(Run, SetChangesTheFieldItNames) {
   ASSERT_EQ(press("soft").status, 0);
   ASSERT_EQ(press("hard", {"--set", "*.deformable.stiffness=900", "--set", "*.deformable.friction=0"}).status, 0);

@@ -131,6 +131,16 @@ TEST_F(ToolRun, AToolWithoutADeviceThatMovesIsHeldWhereItStands) {
   EXPECT_EQ(report("still")["probes"][0]["contact_ticks"], 0);
 }
 
+TEST_F(ToolRun, TheLimitsOfForceAndTorqueAreInTheReport) {
+  ASSERT_EQ(press("free").status, 0);
+  const Said said = press("out", {"--set", "arm.haptic_device.max_force=0.2"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(report("free")["probes"][0]["clipped"]["ticks"], 0);
+  EXPECT_TRUE(report("free")["probes"][0]["torque"].contains("withheld"));
+  EXPECT_GT(report("out")["probes"][0]["clipped"]["ticks"], 50);
+  EXPECT_NE(said.err.find("tool `hand`: the force was clipped at max_force 0.2 N in "), std::string::npos) << said.err;
+}
+
 TEST_F(ToolRun, AnOrbitTakesTheToolDownToTheGround) {
   const Said said =
       pliant({"run", "block.glb", "--probe", "hand=orbit", "--seconds", "2", "--out", "orbit", "--frames", "0"});
@@ -148,6 +158,10 @@ TEST_F(ToolRun, AnOrbitWithoutASurfaceHoldsItsProbeAndSaysSo) {
   EXPECT_NE(json["dropped"].dump().find("finger"), std::string::npos);
   for (const Json& probe : json["probes"])
     if (probe["name"] == "finger") EXPECT_EQ(probe["contact_ticks"], 0);
+  const std::string unfelt = "probes do not feel soft or rigid bodies yet (here `ground`)";
+  const std::size_t first = said.err.find(unfelt);
+  EXPECT_NE(first, std::string::npos) << said.err;
+  EXPECT_EQ(said.err.find(unfelt, first + 1), std::string::npos) << "once";
 }
 
 TEST_F(ToolRun, RealTimeRunsBothClocksAndStopsThemTogether) {

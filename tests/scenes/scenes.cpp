@@ -102,6 +102,22 @@ Entity Stage::add(const Primitive& primitive, Deformable deformable, Pose pose) 
   return entity;
 }
 
+void Stage::carry(Entity surface, PrescribedMotion motion, Entity parent) {
+  const Pose& pose = world.registry.get<Pose>(surface);
+  world.hierarchy.add(surface, parent);
+  world.registry.add(surface, LocalTransform{vec3(pose.position), quat(pose.rotation), vec3(1)});
+  world.registry.add(surface, Kinematic{world.motions.add(std::move(motion))});
+}
+
+Entity Stage::add_node(PrescribedMotion motion, Entity parent, LocalTransform rest) {
+  const Entity entity = world.registry.create();
+  world.hierarchy.add(entity, parent);
+  world.registry.add(entity, rest);
+  world.registry.add(entity, WorldTransform{});
+  world.registry.add(entity, Kinematic{world.motions.add(std::move(motion))});
+  return entity;
+}
+
 Entity Stage::add_probe(dvec3 position, double radius) {
   const Entity entity = world.registry.create();
   Probe probe;
@@ -150,6 +166,8 @@ const Contact& Stage::contact(Entity probe, std::size_t object) const {
   std::size_t i = 0;
   for (auto [entity, contact] : world.registry.view<Contact>())
     if (contact.probe == probe && i++ == object) return contact;
+  static const Contact none;
+  if (i == 0) return none;  // nothing is touched
   ASSERT(!"no such contact");
   std::abort();
 }

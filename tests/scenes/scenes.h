@@ -28,6 +28,10 @@ class Stage {
   explicit Stage(double rate_hz = 1000.0);
   // Adds a surface; the Deformable's handles are set here.
   Entity add(const Primitive& primitive, Deformable deformable, Pose pose = {});
+  // Lets a motion carry a surface, before prepare(): it makes it a node under the node `parent`.
+  void carry(Entity surface, PrescribedMotion motion, Entity parent = kNoEntity);
+  // A node without a surface, to hang others from.
+  Entity add_node(PrescribedMotion motion, Entity parent = kNoEntity, LocalTransform rest = {});
   // Adds a probe moved by hand (place()), with a device that can do anything: no clamp, no slew limit.
   Entity add_probe(dvec3 position, double radius = 0.0);
   void prepare();
@@ -45,6 +49,7 @@ class Stage {
   HapticDevice& device(Entity probe) { return world.registry.get<HapticDevice>(probe); }
   double time() const { return static_cast<double>(ticks_) * dt_; }
   double dt() const { return dt_; }
+  const Schedule<World>& schedule() const { return schedule_; }  // what each system costs
   std::uint64_t hash() const;
 
   World world;

@@ -35,7 +35,7 @@ struct Scene {
 };
 
 TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSupports) {
-  for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
+  for (const SpringLaw law : {SpringLaw::kLinear}) {
     for (const Shape shape :
          {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
       for (const int ticks : {200, 330, 360, 440}) {
@@ -89,8 +89,10 @@ TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
 
 TEST(FieldTwins, WhatTheCardCannotDoFallsBackAndSaysWhy) {
   for (auto change :
-       {+[](Deformable& d) { d.spring = SpringLaw::kCubic; }, +[](Deformable& d) { d.response = Response::kLag; },
-        +[](Deformable& d) { d.distance = Distance::kSurface; }}) {
+       {+[](Deformable& d) { d.spring = SpringLaw::kCubic; },
+        // Its tissue remembers at every vertex: not on the GPU yet.
+        +[](Deformable& d) { d.spring = SpringLaw::kStandardLinearSolid; },
+        +[](Deformable& d) { d.response = Response::kLag; }, +[](Deformable& d) { d.distance = Distance::kSurface; }}) {
     Deformable d;
     d.reach = 0.03;
     EXPECT_TRUE(card_obstacle(d).empty());

@@ -42,6 +42,19 @@ TEST(Safety, OnlyFiniteClampedSlewLimitedForceLeavesWhateverIsAsked) {
   }
 }
 
+TEST(Safety, ASurfaceWhoseMotionIsUnknownGivesNoForce) {
+  SafetyState state;
+  const HapticDevice device = plain();
+  SafetyLimits limits{3.3, 0.0, 1000.0};
+  EXPECT_GT(make_safe(state, device, limits, {0, 0.1, 0}, dvec3(0), 0, 1e-3).force.y, 0.0);
+  limits.carried = dvec3(NAN, 0, 0);
+  const SafetyResult lost = make_safe(state, device, limits, {0, 0.1, 0}, {0, -1e-3, 0}, 0, 1e-3);
+  EXPECT_EQ(lost.force, dvec3(0));
+  EXPECT_EQ(lost.event, SafetyEvent::kNonFinite);
+  limits.carried = dvec3(0);
+  EXPECT_TRUE(std::isfinite(make_safe(state, device, limits, {0, 0.1, 0}, {0, -1e-3, 0}, 0, 1e-3).force.y));
+}
+
 TEST(Safety, ClampKeepsTheDirection) {
   SafetyState state;
   HapticDevice device = plain();
@@ -170,7 +183,7 @@ TEST(Safety, AWeightStaysWhereverItIsCarriedAndLendsNothingToOtherForces) {
       if (n > 600 && engine == 0.0) {
         ASSERT_LT(length(f - weight), 1e-12) << n;
       }
-      ASSERT_LT(work, lowered + 2e-6) << n;  // at most what one unforeseen step can carry
+      ASSERT_LT(work, lowered + 4e-6) << n;  // a tenth of what the engine does in one tick: an unforeseen turn
     }
     EXPECT_LT(x.y, -0.05) << "it went down";
   }
@@ -208,6 +221,18 @@ TEST(Safety, NonFiniteParameterOrPoseNeverReachesTheFieldOrTheHand) {
     stage.wait(0.3);
   }
   EXPECT_NE(stage.world.dropped & kDroppedNonFinite, 0u);
+  // A rotation too: no tip is anywhere without one.
+  stage.move(probe, {0, -0.004, 0}, 0.1);
+  ASSERT_GT(stage.read(probe).normal_force, 1.0);
+  for (const dquat bad : {dquat(NAN, 0, 0, 0), dquat(0, 0, 0, 0), dquat(1, INFINITY, 0, 0)}) {
+    stage.device(probe).rotation = bad;
+    stage.wait(0.01);
+    ASSERT_EQ(stage.read(probe).force, dvec3(0));
+    for (const vec4& s : stage.field(sheet).stream) ASSERT_TRUE(std::isfinite(s.x + s.y + s.z + s.w));
+  }
+  stage.device(probe).rotation = dquat(1, 0, 0, 0);
+  stage.move(probe, {0, 0.01, 0}, 0.1);
+  stage.wait(0.3);
   stage.place(probe, {10, 0.01, 0});
   stage.tick();
   stage.place(probe, {0, 0.01, 0});

@@ -40,7 +40,9 @@ TEST(Touch, ProbesOnAVertexAnEdgeABorderAndACreaseFeelFiniteSteadyForces) {
       ASSERT_LT(std::abs(r.normal_force - before), 0.05) << c.name;
       before = r.normal_force;
     });
-    EXPECT_NEAR(stage.read(probe).normal_force, d.stiffness * 0.003, 0.12) << c.name;
+    // Under a ridge both sides are nearer than its line, and share the push: s = 1.5^(-1/4) cos(0.7) of the depth.
+    const double nearer = std::string(c.name) == "ridge" ? std::pow(std::pow(1.5, -0.25) * std::cos(0.7), 2) : 1.0;
+    EXPECT_NEAR(stage.read(probe).normal_force, nearer * d.stiffness * 0.003, nearer < 1 ? 1e-3 : 0.12) << c.name;
     stage.wait(0.2);
     for (int i = 0; i < 200; ++i) {  // a hand trembles
       stage.place(probe, c.pressed + 1e-5 * dvec3(std::sin(2.0 * i), std::sin(3.1 * i), std::cos(1.7 * i)) -

@@ -1,0 +1,47 @@
+// The elastic force on every probe as minus the gradient of one stored energy (methods.md 1.10). For contacts i of one
+// object, each with its own stored energy W_i as if it were alone:
+//   e_i = sqrt(2 W_i),   U = max over loads l >= 0 of  e.l - 1/2 l.A l,   A_ii = 1,  A_ij = phi(|p_i - p_j| / R) max(0,
+//   n_i.n_j)
+// A lone contact has U = W. Coincident ones share one W. Far ones do not know of each other. By the envelope theorem
+//   -dU/dx_i = -(l_i / e_i) dW_i/dx_i + l_i sum_j l_j dA_ij/dx_i
+// the last term is the slope of the neighbours' dents (P1 3.5, "actual normal").
+//
+// phi must be positive definite in space, which the drawn shapes with a rim are not: it is a mixture of two Wendland
+// functions per shape, fitted to the shape's positive part (share_kernel).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/deformable.h"
+#include "components/math.h"
+
+namespace pliant {
+
+// phi(r) = w c(r / a) + (1 - w) c(r / b), c(q) = (1 - q)^4 (4 q + 1), q < 1.
+struct ShareKernel {
+  double weight = 1.0;              // [1] w
+  double inner = 1.0, outer = 1.0;  // [m] a, b
+  double at(double r2) const;       // [1] of the distance squared [m2]
+  double slope(double r2) const;    // [1/m2] (d phi / dr) / r
+};
+// `reach` [m] R; `volume` [1] chi of the shape `volume`.
+ShareKernel share_kernel(Shape shape, double reach, double volume);
+
+// One contact with stored energy. Object frame.
+struct LoadedContact {
+  double energy = 0.0;    // [J] W > 0, alone
+  dvec3 pull{0};          // [N] -dW/dx
+  dvec3 p{0}, normal{0};  // [m], [1] where it is
+  dmat3 moves{0.0};       // [1] dp/dx
+  dmat3 turns{0.0};       // [1/m] dn/dx
+  double load = 0.0;      // [sqrt J] l: in, a guess (the last tick's); out
+  double share = 0.0;     // [1] out: l / e, of its own force; 1 alone, 0 in another's dent
+  dvec3 force{0};         // [N] out: -dU/dx
+};
+
+// Finds the loads and the forces. Returns U [J]. At most kMaxLoaded contacts.
+inline constexpr std::size_t kMaxLoaded = 64;
+double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel);
+
+}  // namespace pliant

@@ -1,0 +1,11 @@
+// Where a contact is and how deep, from its own foot and the creases around it (foot_blend.h).
+#pragma once
+
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+
+// Behind the surface: blended with the feet on the sides of convex creases, as far as they matter. x [m], object frame.
+FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x);
+
+}  // namespace pliant

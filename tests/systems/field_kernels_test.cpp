@@ -1,0 +1,167 @@
+// What the zone kernels compute many vertices at a time, against the same computed one by one.
+#include "systems/touch/field_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "systems/touch/nonlinear_step.h"
+#include "systems/touch/shape.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant {
+namespace {
+
+using scenes::Stage;
+
+TEST(FieldKernels, TargetsOfAZoneAreThoseOfItsVerticesForEveryShape) {
+  Stage stage;
+  const Mesh& mesh = stage.mesh(stage.add(scenes::sphere(24, 0.1), {}));
+  for (const Shape shape :
+       {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
+    for (const float reach : {0.02f, 0.05f, 0.3f}) {
+      for (const float parameter : {0.01f, 0.2f, 5.0f}) {
+        FieldSource source;
+        source.center = mesh.position(40) + vec3(1e-4f, 0, 2e-4f);
+        source.normal = mesh.normal(40);
+        source.amplitude = 0.004f;
+        source.inv_reach2 = 1 / (reach * reach);
+        source.shape = shape;
+        source.parameter = shape == Shape::kKelvinlet ? parameter * reach : parameter;
+        float height = 0, normal = 0, steepest = source.amplitude / reach;
+        for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
+          ZoneTargets targets{};
+          add_targets(mesh, zone, source, targets);
+          for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
+            const std::uint32_t i = v - mesh.zone_begin(zone);
+            const vec4 one = target_at(source, mesh.position(v), mesh.normal(v));
+            height = std::max(height, std::abs(targets.h[i] - one.w));
+            normal = std::max(normal, length(vec3(targets.nx[i], targets.ny[i], targets.nz[i]) - vec3(one)));
+            steepest = std::max(steepest, length(vec3(one)));
+          }
+        }
+        EXPECT_LE(height, 1e-6f * source.amplitude) << int(shape) << ' ' << reach << ' ' << parameter;
+        EXPECT_LE(normal, 1e-6f * steepest) << int(shape) << ' ' << reach << ' ' << parameter;
+      }
+    }
+  }
+}
+
+TEST(FieldKernels, TheSharedExponentialIsExactToSinglePrecision) {
+  for (float x = 0; x > -80; x -= 0.00317f) {
+    const double truth = std::exp(static_cast<double>(x));
+    ASSERT_NEAR(shared::shape_exp(x), truth, 2.5e-7 * truth) << x;
+  }
+  EXPECT_EQ(shared::shape_exp(0.0f), 1.0f);
+}
+
+TEST(FieldKernels, PunchAndHertzMeetTheirClosedFormsOnBothSidesOfTheRimOfContact) {
+  const double inner = 0.04;  // the window is one below u = 1/4
+  for (double u = 0; u < 0.25; u += 0.0007) {
+    const double rho = std::sqrt(u), a = std::sqrt(inner), r = std::min(1.0, a / std::max(rho, 1e-12));
+    const double punch = u <= inner ? 1.0 : 2 / M_PI * std::asin(r);
+    const double hertz =
+        u <= inner ? 1 - 0.5 * u / inner : ((2 - u / inner) * std::asin(r) + std::sqrt(u / inner - 1)) / M_PI;
+    EXPECT_NEAR(shared::shape_punch(float(u), float(inner)).x, punch, 1e-5 + (std::abs(u - inner) < 1e-6 ? 1e-2 : 0));
+    EXPECT_NEAR(shared::shape_hertz(float(u), float(inner)).x, hertz, 1e-5);
+  }
+}
+
+struct Zone {
+  std::vector<vec4> state = std::vector<vec4>(kZoneSize, vec4(0)), rate = state;
+};
+
+Motion motion_of(SpringLaw law, double mass, double damping, double hardening) {
+  Motion m;
+  m.mass = mass;
+  m.damping = damping;
+  m.law = {law, hardening, hardening};
+  return m;
+}
+
+TEST(FieldKernels, NonLinearStepsOfAZoneAreThoseOfItsVertices) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (const SpringLaw law : {SpringLaw::kCubic, SpringLaw::kExponential}) {
+    for (const double mass : {1e-8, 4e-7, 1e-4, 1.0}) {  // from far too stiff for the step to nearly free
+      for (const double damping : {0.0, 1e-3, 0.1}) {
+        for (const float size : {1e-9f, 1e-5f, 0.004f, 0.05f}) {  // [m]
+          for (const bool forced : {false, true}) {
+            const Motion m = motion_of(law, mass, damping, law == SpringLaw::kCubic ? 1e5 : 150.0);
+            Zone zone;
+            ZoneTargets targets{};
+            for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+              zone.state[i] = {0.1f * unit(random), 0.1f * unit(random), 0.1f * unit(random), size * unit(random)};
+              zone.rate[i] = {unit(random), 0, unit(random), (i % 3 ? 1.0f : 100.0f) * size * unit(random) / 0.01f};
+              targets.h[i] = forced ? size * unit(random) : 0.0f;
+              targets.nx[i] = forced ? 0.1f * unit(random) : 0.0f;
+            }
+            const Zone start = zone;
+            step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), forced ? &targets : nullptr);
+            for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+              const double h0 = static_cast<double>(start.state[i].w), v0 = static_cast<double>(start.rate[i].w);
+              const double target = static_cast<double>(targets.h[i]);
+              const double f = forced ? m.law.force(target) : 0.0;
+              const HeightState one = step_restoring(m.law, {h0, v0}, mass, damping, 1.0, f, m.dt);
+              const double d = std::abs(one.height - h0);
+              ASSERT_NEAR(zone.state[i].w, one.height, 1e-7 * (std::abs(h0) + d))
+                  << int(law) << " m " << mass << " b " << damping << " h0 " << h0 << " v0 " << v0;
+              ASSERT_NEAR(zone.rate[i].w, one.velocity,
+                          1e-7 * (std::abs(v0) + 2 * d / m.dt) + 1e-11 * std::abs(h0) / m.dt)
+                  << int(law) << " m " << mass << " b " << damping << " h0 " << h0 << " v0 " << v0;
+              // The normal correction: implicit midpoint with the slope at the middle.
+              const double slope = m.law.slope(0.5 * (h0 + one.height)), m2 = 2 * mass / m.dt;
+              const double pull = forced ? m.law.slope(target) * static_cast<double>(targets.nx[i]) : 0.0;
+              const double s = static_cast<double>(start.state[i].x), r = static_cast<double>(start.rate[i].x);
+              const double vm = (m2 * r - slope * s + pull) / (m2 + damping + 0.5 * m.dt * slope);
+              ASSERT_NEAR(zone.state[i].x, s + m.dt * vm, 1e-7 * (std::abs(s) + std::abs(m.dt * vm)));
+              ASSERT_NEAR(zone.rate[i].x, 2 * vm - r, 2e-7 * (std::abs(r) + 2 * std::abs(vm)));
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(FieldKernels, ANonLinearZoneAtRestStaysAtRestToTheBit) {
+  for (const SpringLaw law : {SpringLaw::kCubic, SpringLaw::kExponential}) {
+    Zone zone;
+    zone.state[5].w = -0.003f;
+    for (int n = 0; n < 10; ++n)
+      step_nonlinear(motion_of(law, 1e-4, 1e-3, 100), {}, 0, zone.state.data(), zone.rate.data(), nullptr);
+    for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+      if (i == 5) continue;
+      EXPECT_EQ(zone.state[i], vec4(0));
+      EXPECT_EQ(zone.rate[i], vec4(0));
+    }
+    EXPECT_NE(zone.state[5].w, 0.0f);
+  }
+}
+
+TEST(FieldKernels, UndampedNonLinearZonesKeepTheirEnergyAndDampedOnesOnlyLose) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (const SpringLaw law : {SpringLaw::kCubic, SpringLaw::kExponential}) {
+    for (const double damping : {0.0, 1e-3}) {
+      const Motion m = motion_of(law, 1e-4, damping, law == SpringLaw::kCubic ? 1e5 : 150.0);
+      Zone zone;
+      for (std::uint32_t i = 0; i < kZoneSize; ++i) zone.state[i].w = 0.006f * unit(random);
+      const auto energy = [&](std::uint32_t i) {
+        const double v = static_cast<double>(zone.rate[i].w);
+        return 0.5 * m.mass * v * v + m.law.potential(static_cast<double>(zone.state[i].w));
+      };
+      std::vector<double> first(kZoneSize);
+      for (std::uint32_t i = 0; i < kZoneSize; ++i) first[i] = energy(i);
+      for (int n = 0; n < 2000; ++n) step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), nullptr);
+      for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+        EXPECT_LE(energy(i), first[i] * 1.0002 + 1e-15);
+        if (damping == 0) EXPECT_GE(energy(i), first[i] * 0.9998 - 1e-15);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pliant
