@@ -27,11 +27,26 @@ using scenes::Stage;
 
 struct Row {
   std::uint32_t vertices = 0, awake = 0;
-  double p50 = 0, p99 = 0, max = 0;  // [us]
-  double bytes = 0;                  // touch state per vertex
-  double prepare_s = 0;              // weld, order, zones, tree, fields
-  double error = 0;                  // [1] of the amplitude, largest over awake vertices
+  double p50 = 0, p99 = 0, max = 0;                     // [us]
+  double bytes = 0;                                     // touch state per vertex
+  double prepare_s = 0;                                 // weld, order, zones, tree, fields
+  double error = 0;                                     // [1] of the amplitude, largest over awake vertices
+  std::vector<std::pair<std::string, double>> systems;  // [us] median of each
 };
+
+std::vector<std::pair<std::string, double>> cost_of_systems(const Stage& stage) {
+  std::vector<std::pair<std::string, double>> out;
+  for (std::size_t i = 0; i < stage.schedule().systems().size(); ++i)
+    out.emplace_back(stage.schedule().systems()[i].name, stage.schedule().cost(i).percentile_us(0.5));
+  return out;
+}
+
+void print_systems(const std::vector<std::pair<std::string, double>>& systems) {
+  std::string line = "  median of each system [us]:";
+  for (const auto& [name, us] : systems)
+    if (us >= 0.1) line += fmt::format(" {} {:.2f}", name, us);
+  fmt::print("{}\n", line);
+}
 
 // The target of the volume-preserving shape in double precision, with its own sum for c.
 double field_error(Stage& stage, Entity surface, Entity probe) {
@@ -105,6 +120,7 @@ Row measure(int n, std::uint32_t wanted_awake) {
   row.p50 = percentile(times, 0.5);
   row.p99 = percentile(times, 0.99);
   row.max = percentile(times, 1);
+  row.systems = cost_of_systems(stage);
   row.bytes = static_cast<double>(touch_bytes(stage.mesh(surface), stage.field(surface))) / row.vertices;
   return row;
 }
@@ -150,7 +166,8 @@ AllAwake measure_all_awake(int n) {
 // Ticks in which `probes` press next to each other into one sheet, or into the first of many balls.
 struct Many {
   std::uint32_t objects = 1, contacts = 0, awake = 0;
-  double p50 = 0, p99 = 0, feedback_p50 = 0;  // [us] the whole tick; sharing the load and friction alone
+  double p50 = 0, p99 = 0;                              // [us] the whole tick
+  std::vector<std::pair<std::string, double>> systems;  // [us] median of each
 };
 
 Many measure_many(int objects, int probes) {
@@ -180,9 +197,7 @@ Many measure_many(int objects, int probes) {
   }
   for (const SourceState& source : stage.world.touch->objects[0].sources) out.contacts += source.tracked;
   out.awake = stage.field(surface).awake_vertices;
-  for (std::size_t i = 0; i < stage.schedule().systems().size(); ++i)
-    if (std::string(stage.schedule().systems()[i].name) == "friction_feedback")
-      out.feedback_p50 = stage.schedule().cost(i).percentile_us(0.5);
+  out.systems = cost_of_systems(stage);
   out.p50 = percentile(times, 0.5);
   out.p99 = percentile(times, 0.99);
   return out;
@@ -207,6 +222,7 @@ int main(int argc, char** argv) {
     if (n == 409) at_1e6 = r.p50;
     fmt::print("{:>10} {:>7} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.0f} {:>10.2f} {:>12.1e}\n", r.vertices, r.awake, r.p50,
                r.p99, r.max, r.bytes, r.prepare_s, r.error);
+    print_systems(r.systems);
     json += fmt::format(
         "{}\n    {{\"vertices\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, \"max_us\": {:.1f}, "
         "\"bytes_per_vertex\": {:.1f}, \"ready_s\": {:.3f}, \"error_of_amplitude\": {:.3e}}}",
@@ -217,17 +233,15 @@ int main(int argc, char** argv) {
       "\ntick at 1e6 / tick at 1e4: {:.2f}\nall awake, {} vertices: {:.2f} ms a step, {:.2f} ms a copy of the same "
       "bytes, ratio {:.2f}\n",
       at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
-  fmt::print("\n{:>8} {:>9} {:>7} {:>9} {:>9} {:>15}\n", "objects", "contacts", "awake", "p50 us", "p99 us",
-             "feedback p50 us");
+  fmt::print("\n{:>8} {:>9} {:>7} {:>9} {:>9}\n", "objects", "contacts", "awake", "p50 us", "p99 us");
   json += "\n  ],\n  \"many\": [";
   for (const auto& [objects, probes] : {std::pair{1, 1}, {40, 1}, {4000, 1}, {1, 8}, {1, 64}}) {
     const Many m = measure_many(objects, probes);
-    fmt::print("{:>8} {:>9} {:>7} {:>9.2f} {:>9.2f} {:>15.2f}\n", m.objects, m.contacts, m.awake, m.p50, m.p99,
-               m.feedback_p50);
+    fmt::print("{:>8} {:>9} {:>7} {:>9.2f} {:>9.2f}\n", m.objects, m.contacts, m.awake, m.p50, m.p99);
+    print_systems(m.systems);
     json += fmt::format(
-        "{}\n    {{\"objects\": {}, \"contacts\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, "
-        "\"feedback_p50_us\": {:.3f}}}",
-        objects == 1 && probes == 1 ? "" : ",", m.objects, m.contacts, m.awake, m.p50, m.p99, m.feedback_p50);
+        "{}\n    {{\"objects\": {}, \"contacts\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}}}",
+        objects == 1 && probes == 1 ? "" : ",", m.objects, m.contacts, m.awake, m.p50, m.p99);
   }
   json += fmt::format(
       "\n  ],\n  \"ratio_1e6_to_1e4\": {:.3f},\n  \"all_awake\": {{\"vertices\": {}, \"step_ms\": {:.3f}, \"copy_ms\": "

@@ -2,8 +2,6 @@
 // Rate: touch (read). Writer: content at spawn; editor and --set between ticks. Keys of PLIANT_deformable.
 #pragma once
 
-#include <string>
-
 #include "components/mesh.h"
 
 namespace pliant {
@@ -42,7 +40,8 @@ struct Deformable {
   Handle<HeightField> field;  // set at spawn
 };
 
-// Why this deformable's field cannot live on the card (systems/touch/field.h), as half a sentence; empty: it can.
-std::string card_obstacle(const Deformable& deformable);
+// Whether what a touch leaves behind is known at any later time from where it was left: then a card needs no more than
+// a list of sources (systems/touch/field.h). Else it has to take every step (components/field_feed.h).
+bool has_closed_form(const Deformable& deformable, const Mesh& mesh);
 
 }  // namespace pliant

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "components/field_feed.h"
 #include "components/field_source.h"
 #include "components/math.h"
 #include "runtime/entity.h"
@@ -24,6 +26,10 @@ struct ObjectSnapshot {
   bool on_card = false;  // no zones: the whole field is these sources, evaluated by the card
   std::uint32_t term_count = 0;
   std::vector<FieldSource> terms;  // capacity for every source and release
+  // Fields that the card steps by itself: what acts on them, up to this snapshot's tick while `told`; else zones
+  // travel.
+  std::shared_ptr<FieldFeed> feed;
+  bool told = false;
 };
 
 // One place where a probe presses.

@@ -86,8 +86,6 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
       node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
     warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices",
                      node.deformable->reach, built->mesh.mean_edge));
-  if (const std::string obstacle = node.deformable ? card_obstacle(*node.deformable) : ""; !obstacle.empty())
-    findings.push_back({Severity::kNote, pointer, "stays on the processor under --field gpu: " + obstacle});
 }
 
 // What about soft and rigid bodies cannot go together, and what is read differently from their files.

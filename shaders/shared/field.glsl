@@ -42,10 +42,14 @@ SHARED vec4 field_kelvinlet(vec3 d, vec3 N, vec3 M, float inv_reach2, float ampl
   return vec4(amplitude * gradient, -amplitude * f * w.x);
 }
 
-SHARED vec4 field_target(vec4 place, vec4 push, vec4 kind, vec3 P, vec3 N) {
-  vec3 d = P - vec3(place);
+// The same with d in place of where the source and the vertex are, and M in place of the source's normal.
+SHARED vec4 field_target_at(vec4 place, vec4 push, vec4 kind, vec3 d, vec3 N, vec3 M) {
   int shape = int(kind.y);
-  if (shape == 5) return field_kelvinlet(d, N, vec3(push), place.w, push.w, kind.x);
+  if (shape == 5) return field_kelvinlet(d, N, M, place.w, push.w, kind.x);
   float u = min(dot(d, d) * place.w, 1.0f);
-  return field_radial(d, N, vec3(push), place.w, push.w, field_profile(shape, u, kind.x));
+  return field_radial(d, N, M, place.w, push.w, field_profile(shape, u, kind.x));
+}
+
+SHARED vec4 field_target(vec4 place, vec4 push, vec4 kind, vec3 P, vec3 N) {
+  return field_target_at(place, push, kind, P - vec3(place), N, vec3(push));
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace pliant {
 namespace {
@@ -12,17 +13,36 @@ constexpr int kMaxSweeps = 100;
 constexpr double kTolerance = 1e-7;  // [1] of the largest depth: far below what a float field can show
 constexpr std::size_t kMost = 64;    // contacts: the working memory is on the stack
 
+// Which entries of each row of A are not zero: dents far apart do not meet.
+struct Rows {
+  std::array<std::uint8_t, kMost * kMost> column;
+  std::array<std::size_t, kMost + 1> first;
+
+  Rows(std::span<const double> A, std::size_t n) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      first[i] = count;
+      for (std::size_t j = 0; j < n; ++j)
+        if (A[i * n + j] != 0.0) column[count++] = static_cast<std::uint8_t>(j);
+    }
+    first[n] = count;
+  }
+};
+
 // One row of a solve: how far the field at contact i falls short of its depth. [m]
-double shortfall(std::span<const double> A, std::span<const double> d, std::span<const double> alpha, std::size_t i) {
+double shortfall(std::span<const double> A, const Rows& rows, std::span<const double> d, std::span<const double> alpha,
+                 std::size_t i) {
   double r = d[i];
-  for (std::size_t j = 0; j < d.size(); ++j) r -= A[i * d.size() + j] * alpha[j];
+  for (std::size_t k = rows.first[i]; k < rows.first[i + 1]; ++k)
+    r -= A[i * d.size() + rows.column[k]] * alpha[rows.column[k]];
   return r;
 }
 
-double worst_violation(std::span<const double> A, std::span<const double> d, std::span<const double> alpha) {
+double worst_violation(std::span<const double> A, const Rows& rows, std::span<const double> d,
+                       std::span<const double> alpha) {
   double worst = 0.0;
   for (std::size_t i = 0; i < d.size(); ++i) {
-    const double r = shortfall(A, d, alpha, i);
+    const double r = shortfall(A, rows, d, alpha, i);
     worst = std::max({worst, alpha[i] > 0 ? std::abs(r) : r, -alpha[i]});
   }
   return worst;
@@ -30,7 +50,7 @@ double worst_violation(std::span<const double> A, std::span<const double> d, std
 
 // Sweeps converge slowly where probes almost coincide: solve for the pressing ones directly (Gauss with partial
 // pivoting) and keep the answer if it is the better one.
-void polish(std::span<const double> A, std::span<const double> d, std::span<double> alpha) {
+void polish(std::span<const double> A, const Rows& rows, std::span<const double> d, std::span<double> alpha) {
   const std::size_t n = d.size();
   std::array<std::size_t, kMost> pressing;
   std::size_t m = 0;
@@ -62,7 +82,7 @@ void polish(std::span<const double> A, std::span<const double> d, std::span<doub
   std::array<double, kMost> candidate{};
   for (std::size_t i = 0; i < m; ++i) candidate[pressing[i]] = x[i];
   const std::span<const double> better(candidate.data(), n);
-  if (worst_violation(A, d, better) < worst_violation(A, d, alpha))
+  if (worst_violation(A, rows, d, better) < worst_violation(A, rows, d, alpha))
     std::copy(better.begin(), better.end(), alpha.begin());
 }
 
@@ -70,22 +90,23 @@ void polish(std::span<const double> A, std::span<const double> d, std::span<doub
 
 double solve_amplitudes(std::span<const double> A, std::span<const double> d, std::span<double> alpha) {
   const std::size_t n = d.size();
+  const Rows rows(A, n);
   double size = 0.0;
   for (const double depth : d) size = std::max(size, std::abs(depth));
   bool converged = false;
   for (int sweep = 0; sweep < kMaxSweeps && !converged; ++sweep) {
     double change = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double next = std::max(0.0, alpha[i] + shortfall(A, d, alpha, i) / A[i * n + i]);
+      const double next = std::max(0.0, alpha[i] + shortfall(A, rows, d, alpha, i) / A[i * n + i]);
       change = std::max(change, std::abs(next - alpha[i]));
       alpha[i] = next;
     }
     converged = change <= kTolerance * size;
   }
-  if (!converged) polish(A, d, alpha);
+  if (!converged) polish(A, rows, d, alpha);
   // An indefinite A (rims that add up) could let amplitudes run away: never more than ten times the deepest probe.
   for (double& a : alpha) a = std::min(a, 10 * size);
-  return worst_violation(A, d, alpha);
+  return worst_violation(A, rows, d, alpha);
 }
 
 }  // namespace pliant

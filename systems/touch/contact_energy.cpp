@@ -81,7 +81,8 @@ class Loads {
     return r;
   }
 
-  // A l = e over those that press, by Cholesky.
+  // A l = e over those that press, by Cholesky within the envelope: contacts far apart have nothing to do with each
+  // other.
   void factor_and_solve() {
     std::array<std::size_t, kMaxLoaded> at;
     std::size_t m = 0;
@@ -89,10 +90,13 @@ class Loads {
       l_[i] = 0.0;
       if (pressing_ & bit(i)) at[m++] = i;
     }
+    std::array<std::size_t, kMaxLoaded> first;  // column of each row's first entry
     for (std::size_t i = 0; i < m; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
+      first[i] = 0;
+      while (first[i] < i && A_[at[i]][at[first[i]]] == 0.0) ++first[i];
+      for (std::size_t j = first[i]; j <= i; ++j) {
         double sum = A_[at[i]][at[j]] + (i == j ? even_[at[i]] : 0.0);
-        for (std::size_t k = 0; k < j; ++k) sum -= L_[i][k] * L_[j][k];
+        for (std::size_t k = std::max(first[i], first[j]); k < j; ++k) sum -= L_[i][k] * L_[j][k];
         // Normals that differ much can make A indefinite by a little: such a contact has nothing of its own.
         L_[i][j] = i == j ? std::sqrt(std::max(sum, kEven)) : sum / L_[j][j];
       }
@@ -100,13 +104,12 @@ class Loads {
     std::array<double, kMaxLoaded> y;
     for (std::size_t i = 0; i < m; ++i) {
       double sum = e_[at[i]];
-      for (std::size_t k = 0; k < i; ++k) sum -= L_[i][k] * y[k];
+      for (std::size_t k = first[i]; k < i; ++k) sum -= L_[i][k] * y[k];
       y[i] = sum / L_[i][i];
     }
     for (std::size_t i = m; i-- > 0;) {
-      double sum = y[i];
-      for (std::size_t k = i + 1; k < m; ++k) sum -= L_[k][i] * y[k];
-      y[i] = sum / L_[i][i];
+      y[i] /= L_[i][i];
+      for (std::size_t k = first[i]; k < i; ++k) y[k] -= L_[i][k] * y[i];
       l_[at[i]] = y[i];
     }
   }
@@ -175,8 +178,8 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) 
     if (!(a.load > 0)) continue;
     for (std::size_t j = 0; j < contacts.size(); ++j) {
       const LoadedContact& b = contacts[j];
+      if (j == i || !(b.load > 0) || loads.overlap(i, j) == 0.0) continue;
       const double facing = dot(a.normal, b.normal);
-      if (j == i || !(b.load > 0) || facing <= 0) continue;
       const dvec3 d = a.p - b.p;
       const double r2 = dot(d, d), phi = kernel.at(r2);
       if (j < i) energy -= a.load * b.load * phi * facing;

@@ -87,7 +87,7 @@ void dynamics(World& world, Tick tick) {
     for (std::size_t i = 0; i < field.awake.size();) {
       const std::uint32_t zone = field.awake[i];
       vertices += mesh.zone_end(zone) - mesh.zone_begin(zone);
-      if (!(field.zone_state[zone] & kZoneDirty)) {
+      if (!object.teller.tells() && !(field.zone_state[zone] & kZoneDirty)) {
         field.zone_state[zone] |= kZoneDirty;
         object.dirty.push_back(zone);  // capacity: all zones
       }
@@ -95,21 +95,23 @@ void dynamics(World& world, Tick tick) {
       ZoneTargets targets;
       if (reached || lag) gather_targets(object, mesh, zone, targets);
 
-      if (!field.relaxed.empty() && (reached || (field.zone_state[zone] & kZoneResidual)) &&
+      if (!lag && !field.relaxed.empty() && (reached || (field.zone_state[zone] & kZoneResidual)) &&
           step_relaxed(object.motion, mesh, field, zone, targets, reached))
         field.zone_state[zone] |= kZoneResidual;
 
       // The residual moves; once at rest it is exactly zero.
-      bool moving = lag || (field.zone_state[zone] & kZoneResidual);
+      bool moving = lag || (field.zone_state[zone] & kZoneResidual), rests = false;
       if (moving) {
         const ZoneRest rest = lag ? step_lagging(object.motion, object.painted, field, zone, targets)
                                   : step_residual(object.motion, object.painted, field, zone);
         if (rest.height < rest_height && rest.normal < kRest && !(lag && reached)) {
           set_to_rest(field, zone);
           moving = false;
+          rests = true;
         }
       }
       compose_stream(field, zone, reached && !lag ? &targets : nullptr, moving);
+      object.teller.zone(zone, object.zone_sources[zone], rests, !reached && !moving);
       if (reached || moving) {
         ++i;
         continue;
@@ -119,6 +121,7 @@ void dynamics(World& world, Tick tick) {
       field.awake.pop_back();
     }
     field.awake_vertices = vertices;
+    object.teller.end_tick(tick.index);
   }
   put_to_sleep(*world.touch, world);
 }

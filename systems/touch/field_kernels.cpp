@@ -81,13 +81,10 @@ PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const Fi
 
 constexpr std::uint32_t kLanes = 8;
 
-// Sums of a whole zone in fixed lanes, so that the order of additions is the same on every machine.
-inline __attribute__((always_inline)) double sum_lanes(const float (&values)[kZoneSize]) {
-  float lanes[kLanes] = {};
-  for (std::uint32_t i = 0; i < kZoneSize; i += kLanes)
-    for (std::uint32_t l = 0; l < kLanes; ++l) lanes[l] += values[i + l];
+// Sums of a whole zone are kept in lanes, so that the order of additions is the same on every machine.
+inline __attribute__((always_inline)) double sum_lanes(const float (&lanes)[kLanes]) {
   double total = 0;
-  for (const float lane : lanes) total += lane;
+  for (const float lane : lanes) total += static_cast<double>(lane);
   return total;
 }
 
@@ -101,26 +98,29 @@ PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const Field
   const float* __restrict area = mesh.area.data() + begin;
   const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
   const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
-  alignas(32) float S0[kZoneSize], S1[kZoneSize], Q0[kZoneSize], Q1[kZoneSize], Q2[kZoneSize], bend[kZoneSize],
-      spread[kZoneSize];
-  for (std::uint32_t v = 0; v < kZoneSize; ++v) {
-    const float dx = px[v] - cx, dy = py[v] - cy, dz = pz[v] - cz;
-    const float r2 = dx * dx + dy * dy + dz * dz;
-    float u = r2 * inv;
-    u = u < 1.0f ? u : 1.0f;
-    float facing = 4.0f * (nx[v] * mx + ny[v] * my + nz[v] * mz);
-    facing = facing < 0.0f ? 0.0f : facing;
-    facing = facing > 1.0f ? 1.0f : facing;
-    const float q = 1.0f - u;
-    const float w = q * q * q * facing;
-    const float aw = area[v] * w, aww = aw * w;
-    S0[v] = aw;
-    S1[v] = aw * u;
-    Q0[v] = aww;
-    Q1[v] = aww * u;
-    Q2[v] = aww * u * u;
-    bend[v] = aw * ((nx[v] - mx) * dx + (ny[v] - my) * dy + (nz[v] - mz) * dz);
-    spread[v] = aw * r2;
+  float S0[kLanes] = {}, S1[kLanes] = {}, Q0[kLanes] = {}, Q1[kLanes] = {}, Q2[kLanes] = {}, bend[kLanes] = {},
+        spread[kLanes] = {};
+  for (std::uint32_t v = 0; v < kZoneSize; v += kLanes) {
+    for (std::uint32_t l = 0; l < kLanes; ++l) {
+      const std::uint32_t i = v + l;
+      const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+      const float r2 = dx * dx + dy * dy + dz * dz;
+      float u = r2 * inv;
+      u = u < 1.0f ? u : 1.0f;
+      float facing = 4.0f * (nx[i] * mx + ny[i] * my + nz[i] * mz);
+      facing = facing < 0.0f ? 0.0f : facing;
+      facing = facing > 1.0f ? 1.0f : facing;
+      const float q = 1.0f - u;
+      const float w = q * q * q * facing;
+      const float aw = area[i] * w, aww = aw * w;
+      S0[l] += aw;
+      S1[l] += aw * u;
+      Q0[l] += aww;
+      Q1[l] += aww * u;
+      Q2[l] += aww * u * u;
+      bend[l] += aw * ((nx[i] - mx) * dx + (ny[i] - my) * dy + (nz[i] - mz) * dz);
+      spread[l] += aw * r2;
+    }
   }
   sums.S0 += sum_lanes(S0);
   sums.S1 += sum_lanes(S1);
@@ -131,13 +131,22 @@ PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const Field
   sums.spread += sum_lanes(spread);
 }
 
-PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh,
-                               float vv) {
-  for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
-    const float x = state[i], v = rate[i];
-    state[i] = hh * x + hv * v;
-    rate[i] = vh * x + vv * v;
+// Also finds how large it still is: lanes as `largest` has them.
+PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh, float vv,
+                               float scale, float (&best)[kLanes]) {
+  float most[kLanes] = {};
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes) {
+    for (std::uint32_t l = 0; l < kLanes; ++l) {
+      const float x = state[i + l], v = rate[i + l];
+      const float h = hh * x + hv * v, r = vh * x + vv * v;
+      state[i + l] = h;
+      rate[i + l] = r;
+      const float a = std::abs(h), b = std::abs(r) * scale;
+      const float m = a > b ? a : b;
+      most[l] = most[l] > m ? most[l] : m;
+    }
   }
+  for (std::uint32_t l = 0; l < kLanes; ++l) best[l] = most[l];
 }
 
 PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm,
@@ -187,11 +196,15 @@ PLIANT_KERNEL void largest(const float* __restrict state, const float* __restric
   }
 }
 
+ZoneRest rest_of(const float (&best)[kLanes]) {
+  // Lanes 3 and 7 are heights, the others normal corrections.
+  return {std::max(best[3], best[7]), std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
+}
+
 ZoneRest rest_of(double mass, const vec4* state, const vec4* rate) {
   float best[kLanes] = {};
   largest(&state->x, &rate->x, static_cast<float>(std::sqrt(mass)), best);
-  // Lanes 3 and 7 are heights, the others normal corrections.
-  return {std::max(best[3], best[7]), std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
+  return rest_of(best);
 }
 
 void solid_matrix(const Motion& motion, float (&m)[9]) {
@@ -266,8 +279,10 @@ ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, Heigh
     step_solid(&state->x, &rate->x, &field.arm[first].x, m);
   } else {
     const StepCoefficients& c = motion.linear;
+    float best[kLanes];
     step_linear(&state->x, &rate->x, static_cast<float>(c.hh), static_cast<float>(c.hv), static_cast<float>(c.vh),
-                static_cast<float>(c.vv));
+                static_cast<float>(c.vv), static_cast<float>(std::sqrt(motion.mass)), best);
+    return rest_of(best);
   }
   return rest_of(painted.empty() ? motion.mass : painted.most_mass, state, rate);
 }

@@ -84,7 +84,8 @@ Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
     const double gu = dot(r, here.pu), gv = dot(r, here.pv);
     Hessian H = hessian(here, r, true);
     const Hessian first = hessian(here, r, false);
-    if (!(H.uu > 0 && H.det() > 1e-6 * first.det())) H = first;
+    const bool full = H.uu > 0 && H.det() > 1e-6 * first.det();
+    if (!full) H = first;
     double du = 0.0, dv = 0.0;
     if (const double det = H.det(); det > 0) {
       du = -(H.vv * gu - H.uv * gv) / det;
@@ -122,7 +123,9 @@ Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
       if (g <= f) break;
     }
     if (g > f) break;
-    const bool still = t * size < 1e-12 * (length(here.pu) + length(here.pv));
+    // A whole step of Newton's method leaves an error of the size of its square.
+    const double small = full && t == 1.0 ? 1e-7 : 1e-12;
+    const bool still = t * size < small * (length(here.pu) + length(here.pv));
     at = next;
     here = there;
     f = g;

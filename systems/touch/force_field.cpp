@@ -80,7 +80,10 @@ void fold(SourceState& source, ObjectState& object, const Deformable& deformable
   if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
   if (object.on_card) return remember_release(object, {source.now, source.before, tick.time}, dropped);
   const float inv_dt = static_cast<float>(1 / tick.dt);
+  const std::uint32_t number = static_cast<std::uint32_t>(&source - object.sources.data());
+  object.teller.fold(number, source.before, source.now);
   for (const std::uint32_t zone : source.zones) {
+    if (!source.offset.empty()) object.teller.offsets(number, zone, source.offset, true);
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
       const vec4 now = source_at(source, source.now, mesh, v);
       const vec4 before = source_at(source, source.before, mesh, v);
@@ -126,6 +129,8 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
         residual += weight * residual_after(object, mesh, field, corner[b], tick);
       for (std::size_t j = 0; j < n; ++j) {
         FieldSource unit = active[j].source->now;
+        const vec3 apart = mesh.position(corner[b]) - unit.center;
+        if (active[j].source->offset.empty() && dot(apart, apart) * unit.inv_reach2 >= 1.0f) continue;
         unit.amplitude = 1.0f;
         A[i * n + j] -= weight * source_at(*active[j].source, unit, mesh, corner[b]).w;
       }
@@ -170,6 +175,8 @@ void force_field(World& world, Tick tick) {
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
     const Mesh& mesh = world.meshes[deformable.mesh];
     HeightField& field = world.fields[deformable.field];
+
+    object.teller.give_up_if_lost(object, field);
 
     // Last tick's marks go; contacts that ended leave their dent to the residual.
     std::array<Active, kMaxContactsPerObject> active;
@@ -225,9 +232,12 @@ void force_field(World& world, Tick tick) {
     solve({active.data(), count}, deformable, mesh, field, object, tick);
 
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t bit = std::uint64_t{1} << (active[i].source - object.sources.data());
-      for (const std::uint32_t zone : active[i].source->zones) {
-        object.zone_sources[zone] |= bit;
+      const SourceState& source = *active[i].source;
+      const std::uint32_t number = static_cast<std::uint32_t>(&source - object.sources.data());
+      object.teller.source(number, source.now);
+      for (const std::uint32_t zone : source.zones) {
+        object.zone_sources[zone] |= std::uint64_t{1} << number;
+        if (!source.offset.empty()) object.teller.offsets(number, zone, source.offset, false);
         if (!object.on_card) wake(field, zone, kZoneReached);
       }
     }

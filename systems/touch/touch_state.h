@@ -10,6 +10,7 @@
 #include "systems/device/safety.h"
 #include "systems/touch/box_tree.h"
 #include "systems/touch/contact_energy.h"
+#include "systems/touch/feed_field.h"
 #include "systems/touch/foot_blend.h"
 #include "systems/touch/local_model.h"
 #include "systems/touch/move_objects.h"
@@ -84,9 +85,10 @@ struct ObjectState {
   double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
   bool listed = false;                      // it stands in TouchState::awake
   std::vector<dvec3> searched;              // [m] per tip of every probe: where other walls were last looked for
-  bool on_card = false;                     // the field is drawn by the card from `terms`; there is no HeightField
+  bool on_card = false;                     // the field is `terms`, drawn by the card; there is no HeightField
   std::vector<Release> releases;            // card only; capacity kMaxReleases
   std::vector<FieldSource> terms;           // card only: the whole field at `time`
+  FieldTeller teller;                       // where the card steps a copy of the field
   double time = 0.0;                        // [s] end of the last tick
   std::vector<SourceState> sources;         // a pool for probes, then one per press; capacity kMaxContactsPerObject
   std::vector<PressState> presses;          // empty unless the level has something soft or rigid that moves

@@ -1,6 +1,7 @@
 #include "systems/visual/field_gpu.h"
 
 #include <algorithm>
+#include <tuple>
 #include <vector>
 
 namespace pliant {
@@ -20,33 +21,32 @@ Result<FieldProgram> FieldProgram::make() {
   return made;
 }
 
-FieldOnCard::FieldOnCard(const Mesh& mesh) : vertices_(mesh.vertex_count) {
+std::pair<gpu::Buffer, gpu::Buffer> rest_on_card(const Mesh& mesh) {
   std::vector<vec4> rest(mesh.vertex_count);
   std::vector<vec2> rest_yz(mesh.vertex_count);
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     rest[v] = vec4(mesh.position(v), mesh.nx[v]);
     rest_yz[v] = vec2(mesh.ny[v], mesh.nz[v]);
   }
-  rest_ = gpu::Buffer::fixed(std::span<const vec4>(rest));
-  rest_yz_ = gpu::Buffer::fixed(std::span<const vec2>(rest_yz));
+  return {gpu::Buffer::fixed(std::span<const vec4>(rest)), gpu::Buffer::fixed(std::span<const vec2>(rest_yz))};
+}
+
+FieldOnCard::FieldOnCard(const Mesh& mesh) : vertices_(mesh.vertex_count) {
+  std::tie(rest_, rest_yz_) = rest_on_card(mesh);
 }
 
 std::size_t FieldOnCard::evaluate(const FieldProgram& program, std::span<const FieldSource> sources,
                                   const gpu::Buffer& stream) {
   if (sources.empty() && at_rest_) return 0;
   at_rest_ = sources.empty();
-  std::vector<CardSource> packed(std::max<std::size_t>(1, sources.size()));
+  std::vector<CardSource> packed(sources.size());
   std::transform(sources.begin(), sources.end(), packed.begin(), card_source);
-  if (packed.size() > capacity_) {
-    capacity_ = 2 * packed.size();
-    sources_ = gpu::Buffer::writable(nullptr, capacity_ * sizeof(CardSource));
-  }
-  const std::size_t travelled = sources_.write(0, packed.data(), sources.size() * sizeof(CardSource));
+  const std::size_t travelled = sources_.write(std::span<const CardSource>(packed));
   program.program_.use();
   glUniform1i(program.source_count_, static_cast<GLint>(sources.size()));
   glUniform1ui(program.vertex_count_, vertices_);
-  const gpu::Buffer* const bindings[] = {&stream, &rest_, &rest_yz_, &sources_};
-  for (GLuint i = 0; i < 4; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, bindings[i]->id());
+  const GLuint bindings[] = {stream.id(), rest_.id(), rest_yz_.id(), sources_.id()};
+  for (GLuint i = 0; i < 4; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, bindings[i]);
   glDispatchCompute((vertices_ + 127) / 128, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
   return travelled;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "components/field_source.h"
 #include "components/mesh.h"
@@ -18,6 +19,9 @@ struct CardSource {
   vec4 place, push, kind;
 };
 CardSource card_source(const FieldSource& source);
+
+// Rest positions and normals as field.comp reads them: (P0, N0.x), and (N0.y, N0.z).
+std::pair<gpu::Buffer, gpu::Buffer> rest_on_card(const Mesh& mesh);
 
 // Compiles the shader; shared by all objects.
 class FieldProgram {
@@ -44,8 +48,8 @@ class FieldOnCard {
  private:
   std::uint32_t vertices_ = 0;
   bool at_rest_ = true;
-  gpu::Buffer rest_, rest_yz_, sources_;
-  std::size_t capacity_ = 0;  // sources
+  gpu::Buffer rest_, rest_yz_;
+  gpu::GrowingBuffer sources_;
 };
 
 }  // namespace pliant

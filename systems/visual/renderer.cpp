@@ -197,7 +197,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
 }
 
 void Renderer::update(const Snapshot& snapshot) {
-  for (const ObjectSnapshot& object : snapshot.objects) parts_->surfaces.take(object);
+  for (const ObjectSnapshot& object : snapshot.objects) parts_->surfaces.take(object, snapshot.tick);
   for (const MovedSnapshot& object : snapshot.moved) parts_->surfaces.take(object);
   parts_->markers.take(snapshot.probes);
 }

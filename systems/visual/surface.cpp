@@ -125,6 +125,11 @@ Result<Surfaces> Surfaces::make(const World& world) {
       made.has_glass_ = made.has_glass_ || made.materials_.transmits(part.run.material);
     made.items_.push_back(std::move(item));
   }
+  if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.replayed; })) {
+    Result<ReplayProgram> replay = ReplayProgram::make();
+    if (!replay) return replay.error();
+    made.replay_program_ = *std::move(replay);
+  }
   if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.on_card; })) {
     Result<FieldProgram> field = FieldProgram::make();
     if (!field) return field.error();
@@ -160,8 +165,12 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   if (item.gives_way && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
     stream = world.fields[deformable->field].stream;
   item.stream = StreamCopies(stream);
-  item.on_card = item.gives_way && world.field_place == FieldPlace::kCard && card_obstacle(*deformable).empty();
-  if (item.on_card) item.field = FieldOnCard(*touch);
+  if (item.gives_way && world.field_place == FieldPlace::kCard) {
+    item.on_card = has_closed_form(*deformable, *touch);
+    item.replayed = !item.on_card;
+    if (item.on_card) item.field = FieldOnCard(*touch);
+    if (item.replayed) item.replay = FieldReplay(*touch, *deformable, 1 / world.simulation.touch_rate);
+  }
   if (touch && soft) item.skin = Skin(touch->vertex_count);
 
   item.to_world = placement_of(world, entity);
@@ -174,12 +183,12 @@ Surfaces::Item* Surfaces::find(Entity entity) {
   return found == items_.end() ? nullptr : &*found;
 }
 
-void Surfaces::take(const ObjectSnapshot& object) {
+void Surfaces::take(const ObjectSnapshot& object, std::uint64_t tick) {
   Item* item = find(object.object);
   if (!item || !item->gives_way) return;
   if (item->on_card) {
     item->sources.assign(object.terms.begin(), object.terms.begin() + object.term_count);
-  } else {
+  } else if (!item->replayed || !object.feed || !item->replay.take(*object.feed, object.told, tick)) {
     item->stream.take({object.zones.data(), object.zone_count}, object.stream);
   }
 }
@@ -219,6 +228,7 @@ std::size_t Surfaces::upload() {
     changed_ = changed_ || (item.on_card && !item.field.at_rest());
     travelled +=
         item.on_card ? item.field.evaluate(field_program_, item.sources, item.stream.buffer()) : item.stream.upload();
+    if (item.replayed) travelled += item.replay.evaluate(replay_program_, item.stream.buffer());
   }
   changed_ = changed_ || travelled > 0;
   return travelled;

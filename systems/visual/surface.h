@@ -9,6 +9,7 @@
 #include "components/world.h"
 #include "runtime/result.h"
 #include "systems/visual/field_gpu.h"
+#include "systems/visual/field_replay.h"
 #include "systems/visual/gpu/buffer.h"
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/material.h"
@@ -25,7 +26,7 @@ class Surfaces {
 
   // Takes an object's changed zones, where a soft or rigid body is, or what carries a drawable; upload() sends them.
   // Objects that are not drawn are ignored.
-  void take(const ObjectSnapshot& object);
+  void take(const ObjectSnapshot& object, std::uint64_t tick);
   void take(const SoftObjectSnapshot& object);
   void take(const MovedSnapshot& object);
   std::size_t upload();                      // returns the bytes that travelled
@@ -60,8 +61,9 @@ class Surfaces {
     gpu::VertexArray layout;
     std::vector<Part> parts;
     StreamCopies stream;
-    FieldOnCard field;                 // only where the field lives on the card
-    std::vector<FieldSource> sources;  // its newest list
+    FieldOnCard field;                 // only where the field is a list on the card
+    std::vector<FieldSource> sources;  // its newest
+    FieldReplay replay;                // only where the card steps a copy of the field
     Skin skin;                         // of a soft body, else of no vertex
     Box rest;                          // [m] object frame
     mat4 to_world{1};
@@ -69,7 +71,7 @@ class Surfaces {
     std::uint32_t number = 0;
     bool rides = false;  // its vertices are where the skin says
     bool moved = false;  // its placement is newer here
-    bool on_card = false;
+    bool on_card = false, replayed = false;
     bool gives_way = false;
     bool encloses = false;  // its back is never seen from outside, whatever its materials say
     bool mirrored = false;  // its placement turns triangles inside out
@@ -84,7 +86,8 @@ class Surfaces {
   std::vector<Box> boxes_;
   Materials materials_;
   gpu::Program program_, shadow_;
-  FieldProgram field_program_;  // compiled only if some field lives on the card
+  FieldProgram field_program_;  // these two are compiled only if some field needs them
+  ReplayProgram replay_program_;
   bool changed_ = true, has_glass_ = false;
 };
 

@@ -27,6 +27,10 @@ std::size_t Buffer::write(std::size_t offset, const void* data, std::size_t size
   return size;
 }
 
+void Buffer::clear() {
+  if (size_) glClearNamedBufferData(id(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
+}
+
 VertexArray VertexArray::make() {
   GLuint id = 0;
   glCreateVertexArrays(1, &id);

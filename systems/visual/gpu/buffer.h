@@ -1,6 +1,7 @@
 // Memory on the card, and how vertices are read out of it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -27,6 +28,7 @@ class Buffer {
 
   // Replaces bytes [offset, offset + size); returns `size`, so that callers can add up what travelled.
   std::size_t write(std::size_t offset, const void* data, std::size_t size);
+  void clear();  // all bytes zero
   std::size_t size() const { return size_; }
   GLuint id() const { return object_.id(); }
 
@@ -34,6 +36,22 @@ class Buffer {
   Buffer(const void* data, std::size_t size, GLbitfield flags);
   Object<DestroyBuffer> object_;
   std::size_t size_ = 0;  // [bytes]
+};
+
+// A buffer whose contents are replaced as a whole, as large as the largest has been.
+class GrowingBuffer {
+ public:
+  // Returns the bytes that travelled.
+  template <class T>
+  std::size_t write(std::span<const T> items) {
+    if (items.size_bytes() > buffer_.size() || buffer_.size() == 0)
+      buffer_ = Buffer::writable(nullptr, std::max<std::size_t>(2 * items.size_bytes(), 256));
+    return buffer_.write(0, items.data(), items.size_bytes());
+  }
+  GLuint id() const { return buffer_.id(); }
+
+ private:
+  Buffer buffer_;
 };
 
 struct DestroyVertexArray {

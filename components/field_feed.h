@@ -1,0 +1,53 @@
+// What the touch clock tells a graphics card that steps a copy of a field by itself: every change of what acts on the
+// surface, in order. For fields without a closed form (has_closed_form); zones that only recover cost nothing here.
+//
+// A tick is: folds, sources and zones that changed, then kTick. What is not told again stays as it was. The card's copy
+// starts at kReset, with the whole surface at rest.
+#pragma once
+
+#include <array>
+#include <atomic>
+
+#include "components/field_source.h"
+#include "components/mesh.h"
+#include "runtime/exchange.h"
+
+namespace pliant {
+
+struct FieldEvent {
+  enum Kind : std::uint32_t {
+    kReset,        // everything is at rest
+    kFoldBefore,   // source `index` ended: its target one tick earlier
+    kFoldNow,      // ... and its last: both go into the residual of the zones that it reached in the last tick
+    kSource,       // source `index` is this from now on
+    kZone,         // zone `index` is awake, and the sources in `mask` reach it from now on
+    kOffsets,      // the next FieldOffsets are of zone `index` and source `mask`, for this tick
+    kFoldOffsets,  // the same for a fold
+    kTick,         // end of tick number `mask`
+  };
+  // Of a zone.
+  static constexpr std::uint32_t kRests = 1;   // at the end of this tick its residual is set to zero
+  static constexpr std::uint32_t kSleeps = 2;  // after this tick it is no longer awake
+
+  Kind kind = kTick;
+  std::uint32_t index = 0;
+  std::uint64_t mask = 0;
+  std::uint32_t flags = 0;
+  FieldSource source;
+};
+
+// Distance::kSurface: offsets of a zone's vertices from a source (systems/touch/surface_distance.h). [m]
+struct FieldOffsets {
+  std::array<vec3, kZoneSize> offset;
+};
+
+// One for each such field. Writer: touch. Reader: visual.
+struct FieldFeed {
+  FieldFeed(std::size_t event_capacity, std::size_t offset_capacity)
+      : events(event_capacity), offsets(offset_capacity) {}
+  Ring<FieldEvent> events;
+  Ring<FieldOffsets> offsets;
+  std::atomic<bool> wants_reset{false};  // the reader has just come and knows nothing
+};
+
+}  // namespace pliant

@@ -1,0 +1,84 @@
+// One step of the free surface by the cubic and the exponential law, as systems/touch/nonlinear_step.cpp takes it: the
+// discrete gradient, or backward Euler where the step is long for the spring (methods.md 1.2). Heights [m], forces per
+// unit of stiffness [m], mass m/k [s2], damping b/k [s].
+
+uniform uint law;  // SpringLaw: 0 linear, 1 cubic, 2 exponential, 3 standard linear solid
+uniform float cubic, stiffening;  // [1/m2] [1/m]
+uniform float dt;  // [s]
+
+// e^x to float precision; GLSL promises less for its own.
+float law_exp(float x) {
+  float n = floor(clamp(x, -80.0, 80.0) * 1.44269504 + 0.5);
+  float r = (x - n * 0.693359375) + n * 2.12194440e-4;
+  float p = ((((1.9875691500e-4 * r + 1.3981999507e-3) * r + 8.3334519073e-3) * r + 4.1665795894e-2) * r + 1.6666665459e-1) * r + 5.0000001201e-1;
+  return (p * r * r + r + 1.0) * intBitsToFloat((int(n) + 127) << 23);
+}
+
+// (e^x - 1 - x) / x^2, by its series where that cancels.
+float law_second(float x) {
+  if (abs(x) < 0.7) {
+    return 0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0 + x * (1.0 / 720.0 + x * (1.0 / 5040.0 + x * (1.0 / 40320.0 + x / 362880.0))))));
+  }
+  return (law_exp(x) - 1.0 - x) / (x * x);
+}
+
+float law_expm1(float x) { return x + x * x * law_second(x); }
+
+float law_force(float h) {
+  if (law == 1u) return h + cubic * h * h * h;
+  return h < 0.0 ? -law_expm1(-stiffening * h) / stiffening : h;
+}
+
+float law_slope(float h) {
+  if (law == 1u) return 1.0 + 3.0 * cubic * h * h;
+  return h < 0.0 ? 1.0 + law_expm1(-stiffening * h) : 1.0;
+}
+
+// (U(h0 + d) - U(h0)) / d without cancellation.
+float law_gradient(float h0, float d) {
+  float h1 = h0 + d;
+  if (law == 1u) return 0.5 * (h0 + h1) * (1.0 + 0.5 * cubic * (h0 * h0 + h1 * h1));
+  if (h0 >= 0.0 && h1 >= 0.0) return 0.5 * (h0 + h1);
+  if (h0 < 0.0 && h1 < 0.0) {
+    float x = -stiffening * d;
+    float em0 = law_expm1(-stiffening * h0), rise = x * law_second(x);
+    return -(em0 * (1.0 + rise) + rise) / stiffening;
+  }
+  float U0 = h0 * h0 * (h0 < 0.0 ? law_second(-stiffening * h0) : 0.5);
+  float U1 = h1 * h1 * (h1 < 0.0 ? law_second(-stiffening * h1) : 0.5);
+  return (U1 - U0) / d;  // d joins opposite sides of zero
+}
+
+// state and rate: (normal correction, height); target: what the spring pulls to, 0 if none.
+void law_step(inout vec4 state, inout vec4 rate, vec4 target, float m, float b) {
+  float h0 = state.w, v0 = rate.w;
+  bool stiff = law_slope(h0) * dt * dt > 2.25 * m;
+  float whole = (stiff ? 1.0 : 2.0) * m / (dt * dt);
+  float inertia = whole + b / dt;
+  float constant = -whole * dt * v0 - law_force(target.w);
+  // The spring only ever shortens the step that mass and damping alone would make: d lies between 0 and that.
+  float r = law_force(h0) + constant;
+  float farthest = -r / inertia;
+  float low = min(farthest, 0.0), high = max(farthest, 0.0);
+  float d = -r / (inertia + (stiff ? 1.0 : 0.5) * law_slope(h0));
+  for (int i = 0; i < 30 && r != 0.0; ++i) {
+    float h1 = h0 + d;
+    r = inertia * d + (stiff ? law_force(h1) : law_gradient(h0, d)) + constant;
+    if (r < 0.0) low = d; else high = d;
+    // The gradient's slope is near half the force's for steps this short; the bracket takes care of the rest.
+    float next = d - r / (inertia + (stiff ? 1.0 : 0.5) * law_slope(h1));
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    bool settled = abs(next - d) <= 1e-7 * (abs(h0) + abs(d));
+    d = next;
+    if (settled) break;
+  }
+  float slope = law_slope(h0 + 0.5 * d);
+  state.w = h0 + d;
+  rate.w = stiff ? d / dt : 2.0 * d / dt - v0;
+
+  // The normal correction is the gradient of the height: the law linearised at the middle of the step.
+  float m2 = 2.0 * m / dt;
+  vec3 mean = (m2 * rate.xyz - slope * state.xyz + law_slope(target.w) * target.xyz) / (m2 + b + 0.5 * dt * slope);
+  state.xyz += dt * mean;
+  rate.xyz = 2.0 * mean - rate.xyz;
+}

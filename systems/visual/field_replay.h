@@ -1,0 +1,91 @@
+// A field without a closed form, stepped on the card: shaders/replay.comp takes the same steps as the processor's
+// kernels (field_kernels.h), tick by tick, from what the touch clock tells (components/field_feed.h). Each picture's
+// ticks are one dispatch, one work group a zone that was awake in any of them; the state never leaves the card.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "components/field_feed.h"
+#include "components/world.h"
+#include "systems/touch/painted_motion.h"
+#include "systems/visual/field_gpu.h"
+
+namespace pliant {
+
+class ReplayProgram {
+ public:
+  static Result<ReplayProgram> make();
+
+ private:
+  friend class FieldReplay;
+  gpu::Program program_;
+};
+
+// One object's field.
+class FieldReplay {
+ public:
+  FieldReplay() = default;
+  FieldReplay(const Mesh& mesh, const Deformable& deformable, double dt);
+
+  // Takes what was told up to tick number `tick`. False while the newest field is in the zones that travel.
+  bool take(FieldFeed& feed, bool told, std::uint64_t tick);
+  // Takes these steps on the card and writes their last streams. Returns the bytes that travelled.
+  std::size_t evaluate(const ReplayProgram& program, const gpu::Buffer& stream);
+  bool at_rest() const { return awake_.empty() && runs_.empty(); }
+
+ private:
+  // What the shader reads, as its records of uvec4. One tick:
+  struct Row {
+    std::uint64_t used = 0, folded = 0;  // sources that are known; sources that end
+    std::uint32_t first_source = 0, first_fold = 0, pad[2] = {};
+  };
+  // Ticks [first, first + count) in which nothing changed about a zone. `before`: the sources of the tick before, which
+  // folds are of. Offsets: places of blocks, one a source of `mask`, one a folded source of `before`.
+  struct Run {
+    std::uint32_t first = 0, count = 0, zone = 0, flags = 0;
+    std::uint64_t mask = 0, before = 0;
+    std::uint32_t offsets = 0, fold_offsets = 0, pad[2] = {};
+  };
+  static constexpr std::uint32_t kNone = ~0u;
+  struct Zone {
+    std::uint64_t mask = 0, next = 0;  // of the last tick, and from this one on
+    std::uint32_t run = kNone;         // the one that goes on
+    std::uint32_t flags = 0;           // of this tick
+    bool awake = false;
+  };
+  struct Block {
+    std::uint32_t zone, source;
+    bool fold;
+    FieldOffsets offsets;
+  };
+
+  void reset();
+  void add(const FieldEvent& event, FieldFeed& feed);
+  void end_tick();
+  Run run_of(std::uint32_t zone, std::uint32_t tick, std::uint64_t folded);
+  std::uint32_t gather(std::uint32_t zone, std::uint64_t mask, bool fold);
+
+  Motion motion_;
+  bool lag_ = false, has_offsets_ = false;
+  bool began_ = false, clear_ = false;
+  std::uint32_t vertices_ = 0, stride_ = 0;
+  gpu::Buffer rest_, rest_yz_, state_, coefficients_;
+  gpu::GrowingBuffer sources_there_, steps_there_, offsets_there_;
+
+  std::vector<FieldSource> source_;  // as last told
+  std::uint64_t used_ = 0;
+  std::vector<Zone> zone_;
+  std::vector<std::uint32_t> awake_;  // zones
+  std::uint64_t folded_ = 0;          // of the tick that is being read
+  FieldSource fold_before_;
+  std::vector<Block> blocks_;
+  // Of all ticks since the last dispatch.
+  std::vector<Row> rows_;
+  std::vector<CardSource> sources_, folds_;  // folds: now and before
+  std::vector<Run> runs_;
+  std::vector<vec4> offsets_;  // kZoneSize a block
+};
+
+}  // namespace pliant
