@@ -54,6 +54,11 @@ Json schema_of(const Key& key, const Json& standard) {
     case KeyType::kVector:
       out["anyOf"] = Json::array({array(3), {{"type", "number"}}});
       break;
+    case KeyType::kPoints:
+      out["type"] = "array";
+      out["items"] = array(3);
+      out["maxItems"] = kMostPoints;
+      break;
     case KeyType::kBox: {
       const Json corner = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
       out["type"] = "object";

@@ -173,6 +173,22 @@ std::vector<Key> probe_keys() {
       number("radius", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::radius), "radius of every tip; 0: a point"));
   keys.push_back(number("length", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::length),
                         "length of a capsule's axis, from the node along its +Y; 0: none"));
+  Key points = key(
+      "points", "m", KeyType::kPoints,
+      "places of tips in the node's frame, at most 16, instead of the one at the node: a fork, a brush, a plate",
+      at(&LevelNode::probe, &Probe::points),
+      [](const std::vector<vec3>& places) {
+        Json json = Json::array();
+        for (const vec3& p : places) json.push_back({p.x, p.y, p.z});
+        return json;
+      },
+      [](const Json& json) {
+        std::vector<vec3> places;
+        for (const Json& p : json) places.emplace_back(p[0].get<float>(), p[1].get<float>(), p[2].get<float>());
+        return places;
+      });
+  points.range = {-1e3, 1e3};
+  keys.push_back(points);
   Key color = key(
       "color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
       [](vec3 c) {

@@ -10,7 +10,9 @@
 
 namespace pliant {
 
-enum class KeyType { kNumber, kFlag, kText, kChoice, kColor, kPair, kVector, kBox, kNode, kNumberOrMaterial };
+enum class KeyType { kNumber, kFlag, kText, kChoice, kColor, kPair, kVector, kPoints, kBox, kNode, kNumberOrMaterial };
+
+inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
 
 struct KeyRange {
   double min = -std::numeric_limits<double>::infinity();

@@ -60,6 +60,12 @@ std::string check_value(const Key& key, const Json& value) {
     case KeyType::kVector:
       if (value.is_number()) return number();
       return numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
+    case KeyType::kPoints: {
+      const bool good = value.is_array() && value.size() <= kMostPoints &&
+                        std::all_of(value.begin(), value.end(),
+                                    [&](const Json& each) { return numbers(each, 3, key.range); });
+      return good ? "" : fmt::format("is {}, not a list of at most {} points [x, y, z]", given, kMostPoints);
+    }
     case KeyType::kBox: {
       const KeyRange any{-1e6, 1e6};
       bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&

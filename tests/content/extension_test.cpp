@@ -157,6 +157,9 @@ TEST(Extension, SetReachesEveryKeyAndSaysWhatItDidNotUnderstand) {
   EXPECT_TRUE(level.nodes[0].deformable->contact_damping_material);
   EXPECT_EQ(set(level, "tip.probe.color=[1, 0.5, 0]"), "");
   EXPECT_EQ(level.nodes[2].probe->color, vec3(1, 0.5f, 0));
+  EXPECT_EQ(set(level, "tip.probe.points=[[0, 0, 0.01], [0.01, 0, 0]]"), "");
+  ASSERT_EQ(level.nodes[2].probe->points.size(), 2u);
+  EXPECT_EQ(level.nodes[2].probe->points[0], vec3(0, 0, 0.01f));
   EXPECT_EQ(set(level, "tip.probe.device=hand"), "");
   EXPECT_EQ(set(level, "hand.haptic_device.driver=null"), "") << "a word that is also JSON";
   EXPECT_EQ(set(level, "*.simulation.touch_rate=4000"), "");
@@ -187,6 +190,8 @@ TEST(Extension, SetReachesEveryKeyAndSaysWhatItDidNotUnderstand) {
   says("tip.deformable.stiffness=3", "nodes that have one: belly");
   says("tip.probe.device=nobody", "nobody");
   says("*.deformable.friction_static=-0.1", "range");
+  for (const char* points : {"3", "[1, 2, 3]", "[[1, 2]]", "[[0, 0, 1e9]]", "[[0, 0, null]]"})
+    says((std::string("tip.probe.points=") + points).c_str(), "a list of at most 16 points");
 }
 
 TEST(Extension, TheSchemasInDocsAreThoseOfTheTable) {
