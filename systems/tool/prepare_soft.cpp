@@ -43,6 +43,7 @@ void add_soft(const World& world, SoftState& soft) {
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
     state->self_collides = handle != nullptr;  // fingers pinch; a lump does not
+    state->settle(world.simulation.gravity);
     add(soft, entity, std::move(state));
   }
 }

@@ -11,6 +11,10 @@ namespace {
 
 constexpr double kLeadMass = 1e4;     // [kg] of what leads a handle: far above any tool's
 constexpr double kLeadInertia = 1e2;  // [kg m2]
+// Steps so long that little is left of inertia, from rest each: what they have not settled is far below what is seen.
+constexpr double kSettleStep = 0.1;  // [s]
+constexpr int kSettleSteps = 40;
+constexpr double kSettled = 1e-9;  // [1] of the body's size
 
 FleshMaterial material_of(const SoftBody& body) {
   return {.young = body.young,
@@ -174,6 +178,23 @@ void SoftBodyState::halt() {
   std::fill(flesh_.velocity().begin(), flesh_.velocity().end(), dvec3(0));
   std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
   if (handle_) handle_->set_velocity(Vector6::Zero());
+}
+
+void SoftBodyState::settle(dvec3 gravity) {
+  if (!handle_) return;
+  const RigidMotion there = handle_->motion();
+  const double small = kSettled * length(box_size(tets_));
+  for (int i = 0; i < kSettleSteps; ++i) {
+    lead_handle(there);
+    free_step(kSettleStep, gravity);
+    if (!solvable_ || !velocity_.allFinite()) break;  // the first step will say so
+    const double moved = kSettleStep * velocity_.lpNorm<Eigen::Infinity>();
+    advance(kSettleStep);
+    halt();
+    if (moved < small) break;
+  }
+  halt();
+  led_.reset();
 }
 
 void SoftBodyState::advance(double T) {

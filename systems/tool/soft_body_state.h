@@ -58,6 +58,10 @@ class SoftBodyState final : public Body {
   // [m], [rad] from where `handle` ends a step to where it was led; zero where it is not led.
   Vector6 short_of_lead(const RigidMotion& handle) const;
 
+  // Before the first step: a tool's flesh as it rests under gravity while its handle is held where it is. Left in its
+  // rest shape it would fall and sway, and the hand would be given that work. Nothing without a handle.
+  void settle(dvec3 gravity);
+
   // --- Of the handle; all of the last free_step, at its beginning, unless said otherwise. Only with a handle.
   bool has_handle() const { return handle_.has_value(); }
   const Handle6& handle_settings() const { return settings_; }

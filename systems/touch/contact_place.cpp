@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/touch/around_vertex.h"
+
 namespace pliant {
 namespace {
 
@@ -69,6 +71,53 @@ std::size_t nearest_creases(const ObjectState& object, const Mesh& mesh, dvec3 x
   return met;
 }
 
+// A place to descend from on this side of a crease.
+struct Start {
+  std::uint32_t triangle;
+  dvec3 barycentric;
+  std::uint32_t vertex = kBorder;  // that it is, if no crease comes to it: then it says which side this is
+};
+constexpr int kMostVertices = 512;  // on the way
+
+// From vertex to vertex, each nearer to x than the last, without crossing an edge that the foot may not cross: a patch
+// takes a hundred times as long. Where that does not lead away from the crease, its own nearest point is the start.
+Start start_on_side(const ObjectState& object, const Mesh& mesh, const NearCrease& crease, dvec3 x) {
+  const auto crosses = [&](std::uint32_t t, int edge) {
+    return !mesh.is_crease(t, edge) &&
+           (object.closed.empty() ||
+            !std::binary_search(object.closed.begin(), object.closed.end(), 3 * t + static_cast<std::uint32_t>(edge)));
+  };
+  const auto distance2 = [&](std::uint32_t v) {
+    const dvec3 d = dvec3(mesh.position(v)) - x;
+    return dot(d, d);
+  };
+  std::uint32_t triangle = crease.triangle, vertex = mesh.triangles[triangle][(crease.edge + 2) % 3];
+  double best = distance2(vertex);
+  if (!(best < crease.distance * crease.distance)) return {crease.triangle, crease.barycentric};
+  bool at_crease = false;
+  for (int step = 0; step < kMostVertices; ++step) {
+    const std::uint32_t from = vertex;
+    at_crease = false;
+    around_vertex(mesh, from, triangle, crosses, [&](std::uint32_t t) {
+      const int corner = corner_of(mesh.triangles[t], from);
+      at_crease = at_crease || !crosses(t, corner) || !crosses(t, (corner + 2) % 3);
+      for (int i = 0; i < 3; ++i) {
+        const std::uint32_t v = mesh.triangles[t][i];
+        if (v == from || v == vertex) continue;
+        const double d2 = distance2(v);
+        if (!(d2 < best)) continue;
+        best = d2;
+        vertex = v;
+        triangle = t;
+      }
+    });
+    if (vertex == from) break;
+  }
+  dvec3 corner(0);
+  corner[corner_of(mesh.triangles[triangle], vertex)] = 1;
+  return {triangle, corner, at_crease ? kBorder : vertex};
+}
+
 }  // namespace
 
 FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x) {
@@ -85,6 +134,8 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
   }
   std::uint32_t count = 1;
   const double same = kSameFoot * static_cast<double>(mesh.mean_edge);
+  std::array<std::uint32_t, kMostCreases> started;
+  std::size_t starts = 0;
   for (std::size_t i = 0; i < near; ++i) {
     const NearCrease& crease = creases[i];
     // A flat side whose foot is known.
@@ -93,7 +144,12 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
              std::abs(dot(f.p, crease.normal) - crease.offset) < same;
     };
     if (std::any_of(feet.begin(), feet.begin() + count, same_side)) continue;
-    const Foot foot = descend(mesh, crease.triangle, crease.barycentric, x, false, object.closed);
+    const Start start = start_on_side(object, mesh, crease, x);
+    if (start.vertex != kBorder) {
+      if (std::find(started.begin(), started.begin() + starts, start.vertex) != started.begin() + starts) continue;
+      started[starts++] = start.vertex;
+    }
+    const Foot foot = descend(mesh, start.triangle, start.barycentric, x, false, object.closed);
     if (!(foot.height < 0) || -foot.height > farthest || dot(foot.normal, own.normal) < kThin) continue;
     const auto is_same = [&](const Foot& f) {
       return length(f.p - foot.p) < same + 1e-9 * length(f.p) && dot(f.normal, foot.normal) > 0.999;

@@ -14,6 +14,7 @@ constexpr float kSmallestBall = 0.012f;  // radius; smaller probes would not be 
 constexpr float kRodLength = 0.16f;
 constexpr float kRodRadius = 0.42f;       // of the ball's radius
 constexpr float kLean = 0.7f;             // [rad] of the rod from the way out
+constexpr float kCovered = 0.93f;         // [1] cosine: an arrow this near to the stylus is hidden by it
 constexpr float kArrowPerNewton = 0.10f;  // [1/N]
 constexpr float kLongestArrow = 0.30f;
 constexpr float kArrowRadius = 0.0055f;
@@ -151,10 +152,20 @@ void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const V
   const vec3 out = outward(probe);
   if (probe.length > 0 || !probe.points.empty()) return lay_out_tips(probe, radius);
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
-  // The stylus leans away from the arrow, always clockwise as seen, so that both can be told apart.
-  const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye));
-  const vec3 lean =
-      normalize(std::cos(kLean) * out + std::sin(kLean) * cross(forward, out) + 0.2f * vec3(viewpoint.up));
+  // The stylus leans away from the arrow, clockwise as seen, so that both can be told apart; elsewhere where it would
+  // cover the arrow of one of several contacts.
+  const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye)), right = cross(forward, out);
+  const auto leaning = [&](vec3 to) {
+    return normalize(std::cos(kLean) * out + std::sin(kLean) * to + 0.2f * vec3(viewpoint.up));
+  };
+  const auto covers = [&](vec3 lean) {
+    for (std::uint32_t i = 0; i < probe.contact_count && probe.contact_count > 1; ++i)
+      if (dot(lean, vec3(probe.contacts[i].force)) > kCovered * length(vec3(probe.contacts[i].force))) return true;
+    return false;
+  };
+  vec3 lean = leaning(right);
+  for (const vec3 to : {-right, forward, -forward})
+    if (covers(lean)) lean = leaning(to);
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
 }
 

@@ -54,15 +54,15 @@ TEST_P(ShippedLevel, RunsAndEveryProbeTouchesWithoutGettingEnergy) {
   const Json json = report("out");
   EXPECT_EQ(json["level"], fs::path(file).stem().string());
   EXPECT_EQ(json["overruns"], 0);
-  // A level that ships has nothing to explain, but for the few ticks in which a tool's inertia is felt before the hand
-  // has given it any energy.
-  // The beginning of a level is just those ticks, and nothing is touched in it yet.
+  // A level that ships has nothing to explain. But in `hand_crowd` the hand lies against a body from the first moment,
+  // which both take two ticks to find out; and where only the beginning is run, nothing may be touched in it yet.
+  const int settling = GetParam() == std::string("hand_crowd.glb") ? 2 : 0;
   for (const Json& sentence : json["dropped"])
-    EXPECT_TRUE(sentence.get<std::string>().find("tool `hand`: the force was damped") != std::string::npos ||
-                (begun && sentence.get<std::string>().find("tool `hand` never touched anything") != std::string::npos))
+    EXPECT_TRUE(
+        (settling > 0 && sentence.get<std::string>().find("tool `hand`: the force was damped in 2 ticks") == 0) ||
+        (begun && sentence.get<std::string>().find("tool `hand` never touched anything") == 0))
         << sentence;
-  for (const Json& probe : json["probes"])
-    if (!begun) EXPECT_LE(probe["withheld"]["ticks"].get<double>(), 0.012 * json["ticks"].get<double>()) << probe;
+  for (const Json& probe : json["probes"]) EXPECT_LE(probe["withheld"]["ticks"], settling) << probe;
   ASSERT_FALSE(json["probes"].empty());
   for (const Json& probe : json["probes"]) {
     if (!begun) {

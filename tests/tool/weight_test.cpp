@@ -61,6 +61,21 @@ TEST(Weight, OfAToolThatNothingCarriesIsFeltAndComesInAgainAfterALoss) {
   expect_all_of_it();
 }
 
+// Flesh hangs as it will rest: nothing falls, and the hand is given nothing.
+TEST(Weight, OfFleshHangsFromTheBeginning) {
+  Held held(true);
+  const std::vector<dvec3> first = held.stage.flesh(held.tool).flesh().position();
+  double most = 0.0, sag = 0.0;
+  held.stage.lead(held.tool, dvec3(0), 0.3, [&] { most = std::max(most, length(held.force())); });
+  const Flesh& flesh = held.stage.flesh(held.tool).flesh();
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_LT(length(flesh.position()[i] - first[i]), 1e-7);
+    sag = std::max(sag, -first[i].y - 0.015);
+  }
+  EXPECT_LT(most, 1e-4 * length(held.weight));
+  EXPECT_GT(sag, 1e-6) << "the lowest nodes are lower than at rest";
+}
+
 TEST(Weight, IsFeltOnTheWayDownAsOnTheWayUp) {
   Held held(false);
   held.stage.lead(held.tool, dvec3(0), 2.0);
