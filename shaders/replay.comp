@@ -121,7 +121,10 @@ void main() {
           rate = coefficient[c + 2u] * x + coefficient[c + 3u] * w;
         }
       }
-      if (t + 1u == end && (run.w & 1u) != 0u) residual = rate = arm = relaxed = vec4(0);
+      if (t + 1u == end && (run.w & 1u) != 0u) {
+        residual = rate = arm = vec4(0);
+        if (acting.xy == uvec2(0u)) relaxed = vec4(0);  // what is pressed still remembers
+      }
       shown = residual + (follows ? target : vec4(0));
     }
   }

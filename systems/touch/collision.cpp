@@ -12,6 +12,7 @@
 #include "systems/touch/around_vertex.h"
 #include "systems/touch/contact_place.h"
 #include "systems/touch/field.h"
+#include "systems/touch/seam_dents.h"
 #include "systems/touch/seams.h"
 #include "systems/touch/surface_query.h"
 #include "systems/touch/triangle_tree.h"
@@ -168,8 +169,10 @@ bool is_known(const Search& s, const ProbeTip& tip, const Foot& foot) {
   return false;
 }
 
-// A foot that has come to a seam goes on upon the other surface, with all that belongs to the contact.
-bool carry_over(const Search& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
+// A foot that has come to a seam goes on upon the other surface, with all that belongs to the contact; or it waits
+// between both.
+enum class AtSeam { kStays, kBetween, kCarried };
+AtSeam carry_over(const Search& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
   TouchState& touch = *s.world.touch;
   ObjectState& object = touch.objects[seam.object];
   const ProbeTip tip{contact.probe, contact.tip, source.tip};
@@ -178,13 +181,13 @@ bool carry_over(const Search& s, const Seam& seam, SourceState& source, Contact&
   const Pose& pose = s.world.registry.get<Pose>(object.entity);
   const dvec3 x = pose.to_local(world);
   Foot foot = there.downhill(seam.triangle, closest_on_triangle(there.mesh, seam.triangle, x).barycentric, x);
-  // Between both, and not yet over the other one.
-  if (seam_at(object, foot) && &object != &s.object) return false;
-  if (foot.height >= tip.tip.radius * (1 + kAhead) || (foot.height < 0) != (source.place.height < 0)) return false;
+  if (seam_at(object, foot) && &object != &s.object) return AtSeam::kBetween;
+  if (foot.height >= tip.tip.radius * (1 + kAhead) || (foot.height < 0) != (source.place.height < 0))
+    return AtSeam::kStays;
   if (!is_known(there, tip, foot)) {
     const Contact before = contact;
     SourceState* to = there.free_source();
-    if (!to) return false;
+    if (!to) return AtSeam::kStays;
     begin(there, tip, foot, x, x);
     Contact& after = s.world.registry.get<Contact>(to->contact);
     const dquat turn = glm::conjugate(pose.rotation) * s.world.registry.get<Pose>(s.object.entity).rotation;
@@ -195,9 +198,10 @@ bool carry_over(const Search& s, const Seam& seam, SourceState& source, Contact&
     after.bristle = turn * before.bristle;
     after.sliding = before.sliding;
     after.load = before.load;
+    hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, seam.object, *to);
   }
   drop(source, contact);
-  return true;
+  return AtSeam::kCarried;
 }
 
 void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
@@ -209,10 +213,12 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   contact.older_height = contact.previous_height;
   contact.previous_height = contact.height;
   const bool front = foot.height >= 0;
+  AtSeam at_seam = AtSeam::kStays;
   if (const Seam* seam = seam_at(s.object, foot))
-    if (carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x))) return;
+    at_seam = carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x));
+  if (at_seam == AtSeam::kCarried) return;
   // Past the rim of an open surface, or so far away that no place on it means anything any more.
-  if ((beyond_border(s.mesh, foot, x) && !(front && radius > 0)) ||
+  if ((at_seam == AtSeam::kStays && beyond_border(s.mesh, foot, x) && !(front && radius > 0)) ||
       std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
       foot.height > radius * (1 + 2 * kAhead))
     return drop(source, contact);

@@ -12,14 +12,15 @@
 namespace pliant {
 namespace {
 
-void set_to_rest(HeightField& field, std::uint32_t zone) {
+// What is pressed still remembers.
+void set_to_rest(HeightField& field, std::uint32_t zone, bool reached) {
   const auto clear = [&](std::vector<vec4>& values) {
     if (!values.empty()) std::fill_n(values.begin() + zone * kZoneSize, kZoneSize, vec4(0));
   };
   clear(field.residual);
   clear(field.rate);
   clear(field.arm);
-  clear(field.relaxed);
+  if (!reached) clear(field.relaxed);
   field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneResidual);
 }
 
@@ -95,8 +96,7 @@ void dynamics(World& world, Tick tick) {
       ZoneTargets targets;
       if (reached || lag) gather_targets(object, mesh, zone, targets);
 
-      if (!lag && !field.relaxed.empty() && (reached || (field.zone_state[zone] & kZoneResidual)) &&
-          step_relaxed(object.motion, mesh, field, zone, targets, reached))
+      if (!lag && !field.relaxed.empty() && step_relaxed(object.motion, mesh, field, zone, targets, reached))
         field.zone_state[zone] |= kZoneResidual;
 
       // The residual moves; once at rest it is exactly zero.
@@ -105,7 +105,7 @@ void dynamics(World& world, Tick tick) {
         const ZoneRest rest = lag ? step_lagging(object.motion, object.painted, field, zone, targets)
                                   : step_residual(object.motion, object.painted, field, zone);
         if (rest.height < rest_height && rest.normal < kRest && !(lag && reached)) {
-          set_to_rest(field, zone);
+          set_to_rest(field, zone, reached);
           moving = false;
           rests = true;
         }

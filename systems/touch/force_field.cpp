@@ -9,45 +9,19 @@
 
 #include "systems/touch/amplitude.h"
 #include "systems/touch/contact_law.h"
+#include "systems/touch/dent.h"
 #include "systems/touch/field.h"
 #include "systems/touch/field_kernels.h"
+#include "systems/touch/seam_dents.h"
 #include "systems/touch/surface_distance.h"
 
 namespace pliant {
 namespace {
 
-void wake(HeightField& field, std::uint32_t zone, std::uint8_t why) {
-  field.zone_state[zone] |= why;
-  if (field.zone_state[zone] & kZoneListed) return;
-  field.zone_state[zone] |= kZoneListed;
-  field.awake.push_back(zone);  // capacity: all zones
-}
-
 // Half-space shapes have an inner radius: the contact circle of a sphere, and at least this share of the reach.
 constexpr double kInnerShare = 0.2;
 // How much of the reach a bulge may count for under a probe.
 constexpr double kMostBulge = 0.25;
-
-// Zones within reach that hang together with the contact's own, so that a neighbouring fold is not dented.
-void flood(const Mesh& mesh, const Contact& contact, double reach, ObjectState& object,
-           std::vector<std::uint32_t>& zones) {
-  zones.clear();
-  const std::uint32_t stamp = ++object.stamp;
-  const vec3 center(contact.foot);
-  const float reach2 = static_cast<float>(reach * reach);
-  const auto offer = [&](std::uint32_t zone) {
-    if (object.visited[zone] == stamp) return;
-    object.visited[zone] = stamp;
-    const Box& box = mesh.zone_box[zone];
-    const vec3 d = glm::max(glm::max(box.min - center, center - box.max), vec3(0));
-    if (dot(d, d) < reach2) zones.push_back(zone);  // capacity: all zones
-  };
-  const uvec3 t = mesh.triangles[contact.triangle];
-  for (int i = 0; i < 3; ++i) offer(t[i] / kZoneSize);
-  for (std::size_t i = 0; i < zones.size(); ++i)
-    for (std::uint32_t n = mesh.zone_neighbour_first[zones[i]]; n < mesh.zone_neighbour_first[zones[i] + 1]; ++n)
-      offer(mesh.zone_neighbours[n]);
-}
 
 // Net volume of h = -alpha f, f = w (1 - c u), over the curved mesh to second order: sum A (h + H h^2). Solved for the
 // c that leaves 1 - chi of what w alone would displace.
@@ -63,37 +37,6 @@ float volume_coefficient(const VolumeSums& s, double alpha, double chi) {
     c -= g / dg;
   }
   return static_cast<float>(std::clamp(c, 0.0, 10.0));
-}
-
-vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh, std::uint32_t v) {
-  if (!source.offset.empty()) return target_at_offset(s, source.offset[v], mesh.normal(v));
-  return target_at(s, mesh.position(v), mesh.normal(v));
-}
-
-// The contact has ended, or the surface is left behind: what was held down is now on its own way back to rest.
-void fold(SourceState& source, ObjectState& object, const Deformable& deformable, const Mesh& mesh, HeightField& field,
-          Tick tick, std::uint32_t& dropped) {
-  source.active = false;
-  if (source.now.amplitude == 0.0f && source.before.amplitude == 0.0f) return;
-  // A tip that stops does not throw the surface on: left behind, it starts with no speed inwards.
-  if (source.now.amplitude > source.before.amplitude) source.before = source.now;
-  if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
-  if (object.on_card) return remember_release(object, {source.now, source.before, tick.time}, dropped);
-  const float inv_dt = static_cast<float>(1 / tick.dt);
-  const std::uint32_t number = static_cast<std::uint32_t>(&source - object.sources.data());
-  object.teller.fold(number, source.before, source.now);
-  for (const std::uint32_t zone : source.zones) {
-    if (!source.offset.empty()) object.teller.offsets(number, zone, source.offset, true);
-    for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
-      const vec4 now = source_at(source, source.now, mesh, v);
-      const vec4 before = source_at(source, source.before, mesh, v);
-      field.residual[v] += now;
-      field.rate[v] += (now - before) * inv_dt;
-      // As if the arm had not relaxed at all; what it has, dynamics hands over (field_kernels.h, step_relaxed).
-      if (!field.arm.empty()) field.arm[v] += arm_stiffness(object.motion, mesh, v) * now;
-    }
-    wake(field, zone, kZoneResidual);
-  }
 }
 
 // A probe can press the surface down but not pull it up: when it lifts faster than the surface would rise by itself,
@@ -186,11 +129,11 @@ void force_field(World& world, Tick tick) {
         object.zone_sources[zone] = 0;
         if (!object.on_card) field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneReached);
       }
+      if (source.contact == kNoEntity) continue;  // an echo
       Contact& contact = world.registry.get<Contact>(source.contact);
       const bool touching = contact.state != ContactState::kFree && contact.height < 0;
       const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, mesh, object.motion);
-      if (source.active && (!touching || left_behind))
-        fold(source, object, deformable, mesh, field, tick, world.dropped);
+      if (source.active && (!touching || left_behind)) fold(source, object, world, tick);
       if (!touching) {
         if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
         source.zones.clear();
@@ -215,7 +158,9 @@ void force_field(World& world, Tick tick) {
         source.active = true;
       }
       if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
-      flood(mesh, contact, 1 / std::sqrt(double(source.now.inv_reach2)), object, source.zones);
+      const uvec3 corner = mesh.triangles[contact.triangle];
+      const std::array<std::uint32_t, 3> own{corner.x / kZoneSize, corner.y / kZoneSize, corner.z / kZoneSize};
+      flood(mesh, vec3(contact.foot), 1 / std::sqrt(double(source.now.inv_reach2)), own, object, source.zones);
       if (!source.offset.empty()) march_distance(mesh, contact, source.now, source.offset, source.heap);
       if (source.now.shape == Shape::kVolume) {
         VolumeSums sums;
@@ -231,17 +176,9 @@ void force_field(World& world, Tick tick) {
     }
     solve({active.data(), count}, deformable, mesh, field, object, tick);
 
-    for (std::size_t i = 0; i < count; ++i) {
-      const SourceState& source = *active[i].source;
-      const std::uint32_t number = static_cast<std::uint32_t>(&source - object.sources.data());
-      object.teller.source(number, source.now);
-      for (const std::uint32_t zone : source.zones) {
-        object.zone_sources[zone] |= std::uint64_t{1} << number;
-        if (!source.offset.empty()) object.teller.offsets(number, zone, source.offset, false);
-        if (!object.on_card) wake(field, zone, kZoneReached);
-      }
-    }
+    for (std::size_t i = 0; i < count; ++i) mark_reached(*active[i].source, object, field);
   }
+  echo_dents(world, tick);
 }
 
 }  // namespace pliant

@@ -112,6 +112,16 @@ Entity make_contact(Registry& registry, Entity object, std::size_t slot) {
   return entity;
 }
 
+// As many as its neighbours' contacts may need.
+void make_echoes(const World& world, ObjectState& object) {
+  object.first_echo = static_cast<std::uint32_t>(object.sources.size());
+  const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+  if (object.seam_zones.empty() || deformable.distance == Distance::kSurface) return;
+  const std::size_t wanted = 2 * object.sources.size();
+  while (object.sources.size() < std::min<std::size_t>(wanted, kMaxContactsPerObject))
+    object.sources.push_back(make_source(kNoEntity, world.meshes[deformable.mesh], deformable));
+}
+
 bool something_presses(Registry& registry) {
   for (auto [entity, body] : registry.view<const RigidBody>())
     if (!body.fixed) return true;
@@ -232,6 +242,7 @@ Status prepare_touch(World& world) {
     }
   }
   if (something_presses(registry)) make_presses(world, *touch);
+  for (ObjectState& object : touch->objects) make_echoes(world, object);
   snapshot.probes.resize(touch->probes.size());
   touch->moving = find_moving(world, *touch);
   snapshot.moved = moved_snapshots(world, *touch);

@@ -113,6 +113,18 @@ void find_seams(const World& world, TouchState& touch) {
     for (const Seam& seam : object.seams)
       if (std::find(object.neighbours.begin(), object.neighbours.end(), seam.object) == object.neighbours.end())
         object.neighbours.push_back(seam.object);
+    for (const Seam& seam : object.seams) {
+      const uvec3 here = mesh.triangles[seam.edge / 3];
+      const Mesh& other = world.meshes[registry.get<Deformable>(touch.objects[seam.object].entity).mesh];
+      const uvec3 there = other.triangles[seam.triangle];
+      auto& list = seam.object == i ? object.cracks : object.seam_zones;
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l) list.push_back({here[k] / kZoneSize, seam.object, there[l] / kZoneSize});
+    }
+    for (auto* list : {&object.cracks, &object.seam_zones}) {
+      std::sort(list->begin(), list->end());
+      list->erase(std::unique(list->begin(), list->end()), list->end());
+    }
     std::sort(object.closed.begin(), object.closed.end());
     object.closed.erase(std::unique(object.closed.begin(), object.closed.end()), object.closed.end());
   }

@@ -29,6 +29,14 @@ struct Tip {
   double radius = 0;  // [m] 0: a point
 };
 
+// A source of an object, by their places.
+struct SourceLink {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t object = kNone, source = kNone;
+  bool valid() const { return object != kNone; }
+  bool operator==(const SourceLink&) const = default;
+};
+
 // One place of an object's pool: a contact, where it is, and its share in the object's field.
 struct SourceState {
   Entity contact;                    // has a Contact
@@ -41,6 +49,8 @@ struct SourceState {
   FieldSource now, before;           // this tick's and the last tick's: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
   std::vector<vec3> offset;          // [m] Distance::kSurface only, per vertex: see surface_distance.h
+  SourceLink of;                     // an echo: of this source of a neighbour (seam_dents.h)
+  std::uint64_t echoed = 0;          // tick after which it last was one
   std::vector<MarchItem> heap;       // working memory of the march; its capacity is what matters
 };
 
@@ -69,12 +79,22 @@ struct Seam {
   std::uint32_t triangle = 0;  // of that object, where it goes on
 };
 
+// A zone that a seam leads out of, and the zone where it goes on.
+struct SeamZones {
+  std::uint32_t zone = 0;
+  std::uint32_t object = 0;  // its place in TouchState::objects
+  std::uint32_t other = 0;   // of that object
+  auto operator<=>(const SeamZones&) const = default;
+};
+
 // One Deformable, as the systems need it.
 struct ObjectState {
   Entity entity;
   Motion motion;  // where nothing is painted
   PaintedMotion painted;
   std::vector<Seam> seams;                  // by edge, ascending
+  std::vector<SeamZones> seam_zones;        // to other objects, each pair once
+  std::vector<SeamZones> cracks;            // to zones of its own
   std::vector<std::uint32_t> neighbours;    // objects that seams lead to, each once
   std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot goes over them
   BoxTree crease_boxes;                     // of `creases`, object frame
@@ -90,7 +110,8 @@ struct ObjectState {
   std::vector<FieldSource> terms;           // card only: the whole field at `time`
   FieldTeller teller;                       // where the card steps a copy of the field
   double time = 0.0;                        // [s] end of the last tick
-  std::vector<SourceState> sources;         // a pool for probes, then one per press; capacity kMaxContactsPerObject
+  std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject
+  std::uint32_t first_echo = 0;             // of sources
   std::vector<PressState> presses;          // empty unless the level has something soft or rigid that moves
   std::vector<std::uint64_t> zone_sources;  // per zone: which sources reach it this tick
   std::vector<std::uint32_t> visited;       // per zone: stamp of the last flood that came by

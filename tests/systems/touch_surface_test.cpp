@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "systems/touch/publish.h"
 #include "tests/systems/touch_laws.h"
@@ -132,6 +133,81 @@ TEST(TouchSurface, SlidingOverASeamOfTwoFlushNodesChangesNothing) {
         if (mu == 0.0) EXPECT_LT(length(raw_force(stage, probe) - before), 0.01 * law(d, 0.003));
       }
     }
+  }
+}
+
+// Heights of a surface by where its vertices are in the world; seams have two at one place.
+void add_heights(Stage& stage, Entity surface, std::map<std::pair<int, int>, std::vector<float>>& heights) {
+  const Mesh& mesh = stage.mesh(surface);
+  const Pose& pose = stage.world.registry.get<Pose>(surface);
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const dvec3 x = pose.to_world(dvec3(mesh.position(v)));
+    heights[{static_cast<int>(std::lround(x.x * 1e5)), static_cast<int>(std::lround(x.z * 1e5))}].push_back(
+        stage.field(surface).stream[v].w);
+  }
+}
+
+// Two nodes side by side, a crack in one mesh, or nothing between them: pressed, slid over and left, all look the same.
+TEST(TouchSurface, ADentGoesOnOverASeamAsIfThereWereNone) {
+  constexpr int kCells = 24;
+  constexpr double kSize = 0.12;
+  const Primitive half = scenes::sheet(kCells, kSize);
+  Primitive both = half;
+  for (const vec3& x : half.position) both.position.push_back(x + vec3(kSize, 0, 0));
+  for (const std::uint32_t i : half.index) both.index.push_back(i + static_cast<std::uint32_t>(half.position.size()));
+  Primitive cracked = both;
+  for (std::size_t v = half.position.size(); v < cracked.position.size(); ++v)
+    cracked.position[v].x += static_cast<float>(0.01 * kSize / kCells);
+  for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kStandardLinearSolid}) {
+    Deformable d = frictionless(law);
+    d.shape = Shape::kWendland;
+    d.reach = 0.025;
+    Stage one, two, crack;
+    std::vector<std::pair<Stage*, std::vector<Entity>>> scenes;
+    scenes.push_back({&one, {one.add(both, d)}});
+    scenes.push_back({&two, {two.add(half, d), two.add(half, d, Pose{{kSize, 0, 0}})}});
+    scenes.push_back({&crack, {crack.add(cracked, d)}});
+    std::vector<Entity> hands;
+    for (auto& [stage, surfaces] : scenes) {
+      hands.push_back(stage->add_probe({0.03, 0.002, 0.0037}));
+      stage->prepare();
+    }
+    const auto go = [&](dvec3 to, double seconds) {
+      for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i].first->move(hands[i], to, seconds);
+    };
+    const auto compare = [&](const char* when) {
+      std::map<std::pair<int, int>, std::vector<float>> want, got;
+      add_heights(one, scenes[0].second[0], want);
+      for (const Entity surface : scenes[1].second) add_heights(two, surface, got);
+      double largest = 0;
+      for (const auto& [at, heights] : want) {
+        largest = std::max<double>(largest, std::abs(heights[0]));
+        for (const float h : got.at(at)) EXPECT_NEAR(h, heights[0], 2e-6) << int(law) << ' ' << when << ' ' << at.first;
+      }
+      const HeightField& torn = crack.field(scenes[2].second[0]);
+      float deepest = 0;
+      for (const vec4& s : torn.stream) deepest = std::min(deepest, s.w);
+      EXPECT_NEAR(-deepest, largest, 0.02 * largest) << when;
+      return largest;
+    };
+    go({0.03, -0.004, 0.0037}, 0.05);
+    EXPECT_GT(compare("pressed"), 0.003);
+    for (const double x : {0.05, 0.055, 0.059, 0.061, 0.07, 0.058}) {
+      go({x, -0.004, 0.0037}, 0.04);
+      EXPECT_GT(compare("slid"), 0.003) << x;
+    }
+    go({0.058, 0.02, 0.0037}, 0.01);
+    EXPECT_GT(compare("left"), 0.0005);
+    go({0.058, 0.02, 0.0037}, 0.02);
+    compare("recovering");
+    // Beyond the crack it is dented too.
+    go({0.057, 0.001, 0.0037}, 0.5);
+    go({0.057, -0.004, 0.0037}, 0.05);
+    const Mesh& mesh = crack.mesh(scenes[2].second[0]);
+    float beyond = 0;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+      if (mesh.px[v] > 0.0600001f) beyond = std::min(beyond, crack.field(scenes[2].second[0]).stream[v].w);
+    EXPECT_LT(beyond, -0.003);
   }
 }
 

@@ -55,6 +55,34 @@ TEST(TouchTissue, TheTissueRemembersWhereItWasPressed) {
   EXPECT_LT(meter.work, 0.0);
 }
 
+// The trail of a slide comes to rest while the probe still presses: that must not touch what is remembered under it.
+TEST(TouchTissue, APressThatIsHeldKeepsItsMemoryWhenItsTrailHasGone) {
+  Stage stage;
+  Deformable d = frictionless(SpringLaw::kStandardLinearSolid);
+  d.stiffness = 200;
+  d.relaxation_stiffness = 600;
+  d.relaxation_time = 0.05;
+  const Entity sheet = stage.add(scenes::sheet(100, 0.2), d);
+  const Entity probe = stage.add_probe({-0.005, 0.001, 0});
+  stage.prepare();
+  stage.move(probe, {-0.005, -0.003, 0}, 0.02);
+  stage.wait(0.2);
+  stage.move(probe, {0.012, -0.003, 0}, 0.05);
+  stage.move(probe, {-0.005, -0.003, 0}, 0.05);
+  stage.wait(0.4);
+  const auto trail = [&] {
+    float most = 0;
+    for (const vec4& r : stage.field(sheet).residual) most = std::max(most, std::abs(r.w));
+    return most;
+  };
+  EXPECT_GT(trail(), 0.0f);
+  for (int i = 0; i < 5000; ++i) {
+    stage.tick();
+    ASSERT_NEAR(stage.read(probe).normal_force, 200 * 0.003, 0.01) << i;
+  }
+  EXPECT_EQ(trail(), 0.0f);
+}
+
 TEST(TouchTissue, ASlowSurfaceCreepsAndIsNotThrown) {
   for (const double settling : {0.05, 5.0, 20.0}) {
     Stage stage;

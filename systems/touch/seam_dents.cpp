@@ -1,0 +1,124 @@
+#include "systems/touch/seam_dents.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "systems/touch/dent.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kMostSeeds = 64;  // zones beyond a seam from which a flood starts
+
+std::span<SourceState> echoes(ObjectState& object) {
+  return std::span(object.sources).subspan(object.first_echo);
+}
+
+SourceState* echo_of(ObjectState& object, SourceLink master) {
+  for (SourceState& echo : echoes(object))
+    if (echo.of == master) return &echo;
+  return nullptr;
+}
+
+SourceState* free_echo(ObjectState& object) {
+  for (SourceState& echo : echoes(object))
+    if (!echo.of.valid() && !echo.active) return &echo;
+  return nullptr;
+}
+
+FieldSource in_frame(const FieldSource& source, const Pose& from, const Pose& to) {
+  FieldSource out = source;
+  out.center = vec3(to.to_local(from.to_world(dvec3(source.center))));
+  out.normal = vec3(glm::conjugate(to.rotation) * (from.rotation * dvec3(source.normal)));
+  return out;
+}
+
+// The echo in `beyond` of one source, if its zones come to a seam with it.
+void echo(World& world, SourceLink master, const SourceState& source, const ObjectState& object,
+          std::uint32_t beyond_slot, Tick tick) {
+  TouchState& touch = *world.touch;
+  ObjectState& beyond = touch.objects[beyond_slot];
+  if (beyond.first_echo == beyond.sources.size()) return;
+  std::array<std::uint32_t, kMostSeeds> seeds;
+  std::size_t count = 0;
+  for (const SeamZones& seam : object.seam_zones)
+    if (seam.object == beyond_slot && (object.zone_sources[seam.zone] >> master.source & 1) && count < kMostSeeds)
+      seeds[count++] = seam.other;
+  if (count == 0) return;  // nothing of it comes to the seam
+  const Deformable& deformable = world.registry.get<Deformable>(beyond.entity);
+  const Mesh& mesh = world.meshes[deformable.mesh];
+  HeightField& field = world.fields[deformable.field];
+
+  SourceState* to = echo_of(beyond, master);
+  const bool anew = source.before.amplitude == 0.0f;  // the surface was left behind, or this is the first tick
+  if (to && to->active && anew) fold(*to, beyond, world, tick);
+  if (!to) to = free_echo(beyond);
+  if (!to) {
+    world.dropped |= kDroppedContacts;
+    return;
+  }
+  to->of = master;
+  to->echoed = tick.index + 1;
+  const Pose& from = world.registry.get<Pose>(object.entity);
+  const Pose& pose = world.registry.get<Pose>(beyond.entity);
+  to->before = to->now;
+  to->now = in_frame(source.now, from, pose);
+  if (!to->active) {
+    to->before = to->now;
+    to->before.amplitude = 0.0f;
+    to->active = true;
+  }
+  flood(mesh, to->now.center, 1 / std::sqrt(double(to->now.inv_reach2)), {seeds.data(), count}, beyond, to->zones);
+  mark_reached(*to, beyond, field);
+  if (!beyond.listed) {
+    beyond.listed = true;
+    touch.awake.push_back(beyond_slot);  // capacity: all
+  }
+}
+
+}  // namespace
+
+void echo_dents(World& world, Tick tick) {
+  TouchState& touch = *world.touch;
+  for (std::size_t n = 0; n < touch.awake.size(); ++n) {  // grows
+    const std::uint32_t slot = touch.awake[n];
+    const ObjectState& object = touch.objects[slot];
+    if (object.seam_zones.empty()) continue;
+    for (std::uint32_t i = 0; i < object.first_echo; ++i) {
+      const SourceState& source = object.sources[i];
+      if (!source.active || !source.offset.empty()) continue;
+      for (const std::uint32_t beyond : object.neighbours)
+        if (beyond != slot) echo(world, {slot, i}, source, object, beyond, tick);
+    }
+  }
+  for (const std::uint32_t slot : touch.awake) {
+    for (SourceState& echo : echoes(touch.objects[slot])) {
+      if ((!echo.of.valid() && !echo.active) || echo.echoed == tick.index + 1) continue;
+      if (echo.active) fold(echo, touch.objects[slot], world, tick);
+      echo.zones.clear();
+      echo.of = {};
+    }
+  }
+}
+
+void hand_over_dents(TouchState& touch, std::uint32_t from_slot, SourceState& from, std::uint32_t to_slot,
+                     SourceState& to) {
+  ObjectState &left = touch.objects[from_slot], &right = touch.objects[to_slot];
+  if (from_slot == to_slot) swap_dents(from, to);  // over a crack
+  const SourceLink was{from_slot, static_cast<std::uint32_t>(&from - left.sources.data())};
+  const SourceLink is{to_slot, static_cast<std::uint32_t>(&to - right.sources.data())};
+  if (SourceState* echo = echo_of(right, was)) {
+    swap_dents(*echo, to);
+    echo->of = {};
+  }
+  for (const std::uint32_t slot : left.neighbours)
+    if (SourceState* echo = echo_of(touch.objects[slot], was)) echo->of = is;
+  if (from_slot == to_slot || !from.active || left.first_echo == left.sources.size()) return;
+  if (SourceState* echo = free_echo(left)) {
+    swap_dents(from, *echo);
+    echo->of = is;
+  }
+}
+
+}  // namespace pliant
