@@ -10,6 +10,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kNear = 0.05;  // [1] of a surface's diagonal: what is farther behind it has nothing to do with it
+
 double distance_to(const Box& box, dvec3 x) {
   if (box.empty()) return std::numeric_limits<double>::infinity();
   return length(glm::max(glm::max(dvec3(box.min) - x, x - dvec3(box.max)), dvec3(0)));
@@ -48,7 +50,8 @@ std::optional<Miss> find_miss(const World& world, const Approach& approach, doub
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.bound < b.bound; });
   std::optional<Miss> best;
   for (const Approach::Place& place : places) {
-    if (best && place.bound - radius >= best->distance) break;
+    // Farther places may still lie behind a surface that was crossed.
+    if (best && place.bound - radius >= std::max(best->distance, kNear * best->diagonal)) break;
     for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
       const Mesh& mesh = world.meshes[deformable.mesh];
       const double diagonal = static_cast<double>(mesh.box.diagonal());
@@ -56,9 +59,11 @@ std::optional<Miss> find_miss(const World& world, const Approach& approach, doub
       const SurfaceFoot foot = nearest(mesh, x, distance_to(mesh.box, x) + 2 * diagonal);
       if (!foot.valid()) continue;
       const double distance = std::max(0.0, length(x - foot.foot) - radius);
-      if (best && distance >= best->distance) continue;
+      const bool behind = foot.height < -1e-6 * diagonal && foot.height > -kNear * diagonal;
+      if (best && !behind && distance >= best->distance) continue;
       const Name* name = world.registry.find<Name>(entity);
-      best = Miss{name ? name->value : mesh.name, distance, diagonal, mesh.vertex_count};
+      best = Miss{name ? name->value : mesh.name, distance, diagonal, mesh.vertex_count, behind};
+      if (behind) return best;
     }
   }
   return best;
@@ -67,6 +72,11 @@ std::optional<Miss> find_miss(const World& world, const Approach& approach, doub
 std::string explain_miss(const std::string& probe, const std::optional<Miss>& miss) {
   if (!miss)
     return "probe `" + probe + "` never touched anything: the level has no surface that gives way (PLIANT_deformable)";
+  if (miss->behind)
+    return fmt::format(
+        "probe `{}` never touched anything, although it was behind the surface of `{}`: it came through its back, or "
+        "stayed within the dent of another probe; lead it there from outside, or deeper",
+        probe, miss->object);
   return fmt::format(
       "probe `{}` never touched anything: it came no nearer than {:.4g} mm to `{}` ({} vertices, {:.4g} mm across); "
       "lead "

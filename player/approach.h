@@ -40,6 +40,7 @@ struct Miss {
   double distance = 0.0;     // [m] between it and the probe's sphere
   double diagonal = 0.0;     // [m] of its bounds
   std::size_t vertices = 0;  // of its mesh
+  bool behind = false;       // it has been behind that surface: through its back, or in another probe's dent
 };
 // Nothing where there is no surface, or the probe was nowhere.
 std::optional<Miss> find_miss(const World& world, const Approach& approach, double radius);

@@ -70,6 +70,11 @@ class Ring {
     return true;
   }
 
+  // Writer. A push will be taken; the reader can only make more room.
+  bool has_room() const {
+    return tail_.load(std::memory_order_relaxed) - head_.load(std::memory_order_acquire) < items_.size();
+  }
+
   // Reader. False when there is nothing.
   bool pop(T& item) {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);

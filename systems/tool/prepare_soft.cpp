@@ -10,6 +10,7 @@
 #include "systems/tool/rigid_state.h"
 #include "systems/tool/soft_body_state.h"
 #include "systems/tool/soft_state.h"
+#include "systems/touch/surface_query.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
@@ -43,7 +44,6 @@ void add_soft(const World& world, SoftState& soft) {
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
     state->self_collides = handle != nullptr;  // fingers pinch; a lump does not
-    state->settle(world.simulation.gravity);
     add(soft, entity, std::move(state));
   }
 }
@@ -103,6 +103,29 @@ SoftSnapshot first_snapshot(const SoftState& soft) {
   return snapshot;
 }
 
+// Whether one of these points has come through the body's skin, all of which is still at rest.
+bool come_through(const World& world, const Body& body, const std::vector<dvec3>& from, const std::vector<dvec3>& to) {
+  const Pose pose = pose_of(world, body.entity);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (first_entry(*body.skin, pose.to_local(from[i]), pose.to_local(to[i])).valid()) return true;
+  return false;
+}
+
+// Tools' flesh begins as it rests. It settles without contacts: where it came through something, it begins in its rest
+// shape and falls on it instead.
+void settle_tools(const World& world, SoftState& soft) {
+  for (const std::unique_ptr<Body>& body : soft.bodies) {
+    auto* tool = dynamic_cast<SoftBodyState*>(body.get());
+    if (!tool || !tool->has_handle()) continue;
+    const std::vector<dvec3> rest = tool->skin_position;
+    tool->settle(world.simulation.gravity);
+    const auto is_in_the_way = [&](const std::unique_ptr<Body>& other) {
+      return other != body && come_through(world, *other, rest, tool->skin_position);
+    };
+    if (std::any_of(soft.bodies.begin(), soft.bodies.end(), is_in_the_way)) tool->unsettle();
+  }
+}
+
 }  // namespace
 
 Status prepare_soft(World& world) {
@@ -117,6 +140,7 @@ Status prepare_soft(World& world) {
     return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s; give more than 0 and at most 1 s", T)};
   add_yielding(world, *soft);
   soft->margin = margin(*soft);
+  settle_tools(world, *soft);
   soft->proximity = std::make_unique<Proximity>(soft->bodies);
   world.soft_snapshots = std::make_unique<TripleBuffer<SoftSnapshot>>(first_snapshot(*soft));
   world.soft = std::move(soft);

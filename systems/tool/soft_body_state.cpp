@@ -197,6 +197,12 @@ void SoftBodyState::settle(dvec3 gravity) {
   led_.reset();
 }
 
+void SoftBodyState::unsettle() {
+  const Pose pose = handle_->object_pose();
+  for (std::size_t i = 0; i < tets_.nodes.size(); ++i) flesh_.position()[i] = pose.to_world(tets_.nodes[i]);
+  refresh_skin(flesh_.position(), skin_position);
+}
+
 void SoftBodyState::advance(double T) {
   std::vector<dvec3>&x = flesh_.position(), &v = flesh_.velocity();
   for (std::uint32_t i = 0; i < flesh_.moving(); ++i) {

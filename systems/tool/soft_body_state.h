@@ -59,8 +59,10 @@ class SoftBodyState final : public Body {
   Vector6 short_of_lead(const RigidMotion& handle) const;
 
   // Before the first step: a tool's flesh as it rests under gravity while its handle is held where it is. Left in its
-  // rest shape it would fall and sway, and the hand would be given that work. Nothing without a handle.
+  // rest shape it would fall and sway, and the hand would be given that work. Nothing without a handle. It knows of no
+  // contacts: unsettle() goes back to the rest shape.
   void settle(dvec3 gravity);
+  void unsettle();
 
   // --- Of the handle; all of the last free_step, at its beginning, unless said otherwise. Only with a handle.
   bool has_handle() const { return handle_.has_value(); }

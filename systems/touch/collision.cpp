@@ -124,11 +124,13 @@ void begin(const Search& s, const ProbeTip& tip, const Foot& foot, dvec3 from, d
   }
 }
 
-bool beyond_border(const Mesh& mesh, const Foot& foot, dvec3 x) {
+// Past the rim of an open surface; `but`: over one of these edges it would not be (3 * triangle + edge, ascending).
+bool beyond_border(const Mesh& mesh, const Foot& foot, dvec3 x, std::span<const std::uint32_t> but = {}) {
   if (!foot.at_border) return false;
   bool beyond = false;
   const auto check = [&](std::uint32_t t, int edge) {
     if (mesh.across[t][edge] != kBorder) return;
+    if (std::binary_search(but.begin(), but.end(), 3 * t + static_cast<std::uint32_t>(edge))) return;
     const uvec3 corner = mesh.triangles[t];
     const dvec3 a(mesh.position(corner[edge])), b(mesh.position(corner[(edge + 1) % 3])),
         c(mesh.position(corner[(edge + 2) % 3]));
@@ -218,7 +220,10 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
     at_seam = carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x));
   if (at_seam == AtSeam::kCarried) return;
   // Past the rim of an open surface, or so far away that no place on it means anything any more.
-  if ((at_seam == AtSeam::kStays && beyond_border(s.mesh, foot, x) && !(front && radius > 0)) ||
+  const std::vector<std::uint32_t>& seams = s.object.closed;
+  const bool beyond =
+      at_seam == AtSeam::kBetween ? beyond_border(s.mesh, foot, x, seams) : beyond_border(s.mesh, foot, x);
+  if ((beyond && !(front && radius > 0)) ||
       std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
       foot.height > radius * (1 + 2 * kAhead))
     return drop(source, contact);

@@ -8,14 +8,6 @@
 #include "systems/touch/surface_distance.h"
 
 namespace pliant {
-namespace {
-
-std::uint32_t number_of(const SourceState& source, const ObjectState& object) {
-  return static_cast<std::uint32_t>(&source - object.sources.data());
-}
-
-}  // namespace
-
 void wake(HeightField& field, std::uint32_t zone, std::uint8_t why) {
   field.zone_state[zone] |= why;
   if (field.zone_state[zone] & kZoneListed) return;
@@ -61,10 +53,9 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
   if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
   if (object.on_card) return remember_release(object, {source.now, source.before, tick.time}, world.dropped);
   const float inv_dt = static_cast<float>(1 / tick.dt);
-  const std::uint32_t number = number_of(source, object);
-  object.teller.fold(number, source.before, source.now);
+  object.teller.fold(source.told, source.before, source.now);
   for (const std::uint32_t zone : source.zones) {
-    if (!source.offset.empty()) object.teller.offsets(number, zone, source.offset, true);
+    if (!source.offset.empty()) object.teller.offsets(source.told, zone, source.offset, true);
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
       const vec4 now = source_at(source, source.now, mesh, v);
       const vec4 before = source_at(source, source.before, mesh, v);
@@ -77,8 +68,9 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
   }
 }
 
-void mark_reached(const SourceState& source, ObjectState& object, HeightField& field) {
-  const std::uint32_t number = number_of(source, object);
+void mark_reached(SourceState& source, ObjectState& object, HeightField& field) {
+  const std::uint32_t number = static_cast<std::uint32_t>(&source - object.sources.data());
+  source.told = number;
   object.teller.source(number, source.now);
   for (const std::uint32_t zone : source.zones) {
     object.zone_sources[zone] |= std::uint64_t{1} << number;
@@ -91,7 +83,9 @@ void swap_dents(SourceState& a, SourceState& b) {
   std::swap(a.active, b.active);
   std::swap(a.now, b.now);
   std::swap(a.before, b.before);
+  std::swap(a.told, b.told);
   a.zones.swap(b.zones);
+  a.offset.swap(b.offset);
 }
 
 }  // namespace pliant

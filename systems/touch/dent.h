@@ -24,7 +24,7 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
 void fold(SourceState& source, ObjectState& object, World& world, Tick tick);
 
 // The source's zones are reached this tick; the card is told.
-void mark_reached(const SourceState& source, ObjectState& object, HeightField& field);
+void mark_reached(SourceState& source, ObjectState& object, HeightField& field);
 
 // The dent, without whose it is.
 void swap_dents(SourceState& a, SourceState& b);

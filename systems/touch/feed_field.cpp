@@ -54,9 +54,12 @@ void FieldTeller::zone(std::uint32_t zone, std::uint64_t mask, bool rests, bool 
 
 void FieldTeller::offsets(std::uint32_t source, std::uint32_t zone, const std::vector<vec3>& offset, bool fold) {
   if (!telling_ || lost_) return;
+  lost_ = !feed_->events.has_room();  // a block goes with its event or not at all
+  if (lost_) return;
   FieldOffsets block;
   std::copy_n(offset.begin() + static_cast<std::ptrdiff_t>(zone * kZoneSize), kZoneSize, block.offset.begin());
   lost_ = !feed_->offsets.push(block);
+  if (lost_) return;
   push({fold ? FieldEvent::kFoldOffsets : FieldEvent::kOffsets, zone, source, 0, {}});
 }
 

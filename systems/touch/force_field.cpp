@@ -68,8 +68,10 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
     for (std::size_t j = 0; j < n; ++j) A[i * n + j] = 0.0;
     for (int b = 0; b < 3; ++b) {
       const double weight = contact.barycentric[b];
-      if (deformable.response == Response::kFollow)
+      if (deformable.response == Response::kFollow) {
         residual += weight * residual_after(object, mesh, field, corner[b], tick);
+        residual += weight * echoed_at(object, mesh, corner[b]);
+      }
       for (std::size_t j = 0; j < n; ++j) {
         FieldSource unit = active[j].source->now;
         const vec3 apart = mesh.position(corner[b]) - unit.center;
@@ -171,6 +173,7 @@ void force_field(World& world, Tick tick) {
             add_volume_sums_at_offsets(mesh, zone, source.now, source.offset, sums);
           }
         }
+        add_echo_sums(world, {slot, static_cast<std::uint32_t>(&source - object.sources.data())}, source, sums);
         source.now.parameter = volume_coefficient(sums, std::max(0.0, -contact.height), deformable.volume);
       }
     }

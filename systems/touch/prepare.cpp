@@ -75,7 +75,12 @@ void list_creases(const Mesh& mesh, ObjectState& object) {
   object.crease_boxes.build(boxes);
 }
 
-constexpr std::size_t kMostTips = 16;  // of a capsule
+constexpr std::size_t kMostTips = 16;     // of a capsule
+constexpr std::size_t kLeastEchoes = 16;  // places that an object beside seams keeps for dents of its neighbours
+
+std::size_t most_contacts(const ObjectState& object) {
+  return kMaxContactsPerObject - (object.seam_zones.empty() ? 0 : kLeastEchoes);
+}
 // Places where a tip of a probe may touch one object at once: the walls of a corner, and one more.
 constexpr std::size_t kContactsOfASphere = 4, kContactsOfAPoint = 2;
 
@@ -112,7 +117,7 @@ Entity make_contact(Registry& registry, Entity object, std::size_t slot) {
   return entity;
 }
 
-// As many as its neighbours' contacts may need.
+// As many as its neighbours' contacts may need, and at least what most_contacts() leaves.
 void make_echoes(const World& world, ObjectState& object) {
   object.first_echo = static_cast<std::uint32_t>(object.sources.size());
   const Deformable& deformable = world.registry.get<Deformable>(object.entity);
@@ -133,7 +138,7 @@ bool something_presses(Registry& registry) {
 void make_presses(World& world, TouchState& touch) {
   for (ObjectState& object : touch.objects) {
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
-    while (object.presses.size() < kMaxPresses && object.sources.size() < kMaxContactsPerObject) {
+    while (object.presses.size() < kMaxPresses && object.sources.size() < most_contacts(object)) {
       const Entity contact = make_contact(world.registry, object.entity, std::size_t(&object - touch.objects.data()));
       object.sources.push_back(make_source(contact, world.meshes[deformable.mesh], deformable));
       object.presses.push_back({contact, false, {}});
@@ -232,7 +237,7 @@ Status prepare_touch(World& world) {
   for (ObjectState& object : touch->objects) {
     const Deformable& deformable = registry.get<Deformable>(object.entity);
     const std::size_t slot = std::size_t(&object - touch->objects.data());
-    while (object.sources.size() < contacts_wanted)
+    while (object.sources.size() < std::min(contacts_wanted, most_contacts(object)))
       object.sources.push_back(
           make_source(make_contact(registry, object.entity, slot), world.meshes[deformable.mesh], deformable));
     object.probe_sources = static_cast<std::uint32_t>(object.sources.size());

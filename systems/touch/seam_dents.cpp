@@ -14,11 +14,15 @@ constexpr std::size_t kMostSeeds = 64;  // zones beyond a seam from which a floo
 std::span<SourceState> echoes(ObjectState& object) {
   return std::span(object.sources).subspan(object.first_echo);
 }
+std::span<const SourceState> echoes(const ObjectState& object) {
+  return std::span(object.sources).subspan(object.first_echo);
+}
 
-SourceState* echo_of(ObjectState& object, SourceLink master) {
-  for (SourceState& echo : echoes(object))
-    if (echo.of == master) return &echo;
-  return nullptr;
+template <class Object>
+auto echo_of(Object& object, SourceLink master) {
+  const auto all = echoes(object);
+  const auto found = std::find_if(all.begin(), all.end(), [&](const SourceState& echo) { return echo.of == master; });
+  return found == all.end() ? nullptr : &*found;
 }
 
 SourceState* free_echo(ObjectState& object) {
@@ -34,25 +38,32 @@ FieldSource in_frame(const FieldSource& source, const Pose& from, const Pose& to
   return out;
 }
 
-// The echo in `beyond` of one source, if its zones come to a seam with it.
-void echo(World& world, SourceLink master, const SourceState& source, const ObjectState& object,
-          std::uint32_t beyond_slot, Tick tick) {
+// The echoes of one source, seen from one of the objects that it dents, in the objects beyond that one's seams; and
+// beyond those: where four nodes meet, the fourth is no neighbour of the first.
+void echo(World& world, SourceLink master, std::uint32_t slot, std::uint32_t number, Tick tick);
+
+void echo_in(World& world, SourceLink master, std::uint32_t slot, std::uint32_t number, std::uint32_t beyond_slot,
+             Tick tick) {
   TouchState& touch = *world.touch;
+  const ObjectState& object = touch.objects[slot];
+  const SourceState& source = object.sources[number];
   ObjectState& beyond = touch.objects[beyond_slot];
-  if (beyond.first_echo == beyond.sources.size()) return;
+  if (beyond_slot == master.object || beyond.first_echo == beyond.sources.size()) return;
+  SourceState* to = echo_of(beyond, master);
+  if (to && to->echoed == tick.index + 1) return;  // it came another way
   std::array<std::uint32_t, kMostSeeds> seeds;
   std::size_t count = 0;
   for (const SeamZones& seam : object.seam_zones)
-    if (seam.object == beyond_slot && (object.zone_sources[seam.zone] >> master.source & 1) && count < kMostSeeds)
+    if (seam.object == beyond_slot && (object.zone_sources[seam.zone] >> number & 1) && count < kMostSeeds)
       seeds[count++] = seam.other;
   if (count == 0) return;  // nothing of it comes to the seam
   const Deformable& deformable = world.registry.get<Deformable>(beyond.entity);
   const Mesh& mesh = world.meshes[deformable.mesh];
   HeightField& field = world.fields[deformable.field];
 
-  SourceState* to = echo_of(beyond, master);
-  const bool anew = source.before.amplitude == 0.0f;  // the surface was left behind, or this is the first tick
-  if (to && to->active && anew) fold(*to, beyond, world, tick);
+  // The surface was left behind, or this is the first tick.
+  const bool anew = source.before.amplitude == 0.0f;
+  if (to && to->active && anew && to->now.amplitude > 0.0f) fold(*to, beyond, world, tick);
   if (!to) to = free_echo(beyond);
   if (!to) {
     world.dropped |= kDroppedContacts;
@@ -60,10 +71,8 @@ void echo(World& world, SourceLink master, const SourceState& source, const Obje
   }
   to->of = master;
   to->echoed = tick.index + 1;
-  const Pose& from = world.registry.get<Pose>(object.entity);
-  const Pose& pose = world.registry.get<Pose>(beyond.entity);
   to->before = to->now;
-  to->now = in_frame(source.now, from, pose);
+  to->now = in_frame(source.now, world.registry.get<Pose>(object.entity), world.registry.get<Pose>(beyond.entity));
   if (!to->active) {
     to->before = to->now;
     to->before.amplitude = 0.0f;
@@ -75,9 +84,37 @@ void echo(World& world, SourceLink master, const SourceState& source, const Obje
     beyond.listed = true;
     touch.awake.push_back(beyond_slot);  // capacity: all
   }
+  echo(world, master, beyond_slot, static_cast<std::uint32_t>(to - beyond.sources.data()), tick);
+}
+
+void echo(World& world, SourceLink master, std::uint32_t slot, std::uint32_t number, Tick tick) {
+  for (const std::uint32_t beyond : world.touch->objects[slot].joined)
+    echo_in(world, master, slot, number, beyond, tick);
 }
 
 }  // namespace
+
+double echoed_at(const ObjectState& object, const Mesh& mesh, std::uint32_t vertex) {
+  double height = 0.0;
+  for (const SourceState& echo : echoes(object))
+    if (echo.active) height += static_cast<double>(source_at(echo, echo.now, mesh, vertex).w);
+  return height;
+}
+
+void add_echo_sums(const World& world, SourceLink master, const SourceState& source, VolumeSums& sums) {
+  const TouchState& touch = *world.touch;
+  const ObjectState& object = touch.objects[master.object];
+  if (object.seam_zones.empty()) return;
+  const Pose& from = world.registry.get<Pose>(object.entity);
+  for (const std::uint32_t slot : object.joined) {
+    const ObjectState& beyond = touch.objects[slot];
+    const SourceState* echo = echo_of(beyond, master);
+    if (!echo || !echo->active) continue;
+    const Mesh& mesh = world.meshes[world.registry.get<Deformable>(beyond.entity).mesh];
+    const FieldSource there = in_frame(source.now, from, world.registry.get<Pose>(beyond.entity));
+    for (const std::uint32_t zone : echo->zones) add_volume_sums(mesh, zone, there, sums);
+  }
+}
 
 void echo_dents(World& world, Tick tick) {
   TouchState& touch = *world.touch;
@@ -85,12 +122,8 @@ void echo_dents(World& world, Tick tick) {
     const std::uint32_t slot = touch.awake[n];
     const ObjectState& object = touch.objects[slot];
     if (object.seam_zones.empty()) continue;
-    for (std::uint32_t i = 0; i < object.first_echo; ++i) {
-      const SourceState& source = object.sources[i];
-      if (!source.active || !source.offset.empty()) continue;
-      for (const std::uint32_t beyond : object.neighbours)
-        if (beyond != slot) echo(world, {slot, i}, source, object, beyond, tick);
-    }
+    for (std::uint32_t i = 0; i < object.first_echo; ++i)
+      if (object.sources[i].active && object.sources[i].offset.empty()) echo(world, {slot, i}, slot, i, tick);
   }
   for (const std::uint32_t slot : touch.awake) {
     for (SourceState& echo : echoes(touch.objects[slot])) {
@@ -112,7 +145,7 @@ void hand_over_dents(TouchState& touch, std::uint32_t from_slot, SourceState& fr
     swap_dents(*echo, to);
     echo->of = {};
   }
-  for (const std::uint32_t slot : left.neighbours)
+  for (const std::uint32_t slot : left.joined)
     if (SourceState* echo = echo_of(touch.objects[slot], was)) echo->of = is;
   if (from_slot == to_slot || !from.active || left.first_echo == left.sources.size()) return;
   if (SourceState* echo = free_echo(left)) {

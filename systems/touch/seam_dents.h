@@ -5,9 +5,15 @@
 
 #include "components/world.h"
 #include "runtime/clock.h"
+#include "systems/touch/field_kernels.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
+
+// What echoes (of the last tick, until echo_dents) hold a vertex down by. [m]
+double echoed_at(const ObjectState& object, const Mesh& mesh, std::uint32_t vertex);
+// Adds what of a source's volume lies beyond seams.
+void add_echo_sums(const World& world, SourceLink master, const SourceState& source, VolumeSums& sums);
 
 // After every object's own sources have their amplitudes.
 void echo_dents(World& world, Tick tick);

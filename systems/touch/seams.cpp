@@ -39,6 +39,29 @@ std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const Place& at, doubl
   return found;
 }
 
+// A dent goes on in both directions, wherever a foot may. And how far: over all seams that hang together.
+void join_zones(TouchState& touch) {
+  for (std::uint32_t i = 0; i < touch.objects.size(); ++i)
+    for (const SeamZones& seam : std::vector<SeamZones>(touch.objects[i].seam_zones))
+      touch.objects[seam.object].seam_zones.push_back({seam.other, i, seam.zone});
+  for (ObjectState& object : touch.objects) {
+    for (auto* list : {&object.cracks, &object.seam_zones}) {
+      std::sort(list->begin(), list->end());
+      list->erase(std::unique(list->begin(), list->end()), list->end());
+    }
+  }
+  for (std::uint32_t i = 0; i < touch.objects.size(); ++i) {
+    std::vector<std::uint32_t>& joined = touch.objects[i].joined;
+    const auto add = [&](const ObjectState& from) {
+      for (const SeamZones& seam : from.seam_zones)
+        if (seam.object != i && std::find(joined.begin(), joined.end(), seam.object) == joined.end())
+          joined.push_back(seam.object);
+    };
+    add(touch.objects[i]);
+    for (std::size_t k = 0; k < joined.size(); ++k) add(touch.objects[joined[k]]);
+  }
+}
+
 }  // namespace
 
 const Seam* seam_at(const ObjectState& object, const Foot& foot) {
@@ -121,13 +144,10 @@ void find_seams(const World& world, TouchState& touch) {
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l) list.push_back({here[k] / kZoneSize, seam.object, there[l] / kZoneSize});
     }
-    for (auto* list : {&object.cracks, &object.seam_zones}) {
-      std::sort(list->begin(), list->end());
-      list->erase(std::unique(list->begin(), list->end()), list->end());
-    }
     std::sort(object.closed.begin(), object.closed.end());
     object.closed.erase(std::unique(object.closed.begin(), object.closed.end()), object.closed.end());
   }
+  join_zones(touch);
 }
 
 }  // namespace pliant

@@ -49,6 +49,7 @@ struct SourceState {
   FieldSource now, before;           // this tick's and the last tick's: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
   std::vector<vec3> offset;          // [m] Distance::kSurface only, per vertex: see surface_distance.h
+  std::uint32_t told = 0;            // number under which the card last knew of the dent
   SourceLink of;                     // an echo: of this source of a neighbour (seam_dents.h)
   std::uint64_t echoed = 0;          // tick after which it last was one
   std::vector<MarchItem> heap;       // working memory of the march; its capacity is what matters
@@ -94,6 +95,7 @@ struct ObjectState {
   PaintedMotion painted;
   std::vector<Seam> seams;                  // by edge, ascending
   std::vector<SeamZones> seam_zones;        // to other objects, each pair once
+  std::vector<std::uint32_t> joined;        // objects that a dent may go on in, over any number of seams, each once
   std::vector<SeamZones> cracks;            // to zones of its own
   std::vector<std::uint32_t> neighbours;    // objects that seams lead to, each once
   std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot goes over them

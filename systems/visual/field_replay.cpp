@@ -89,6 +89,12 @@ bool FieldReplay::take(FieldFeed& feed, bool told, std::uint64_t tick) {
   if (!told) {
     if (began_) reset();  // what has not been drawn is in the zones too
     began_ = false;
+    // What is told next begins with a reset, for which there has to be room.
+    FieldOffsets unused;
+    for (FieldEvent event; !began_ && feed.events.pop(event);) {
+      if (event.kind == FieldEvent::kReset) reset();
+      if (event.kind == FieldEvent::kOffsets || event.kind == FieldEvent::kFoldOffsets) feed.offsets.pop(unused);
+    }
     return false;
   }
   for (FieldEvent event; feed.events.pop(event);) {
@@ -111,11 +117,13 @@ void FieldReplay::add(const FieldEvent& event, FieldFeed& feed) {
     case FieldEvent::kFoldBefore:
       fold_before_ = event.source;
       return;
-    case FieldEvent::kFoldNow:
+    case FieldEvent::kFoldNow: {
+      // In the order of sources, as the shader looks for them.
+      const auto after = 2 * std::popcount(folded_ & ~(bit_of(event.index) | (bit_of(event.index) - 1)));
+      folds_.insert(folds_.end() - after, {card_source(event.source), card_source(fold_before_)});
       folded_ |= bit_of(event.index);
-      folds_.push_back(card_source(event.source));
-      folds_.push_back(card_source(fold_before_));
       return;
+    }
     case FieldEvent::kSource:
       source_[event.index] = event.source;
       used_ |= bit_of(event.index);

@@ -34,6 +34,7 @@ class FieldReplay {
   // Takes these steps on the card and writes their last streams. Returns the bytes that travelled.
   std::size_t evaluate(const ReplayProgram& program, const gpu::Buffer& stream);
   bool at_rest() const { return awake_.empty() && runs_.empty(); }
+  std::size_t bytes() const { return state_.size(); }  // that a shader has to reach
 
  private:
   // What the shader reads, as its records of uvec4. One tick:

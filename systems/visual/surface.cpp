@@ -117,6 +117,11 @@ Result<Surfaces> Surfaces::make(const World& world) {
                    fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}; "
                                "use a card, or a coarser mesh",
                                item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20)};
+    if (item.replay.bytes() > static_cast<std::size_t>(largest))
+      return Error{"graphics card",
+                   fmt::format("the field of a surface of {} vertices needs {} MiB there, this driver allows {}; "
+                               "use --field cpu, or a coarser mesh",
+                               item.stream.values().size(), item.replay.bytes() >> 20, largest >> 20)};
     made.boxes_.push_back(world_box(world.draw_meshes[drawable.mesh], item.to_world));
     item.number = static_cast<std::uint32_t>(made.items_.size()) + 1;
     const Placement block = placement_block(item.to_world, item.number, false);

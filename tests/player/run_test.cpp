@@ -129,6 +129,17 @@ TEST_F(Run, AProbeThatTouchesNothingSaysByHowMuchItMissed) {
   EXPECT_NE(json["dropped"].dump().find("never touched anything"), std::string::npos);
 }
 
+TEST_F(Run, AProbeThatStaysInAnothersDentIsToldSo) {
+  write_text(folder / "a.csv", "time_s,x,y,z\n0,0,0.01,0\n0.3,0,-0.006,0\n2,0,-0.006,0\n");
+  write_text(folder / "b.csv", "time_s,x,y,z\n0,0.002,0.01,0\n0.5,0.002,0.01,0\n1,0.002,-0.001,0\n2,0.002,0.01,0\n");
+  const Said said = pliant(
+      {"run", "plate.obj", "--probe", "a=script:a.csv", "--probe", "b=script:b.csv", "--out", "out", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("`b` never touched anything, although it was behind the surface of `plate`"),
+            std::string::npos)
+      << said.err;
+}
+
 TEST_F(Run, AMeshInMillimetresIsHintedAtAndTouchedInItsUnit) {
   std::istringstream metres(plate_obj());
   std::ostringstream millimetres;

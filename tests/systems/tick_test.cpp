@@ -10,6 +10,7 @@
 #include "systems/touch/amplitude.h"
 #include "systems/touch/prepare.h"
 #include "systems/touch/publish.h"
+#include "systems/touch/touch_state.h"
 #include "tests/scenes/scenes.h"
 #include "tests/systems/count_allocations.h"
 #include "tests/systems/touch_laws.h"
@@ -19,28 +20,56 @@ namespace {
 
 using scenes::Stage;
 
+// Press, slide together, release, leave, come back.
+void play(Stage& stage, Entity a, Entity b) {
+  for (int i = 0; i < 400; ++i) {
+    const double s = 0.01 * i, lift = i % 150 > 100 ? 0.01 : 0.0;
+    stage.place(a, (0.096 + lift) * normalize(dvec3(std::sin(s), 1, 0.1)));
+    stage.place(b, (0.1 + lift) * normalize(dvec3(std::sin(s) + 0.2, 1, -0.1)));
+    stage.tick();
+  }
+}
+
 TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
-  for (const SpringLaw kind : kLaws) {
-    for (const Distance distance : {Distance::kChord, Distance::kSurface}) {
-      for (const Response response : {Response::kFollow, Response::kLag}) {
-        Stage stage;
-        Deformable d;
-        d.reach = 0.04;
-        d.spring = kind;
-        d.distance = distance;
-        d.response = response;
-        stage.add(scenes::sphere(16, 0.1), d);
-        const Entity a = stage.add_probe({0, 0.11, 0}), b = stage.add_probe({0.01, 0.12, 0.01}, 0.005);
-        stage.prepare();
-        const CountAllocations allocations;
-        for (int i = 0; i < 400; ++i) {  // press, slide together, release, leave, come back
-          const double s = 0.01 * i, lift = i % 150 > 100 ? 0.01 : 0.0;
-          stage.place(a, (0.096 + lift) * normalize(dvec3(std::sin(s), 1, 0.1)));
-          stage.place(b, (0.1 + lift) * normalize(dvec3(std::sin(s) + 0.2, 1, -0.1)));
-          stage.tick();
+  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kCard}) {
+    for (const SpringLaw kind : kLaws) {
+      for (const Distance distance : {Distance::kChord, Distance::kSurface}) {
+        for (const Response response : {Response::kFollow, Response::kLag}) {
+          Stage stage;
+          stage.world.field_place = place;
+          Deformable d;
+          d.reach = 0.04;
+          d.spring = kind;
+          d.distance = distance;
+          d.response = response;
+          stage.add(scenes::sphere(16, 0.1), d);
+          const Entity a = stage.add_probe({0, 0.11, 0}), b = stage.add_probe({0.01, 0.12, 0.01}, 0.005);
+          stage.prepare();
+          const CountAllocations allocations;
+          play(stage, a, b);
+          EXPECT_EQ(allocations.count(), 0u)
+              << int(place) << ' ' << int(kind) << ' ' << int(distance) << ' ' << int(response);
         }
-        EXPECT_EQ(allocations.count(), 0u) << int(kind) << ' ' << int(distance) << ' ' << int(response);
       }
+    }
+  }
+}
+
+TEST(Tick, NeverAllocatesOverSeamsAndBehindCreases) {
+  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kCard}) {
+    for (const SpringLaw kind : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
+      Stage stage;
+      stage.world.field_place = place;
+      Deformable d;
+      d.reach = 0.04;
+      d.spring = kind;
+      for (const double x : {-0.05, 0.05}) stage.add(scenes::slab(10, 0.1, 0.1), d, Pose{{x, 0.09, 0}});
+      const Entity a = stage.add_probe({0, 0.11, 0}), b = stage.add_probe({0.01, 0.12, 0.01}, 0.005);
+      stage.prepare();
+      ASSERT_FALSE(stage.world.touch->objects[0].seams.empty());
+      const CountAllocations allocations;
+      play(stage, a, b);
+      EXPECT_EQ(allocations.count(), 0u) << int(place) << ' ' << int(kind);
     }
   }
 }

@@ -160,7 +160,7 @@ TEST(TouchSurface, ADentGoesOnOverASeamAsIfThereWereNone) {
     cracked.position[v].x += static_cast<float>(0.01 * kSize / kCells);
   for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kStandardLinearSolid}) {
     Deformable d = frictionless(law);
-    d.shape = Shape::kWendland;
+    d.shape = law == SpringLaw::kCubic ? Shape::kVolume : Shape::kWendland;
     d.reach = 0.025;
     Stage one, two, crack;
     std::vector<std::pair<Stage*, std::vector<Entity>>> scenes;
@@ -173,7 +173,10 @@ TEST(TouchSurface, ADentGoesOnOverASeamAsIfThereWereNone) {
       stage->prepare();
     }
     const auto go = [&](dvec3 to, double seconds) {
-      for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i].first->move(hands[i], to, seconds);
+      for (std::size_t i = 0; i < scenes.size(); ++i) {
+        scenes[i].first->move(hands[i], to, seconds);
+        scenes[i].first->wait(0.003);  // what is beyond a seam is known a tick later
+      }
     };
     const auto compare = [&](const char* when) {
       std::map<std::pair<int, int>, std::vector<float>> want, got;
@@ -209,6 +212,61 @@ TEST(TouchSurface, ADentGoesOnOverASeamAsIfThereWereNone) {
       if (mesh.px[v] > 0.0600001f) beyond = std::min(beyond, crack.field(scenes[2].second[0]).stream[v].w);
     EXPECT_LT(beyond, -0.003);
   }
+}
+
+// Where four nodes meet, and for two probes on different ones.
+TEST(TouchSurface, FourNodesLookAsOneUnderTwoProbes) {
+  constexpr int kCells = 20;
+  constexpr double kSize = 0.1;
+  const Primitive part = scenes::sheet(kCells, kSize);
+  Primitive all;
+  Stage one, four;
+  Deformable d = frictionless();
+  d.shape = Shape::kWendland;
+  d.reach = 0.03;
+  std::vector<Entity> parts;
+  for (const double x : {0.0, kSize})
+    for (const double z : {0.0, kSize}) {
+      const auto first = static_cast<std::uint32_t>(all.position.size());
+      for (const vec3& p : part.position) all.position.push_back(p + vec3(x, 0, z));
+      for (const std::uint32_t i : part.index) all.index.push_back(i + first);
+      parts.push_back(four.add(part, d, Pose{{x, 0, z}}));
+    }
+  const Entity whole = one.add(all, d);
+  std::vector<Entity> a, b;
+  for (Stage* stage : {&one, &four}) {
+    a.push_back(stage->add_probe({0.044, 0.002, 0.043}));
+    b.push_back(stage->add_probe({0.057, 0.002, 0.046}));
+    stage->prepare();
+    stage->move(a.back(), {0.044, -0.004, 0.043}, 0.05);
+    stage->move(b.back(), {0.057, -0.005, 0.046}, 0.05);
+    stage->wait(0.05);
+  }
+  std::map<std::pair<int, int>, std::vector<float>> want, got;
+  add_heights(one, whole, want);
+  for (const Entity surface : parts) add_heights(four, surface, got);
+  double corner = 0;
+  for (const auto& [at, heights] : want)
+    for (const float h : got.at(at)) {
+      ASSERT_NEAR(h, heights[0], 5e-6) << at.first << ' ' << at.second;
+      if (at.first > 5000 && at.second > 5000) corner = std::min<double>(corner, h);
+    }
+  EXPECT_LT(corner, -0.001) << "in the node that no probe is on";
+}
+
+// Off the end of a seam there is nothing to wait between.
+TEST(TouchSurface, AContactThatRunsOffTheEndOfASeamEnds) {
+  Stage stage;
+  const Primitive half = scenes::sheet(10, 0.1);
+  for (const double x : {-0.05, 0.05}) stage.add(half, frictionless(), Pose{{x, 0, 0}});
+  const Entity probe = stage.add_probe({0, 0.002, 0});
+  stage.prepare();
+  stage.move(probe, {-0.001, -0.003, 0}, 0.05);
+  stage.move(probe, {0, -0.003, 0}, 0.05);
+  stage.move(probe, {0, -0.003, 0.049}, 0.2);
+  EXPECT_GT(raw_force(stage, probe).y, 0.8);
+  stage.move(probe, {0, -0.003, 0.08}, 0.2);
+  EXPECT_EQ(raw_force(stage, probe), dvec3(0));
 }
 
 // A crack in one mesh: two sheets in one primitive, a gap of a hundredth of an edge between them.

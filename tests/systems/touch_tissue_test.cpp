@@ -168,9 +168,6 @@ std::vector<std::vector<vec4>> dent(const Primitive& sheet, const Deformable& d)
   return seen;
 }
 
-constexpr SpringLaw kLaws[] = {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential,
-                               SpringLaw::kStandardLinearSolid};
-
 TEST(TouchTissue, PaintAllOverIsAnotherMaterial) {
   for (const Response response : {Response::kFollow, Response::kLag}) {
     for (const SpringLaw law : kLaws) {

@@ -4,6 +4,7 @@
 #include "systems/device/safety.h"
 #include "systems/tool/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
+#include "tests/scenes/scenes.h"
 #include "tests/scenes/tet_shapes.h"
 #include "tests/scenes/tool_stage.h"
 
@@ -74,6 +75,38 @@ TEST(Weight, OfFleshHangsFromTheBeginning) {
   }
   EXPECT_LT(most, 1e-4 * length(held.weight));
   EXPECT_GT(sag, 1e-6) << "the lowest nodes are lower than at rest";
+}
+
+// ... unless it would hang through what is below it: then it begins above that, and falls on it.
+TEST(Weight, OfFleshThatWouldHangThroughAFloorFallsOnItInstead) {
+  for (const double gap : {1e-5, 0.05}) {
+    ToolStage stage(1.0 / 60.0);
+    TetMesh mesh = tets::box(3, 1, 1, dvec3(-0.03, -0.004, -0.005), dvec3(0.03, 0.004, 0.005));
+    tets::hold(
+        mesh, [](dvec3) { return false; }, [](dvec3 x) { return x.x < -0.02; });
+    SoftBody body;
+    body.young = 1e5;
+    body.density = 1000.0;
+    body.rayleigh = {1.0, 0.01};
+    const Handle6 handle;
+    const Entity tool = stage.add_soft(mesh, body, Pose{}, &handle);
+    RigidBody floor;
+    floor.fixed = true;
+    stage.add_rigid(scenes::sheet(4, 0.2), floor, Pose{{0, -0.004 - gap, 0}});
+    stage.prepare();
+    const std::vector<dvec3>& skin = stage.flesh(tool).skin_position;
+    const auto lowest = [&] {
+      double y = 1.0;
+      for (const dvec3& x : skin) y = std::min(y, x.y);
+      return y;
+    };
+    if (gap > 1e-3)
+      EXPECT_LT(lowest(), -0.00405) << "it hangs freely";
+    else
+      EXPECT_NEAR(lowest(), -0.004, 1e-9);
+    stage.lead(tool, dvec3(0), 0.5);
+    EXPECT_GT(lowest(), -0.004 - gap - 1e-4);
+  }
 }
 
 TEST(Weight, IsFeltOnTheWayDownAsOnTheWayUp) {
