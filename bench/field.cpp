@@ -59,7 +59,7 @@ Row measure(const FieldProgram& program, int n) {
   std::vector<vec4> here(std::size_t{zones} * kZoneSize);
   const auto zone_field = [&](std::uint32_t zone) {
     ZoneTargets t{};
-    for (const FieldSource& s : sources) add_targets(mesh, zone, s, t);
+    for (const FieldSource& s : sources) add_targets(mesh, zone, s, false, t);
     for (std::uint32_t i = 0; i < kZoneSize; ++i) here[zone * kZoneSize + i] = vec4(t.nx[i], t.ny[i], t.nz[i], t.h[i]);
   };
   std::vector<std::uint32_t> near;

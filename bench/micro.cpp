@@ -68,11 +68,11 @@ void targets(benchmark::State& state) {
   source.parameter = source.shape == Shape::kVolume ? 5.0f : source.shape == Shape::kKelvinlet ? 0.01f : 0.04f;
   ZoneTargets out{};
   for (auto _ : state) {
-    add_targets(mesh, 0, source, out);
+    add_targets(mesh, 0, source, false, out);
     benchmark::ClobberMemory();
   }
   out = {};
-  add_targets(mesh, 0, source, out);
+  add_targets(mesh, 0, source, false, out);
   double error = 0;
   for (std::uint32_t v = mesh.zone_begin(0); v < mesh.zone_end(0); ++v) {
     const vec4 one = target_at(source, mesh.position(v), mesh.normal(v));

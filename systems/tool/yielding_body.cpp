@@ -165,7 +165,7 @@ void YieldingBody::dent_skin() {
       const Box& box = skin->zone_box[zone];
       const vec3 d = glm::max(glm::max(box.min - dent.source.center, dent.source.center - box.max), vec3(0));
       if (dent.source.amplitude == 0.0f || dot(d, d) * dent.source.inv_reach2 > 1.0f) continue;
-      add_targets(*skin, zone, dent.source, targets);
+      add_targets(*skin, zone, dent.source, false, targets);
       reached = true;
     }
     if (!reached) continue;

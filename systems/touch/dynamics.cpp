@@ -25,18 +25,18 @@ void set_to_rest(HeightField& field, std::uint32_t zone, bool reached) {
 }
 
 void gather_targets(const ObjectState& object, const Mesh& mesh, std::uint32_t zone, ZoneTargets& targets) {
-  targets.nx.fill(0);
-  targets.ny.fill(0);
-  targets.nz.fill(0);
-  targets.h.fill(0);
+  bool fresh = true;
   for (std::uint64_t bits = object.zone_sources[zone]; bits; bits &= bits - 1) {
     const SourceState& source = object.sources[static_cast<std::size_t>(std::countr_zero(bits))];
     if (source.offset.empty()) {
-      add_targets(mesh, zone, source.now, targets);
+      add_targets(mesh, zone, source.now, fresh, targets);
     } else {
+      if (fresh) targets = {};
       add_targets_at_offsets(mesh, zone, source.now, source.offset, targets);
     }
+    fresh = false;
   }
+  if (fresh) targets = {};
 }
 
 // An object leaves the list once nothing touches it and nothing of it moves.

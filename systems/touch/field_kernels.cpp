@@ -10,7 +10,8 @@ namespace pliant {
 namespace {
 
 // A radial shape is a function of u alone; target and gradient follow for every one of them the same way.
-template <class Profile>
+// kFresh: what stood in `out` does not count.
+template <bool kFresh, class Profile>
 inline __attribute__((always_inline)) void add_radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
                                                       ZoneTargets& out, Profile profile) {
   const float* __restrict px = mesh.px.data() + begin;
@@ -33,34 +34,45 @@ inline __attribute__((always_inline)) void add_radial(const Mesh& mesh, std::uin
     const float a = alpha * facing;
     const float g = 2.0f * inv * a * f.y;
     const float along = dx * nx[i] + dy * ny[i] + dz * nz[i];
-    out.h[i] -= a * f.x;
-    out.nx[i] += g * (dx - along * nx[i]);
-    out.ny[i] += g * (dy - along * ny[i]);
-    out.nz[i] += g * (dz - along * nz[i]);
+    out.h[i] = (kFresh ? 0.0f : out.h[i]) - a * f.x;
+    out.nx[i] = (kFresh ? 0.0f : out.nx[i]) + g * (dx - along * nx[i]);
+    out.ny[i] = (kFresh ? 0.0f : out.ny[i]) + g * (dy - along * ny[i]);
+    out.nz[i] = (kFresh ? 0.0f : out.nz[i]) + g * (dz - along * nz[i]);
   }
 }
+template <class Profile>
+inline __attribute__((always_inline)) void radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
+                                                  bool fresh, ZoneTargets& out, Profile profile) {
+  fresh ? add_radial<true>(mesh, begin, s, out, profile) : add_radial<false>(mesh, begin, s, out, profile);
+}
 
-PLIANT_KERNEL void add_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+PLIANT_KERNEL void add_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                              ZoneTargets& out) {
   const float c = s.parameter;
-  add_radial(mesh, begin, s, out, [c](float u) { return shared::shape_volume(u, c); });
+  radial(mesh, begin, s, fresh, out, [c](float u) { return shared::shape_volume(u, c); });
 }
-PLIANT_KERNEL void add_wendland(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
-  add_radial(mesh, begin, s, out, [](float u) { return shared::shape_wendland(u); });
-}
-
-PLIANT_KERNEL void add_punch(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
-  const float inner = s.parameter;
-  add_radial(mesh, begin, s, out, [inner](float u) { return shared::shape_punch(u, inner); });
-}
-PLIANT_KERNEL void add_hertz(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
-  const float inner = s.parameter;
-  add_radial(mesh, begin, s, out, [inner](float u) { return shared::shape_hertz(u, inner); });
-}
-PLIANT_KERNEL void add_gaussian(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
-  add_radial(mesh, begin, s, out, [](float u) { return shared::shape_gaussian(u); });
+PLIANT_KERNEL void add_wendland(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                                ZoneTargets& out) {
+  radial(mesh, begin, s, fresh, out, [](float u) { return shared::shape_wendland(u); });
 }
 
-PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneTargets& out) {
+PLIANT_KERNEL void add_punch(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                             ZoneTargets& out) {
+  const float inner = s.parameter;
+  radial(mesh, begin, s, fresh, out, [inner](float u) { return shared::shape_punch(u, inner); });
+}
+PLIANT_KERNEL void add_hertz(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                             ZoneTargets& out) {
+  const float inner = s.parameter;
+  radial(mesh, begin, s, fresh, out, [inner](float u) { return shared::shape_hertz(u, inner); });
+}
+PLIANT_KERNEL void add_gaussian(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                                ZoneTargets& out) {
+  radial(mesh, begin, s, fresh, out, [](float u) { return shared::shape_gaussian(u); });
+}
+
+PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                                 ZoneTargets& out) {
   const float* __restrict px = mesh.px.data() + begin;
   const float* __restrict py = mesh.py.data() + begin;
   const float* __restrict pz = mesh.pz.data() + begin;
@@ -69,6 +81,7 @@ PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const Fi
   const float* __restrict nz = mesh.nz.data() + begin;
   const vec3 center = s.center, normal = s.normal;
   const float inv = s.inv_reach2, alpha = s.amplitude, e = s.parameter;
+  if (fresh) out = {};
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     const vec3 d(px[i] - center.x, py[i] - center.y, pz[i] - center.z), n(nx[i], ny[i], nz[i]);
     const vec4 t = shared::field_kelvinlet(d, n, normal, inv, alpha, e);
@@ -241,21 +254,21 @@ float share_at(const FieldSource& source, vec3 position, vec3 normal) {
   return -target_at(unit, position, normal).w;
 }
 
-void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, ZoneTargets& targets) {
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets) {
   const std::uint32_t begin = mesh.zone_begin(zone);
   switch (source.shape) {
     case Shape::kPunch:
-      return add_punch(mesh, begin, source, targets);
+      return add_punch(mesh, begin, source, fresh, targets);
     case Shape::kHertz:
-      return add_hertz(mesh, begin, source, targets);
+      return add_hertz(mesh, begin, source, fresh, targets);
     case Shape::kGaussian:
-      return add_gaussian(mesh, begin, source, targets);
+      return add_gaussian(mesh, begin, source, fresh, targets);
     case Shape::kWendland:
-      return add_wendland(mesh, begin, source, targets);
+      return add_wendland(mesh, begin, source, fresh, targets);
     case Shape::kVolume:
-      return add_volume(mesh, begin, source, targets);
+      return add_volume(mesh, begin, source, fresh, targets);
     case Shape::kKelvinlet:
-      return add_kelvinlet(mesh, begin, source, targets);
+      return add_kelvinlet(mesh, begin, source, fresh, targets);
   }
 }
 

@@ -16,8 +16,8 @@ struct alignas(32) ZoneTargets {
   std::array<float, kZoneSize> nx, ny, nz, h;
 };
 
-// Adds the source's target on the zone's vertices.
-void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, ZoneTargets& targets);
+// Adds the source's target on the zone's vertices; `fresh`: to nothing, whatever stood there.
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets);
 
 // Sums over a zone that fix the coefficient c of the volume-preserving shape (force_field.cpp): with w = (1-u)^3 and A
 // the vertex area, S_n = sum A w u^n, Q_n = sum A w^2 u^n, and the ratio bend/spread is the mean curvature H.

@@ -57,8 +57,8 @@ Result<FieldCost> measure_field_cost(const World& world, double frame_rate) {
   float sink = 0;
   const double tick = median_us([&] {
     for (const std::uint32_t zone : zones) {
-      ZoneTargets targets{};
-      add_targets(*mesh, zone, source, targets);
+      ZoneTargets targets;
+      add_targets(*mesh, zone, source, true, targets);
       sink += targets.h[0];
     }
   });

@@ -17,16 +17,11 @@
 namespace pliant {
 namespace {
 
+using test::build;
 using test::enclosed_volume;
 using test::icosphere;
 using test::sheet;
 using test::unshared;
-
-BuiltMesh build(const Primitive& p, const mat4& to_object = mat4(1.0f)) {
-  Result<BuiltMesh> built = build_mesh("test", {&p, 1}, to_object);
-  EXPECT_TRUE(built.ok()) << built.error().message();
-  return std::move(*built);
-}
 
 double net_area(const Mesh& mesh) {
   double sum = 0.0;

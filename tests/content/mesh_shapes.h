@@ -1,6 +1,8 @@
 // Small meshes for tests of the mesh pipeline, as a loader would hand them over.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -9,6 +11,7 @@
 #include "components/curved_patch.h"
 #include "components/mesh.h"
 #include "content/level.h"
+#include "content/mesh_build.h"
 
 namespace pliant::test {
 
@@ -180,6 +183,12 @@ inline double worst_gap(const Mesh& mesh) {
     }
   }
   return worst;
+}
+
+inline BuiltMesh build(const Primitive& p, const mat4& to_object = mat4(1.0f)) {
+  Result<BuiltMesh> built = build_mesh("test", {&p, 1}, to_object);
+  EXPECT_TRUE(built.ok()) << built.error().message();
+  return std::move(*built);
 }
 
 }  // namespace pliant::test

@@ -16,17 +16,12 @@ namespace pliant {
 namespace {
 
 using test::box;
+using test::build;
 using test::enclosed_volume;
 using test::icosphere;
 using test::level_of;
 using test::sheet;
 using test::unshared;
-
-BuiltMesh build(const Primitive& p, const mat4& to_object = mat4(1.0f)) {
-  Result<BuiltMesh> built = build_mesh("test", {&p, 1}, to_object);
-  EXPECT_TRUE(built.ok()) << built.error().message();
-  return std::move(*built);
-}
 
 void turn(Primitive& p, std::size_t triangle) {
   std::swap(p.index[3 * triangle + 1], p.index[3 * triangle + 2]);

@@ -31,8 +31,9 @@ TEST(FieldKernels, TargetsOfAZoneAreThoseOfItsVerticesForEveryShape) {
         source.parameter = shape == Shape::kKelvinlet ? parameter * reach : parameter;
         float height = 0, normal = 0, steepest = source.amplitude / reach;
         for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
-          ZoneTargets targets{};
-          add_targets(mesh, zone, source, targets);
+          ZoneTargets targets;
+          targets.h.fill(7.0f);  // what stood there does not count
+          add_targets(mesh, zone, source, true, targets);
           for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
             const std::uint32_t i = v - mesh.zone_begin(zone);
             const vec4 one = target_at(source, mesh.position(v), mesh.normal(v));

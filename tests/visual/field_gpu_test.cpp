@@ -8,17 +8,12 @@
 #include "systems/touch/touch_state.h"
 #include "systems/visual/gpu/context.h"
 #include "tests/scenes/scenes.h"
+#include "tests/visual/read_back.h"
 
 namespace pliant {
 namespace {
 
 using scenes::Stage;
-
-std::vector<vec4> read_back(const gpu::Buffer& buffer, std::size_t count) {
-  std::vector<vec4> values(count);
-  glGetNamedBufferSubData(buffer.id(), 0, static_cast<GLsizeiptr>(count * sizeof(vec4)), values.data());
-  return values;
-}
 
 TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
   Result<std::unique_ptr<HeadlessContext>> context = HeadlessContext::create();
@@ -55,7 +50,7 @@ TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
       ASSERT_GE(terms.size(), 2u);
       EXPECT_EQ(field.evaluate(*program, terms, stream), terms.size() * sizeof(CardSource))
           << "what travels is the list";
-      const std::vector<vec4> got = read_back(stream, mesh.vertex_count);
+      const std::vector<vec4> got = read_back<vec4>(stream, mesh.vertex_count);
       double largest = 0, height = 0, angle = 0;
       for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
         const vec4 want = cpu.field(surface[0]).stream[v];
@@ -70,7 +65,7 @@ TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
       EXPECT_LT(angle, 0.1) << int(law) << ' ' << int(shape);
 
       EXPECT_EQ(field.evaluate(*program, {}, stream), 0u);  // everything has come to rest: zeros once, then nothing
-      for (const vec4& s : read_back(stream, mesh.vertex_count)) ASSERT_EQ(s, vec4(0));
+      for (const vec4& s : read_back<vec4>(stream, mesh.vertex_count)) ASSERT_EQ(s, vec4(0));
     }
   }
 }

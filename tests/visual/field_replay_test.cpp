@@ -11,17 +11,12 @@
 #include "systems/visual/gpu/context.h"
 #include "systems/visual/upload.h"
 #include "tests/scenes/scenes.h"
+#include "tests/visual/read_back.h"
 
 namespace pliant {
 namespace {
 
 using scenes::Stage;
-
-std::vector<vec4> read_back(const gpu::Buffer& buffer, std::size_t count) {
-  std::vector<vec4> values(count);
-  glGetNamedBufferSubData(buffer.id(), 0, static_cast<GLsizeiptr>(count * sizeof(vec4)), values.data());
-  return values;
-}
 
 struct Twin {
   Stage stage;
@@ -40,7 +35,8 @@ struct Twin {
   std::uint32_t streamed = 0;  // zones of the last picture
   // A picture: what has been told since the last one, and how far the card is from the processor then.
   bool picture(const ReplayProgram& program) {
-    publish(stage.world, {static_cast<std::uint64_t>(std::lround(stage.time() / stage.dt())), stage.time(), stage.dt()});
+    publish(stage.world,
+            {static_cast<std::uint64_t>(std::lround(stage.time() / stage.dt())), stage.time(), stage.dt()});
     stage.world.snapshots->acquire();
     const Snapshot& snapshot = stage.world.snapshots->read();
     const ObjectSnapshot& object = snapshot.objects[0];
@@ -50,7 +46,7 @@ struct Twin {
     copies.upload();
     replay.evaluate(program, copies.buffer());
     if (!told && !snapshot.complete) return false;
-    const std::vector<vec4> got = read_back(copies.buffer(), mesh().vertex_count);
+    const std::vector<vec4> got = read_back<vec4>(copies.buffer(), mesh().vertex_count);
     for (std::uint32_t v = 0; v < mesh().vertex_count; ++v) {
       const vec4 want = stage.field(surface).stream[v];
       largest = std::max<double>(largest, std::abs(want.w));
@@ -132,7 +128,7 @@ TEST_P(FieldReplayTest, StepsWhatTheProcessorSteps) {
   ASSERT_TRUE(twin.picture(program_));
   if (stage.field(twin.surface).awake.empty()) {
     EXPECT_TRUE(twin.replay.at_rest());
-    for (const vec4& s : read_back(twin.copies.buffer(), twin.mesh().vertex_count)) ASSERT_EQ(s, vec4(0));
+    for (const vec4& s : read_back<vec4>(twin.copies.buffer(), twin.mesh().vertex_count)) ASSERT_EQ(s, vec4(0));
   }
 }
 
@@ -143,8 +139,8 @@ std::vector<Case> cases() {
     for (const Response response : {Response::kFollow, Response::kLag})
       for (const Distance distance : {Distance::kChord, Distance::kSurface})
         for (const bool painted : {false, true}) {
-          const bool closed = law == SpringLaw::kLinear && response == Response::kFollow &&
-                              distance == Distance::kChord && !painted;
+          const bool closed =
+              law == SpringLaw::kLinear && response == Response::kFollow && distance == Distance::kChord && !painted;
           if (!closed) all.push_back({law, response, distance, painted});
         }
   return all;
@@ -174,7 +170,7 @@ TEST(FieldReplay, AReaderThatComesLateIsGivenTheStreamsAndThenBegins) {
   stage.move(a, {0, 0.095, 0}, 0.05);
   ASSERT_TRUE(twin.picture(*program));
   twin.replay = FieldReplay(twin.mesh(), d, stage.dt());  // the window has come back with nothing
-  twin.picture(*program);  // and finds it out
+  twin.picture(*program);                                 // and finds it out
   stage.tick();
   EXPECT_FALSE(twin.picture(*program));
   EXPECT_GT(twin.streamed, 0u);

@@ -11,17 +11,11 @@
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/gpu/texture.h"
 #include "systems/visual/upload.h"
+#include "tests/visual/read_back.h"
 #include "tests/visual/scene.h"
 
 namespace pliant {
 namespace {
-
-template <class T>
-std::vector<T> read_back(const gpu::Buffer& buffer, std::size_t count) {
-  std::vector<T> values(count);
-  glGetNamedBufferSubData(buffer.id(), 0, static_cast<GLsizeiptr>(count * sizeof(T)), values.data());
-  return values;
-}
 
 TEST(Context, IsCurrentAndOfTheVersionThatShadersAreWrittenFor) {
   NEEDS_A_CONTEXT();
