@@ -144,22 +144,13 @@ PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const Field
   sums.spread += sum_lanes(spread);
 }
 
-// Also finds how large it still is: lanes as `largest` has them.
-PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh, float vv,
-                               float scale, float (&best)[kLanes]) {
-  float most[kLanes] = {};
-  for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes) {
-    for (std::uint32_t l = 0; l < kLanes; ++l) {
-      const float x = state[i + l], v = rate[i + l];
-      const float h = hh * x + hv * v, r = vh * x + vv * v;
-      state[i + l] = h;
-      rate[i + l] = r;
-      const float a = std::abs(h), b = std::abs(r) * scale;
-      const float m = a > b ? a : b;
-      most[l] = most[l] > m ? most[l] : m;
-    }
+PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh,
+                               float vv) {
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
+    const float x = state[i], v = rate[i];
+    state[i] = hh * x + hv * v;
+    rate[i] = vh * x + vv * v;
   }
-  for (std::uint32_t l = 0; l < kLanes; ++l) best[l] = most[l];
 }
 
 PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm,
@@ -209,15 +200,11 @@ PLIANT_KERNEL void largest(const float* __restrict state, const float* __restric
   }
 }
 
-ZoneRest rest_of(const float (&best)[kLanes]) {
-  // Lanes 3 and 7 are heights, the others normal corrections.
-  return {std::max(best[3], best[7]), std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
-}
-
 ZoneRest rest_of(double mass, const vec4* state, const vec4* rate) {
   float best[kLanes] = {};
   largest(&state->x, &rate->x, static_cast<float>(std::sqrt(mass)), best);
-  return rest_of(best);
+  // Lanes 3 and 7 are heights, the others normal corrections.
+  return {std::max(best[3], best[7]), std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
 }
 
 void solid_matrix(const Motion& motion, float (&m)[9]) {
@@ -292,10 +279,8 @@ ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, Heigh
     step_solid(&state->x, &rate->x, &field.arm[first].x, m);
   } else {
     const StepCoefficients& c = motion.linear;
-    float best[kLanes];
     step_linear(&state->x, &rate->x, static_cast<float>(c.hh), static_cast<float>(c.hv), static_cast<float>(c.vh),
-                static_cast<float>(c.vv), static_cast<float>(std::sqrt(motion.mass)), best);
-    return rest_of(best);
+                static_cast<float>(c.vv));
   }
   return rest_of(painted.empty() ? motion.mass : painted.most_mass, state, rate);
 }
