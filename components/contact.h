@@ -36,6 +36,7 @@ struct Contact {
   // Force law (methods.md 1.8, 1.10). Started by collision, advanced by friction_feedback.
   double free_height = 0.0;    // [m]   y <= 0: what the surface's height would be had the probe not come
   double free_velocity = 0.0;  // [m/s]
+  double unpushed = 0.0;       // [m]   depth that no hand pushed: it began inside, or came to a deeper place at once
   double load = 0.0;           // [sqrt J] l: its part of the shared load, last tick
   double share = 0.0;          // [1]   of its own law: 1 alone, 0 in another's dent
   double normal_force = 0.0;   // [N]   >= 0

@@ -113,10 +113,7 @@ void begin(const Search& s, const ProbeTip& tip, const Foot& foot, dvec3 from, d
   const double pushed = length(x - from), unpushed = -contact.height - pushed;
   contact.free_height = std::min(0.0, surface.height);
   contact.free_velocity = contact.free_height < 0 ? surface.velocity : 0.0;
-  if (unpushed > 1e-9 * static_cast<double>(s.mesh.box.diagonal()) && -unpushed < contact.free_height) {
-    contact.free_height = -unpushed;
-    contact.free_velocity = 0.0;
-  }
+  contact.unpushed = unpushed > 1e-9 * static_cast<double>(s.mesh.box.diagonal()) ? unpushed : 0.0;
   contact.previous_height = contact.older_height = std::max(contact.height, std::min(0.0, surface.height));
   if (!s.object.listed) {
     s.object.listed = true;
@@ -195,6 +192,9 @@ AtSeam carry_over(const Search& s, const Seam& seam, SourceState& source, Contac
     const dquat turn = glm::conjugate(pose.rotation) * s.world.registry.get<Pose>(s.object.entity).rotation;
     after.free_height = before.free_height;
     after.free_velocity = before.free_velocity;
+    const dvec3 own = s.world.registry.get<Pose>(s.object.entity).to_local(world);
+    const double deeper = before.height - after.height - length(own - source.x);
+    after.unpushed = before.unpushed + (deeper > 1e-9 * static_cast<double>(there.mesh.box.diagonal()) ? deeper : 0.0);
     after.previous_height = before.previous_height;
     after.older_height = before.older_height;
     after.bristle = turn * before.bristle;
@@ -232,9 +232,10 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   // downhill to another one. What it then is deeper than before was not pushed.
   const double deeper = last - source.place.height - moved;
   if (deeper > 1e-9 * static_cast<double>(s.mesh.box.diagonal())) {
-    contact.free_height = std::min(contact.free_height, -std::max(0.0, deeper));
-    contact.free_velocity = 0.0;
+    contact.unpushed += deeper;
   }
+  // What has come out so far is no longer held against it.
+  contact.unpushed = std::clamp(contact.unpushed, 0.0, std::max(0.0, -contact.height));
 }
 
 // Feet of the walls within `within` of x: triangles that no neighbour is nearer than.

@@ -1,6 +1,7 @@
 // What one contact stores, as if it were alone (methods.md 1.8, 1.10): the law of the depth d behind the rest surface,
 //   F(d) = law(d) - law(y) + k1 (d - q),   never negative,   W = its integral from where it is zero,
-// y the depth of the free surface (0 at rest; what a surface that is still recovering would be at had nobody come), q
+// y the depth of the free surface (0 at rest; what a surface that is still recovering would be at had nobody come; or
+// what nobody pushed, Contact::unpushed), q
 // the tissue's viscous extension at the foot (standard linear solid).
 //
 // With Young's modulus and a sphere, law(d) is Hertz's, 4/3 E* sqrt(r) z(d)^1.5, z the law's own stiffening of the

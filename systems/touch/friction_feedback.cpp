@@ -67,7 +67,7 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   const double depth = -contact.height;
   pressing.stiffness = painted(place, mesh, mesh.stiffness_factor);
   ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
-  law.free_depth = -contact.free_height;
+  law.free_depth = std::max(-contact.free_height, contact.unpushed);
   Painted relaxed{0.0, dvec3(0)}, relaxation;
   if (!field.arm.empty() && law.arm > 0) {
     relaxation = painted(place, mesh, mesh.relaxation_factor);

@@ -48,6 +48,7 @@ void hash_state(const World& world, Hash& hash) {
       add(hash, contact.barycentric);
       hash.add(contact.height);
       hash.add(contact.free_height);
+      hash.add(contact.unpushed);
       hash.add(contact.load);
       hash.add(contact.amplitude);
       add(hash, contact.bristle);
