@@ -1,6 +1,6 @@
 // The stored energy on what people bring: one to eight probes wander about on every mesh of the corpus, and no hand
-// gets more work out of it than went in (methods.md 1.10: the force is minus the gradient of one energy; what a vanishing
-// minimum loses may be lost).
+// gets more work out of it than went in (methods.md 1.10: the force is minus the gradient of one energy; what a
+// vanishing minimum loses may be lost).
 #include <gtest/gtest.h>
 
 #include <algorithm>
