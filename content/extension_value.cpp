@@ -61,9 +61,9 @@ std::string check_value(const Key& key, const Json& value) {
       if (value.is_number()) return number();
       return numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
     case KeyType::kPoints: {
-      const bool good = value.is_array() && value.size() <= kMostPoints &&
-                        std::all_of(value.begin(), value.end(),
-                                    [&](const Json& each) { return numbers(each, 3, key.range); });
+      const bool good =
+          value.is_array() && value.size() <= kMostPoints &&
+          std::all_of(value.begin(), value.end(), [&](const Json& each) { return numbers(each, 3, key.range); });
       return good ? "" : fmt::format("is {}, not a list of at most {} points [x, y, z]", given, kMostPoints);
     }
     case KeyType::kBox: {
