@@ -40,8 +40,8 @@ struct Deformable {
   Handle<HeightField> field;  // set at spawn
 };
 
-// Whether what a touch leaves behind is known at any later time from where it was left: then a card needs no more than
-// a list of sources (systems/touch/field.h). Else it has to take every step (components/field_feed.h).
+// Whether a released dent has a closed form in time: then the GPU evaluates a list of sources (systems/touch/field.h),
+// else it takes every step (components/field_feed.h).
 bool has_closed_form(const Deformable& deformable, const Mesh& mesh);
 
 }  // namespace pliant

@@ -1,8 +1,8 @@
-// What the touch clock tells a graphics card that steps a copy of a field by itself: every change of what acts on the
-// surface, in order. For fields without a closed form (has_closed_form); zones that only recover cost nothing here.
+// The inputs of a field that the GPU steps on its own copy: what acts on the surface, tick by tick, in order. For
+// fields without a closed form (has_closed_form). Zones that only recover send nothing.
 //
-// A tick is: folds, sources and zones that changed, then kTick. What is not told again stays as it was. The card's copy
-// starts at kReset, with the whole surface at rest.
+// A tick is: folds, sources and zones that changed, then kTick. What is not sent stays as it was. The copy starts at
+// kReset, with the whole surface at rest.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ struct FieldFeed {
       : events(event_capacity), offsets(offset_capacity) {}
   Ring<FieldEvent> events;
   Ring<FieldOffsets> offsets;
-  std::atomic<bool> wants_reset{false};  // the reader has just come and knows nothing
+  std::atomic<bool> wants_reset{false};  // set by a reader that has no state yet
 };
 
 }  // namespace pliant

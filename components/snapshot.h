@@ -26,8 +26,8 @@ struct ObjectSnapshot {
   bool on_card = false;  // no zones: the whole field is these sources, evaluated by the card
   std::uint32_t term_count = 0;
   std::vector<FieldSource> terms;  // capacity for every source and release
-  // Fields that the card steps by itself: what acts on them, up to this snapshot's tick while `told`; else zones
-  // travel.
+  // Fields that the GPU steps on its own copy: their inputs up to this snapshot's tick while `told`, else `zones` hold
+  // the field.
   std::shared_ptr<FieldFeed> feed;
   bool told = false;
 };

@@ -23,7 +23,7 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
 // The source has ended, or the surface is left behind: what was held down is now on its own way back to rest.
 void fold(SourceState& source, ObjectState& object, World& world, Tick tick);
 
-// The source's zones are reached this tick; the card is told.
+// Marks the source's zones as reached this tick, also in the feed.
 void mark_reached(SourceState& source, ObjectState& object, HeightField& field);
 
 // The dent, without whose it is.

@@ -49,7 +49,7 @@ struct SourceState {
   FieldSource now, before;           // this tick's and the last tick's: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
   std::vector<vec3> offset;          // [m] Distance::kSurface only, per vertex: see surface_distance.h
-  std::uint32_t told = 0;            // number under which the card last knew of the dent
+  std::uint32_t told = 0;            // number of the dent in the feed (feed_field.h)
   SourceLink of;                     // an echo: of this source of a neighbour (seam_dents.h)
   std::uint64_t echoed = 0;          // tick after which it last was one
   std::vector<MarchItem> heap;       // working memory of the march; its capacity is what matters
@@ -110,7 +110,7 @@ struct ObjectState {
   bool on_card = false;                     // the field is `terms`, drawn by the card; there is no HeightField
   std::vector<Release> releases;            // card only; capacity kMaxReleases
   std::vector<FieldSource> terms;           // card only: the whole field at `time`
-  FieldTeller teller;                       // where the card steps a copy of the field
+  FieldTeller teller;                       // where the GPU steps a copy of the field
   double time = 0.0;                        // [s] end of the last tick
   std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject
   std::uint32_t first_echo = 0;             // of sources

@@ -1,6 +1,7 @@
-// A field without a closed form, stepped on the card: shaders/replay.comp takes the same steps as the processor's
-// kernels (field_kernels.h), tick by tick, from what the touch clock tells (components/field_feed.h). Each picture's
-// ticks are one dispatch, one work group a zone that was awake in any of them; the state never leaves the card.
+// A field without a closed form, stepped on the GPU: shaders/replay.comp takes the steps of the CPU kernels
+// (field_kernels.h), tick by tick, from the inputs that the touch clock streams (components/field_feed.h). The ticks of
+// a frame are one dispatch, with one work group for each zone that was awake in any of them. The state stays on the
+// GPU.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +30,9 @@ class FieldReplay {
   FieldReplay() = default;
   FieldReplay(const Mesh& mesh, const Deformable& deformable, double dt);
 
-  // Takes what was told up to tick number `tick`. False while the newest field is in the zones that travel.
+  // Takes the inputs up to tick number `tick`. False while the newest field is in the snapshot's zones.
   bool take(FieldFeed& feed, bool told, std::uint64_t tick);
-  // Takes these steps on the card and writes their last streams. Returns the bytes that travelled.
+  // Takes these steps and writes the last stream of each zone. Returns the bytes uploaded.
   std::size_t evaluate(const ReplayProgram& program, const gpu::Buffer& stream);
   bool at_rest() const { return awake_.empty() && runs_.empty(); }
   std::size_t bytes() const { return state_.size(); }  // that a shader has to reach

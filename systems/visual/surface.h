@@ -63,7 +63,7 @@ class Surfaces {
     StreamCopies stream;
     FieldOnCard field;                 // only where the field is a list on the card
     std::vector<FieldSource> sources;  // its newest
-    FieldReplay replay;                // only where the card steps a copy of the field
+    FieldReplay replay;                // only where the GPU steps a copy of the field
     Skin skin;                         // of a soft body, else of no vertex
     Box rest;                          // [m] object frame
     mat4 to_world{1};

@@ -88,8 +88,8 @@ TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
   EXPECT_TRUE(card.stage.world.touch->objects[0].releases.empty());
 }
 
-// Without a closed form the processor holds the field all the same, and tells the card what acts on it; zones travel
-// again once nobody takes what is told (systems/touch/feed_field.h), until the surface has been at rest.
+// Without a closed form the CPU keeps the field and feeds the inputs to the GPU. Once the feed is full (no reader),
+// zones are published again until the surface has been at rest (systems/touch/feed_field.h).
 TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   Deformable d;
   d.reach = 0.03;

@@ -1,4 +1,4 @@
-// Fields without a closed form: the card's own steps against the processor's, picture by picture.
+// Fields without a closed form: the GPU's steps against the CPU's, frame by frame.
 #include "systems/visual/field_replay.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct Twin {
   }
   const Mesh& mesh() const { return stage.mesh(surface); }
   std::uint32_t streamed = 0;  // zones of the last picture
-  // A picture: what has been told since the last one, and how far the card is from the processor then.
+  // A picture: what has been told since the last one, and how far GPU and CPU are apart then.
   bool picture(const ReplayProgram& program) {
     publish(stage.world,
             {static_cast<std::uint64_t>(std::lround(stage.time() / stage.dt())), stage.time(), stage.dt()});
