@@ -41,6 +41,24 @@ std::optional<Hit> cast(const World& world, dvec3 from, dvec3 to) {
   return best;
 }
 
+// For what has a hole in its middle, such as a ring: rays along vertex normals, from above where there are such.
+std::optional<Hit> cast_at_vertices(const World& world, unsigned index, double out) {
+  constexpr unsigned kAttempts = 64;
+  for (const double least_up : {0.3, -1.0}) {
+    for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
+      const Mesh& mesh = world.meshes[deformable.mesh];
+      for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
+        const double share = std::fmod(0.618034 * (index + 1 + attempt), 1.0);
+        const auto v = static_cast<std::uint32_t>(share * mesh.vertex_count);
+        const dvec3 p = pose.to_world(dvec3(mesh.position(v))), n = pose.rotation * dvec3(mesh.normal(v));
+        if (!(n.y >= least_up)) continue;
+        if (const std::optional<Hit> hit = cast(world, p + out * n, p - out * n)) return hit;
+      }
+    }
+  }
+  return {};
+}
+
 double smooth(double s) {
   return s * s * s * (10 + s * (6 * s - 15));
 }  // minimum jerk
@@ -134,6 +152,7 @@ Path make_orbit(const World& world, unsigned index, double radius) {
     const dvec3 direction(std::sin(tilt) * std::sin(turn), std::cos(tilt), std::sin(tilt) * std::cos(turn));
     first = cast(world, center + out * direction, center - out * direction);
   }
+  if (!first) first = cast_at_vertices(world, index, out);
   if (!first) return path;
 
   const Deformable& deformable = world.registry.get<Deformable>(first->object);

@@ -129,6 +129,27 @@ TEST_F(Run, AProbeThatTouchesNothingSaysByHowMuchItMissed) {
   EXPECT_NE(json["dropped"].dump().find("never touched anything"), std::string::npos);
 }
 
+// Every ray through the middle of a lying ring misses it.
+TEST_F(Run, AnOrbitFindsARingRoundAnEmptyMiddle) {
+  std::ostringstream obj;
+  constexpr int kAround = 32, kTube = 12;
+  for (int i = 0; i < kAround; ++i)
+    for (int j = 0; j < kTube; ++j) {
+      const double a = 2 * M_PI * i / kAround, b = 2 * M_PI * j / kTube, r = 0.04 + 0.008 * std::cos(b);
+      obj << "v " << r * std::cos(a) << ' ' << 0.008 * std::sin(b) << ' ' << r * std::sin(a) << '\n';
+    }
+  const auto at = [](int i, int j) { return i % kAround * kTube + j % kTube + 1; };
+  for (int i = 0; i < kAround; ++i)
+    for (int j = 0; j < kTube; ++j) {
+      obj << "f " << at(i, j) << ' ' << at(i, j + 1) << ' ' << at(i + 1, j + 1) << '\n';
+      obj << "f " << at(i, j) << ' ' << at(i + 1, j + 1) << ' ' << at(i + 1, j) << '\n';
+    }
+  write_text(folder / "ring.obj", obj.str());
+  const Said said = pliant({"run", "ring.obj", "--probe", "tip=orbit", "--out", "out", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_GT(report("out")["probes"][0]["contact_ticks"].get<int>(), 1000);
+}
+
 TEST_F(Run, AProbeThatStaysInAnothersDentIsToldSo) {
   write_text(folder / "a.csv", "time_s,x,y,z\n0,0,0.01,0\n0.3,0,-0.006,0\n2,0,-0.006,0\n");
   write_text(folder / "b.csv", "time_s,x,y,z\n0,0.002,0.01,0\n0.5,0.002,0.01,0\n1,0.002,-0.001,0\n2,0.002,0.01,0\n");
