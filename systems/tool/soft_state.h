@@ -22,6 +22,14 @@ struct SoftTimes {
   double free_motion = 0, proximity = 0, delassus = 0, sweeps = 0, linearise = 0, total = 0;
 };
 
+// What soft steps had to leave imperfect, from the first one on. For reports: read once the clocks stand still.
+struct SoftTally {
+  std::uint64_t contacts_cut = 0;  // left out of a solve because a limit was reached, summed over the steps
+  std::uint64_t unconverged = 0;   // steps whose contacts ended above the stated residual
+  double residual = 0.0;           // [m/s] the largest that a step ended with
+  double deepest = 0.0;            // [m] >= 0: the deepest penetration that a step began with
+};
+
 struct SoftState {
   std::vector<std::unique_ptr<Body>> bodies;  // fixed ones too
   std::vector<std::uint32_t> moving;          // those with degrees of freedom, which a snapshot shows
@@ -31,6 +39,7 @@ struct SoftState {
   Delassus delassus;
   ContactProblem problem;
   SweepReport report;
+  SoftTally tally;
   SoftTimes times;
   double margin = 1e-3;       // [m] proximity margin, sized from the level
   std::uint64_t steps = 0;    // done
