@@ -67,8 +67,13 @@ std::string soft_fault(const LevelNode& node) {
     return "has both PLIANT_soft_body and PLIANT_rigid_body; keep one, or mark the rigid part with PLIANT_handle";
   if (node.rigid_body && node.deformable)
     return "has both PLIANT_rigid_body and PLIANT_deformable; keep one, a yielding surface does not move";
-  if (node.handle && !node.soft_body)
-    return "has PLIANT_handle but no PLIANT_soft_body; add the flesh that the handle holds, or remove it";
+  if (node.handle && !node.soft_body && !node.rigid_body)
+    return "has PLIANT_handle but neither PLIANT_soft_body nor PLIANT_rigid_body; add what the handle holds, or remove "
+           "it";
+  if (node.handle && node.rigid_body && node.rigid_body->fixed)
+    return "has PLIANT_handle on a rigid body that is `fixed`; take `fixed` away, so that a hand can move it, or "
+           "remove "
+           "the handle";
   if (node.soft_body && node.mesh < 0 && node.soft_body->mesh.empty())
     return "has PLIANT_soft_body but neither a mesh nor a tetrahedra file; give the node a mesh, or name a file in "
            "`mesh`";

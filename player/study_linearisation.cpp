@@ -70,6 +70,7 @@ void soft_step(World& world, Schedule<World>& schedule, std::uint64_t index, dou
   input.device = device_at(world, tool.device, time, T);
   input.placed = handle != nullptr;
   if (handle) input.handle = *handle;
+  input.impulse = tool.heard + T * tool.pending.force;  // expected: what the last step said
   tool.input.publish();
   schedule.run(world, Tick{index, T, time});
 }

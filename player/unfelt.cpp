@@ -30,7 +30,7 @@ std::vector<Body> bodies(const World& world) {
     if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) && body.skin.valid())
       list.push_back({name_of(world, entity), pose, world.meshes[body.skin].box});
   for (auto [entity, body, pose] : world.registry.view<RigidBody, Pose>())
-    if (!world.registry.find<Deformable>(entity) && body.skin.valid())
+    if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) && body.skin.valid())
       list.push_back({name_of(world, entity), pose, world.meshes[body.skin].box});
   return list;
 }

@@ -7,7 +7,7 @@ namespace pliant {
 std::vector<Entity> hands(const World& world) {
   std::vector<Entity> all;
   for (auto [entity, probe] : world.registry.view<Probe>()) all.push_back(entity);
-  for (auto [entity, body, handle] : world.registry.view<SoftBody, Handle6>()) all.push_back(entity);
+  for ([[maybe_unused]] auto [entity, handle] : world.registry.view<Handle6>()) all.push_back(entity);
   return all;
 }
 

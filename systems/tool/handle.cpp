@@ -80,6 +80,11 @@ RigidHandle::RigidHandle(std::span<const dvec3> nodes, std::span<const double> m
   turn_arms();
 }
 
+RigidHandle::RigidHandle(double mass, dvec3 centre, const dmat3& inertia, const Pose& placement)
+    : centre_(centre), mass_(mass), inertia_(inertia) {
+  motion_.pose = {placement.to_world(centre_), placement.rotation};
+}
+
 Pose RigidHandle::object_pose() const {
   return {motion_.pose.position - motion_.pose.rotation * centre_, motion_.pose.rotation};
 }

@@ -44,6 +44,9 @@ class RigidHandle {
   // axis.
   RigidHandle(std::span<const dvec3> nodes, std::span<const double> mass, dvec3 body, const Pose& placement);
 
+  // A rigid body that is its own handle: mass [kg], centre of mass [m] and inertia about it [kg m2], object frame.
+  RigidHandle(double mass, dvec3 centre, const dmat3& inertia, const Pose& placement);
+
   // The centre of mass, with the object's axes.
   const RigidMotion& motion() const { return motion_; }
   void set_velocity(const Vector6& w) { motion_.velocity = w; }

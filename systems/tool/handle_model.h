@@ -103,6 +103,8 @@ struct ToolInput {
   RigidMotion device;   // of the device's own frame
   bool placed = false;  // `handle` means something: the soft clock's handle goes there, so that there is but one path
   RigidMotion handle;   // the 1 kHz handle's centre
+  // [N s], [N m s] Sum over all ticks so far of what flesh and contacts did to the handle.
+  Vector6 impulse = Vector6::Zero();
 };
 
 }  // namespace pliant

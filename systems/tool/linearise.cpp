@@ -5,8 +5,8 @@
 #include "systems/tool/reduce_tool.h"
 #include "systems/tool/reduction/stiff_contacts.h"
 #include "systems/tool/rotation_vector.h"
-#include "systems/tool/soft_body_state.h"
 #include "systems/tool/soft_state.h"
+#include "systems/tool/tool_body.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
@@ -17,6 +17,12 @@ std::uint32_t body_of(const SoftState& soft, Entity tool) {
   std::uint32_t index = 0;
   while (index < soft.bodies.size() && !(soft.bodies[index]->entity == tool)) ++index;
   return index;
+}
+
+// Null where there is no such body, or nobody holds it by a handle.
+ToolBody* tool_body(const SoftState& soft, std::uint32_t index) {
+  auto* const body = index < soft.bodies.size() ? dynamic_cast<ToolBody*>(soft.bodies[index].get()) : nullptr;
+  return body && body->has_handle() ? body : nullptr;
 }
 
 // One tick of a path that has been gone: the model moves on with it.
@@ -62,22 +68,38 @@ void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& 
   if (moved) rebase(model, state, w0);
 }
 
+// [N], [N m] of flesh and contacts on the handle, mean over the ticks since the last input.
+Vector6 mean_wrench(ToolTouchState& tool, const ToolInput& input) {
+  const double elapsed = input.time - tool.heard_at;
+  const Vector6 mean = elapsed > 0.0 ? Vector6((input.impulse - tool.heard) / elapsed) : Vector6(Vector6::Zero());
+  tool.heard_at = input.time;
+  tool.heard = input.impulse;
+  return mean;
+}
+
+// To where the touch clock has its handle.
+void bring(ToolTouchState& tool, const ToolInput& input, ToolBody& body) {
+  const Vector6 expected = mean_wrench(tool, input);
+  if (input.status == DeviceStatus::kReady)
+    body.bring_handle(input.handle, expected);
+  else
+    body.lead_handle(input.handle);  // nobody holds it: it stays where it is
+}
+
 }  // namespace
 
 void take_inputs(World& world, double T) {
   if (!world.tools || !world.soft) return;
   for (const auto& tool : world.tools->tools) {
-    const std::uint32_t index = body_of(*world.soft, tool->entity);
-    auto* body =
-        index < world.soft->bodies.size() ? dynamic_cast<SoftBodyState*>(world.soft->bodies[index].get()) : nullptr;
-    if (body == nullptr || !body->has_handle()) continue;
+    ToolBody* const body = tool_body(*world.soft, body_of(*world.soft, tool->entity));
+    if (!body) continue;
     tool->input.acquire();
     const ToolInput& input = tool->input.read();
     Pose before = input.device.pose;
     before.position -= T * linear(input.device.velocity);
     before.rotation = glm::normalize(rotation_of(-T * angular(input.device.velocity)) * before.rotation);
     body->set_device(before, input.device.velocity);
-    if (input.placed) body->lead_handle(input.handle);
+    if (input.placed) bring(*tool, input, *body);
     tool->pending.time = input.time;
   }
 }
@@ -88,9 +110,8 @@ void linearise(World& world, double T) {
   const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, kPenetrationShare};
   for (const auto& tool : world.tools->tools) {
     const std::uint32_t index = body_of(soft, tool->entity);
-    if (index == soft.bodies.size()) continue;
-    const auto* body = dynamic_cast<const SoftBodyState*>(soft.bodies[index].get());
-    if (body == nullptr || !body->has_handle() || !body->solvable()) continue;
+    const ToolBody* const body = tool_body(soft, index);
+    if (!body || !body->solvable()) continue;
     reduce_tool(step, index, 1.0 / world.simulation.touch_rate, tool->pending);
     ++tool->pending.step;
   }

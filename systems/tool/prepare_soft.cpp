@@ -8,6 +8,7 @@
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
 #include "systems/tool/rigid_state.h"
+#include "systems/tool/rigid_tool.h"
 #include "systems/tool/soft_body_state.h"
 #include "systems/tool/soft_state.h"
 #include "systems/touch/surface_query.h"
@@ -48,21 +49,32 @@ void add_soft(const World& world, SoftState& soft) {
   }
 }
 
+// A rigid body that moves. An error where it encloses nothing.
+Result<RigidMass> mass_of(const World& world, Entity entity, const RigidBody& body) {
+  const MassProperties shape = mass_properties(world.meshes[body.skin]);
+  const double mass = body.mass > 0.0 ? body.mass : body.density * shape.volume;
+  const double density = mass / shape.volume;
+  const dmat3 inertia = density * shape.inertia;
+  if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
+    return Error{name_of(world, entity),
+                 "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
+  return RigidMass{mass, shape.centre, inertia};
+}
+
 Status add_rigid(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<RigidBody>()) {
     const Mesh& mesh = world.meshes[body.skin];
+    const Pose pose = pose_of(world, entity);
     std::unique_ptr<Body> state;
     if (body.fixed) {
-      state = std::make_unique<FixedBody>(mesh, pose_of(world, entity));
+      state = std::make_unique<FixedBody>(mesh, pose);
     } else {
-      const MassProperties shape = mass_properties(mesh);
-      const double mass = body.mass > 0.0 ? body.mass : body.density * shape.volume;
-      const double density = mass / shape.volume;
-      const dmat3 inertia = density * shape.inertia;
-      if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
-        return Error{name_of(world, entity),
-                     "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
-      state = std::make_unique<RigidState>(mesh, pose_of(world, entity), RigidMass{mass, shape.centre, inertia});
+      const Result<RigidMass> mass = mass_of(world, entity, body);
+      if (!mass) return mass.error();
+      if (const Handle6* handle = world.registry.find<Handle6>(entity))
+        state = std::make_unique<RigidTool>(mesh, *mass, *handle, pose);
+      else
+        state = std::make_unique<RigidState>(mesh, pose, *mass);
     }
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
@@ -97,7 +109,7 @@ SoftSnapshot first_snapshot(const SoftState& soft) {
   for (const std::uint32_t i : soft.moving) {
     snapshot.objects.emplace_back();
     soft.bodies[i]->show(snapshot.objects.back());
-    const auto* body = dynamic_cast<const SoftBodyState*>(soft.bodies[i].get());
+    const auto* body = dynamic_cast<const ToolBody*>(soft.bodies[i].get());
     if (body && body->has_handle()) snapshot.handles.push_back({body->entity, body->handle().object_pose(), {}, {}});
   }
   return snapshot;
@@ -115,7 +127,7 @@ bool come_through(const World& world, const Body& body, const std::vector<dvec3>
 // shape and falls on it instead.
 void settle_tools(const World& world, SoftState& soft) {
   for (const std::unique_ptr<Body>& body : soft.bodies) {
-    auto* tool = dynamic_cast<SoftBodyState*>(body.get());
+    auto* tool = dynamic_cast<ToolBody*>(body.get());
     if (!tool || !tool->has_handle()) continue;
     const std::vector<dvec3> rest = tool->skin_position;
     tool->settle(world.simulation.gravity);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "components/mass_properties.h"
 #include "components/soft_body.h"
 #include "systems/tool/tool_touch_state.h"
 
@@ -27,24 +28,44 @@ Entity resting_device(World& world, Entity tool) {
   return tool;
 }
 
-// What the hand feels of a tool that nothing carries. Its nodes have their elements' mass, as in Flesh.
-void find_weight(const World& world, ToolTouchState& tool) {
-  const SoftBody& body = world.registry.get<SoftBody>(tool.entity);
-  if (world.registry.get<Handle6>(tool.entity).carried || !body.tets.valid()) return;
-  const TetMesh& mesh = world.tet_meshes[body.tets];
+// [kg] and its centre [m], object frame.
+struct Weight {
   double mass = 0.0;
+  dvec3 centre{0};
+};
+
+// Nodes have their elements' mass, as in Flesh.
+Weight weight_of(const SoftBody& body, const TetMesh& mesh) {
+  Weight out;
   for (const Tet& tet : mesh.tets) {
     const dvec3 a = mesh.nodes[tet[0]];
     const double volume = dot(cross(mesh.nodes[tet[1]] - a, mesh.nodes[tet[2]] - a), mesh.nodes[tet[3]] - a) / 6.0;
     for (const std::uint32_t node : tet) {
       if (node >= mesh.pinned_begin()) continue;  // the world's to hold
-      mass += body.density * volume / 4.0;
-      tool.balance += body.density * volume / 4.0 * mesh.nodes[node];
+      out.mass += body.density * volume / 4.0;
+      out.centre += body.density * volume / 4.0 * mesh.nodes[node];
     }
   }
-  if (!(mass > 0.0)) return;
-  tool.balance /= mass;
-  tool.weight = mass * world.simulation.gravity;
+  if (out.mass > 0.0) out.centre /= out.mass;
+  return out;
+}
+
+Weight weight_of(const World& world, Entity entity) {
+  if (const RigidBody* body = world.registry.find<RigidBody>(entity)) {
+    const MassProperties shape = mass_properties(world.meshes[body->skin]);
+    return {body->mass > 0.0 ? body->mass : body->density * shape.volume, shape.centre};
+  }
+  const SoftBody& body = world.registry.get<SoftBody>(entity);
+  return body.tets.valid() ? weight_of(body, world.tet_meshes[body.tets]) : Weight{};
+}
+
+// What the hand feels of a tool that nothing carries.
+void find_weight(const World& world, ToolTouchState& tool) {
+  if (world.registry.get<Handle6>(tool.entity).carried) return;
+  const Weight weight = weight_of(world, tool.entity);
+  if (!(weight.mass > 0.0)) return;
+  tool.balance = weight.centre;
+  tool.weight = weight.mass * world.simulation.gravity;
 }
 
 // Two things on one device would each be told that the whole of its force is theirs.
@@ -65,7 +86,8 @@ Status check_free(const World& world, Entity tool, Entity device) {
 Status prepare_tools(World& world) {
   world.tools = std::make_shared<ToolTouch>();
   std::vector<Entity> tools;
-  for (auto [entity, body, handle] : world.registry.view<SoftBody, Handle6>()) tools.push_back(entity);
+  for ([[maybe_unused]] auto [entity, handle] : world.registry.view<Handle6>())
+    if (world.registry.has<SoftBody>(entity) || world.registry.has<RigidBody>(entity)) tools.push_back(entity);
   HandleModel empty;
   empty.contacts.resize(kMaxCondensed, kMaxModes);
   for (const Entity entity : tools) {

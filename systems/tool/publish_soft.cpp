@@ -1,7 +1,7 @@
 #include "systems/tool/publish_soft.h"
 
-#include "systems/tool/soft_body_state.h"
 #include "systems/tool/soft_state.h"
+#include "systems/tool/tool_body.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
@@ -17,7 +17,7 @@ void show_bodies(const SoftState& soft, SoftSnapshot& out) {
   for (std::size_t i = 0; i < soft.moving.size(); ++i) {
     const Body& body = *soft.bodies[soft.moving[i]];
     body.show(out.objects[i]);
-    const auto* tool = dynamic_cast<const SoftBodyState*>(&body);
+    const auto* tool = dynamic_cast<const ToolBody*>(&body);
     if (!tool || !tool->has_handle()) continue;
     const Vector6 wrench = tool->handle_wrench();
     const vec3 middle(tool->handle().motion().pose.position), wanted(tool->device_target().pose.position);

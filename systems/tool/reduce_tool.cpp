@@ -1,5 +1,6 @@
 #include "systems/tool/reduce_tool.h"
 
+#include "systems/tool/reduction/catch_up.h"
 #include "systems/tool/reduction/condense_bodies.h"
 #include "systems/tool/reduction/handle_and_flesh.h"
 #include "systems/tool/reduction/linear_model.h"
@@ -13,9 +14,10 @@ void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, Hand
   describe_handle_and_flesh(contacts, out);
   const Eigen::MatrixXd W = condense_bodies(contacts, tick, out.contacts);
   mark_stiff(W, out.contacts);
+  const Vector6 left = contacts.tool().short_of_lead(out.handle);
+  catch_up(contacts, left, W, out);
   out.contacts.prepare_tick(tick);
   out.linear = linear_model(contacts.tool(), out, W);
-  const Vector6 left = contacts.tool().short_of_lead(out.handle);
   const Vector6 dropped = drop_stiff(step.T, step.beta, left, out.contacts);
   out.force -= dropped;
   out.linear.force -= dropped;

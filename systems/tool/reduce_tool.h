@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-// `tool`: index of a SoftBodyState with a handle. `tick` [s]: of the touch clock. Fills all of `out` but `step` and
+// `tool`: index of a ToolBody with a handle. `tick` [s]: of the touch clock. Fills all of `out` but `step` and
 // `time`.
 void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out);
 

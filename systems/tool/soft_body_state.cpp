@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "runtime/assert.h"
-#include "systems/tool/rotation_vector.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kLeadMass = 1e4;     // [kg] of what leads a handle: far above any tool's
-constexpr double kLeadInertia = 1e2;  // [kg m2]
 // Steps so long that little is left of inertia, from rest each: what they have not settled is far below what is seen.
 constexpr double kSettleStep = 0.1;  // [s]
 constexpr int kSettleSteps = 40;
@@ -38,12 +35,6 @@ dvec3 box_size(const TetMesh& tets) {
   dvec3 least = tets.nodes.front(), most = least;
   for (const dvec3 node : tets.nodes) least = glm::min(least, node), most = glm::max(most, node);
   return most - least;
-}
-
-bool finite(const RigidMotion& motion) {
-  const dvec3 x = motion.pose.position;
-  const dquat q = motion.pose.rotation;
-  return std::isfinite(dot(x, x)) && std::isfinite(1.0 / glm::dot(q, q)) && motion.velocity.allFinite();
 }
 
 Block to_block(const dmat3& m) {
@@ -91,13 +82,6 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const S
   skin_velocity.assign(skin_position.size(), dvec3(0));
 }
 
-void SoftBodyState::set_device(const Pose& pose, const Vector6& velocity) {
-  RigidMotion device{pose, velocity};
-  if (!finite(device)) return release_device();
-  device.pose.rotation = glm::normalize(pose.rotation);
-  device_ = device;
-}
-
 void SoftBodyState::free_step(double T, dvec3 gravity) {
   T_ = T;
   flesh_.assemble(T, gravity);
@@ -105,6 +89,7 @@ void SoftBodyState::free_step(double T, dvec3 gravity) {
   if (handle_) {
     tie_->assemble(flesh_, *handle_, T, gravity);
     couple(T, gravity);
+    tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right + T * carry_);
     solvable_ = solver_.factorise(flesh_.inner(), tie_->border(), tie_->corner(), tie_->right(), velocity_);
     separate_flesh(T);
   } else {
@@ -119,39 +104,6 @@ void SoftBodyState::move_skin(std::vector<dvec3>& out) const {
   refresh_skin(of_nodes, out);
 }
 
-// What holds up the whole tool in its rest shape. A hand that lifts the weight and lowers it elsewhere would be given
-// work that no surface ever took from it, which no passive device may do.
-Vector6 SoftBodyState::support(dvec3 gravity) const {
-  if (!(device_ || led_) || !settings_.carried) return Vector6::Zero();
-  const dvec3 force = -mass_ * gravity;
-  return join(force, cross(handle_->motion().pose.rotation * balance_, force));
-}
-
-// The device's pull on the handle, implicit.
-void SoftBodyState::couple(double T, dvec3 gravity) {
-  start_ = handle_->motion().velocity;
-  coupling_ = device_ ? coupling_force(settings_, handle_->motion(), device_target()) : CouplingForce{};
-  coupling_step_ = device_ ? coupling_step(coupling_, handle_->motion(), device_target(), T) : CouplingStep{};
-  if (led_) {
-    // So heavy a companion that neither flesh nor contacts can hold the handle back.
-    const RigidMotion now = handle_->motion();
-    const dvec3 turn = vector_of(led_->pose.rotation * glm::conjugate(now.pose.rotation));
-    coupling_ = {};
-    coupling_step_.matrix = join(dvec3(kLeadMass), dvec3(kLeadInertia));
-    coupling_step_.right = coupling_step_.matrix.cwiseProduct(join(led_->pose.position - now.pose.position, turn)) / T;
-  }
-  handle_mass_ = handle_->mass_matrix();
-  const Vector6 carry = support(gravity);
-  handle_load_ = handle_mass_ * join(gravity, dvec3(0)) + carry;
-  tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right + T * carry);
-}
-
-Vector6 SoftBodyState::short_of_lead(const RigidMotion& handle) const {
-  if (!led_) return Vector6::Zero();
-  return join(led_->pose.position - handle.pose.position,
-              vector_of(led_->pose.rotation * glm::conjugate(handle.pose.rotation)));
-}
-
 // S and its right-hand side, less what is not flesh.
 void SoftBodyState::separate_flesh(double T) {
   if (!solvable_) {
@@ -163,14 +115,6 @@ void SoftBodyState::separate_flesh(double T) {
   flesh_matrix_.diagonal() -= coupling_step_.matrix;
   flesh_wrench_ =
       (solver_.reduced_right() - coupling_step_.right - (handle_mass_ + flesh_matrix_) * start_) / T - handle_load_;
-}
-
-Vector6 SoftBodyState::coupling_wrench() const {
-  return (coupling_step_.right - coupling_step_.matrix.cwiseProduct(velocity_.tail<6>())) / T_;
-}
-
-Vector6 SoftBodyState::handle_wrench() const {
-  return handle_mass_ * (velocity_.tail<6>() - start_) / T_ - coupling_wrench() - handle_load_;
 }
 
 void SoftBodyState::halt() {
@@ -307,10 +251,6 @@ Vector SoftBodyState::starting_velocity() const {
     for (int k = 0; k < 3; ++k) out[3 * i + k] = flesh_.velocity()[i][k];
   if (handle_) out.tail<6>() = start_;
   return out;
-}
-
-void SoftBodyState::handle_rows(const SurfacePoint& point, const dmat3& axes, double sign, Eigen::Ref<Rows> out) const {
-  gather(point, axes, sign, follow(), out);
 }
 
 void SoftBodyState::show(SoftObjectSnapshot& out) const {

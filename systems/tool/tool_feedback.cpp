@@ -134,6 +134,7 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
     tool.fade_left = std::max(1.0, tool.fade_left - 1.0);
   }
 
+  tool.impulse += tick.dt * tool.wrench;
   tool.gained = handle.velocity - tool.handle.velocity;
   tool.handle.velocity = handle.velocity;
   tool.handle.pose.position += tick.dt * linear(handle.velocity);
@@ -176,6 +177,7 @@ void tell_soft_clock(ToolTouchState& tool, Tick tick) {
   input.device = tool.sensed;
   input.placed = tool.placed;
   input.handle = tool.handle;
+  input.impulse = tool.impulse;
   tool.input.publish();
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }

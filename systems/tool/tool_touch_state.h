@@ -44,6 +44,8 @@ struct ToolTouchState {
 
   // The soft clock's: the model it is making, and its working memory.
   HandleModel pending;
+  double heard_at = 0.0;  // [s] of the last input with a placed handle; its `impulse`
+  Vector6 heard = Vector6::Zero();
   CondensedState replay;
 
   ToolForce wanted = ToolForce::kContacts;
@@ -66,6 +68,7 @@ struct ToolTouchState {
   RigidMotion sensed;                       // the device
   bool sensing = false;                     // `sensed` means something
   Vector6 wrench = Vector6::Zero();         // [N], [N m] flesh and contacts on the handle, over the last tick
+  Vector6 impulse = Vector6::Zero();        // [N s], [N m s] its sum over time
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its own origin
   SafetyState force_safety, torque_safety;
   dvec3 weight{0};   // [N] of the whole tool where nothing carries it, else 0; constant

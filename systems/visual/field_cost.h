@@ -12,8 +12,8 @@ struct FieldCost {
   double card_us = 0.0;       // [us] per frame: the whole mesh once, two sources
 };
 
-// Of the largest deformable whose field the GPU can evaluate alone (has_closed_form). Needs a current OpenGL 4.5 context;
-// call before the touch clock runs. The error says why there is nothing to choose.
+// Of the largest deformable whose field the GPU can evaluate alone (has_closed_form). Needs a current OpenGL 4.5
+// context; call before the touch clock runs. The error says why there is nothing to choose.
 Result<FieldCost> measure_field_cost(const World& world, double frame_rate_hz);
 
 }  // namespace pliant

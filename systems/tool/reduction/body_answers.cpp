@@ -9,7 +9,7 @@ namespace {
 // What the flesh does by its own inertia when the handle shakes it: A^-1 M Phi, A^-1 M A^-1 M Phi, ... Scaled to count
 // as much as the softest contact.
 void shake(const ToolContacts& contacts, BodyAnswers& out) {
-  const SoftBodyState& tool = contacts.tool();
+  const ToolBody& tool = contacts.tool();
   const ContactProblem& problem = contacts.step().problem;
   const Eigen::Index flesh = tool.size() - 6;
   double softest = 0.0;
@@ -82,7 +82,7 @@ BodyAnswers answers_of(const ToolContacts& contacts, std::uint32_t body) {
   out.index = body;
   for (int i = 0; i < contacts.count(); ++i)
     if (contacts[i].body_a == body || contacts[i].body_b == body) out.local.push_back(i);
-  if (body == contacts.tool_index()) shake(contacts, out);
+  if (body == contacts.tool_index() && contacts.tool().size() > 6) shake(contacts, out);
   fill_gram(contacts, out);
   return out;
 }

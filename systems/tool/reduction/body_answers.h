@@ -1,7 +1,7 @@
 // How one body answers in a finished step to what pulls at it. Takes the chosen contacts and a body; gives G, how much
 // V moves along the rows of its contacts, and of the tool also along those of what its own inertia does when the handle
 // shakes it, V = A^-1 of unit impulses along those same rows; and such columns of V as are asked for. The tool's handle
-// is held: what follows it is told apart, by SoftBodyState::follow.
+// is held: what follows it is told apart, by ToolBody::follow.
 #pragma once
 
 #include "systems/tool/reduction/tool_contacts.h"

@@ -56,7 +56,7 @@ double scatter(const BodyAnswers& of, const BodyModes& body, CondensedContacts& 
 // [m/s] of the body's own share of the contacts' velocities at the rows of G; of a tool, beyond what follows its
 // handle.
 Vector own_velocity(const ToolContacts& contacts, const BodyAnswers& of) {
-  const SoftBodyState& tool = contacts.tool();
+  const ToolBody& tool = contacts.tool();
   Rows v = of.body->velocity();
   if (of.index == contacts.tool_index()) v -= tool.follow() * tool.velocity().tail<6>();
   Vector out(of.gram.rows());

@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-void describe_handle(const SoftBodyState& tool, double T, HandleModel& out) {
+void describe_handle(const ToolBody& tool, double T, HandleModel& out) {
   const Vector6 w = tool.velocity().tail<6>();
   RigidHandle end = tool.handle();
   end.set_velocity(w);
@@ -21,7 +21,7 @@ void describe_handle(const SoftBodyState& tool, double T, HandleModel& out) {
 // Of the tool's contacts that were not chosen; their forces stay what they are.
 Vector6 wrench_of_others(const ToolContacts& contacts) {
   const FinishedStep& step = contacts.step();
-  const SoftBodyState& tool = contacts.tool();
+  const ToolBody& tool = contacts.tool();
   const std::uint32_t index = contacts.tool_index();
   Vector6 out = Vector6::Zero();
   Rows three(3, 6);
@@ -38,7 +38,7 @@ Vector6 wrench_of_others(const ToolContacts& contacts) {
 }
 
 // The flesh moves as Phi w. `wrench`: on the handle, of all that is not inertia, damping or a chosen contact.
-void describe_flesh(const SoftBodyState& tool, double T, const Vector6& wrench, CondensedContacts& out) {
+void describe_flesh(const ToolBody& tool, double T, const Vector6& wrench, CondensedContacts& out) {
   const StepSplit split{T, tool.damping()};
   const auto [alpha, beta] = split.damping;
   const Eigen::Index flesh = tool.size() - 6;
@@ -59,7 +59,7 @@ void describe_flesh(const SoftBodyState& tool, double T, const Vector6& wrench, 
 }  // namespace
 
 void describe_handle_and_flesh(const ToolContacts& contacts, HandleModel& out) {
-  const SoftBodyState& tool = contacts.tool();
+  const ToolBody& tool = contacts.tool();
   const double T = contacts.step().T;
   const Eigen::Index rows = contacts.rows();
   describe_handle(tool, T, out);

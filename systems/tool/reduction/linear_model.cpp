@@ -93,7 +93,7 @@ Matrix6 coupled(const ModeRates& rates, const Matrix6& of_flesh, const Rows6& be
 
 }  // namespace
 
-LinearModel linear_model(const SoftBodyState& tool, const HandleModel& model, const Eigen::MatrixXd& W) {
+LinearModel linear_model(const ToolBody& tool, const HandleModel& model, const Eigen::MatrixXd& W) {
   const CondensedContacts& c = model.contacts;
   const double T = model.soft_step;
   Matrix6 C = tool.flesh_matrix(), M = c.flesh_mass, B = c.flesh_damping;

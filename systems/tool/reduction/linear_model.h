@@ -4,11 +4,11 @@
 #pragma once
 
 #include "systems/tool/handle_model.h"
-#include "systems/tool/soft_body_state.h"
+#include "systems/tool/tool_body.h"
 
 namespace pliant {
 
 // `model`: everything but `linear` is filled. `W` [1/kg]: of its contacts, the handle held (condense_bodies).
-LinearModel linear_model(const SoftBodyState& tool, const HandleModel& model, const Eigen::MatrixXd& W);
+LinearModel linear_model(const ToolBody& tool, const HandleModel& model, const Eigen::MatrixXd& W);
 
 }  // namespace pliant

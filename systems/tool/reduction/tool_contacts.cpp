@@ -1,7 +1,7 @@
 #include "systems/tool/reduction/tool_contacts.h"
 
 #include <algorithm>
-#include <numeric>
+#include <tuple>
 
 #include "systems/tool/surface_walk.h"
 
@@ -31,23 +31,36 @@ double farthest(const FinishedStep& step, const ContactPoint& p) {
   return static_cast<double>(std::min(step.bodies[p.body_a]->skin->mean_edge, step.bodies[p.body_b]->skin->mean_edge));
 }
 
+// A P1 surface gives way at the contact by its own law.
+bool yields(const FinishedStep& step, Eigen::Index row) {
+  const Eigen::MatrixXd& compliance = step.delassus.compliance;
+  return compliance.rows() > row && compliance(row, row) > 0.0;
+}
+
 }  // namespace
 
 std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int most) {
   const std::vector<std::uint32_t> distance = distances(step, tool);
-  const auto nearest = [&](int i) {
-    const ContactPoint& c = step.contacts[static_cast<std::size_t>(i)];
-    return std::min(distance[c.body_a], distance[c.body_b]);
+  struct Place {
+    std::uint32_t distance;
+    double impulse, gap;  // [N s], [m]
+    int index;
   };
-  std::vector<int> order(step.contacts.size());
-  std::iota(order.begin(), order.end(), 0);
-  order.erase(std::remove_if(order.begin(), order.end(), [&](int i) { return nearest(i) == kFar; }), order.end());
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
-    if (nearest(i) != nearest(j)) return nearest(i) < nearest(j);
-    return step.contacts[static_cast<std::size_t>(i)].gap < step.contacts[static_cast<std::size_t>(j)].gap;
+  std::vector<Place> order;
+  for (std::size_t i = 0; i < step.contacts.size(); ++i) {
+    const ContactPoint& c = step.contacts[i];
+    const std::uint32_t nearest = std::min(distance[c.body_a], distance[c.body_b]);
+    if (nearest != kFar) order.push_back({nearest, length(c.impulse), c.gap, static_cast<int>(i)});
+  }
+  // What carries force first, wherever it is: what is left out of that could not answer.
+  std::stable_sort(order.begin(), order.end(), [](const Place& i, const Place& j) {
+    return std::make_tuple(!(i.impulse > 0.0), i.distance, -i.impulse, i.gap) <
+           std::make_tuple(!(j.impulse > 0.0), j.distance, -j.impulse, j.gap);
   });
   if (order.size() > static_cast<std::size_t>(most)) order.resize(static_cast<std::size_t>(most));
-  return order;
+  std::vector<int> out;
+  for (const Place& place : order) out.push_back(place.index);
+  return out;
 }
 
 bool ToolContacts::chosen(std::size_t in_step) const {
@@ -82,6 +95,19 @@ void ToolContacts::gather_slip(std::uint32_t body, int i, int k, const Rows& x, 
   if (p.body_b == body) add(p.b, p.over_b[k], -1.0);
 }
 
+void set_solution(const ToolContacts& contacts, int i, dvec3 impulse, dvec3 velocity, CondensedContacts& out) {
+  const FinishedStep& step = contacts.step();
+  const ContactPoint& p = contacts[i];
+  for (int k = 0; k < 3; ++k) out.force[3 * i + k] = impulse[k] / step.T;
+  // T u is left of a gap that was open; of a penetration, besides, what is not undone.
+  const bool inside = p.depth > 0.0 && !yields(step, 3 * contacts.in_step(i));
+  double left = step.T * dot(leaning_axes(p.lean)[0], velocity);
+  if (inside) left -= (1.0 - step.beta) * p.depth;
+  if (impulse.x > 0.0 && !inside) left = 0.0;
+  out.gap[i] = left;
+  out.push[i] = std::min(0.0, step.beta * left / step.T);
+}
+
 void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
   const FinishedStep& step = contacts.step();
   const Eigen::MatrixXd& compliance = step.delassus.compliance;
@@ -92,7 +118,6 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
   for (int i = 0; i < out.count; ++i) {
     const ContactPoint& p = contacts[i];
     const int row = 3 * contacts.in_step(i);
-    for (int k = 0; k < 3; ++k) out.force[3 * i + k] = p.impulse[k] / step.T;
     three.setZero();
     contacts.gather(contacts.tool_index(), i, contacts.tool().follow(), three);
     out.from_handle.middleRows(3 * i, 3) = three;
@@ -102,16 +127,8 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
       out.from_handle_by_slip[k].middleRows(3 * i, 3) = three;
     }
 
-    const bool yields = compliance.rows() > row && compliance(row, row) > 0.0;
-    const bool touches = p.impulse.x > 0.0;
-    // T u is left of a gap that was open; of a penetration, besides, what is not undone.
-    const bool inside = p.depth > 0.0 && !yields;
     const double* const u = &step.problem.velocity[row];
-    double left = step.T * dot(leaning_axes(p.lean)[0], dvec3(u[0], u[1], u[2]));
-    if (inside) left -= (1.0 - step.beta) * p.depth;
-    if (touches && !inside) left = 0.0;
-    out.gap[i] = left;
-    out.push[i] = std::min(0.0, step.beta * left / step.T);
+    set_solution(contacts, i, p.impulse, dvec3(u[0], u[1], u[2]), out);
 
     out.mu_static[static_cast<std::size_t>(i)] = p.mu_static;
     out.mu_sliding[static_cast<std::size_t>(i)] = p.mu_sliding;
@@ -121,7 +138,7 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     out.slip[static_cast<std::size_t>(i)] = dvec2(0.0);
     out.farthest[static_cast<std::size_t>(i)] = farthest(step, p);
     out.reach[static_cast<std::size_t>(i)] = p.reach;
-    for (int j = 0; yields && j < out.count; ++j)
+    for (int j = 0; yields(step, row) && j < out.count; ++j)
       out.flexibility.block<3, 3>(3 * i, 3 * j) =
           step.T * step.T * compliance.block<3, 3>(row, 3 * contacts.in_step(j));
   }

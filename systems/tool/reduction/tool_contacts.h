@@ -8,7 +8,7 @@
 
 #include "systems/tool/delassus.h"
 #include "systems/tool/handle_model.h"
-#include "systems/tool/soft_body_state.h"
+#include "systems/tool/tool_body.h"
 
 namespace pliant {
 
@@ -22,20 +22,20 @@ struct FinishedStep {
   double beta = 0.0;  // [1] share of a penetration that is undone in a step
 };
 
-// Into step.contacts, at most `most`: the tool's own, then those of what it touches, and so on; closest to penetrating
-// first.
+// Into step.contacts, at most `most`. Those that push come first: the tool's own, then those of what it touches, and so
+// on, the strongest first; then those that only are near, closest to penetrating first.
 std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int most);
 
 // The chosen contacts are counted from 0; contact i has rows 3 i to 3 i + 2: normal, first tangent, second tangent.
 class ToolContacts {
  public:
-  // `tool`: index of a SoftBodyState with a handle. `step` outlives it.
+  // `tool`: index of a ToolBody with a handle. `step` outlives it.
   ToolContacts(const FinishedStep& step, std::uint32_t tool)
       : step_(step), tool_(tool), chosen_(contacts_of(step, tool, kMaxCondensed)) {}
 
   const FinishedStep& step() const { return step_; }
   std::uint32_t tool_index() const { return tool_; }
-  const SoftBodyState& tool() const { return static_cast<const SoftBodyState&>(*step_.bodies[tool_]); }
+  const ToolBody& tool() const { return static_cast<const ToolBody&>(*step_.bodies[tool_]); }
 
   int count() const { return static_cast<int>(chosen_.size()); }
   Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(chosen_.size()); }
@@ -54,6 +54,10 @@ class ToolContacts {
   std::uint32_t tool_;
   std::vector<int> chosen_;
 };
+
+// Force, gap and push of contact i by a solution of the step: impulse [N s] and velocity [m/s] along the contact's
+// axes, as ContactProblem has them.
+void set_solution(const ToolContacts& contacts, int i, dvec3 impulse, dvec3 velocity, CondensedContacts& out);
 
 // Fills count, from_handle, force, gap, push and friction; flexibility [m/N] becomes that of yielding surfaces alone.
 void describe_contacts(const ToolContacts& contacts, CondensedContacts& out);
