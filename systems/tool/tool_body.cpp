@@ -53,11 +53,10 @@ void ToolBody::couple(double T, dvec3 gravity) {
     coupling_step_.right = coupling_step_.matrix.cwiseProduct(there);
     return;
   }
-  coupling_step_.matrix = coupling_step(coupling_force(settings_, led_->end, device_target()), led_->end,
-                                        device_target(), T)
-                              .matrix;
-  coupling_step_.right = coupling_step_.matrix.cwiseProduct(there) + handle_mass_ * (there - start_) -
-                         T * (handle_load_ + led_->expected);
+  coupling_step_.matrix =
+      coupling_step(coupling_force(settings_, led_->end, device_target()), led_->end, device_target(), T).matrix;
+  coupling_step_.right =
+      coupling_step_.matrix.cwiseProduct(there) + handle_mass_ * (there - start_) - T * (handle_load_ + led_->expected);
 }
 
 Vector6 ToolBody::short_of_lead(const RigidMotion& handle) const {

@@ -31,8 +31,8 @@ class ToolBody : public Body {
   void release_device() { device_.reset(), led_.reset(); }
   // From now on the handle is moved as it is told, whatever pulls at it: its centre to `end` over the next step.
   void lead_handle(const RigidMotion& end) { led_ = {end, Vector6::Zero(), true}; }
-  // The same, but it gives way as a hand does where flesh and contacts pull otherwise than by `expected` [N], [N m], the
-  // mean over the step.
+  // The same, but it gives way as a hand does where flesh and contacts pull otherwise than by `expected` [N], [N m],
+  // the mean over the step.
   void bring_handle(const RigidMotion& end, const Vector6& expected) { led_ = {end, expected, false}; }
   // [m], [rad] from where `handle` ends a step to where it was led; zero where it is not led.
   Vector6 short_of_lead(const RigidMotion& handle) const;

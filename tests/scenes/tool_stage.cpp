@@ -34,6 +34,18 @@ std::vector<Embedding> embed(const TetMesh& tets, const Mesh& skin) {
   return all;
 }
 
+// A device of its own that can do anything.
+void hold(Registry& registry, Entity entity, const Handle6& handle, const Pose& pose) {
+  registry.add(entity, handle);
+  HapticDevice device;
+  device.driver = Driver::kExternal;
+  device.position = pose.position;
+  device.rotation = pose.rotation;
+  device.max_force = 1e9;
+  device.max_slew = 1e12;
+  registry.add(entity, device);
+}
+
 }  // namespace
 
 Primitive border(const TetMesh& tets) {
@@ -76,24 +88,17 @@ Entity ToolStage::add_soft(TetMesh tets, SoftBody body, Pose pose, const Handle6
   world.registry.add(entity, Name{"soft"});
   world.registry.add(entity, pose);
   world.registry.add(entity, body);
-  if (!handle) return entity;
-  world.registry.add(entity, *handle);
-  HapticDevice device;
-  device.driver = Driver::kExternal;
-  device.position = pose.position;
-  device.rotation = pose.rotation;
-  device.max_force = 1e9;
-  device.max_slew = 1e12;
-  world.registry.add(entity, device);
+  if (handle) hold(world.registry, entity, *handle, pose);
   return entity;
 }
 
-Entity ToolStage::add_rigid(const Primitive& primitive, RigidBody body, Pose pose) {
+Entity ToolStage::add_rigid(const Primitive& primitive, RigidBody body, Pose pose, const Handle6* handle) {
   body.skin = world.meshes.add(built(primitive));
   const Entity entity = world.registry.create();
   world.registry.add(entity, Name{"rigid"});
   world.registry.add(entity, pose);
   world.registry.add(entity, body);
+  if (handle) hold(world.registry, entity, *handle, pose);
   return entity;
 }
 

@@ -19,7 +19,7 @@ class ToolStage : public Stage {
 
   // The skin is the border. With `handle` it is a tool, with a device of its own that can do anything.
   Entity add_soft(TetMesh tets, SoftBody body, Pose pose, const Handle6* handle = nullptr);
-  Entity add_rigid(const Primitive& primitive, RigidBody body, Pose pose);
+  Entity add_rigid(const Primitive& primitive, RigidBody body, Pose pose, const Handle6* handle = nullptr);
   void prepare();
 
   void step();               // the soft clock alone

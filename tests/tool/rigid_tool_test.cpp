@@ -1,0 +1,168 @@
+// A rigid body with a handle: an instrument. Oracles: the coupling's law F_max tanh(k d / F_max) where nothing gives
+// way, a tool of flesh that is rigid all through as a twin, the instrument's weight, action and reaction.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "systems/tool/tool_touch_state.h"
+#include "tests/scenes/tet_shapes.h"
+#include "tests/scenes/tool_stage.h"
+
+namespace pliant {
+namespace {
+
+using scenes::ToolStage;
+
+constexpr double kSoftStep = 1.0 / 60.0;  // [s]
+constexpr double kHalf = 0.015;           // [m] half the side of every block
+
+Pose at(dvec3 x) {
+  return {x, {1, 0, 0, 0}};
+}
+
+ToolTouchState& state_of(ToolStage& stage, Entity tool) {
+  for (const auto& candidate : stage.world.tools->tools)
+    if (candidate->entity == tool) return *candidate;
+  std::abort();
+}
+
+dvec3 felt(ToolStage& stage, Entity tool) {
+  return linear(state_of(stage, tool).device_wrench);
+}
+
+double law(const Handle6& handle, double stretch) {
+  return handle.max_force * std::tanh(handle.translation[0] * stretch / handle.max_force);
+}
+
+Entity add_instrument(ToolStage& stage, Pose pose, Handle6 handle = {}) {
+  RigidBody body;
+  body.density = 800.0;
+  return stage.add_rigid(scenes::box(dvec3(2 * kHalf)), body, pose, &handle);
+}
+
+void add_floor(ToolStage& stage) {
+  RigidBody floor;
+  floor.fixed = true;
+  stage.add_rigid(scenes::box(dvec3(0.2, 0.02, 0.2)), floor, at({0, -0.01, 0}));
+}
+
+TEST(RigidTool, CarriedItIsNotFeltAndElseWeighsWhatItWeighs) {
+  for (const bool carried : {true, false}) {
+    ToolStage stage(kSoftStep);
+    Handle6 handle;
+    handle.carried = carried;
+    const Entity tool = add_instrument(stage, at({0, 0.1, 0}), handle);
+    stage.prepare();
+    stage.lead(tool, dvec3(0, 0.1, 0), 1.5);
+    const double weight = carried ? 0.0 : 800.0 * std::pow(2 * kHalf, 3) * stage.world.simulation.gravity.y;
+    EXPECT_NEAR(felt(stage, tool).y, weight, 1e-6 + 1e-3 * std::abs(weight)) << carried;
+  }
+}
+
+TEST(RigidTool, OnAFloorItsCouplingIsFelt) {
+  for (const double depth : {1e-3, 3e-3, 15e-3})
+    for (const double way : {0.3, 0.05, 0.02}) {
+      SCOPED_TRACE(testing::Message() << depth << " m in " << way << " s");
+      ToolStage stage(kSoftStep);
+      add_floor(stage);
+      const Entity tool = add_instrument(stage, at({0, 0.02, 0}));
+      stage.prepare();
+      stage.lead(tool, dvec3(0, 0.02, 0), 0.1);
+      stage.lead(tool, dvec3(0, kHalf - depth, 0), way);
+      stage.lead(tool, dvec3(0, kHalf - depth, 0), 0.6);
+      EXPECT_NEAR(felt(stage, tool).y, law({}, depth), 0.01 * law({}, depth));
+      EXPECT_LT(length(dvec2(felt(stage, tool).x, felt(stage, tool).z)), 0.01 * law({}, depth));
+      stage.lead(tool, dvec3(0, 0.03, 0), 0.3);
+      stage.lead(tool, dvec3(0, 0.03, 0), 0.3);
+      EXPECT_LT(length(felt(stage, tool)), 1e-3) << "nothing holds it back";
+    }
+}
+
+// A rigid cube between the instrument and the floor, however fast the hand comes.
+TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
+  for (const double speed : {0.02, 0.04, 0.1, 0.3, 1.0}) {
+    SCOPED_TRACE(speed);
+    ToolStage stage(kSoftStep);
+    add_floor(stage);
+    RigidBody cube;
+    cube.density = 500.0;
+    const Entity between = stage.add_rigid(scenes::box(dvec3(0.03)), cube, at({0, 0.01501, 0}));
+    const Entity tool = add_instrument(stage, at({0, 0.055, 0}));
+    stage.prepare();
+    stage.lead(tool, dvec3(0, 0.055, 0), 0.2);
+    stage.lead(tool, dvec3(0, 0.045 - 0.01, 0), 0.02 / speed);
+    stage.lead(tool, dvec3(0, 0.045 - 0.01, 0), 1.0);
+    EXPECT_NEAR(felt(stage, tool).y, law({}, 0.01), 0.02 * law({}, 0.01));
+    for (const dvec3& x : stage.body(between).skin_position)
+      EXPECT_TRUE(x.y > -3e-4 && x.y < 0.0303) << "neither pressed in nor thrown up: " << x.y;
+  }
+}
+
+// The same instrument as tetrahedra that all belong to the handle.
+TEST(RigidTool, FeelsAsAToolOfFleshThatIsRigidAllThrough) {
+  const auto forces = [](bool tetrahedra) {
+    ToolStage stage(kSoftStep);
+    SoftBody soft;
+    soft.young = 2e4;
+    soft.poisson = 0.3;
+    soft.rayleigh = {1.0, 0.01};
+    TetMesh organ = tets::box(6, 3, 6, dvec3(-0.03, -0.015, -0.03), dvec3(0.03, 0.015, 0.03));
+    tets::hold(
+        organ, [](dvec3 x) { return x.y < -0.0149; }, [](dvec3) { return false; });
+    stage.add_soft(std::move(organ), soft, at({0, 0, 0}));
+    Handle6 handle;
+    TetMesh block = tets::box(2, 2, 2, dvec3(-kHalf), dvec3(kHalf));
+    tets::hold(
+        block, [](dvec3) { return false; }, [](dvec3) { return true; });
+    SoftBody mass;
+    mass.density = 800.0;
+    // Lumped masses make the twin heavier to turn; straight down on the organ's middle nothing turns.
+    RigidBody rigid;
+    rigid.density = 800.0;
+    const Entity tool = tetrahedra ? stage.add_soft(block, mass, at({0, 0.035, 0}), &handle)
+                                   : stage.add_rigid(scenes::border(block), rigid, at({0, 0.035, 0}), &handle);
+    stage.prepare();
+    std::vector<double> out;
+    const auto note = [&] { out.push_back(felt(stage, tool).y); };
+    stage.lead(tool, dvec3(0, 0.035, 0), 0.1, note);
+    stage.lead(tool, dvec3(0, 0.022, 0), 0.3, note);
+    stage.lead(tool, dvec3(0, 0.022, 0), 0.3, note);
+    stage.lead(tool, dvec3(0, 0.035, 0), 0.2, note);
+    return out;
+  };
+  const std::vector<double> twin = forces(true), rigid = forces(false);
+  const double most = *std::max_element(twin.begin(), twin.end());
+  ASSERT_GT(most, 0.5);
+  for (std::size_t i = 0; i < twin.size(); ++i) EXPECT_NEAR(rigid[i], twin[i], 0.02 * most) << i;
+}
+
+// Two hands, one on a coupling three times as stiff as the other: what the one feels, the other feels too.
+TEST(RigidTool, TwoInstrumentsPressOnEachOther) {
+  ToolStage stage(kSoftStep);
+  stage.world.simulation.gravity = dvec3(0);
+  Handle6 soft, stiff;
+  stiff.translation = {600.0, 4.0};
+  const Entity above = add_instrument(stage, at({0, 0.02, 0}), soft);
+  const Entity below = add_instrument(stage, at({0.002, -0.02, 0.001}), stiff);
+  stage.prepare();
+  stage.lead(above, dvec3(0, 0.02, 0), 0.1);
+  stage.lead(above, dvec3(0, 0.012, 0), 0.2);
+  stage.lead(below, dvec3(0.002, -0.012, 0.001), 0.2);
+  stage.lead(above, dvec3(0, 0.012, 0), 1.5);
+  const double up = felt(stage, above).y, down = felt(stage, below).y;
+  EXPECT_GT(up, 0.3);
+  EXPECT_NEAR(up, -down, 0.02 * up) << "action and reaction";
+  // 6 mm too near between two springs in series.
+  const auto stretch = [&](double force, const Handle6& h) {
+    return h.max_force / h.translation[0] * std::atanh(std::abs(force) / h.max_force);
+  };
+  EXPECT_NEAR(stretch(up, soft) + stretch(down, stiff), 6e-3, 3e-4);
+  // The one that presses harder moves the other.
+  stage.lead(above, dvec3(0, 0.008, 0), 0.2);
+  stage.lead(above, dvec3(0, 0.008, 0), 1.5);
+  EXPECT_GT(felt(stage, above).y, 1.3 * up);
+  EXPECT_NEAR(felt(stage, above).y, -felt(stage, below).y, 0.02 * felt(stage, above).y);
+}
+
+}  // namespace
+}  // namespace pliant
