@@ -32,6 +32,14 @@ std::vector<std::string> explain_dropped(std::uint32_t dropped) {
     sentences.push_back("a soft body's step could not be solved and it stood still; raise `young` or mend its mesh");
   if (dropped & kDroppedMotion)
     sentences.push_back("a body's motion was not a number and it was stopped; reduce `soft_step`");
+  if (dropped & kDroppedJump)
+    sentences.push_back(
+        "a device jumped farther than a hand can move, and its force went to zero; check its tracking, or slow the "
+        "script down");
+  if (dropped & kDroppedSetBack)
+    sentences.push_back(
+        "a tool got away from its device (more than 2 m, or faster than 50 m/s) and was set back into the hand; reduce "
+        "`soft_step`, or move slower");
   return sentences;
 }
 

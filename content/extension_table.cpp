@@ -189,6 +189,10 @@ std::vector<Key> probe_keys() {
       });
   points.range = {-1e3, 1e3};
   keys.push_back(points);
+  keys.push_back(choice("meets", {"all", "surfaces", "bodies"}, at(&LevelNode::probe, &Probe::meets),
+                        "yielding surfaces, soft and rigid bodies, or both"));
+  keys.push_back(pair("coupling", "N/m, N s/m", at(&LevelNode::probe, &Probe::coupling),
+                      "spring and damper between the device and what meets soft and rigid bodies"));
   Key color = key(
       "color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
       [](vec3 c) {

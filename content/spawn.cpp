@@ -11,6 +11,7 @@
 #include "content/level.h"
 #include "content/mesh_build.h"
 #include "content/mesh_finer.h"
+#include "content/probe_shell.h"
 #include "content/progress.h"
 #include "content/script.h"
 #include "content/spawn_motion.h"
@@ -69,6 +70,7 @@ class Spawner {
       if (Status s = link_probe(n); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = check_handle(n); !s) return s;
+    if (Status s = give_shells(); !s) return s;
     const std::vector<DeviceFault> shared = find_shared_devices(level_);
     if (!shared.empty()) return at(shared.front().node, shared.front().what);
     return Done{};
@@ -277,6 +279,21 @@ class Spawner {
                 "PLIANT_probe/device names `" + node.probe_device +
                     "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
     probe.device = entities_[found->second];
+    return Done{};
+  }
+
+  // Where there is a soft or rigid body, probes have a surface to meet it with.
+  Status give_shells() {
+    const auto is_body = [](const LevelNode& node) { return node.in_scene && (node.soft_body || node.rigid_body); };
+    if (std::none_of(level_.nodes.begin(), level_.nodes.end(), is_body)) return Done{};
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n) {
+      if (!level_.nodes[n].probe || !level_.nodes[n].in_scene) continue;
+      Probe& probe = world_.registry.get<Probe>(entities_[n]);
+      if (probe.meets == ProbeMeets::kSurfaces) continue;
+      Result<Mesh> shell = probe_shell(probe);
+      if (!shell) return shell.error();
+      probe.shell = world_.meshes.add(std::move(*shell));
+    }
     return Done{};
   }
 

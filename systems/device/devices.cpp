@@ -48,19 +48,23 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // Ready without a pose: no pose at all
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
-  const SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew, tool.weight};
+  SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew, tool.weight};
+  SafetyLimits torque_limits{handle.max_torque, 0.0,
+                             device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9),
+                             cross(tool.sensed.pose.rotation * tool.balance, tool.weight), kSlowTurn};
+  torque_limits.fastest = kFastestTurn;
+  limits.jumped = torque_limits.jumped = jumps(tool.force_safety, device, limits, device.position, tick.dt) ||
+                                         jumps(tool.torque_safety, device, torque_limits, tool.turned, tick.dt);
   tool.force_safety.work = tool.torque_safety.work;
   const SafetyResult force = make_safe(tool.force_safety, device, limits, known ? linear(tool.device_wrench) : unknown,
                                        device.position, tick.time, tick.dt);
-  const SafetyLimits torque_limits{handle.max_torque, 0.0,
-                                   device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9),
-                                   cross(tool.sensed.pose.rotation * tool.balance, tool.weight), kSlowTurn};
   tool.torque_safety.work = tool.force_safety.work;
   const SafetyResult torque = make_safe(tool.torque_safety, device, torque_limits,
                                         known ? angular(tool.device_wrench) : unknown, tool.turned, tick.time, tick.dt);
   for (const SafetyResult& result : {force, torque}) {
     if (result.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
     if (result.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
+    if (result.event == SafetyEvent::kJumped) world.dropped |= kDroppedJump;
   }
   device.force_sent = force.force;
   device.torque_sent = torque.force;
@@ -97,15 +101,19 @@ void write_devices(World& world, Tick tick) {
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
     SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew};
     limits.carried = surface_displacement(world, state.entity, tick.dt);
+    const ToolTouchState* const among_bodies = find_tool(world, state.entity);
+    const dvec3 pressed = probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0));
     const dvec3 wanted =
-        plausible_rotation(device.rotation) ? probe.force : dvec3(std::numeric_limits<double>::quiet_NaN());
+        plausible_rotation(device.rotation) ? pressed : dvec3(std::numeric_limits<double>::quiet_NaN());
     const SafetyResult safe = make_safe(state.safety, device, limits, wanted, device.position, tick.time, tick.dt);
     if (safe.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
     if (safe.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
+    if (safe.event == SafetyEvent::kJumped) world.dropped |= kDroppedJump;
     device.force_sent = safe.force;
   }
   if (!world.tools) return;
-  for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools) write_tool(world, *tool, tick);
+  for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools)
+    if (!tool->is_probe) write_tool(world, *tool, tick);
 }
 
 }  // namespace pliant

@@ -71,6 +71,12 @@ void count(SafetyTally& tally, SafetyLimit limit, double missing, double size) {
 
 }  // namespace
 
+bool jumps(const SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 position,
+           double dt) {
+  const double elapsed = std::max(dt, device.sensed_at - state.sensed_at);
+  return state.placed && length(position - state.position) > limits.fastest * elapsed * (1 + 1e-9);
+}
+
 bool plausible_position(dvec3 position) {
   return finite(position) && length(position) < kFarthest;
 }
@@ -101,8 +107,12 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
   } else if (device.status != DeviceStatus::kReady || stale(device, now)) {
     result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;
   } else {
-    const dvec3 dx = state.placed ? position - state.position - limits.carried : dvec3(0);
-    if (!state.engaged) {
+    const bool jumped = limits.jumped || jumps(state, device, limits, position, dt);
+    const dvec3 dx = state.placed && !jumped ? position - state.position - limits.carried : dvec3(0);
+    if (jumped) {
+      result.event = SafetyEvent::kJumped;
+      state.engaged = false;
+    } else if (!state.engaged) {
       state.hidden = length(wanted - limits.weight) < length(wanted) ? 1.0 : 0.0;
       state.engaged = length(wanted - state.hidden * limits.weight) < kEngageForce;
     }
@@ -132,6 +142,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     book(state, force, weight, dx);
     result.force = force;
     state.position = position;
+    state.sensed_at = device.sensed_at;
     state.placed = true;
     state.force = result.force;
     state.weight = weight;

@@ -13,6 +13,10 @@
 // something else bears it while it is lifted, the observer stands above zero, and lowering it is damped until it does
 // not.
 //
+// A device that is farther from its last place than a hand gets in that time did not move there: tracking was lost, or
+// the device was taken elsewhere. No work is counted for the way, the force goes to zero within the slew limit, and the
+// gate must be passed again.
+//
 // A surface that a prescribed motion carries may push a hand, as an engine would: passivity and the limit on stiffness
 // hold for the hand's motion against that surface. Clamp and slew bound what the engine can do.
 #pragma once
@@ -35,6 +39,9 @@ inline constexpr double kCountedShare = 0.01;      // [1] of the wanted force: l
 inline constexpr double kCountedForce = 1e-3;      // [N] less missing is not counted
 inline constexpr double kSlowHand = 0.01;          // [m/s] a slower hand is damped in proportion to its speed
 inline constexpr double kSlowTurn = 0.2;           // [rad/s] the same of what turns
+
+inline constexpr double kFastestHand = 20.0;   // [m/s] what is faster is a jump, not a hand's motion
+inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same of what turns
 
 inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
 
@@ -72,19 +79,20 @@ constexpr std::uint8_t bit(SafetyLimit limit) {
 }
 
 struct SafetyState {
-  bool engaged = false;  // gate: closed at start and after every loss, opens on a small computed force
-  double hidden = 0.0;   // [1] share of the weight that is not felt yet
-  dvec3 weight{0};       // [N] last tick's, as felt
-  bool placed = false;   // `position` means something
-  dvec3 position{0};     // [m] last tick's
-  dvec3 force{0};        // [N] last tick's, as sent
-  dvec3 wanted{0};       // [N] last tick's beside the weight, clamped to the device's limit
-  double work = 0.0;     // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
-  double stored = 0.0;   // [J] the largest that -work has been
+  bool engaged = false;    // gate: closed at start and after every loss, opens on a small computed force
+  double hidden = 0.0;     // [1] share of the weight that is not felt yet
+  dvec3 weight{0};         // [N] last tick's, as felt
+  bool placed = false;     // `position` means something
+  double sensed_at = 0.0;  // [s] last tick's pose's
+  dvec3 position{0};       // [m] last tick's
+  dvec3 force{0};          // [N] last tick's, as sent
+  dvec3 wanted{0};         // [N] last tick's beside the weight, clamped to the device's limit
+  double work = 0.0;       // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
+  double stored = 0.0;     // [J] the largest that -work has been
   SafetyTally tally;
 };
 
-enum class SafetyEvent : std::uint8_t { kNone, kNonFinite, kStale };
+enum class SafetyEvent : std::uint8_t { kNone, kNonFinite, kStale, kJumped };
 
 struct SafetyResult {
   dvec3 force{0};  // [N] to send
@@ -93,13 +101,19 @@ struct SafetyResult {
 
 // What the layer holds to. A torque has the same, in [N m], [N m/rad], [N m/s] and [rad/s].
 struct SafetyLimits {
-  double force = 0.0;       // [N]
-  double stiffness = 0.0;   // [N/m] 0: none
-  double slew = 0.0;        // [N/s]
-  dvec3 weight{0};          // [N] part of what is wanted: of a tool that nothing carries
-  double slow = kSlowHand;  // [m/s]
-  dvec3 carried{0};         // [m] how far the surface that is touched has come along in this tick; 0: it stands
+  double force = 0.0;             // [N]
+  double stiffness = 0.0;         // [N/m] 0: none
+  double slew = 0.0;              // [N/s]
+  dvec3 weight{0};                // [N] part of what is wanted: of a tool that nothing carries
+  double slow = kSlowHand;        // [m/s]
+  dvec3 carried{0};               // [m] how far the surface that is touched has come along in this tick; 0: it stands
+  double fastest = kFastestHand;  // [m/s]
+  bool jumped = false;            // whatever `position` says: the device is somewhere else
 };
+
+// Whether the device has come to `position` faster than a hand can. A device that is sampled more slowly than the touch
+// clock has had the time since its last sample.
+bool jumps(const SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 position, double dt);
 
 // `wanted` [N] world, `position` [m] world, now [s], dt [s]. Without limits: the device's for forces.
 SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 wanted,

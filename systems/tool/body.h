@@ -35,16 +35,27 @@ struct Compliance {
   Rows lever;            // rows x 6: what the handle's following adds; without a handle no columns
 };
 
+// Which bodies meet: all but what a probe presses by another law or passes through (probe_tool.h).
+enum class BodyKind : std::uint8_t { kBody, kSurface, kProbe };
+
 class Body {
  public:
   virtual ~Body() = default;
+
+  bool meets(const Body& other) const {
+    if (absent || other.absent || (size() == 0 && other.size() == 0)) return false;
+    if (kind == BodyKind::kProbe) return other.kind == BodyKind::kBody;
+    return other.kind != BodyKind::kProbe || kind == BodyKind::kBody;
+  }
 
   Entity entity;
   const Mesh* skin = nullptr;        // topology and rest shape (object frame)
   std::vector<dvec3> skin_position;  // [m] world, per skin vertex, now
   std::vector<dvec3> skin_velocity;  // [m/s] world, of the free motion after free_step(); for predicting contacts
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
-  bool self_collides = false;                            // its skin can touch itself
+  BodyKind kind = BodyKind::kBody;
+  bool absent = false;         // meets nothing: nobody knows yet where it is
+  bool self_collides = false;  // its skin can touch itself
 
   // Degrees of freedom; 0: contacts cannot move it.
   virtual int size() const = 0;

@@ -85,6 +85,12 @@ RigidHandle::RigidHandle(double mass, dvec3 centre, const dmat3& inertia, const 
   motion_.pose = {placement.to_world(centre_), placement.rotation};
 }
 
+void RigidHandle::place(const Pose& object) {
+  motion_.pose = {object.to_world(centre_), object.rotation};
+  motion_.velocity.setZero();
+  turn_arms();
+}
+
 Pose RigidHandle::object_pose() const {
   return {motion_.pose.position - motion_.pose.rotation * centre_, motion_.pose.rotation};
 }

@@ -49,6 +49,8 @@ class RigidHandle {
 
   // The centre of mass, with the object's axes.
   const RigidMotion& motion() const { return motion_; }
+  // At rest where the object's own frame is `object`.
+  void place(const Pose& object);
   void set_velocity(const Vector6& w) { motion_.velocity = w; }
   dvec3 centre() const { return centre_; }                  // [m] object frame, of the rest shape
   Pose object_pose() const;                                 // of the object's own frame

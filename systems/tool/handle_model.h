@@ -86,6 +86,7 @@ struct HandleModel {
   std::uint64_t step = 0;                 // 0: nothing has been published yet
   double time = 0.0;                      // [s] that the motion and the forces belong to
   double soft_step = 0.0;                 // [s] T
+  std::uint32_t set_backs = 0;            // how often the soft clock has set the tool back into the hand
   RigidMotion handle;                     // of its centre
   dvec3 centre{0};                        // [m] of the handle, in the tool's object frame
   Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone
@@ -103,6 +104,8 @@ struct ToolInput {
   RigidMotion device;   // of the device's own frame
   bool placed = false;  // `handle` means something: the soft clock's handle goes there, so that there is but one path
   RigidMotion handle;   // the 1 kHz handle's centre
+  std::uint32_t set_backs = 0;  // how often the touch clock has asked for the tool to be set back into the hand
+  std::uint32_t seen = 0;       // HandleModel::set_backs of the model in use
   // [N s], [N m s] Sum over all ticks so far of what flesh and contacts did to the handle.
   Vector6 impulse = Vector6::Zero();
 };

@@ -77,6 +77,26 @@ Vector6 mean_wrench(ToolTouchState& tool, const ToolInput& input) {
   return mean;
 }
 
+// Whether it moves as no hand's tool does.
+bool got_away(const ToolBody& body) {
+  const Vector6& w = body.handle().motion().velocity;
+  return length(linear(w)) > kRunaway || length(angular(w)) > kRunawayTurn;
+}
+
+// Into the hand again: where the touch clock asks for it, or where the step before has let it get away.
+bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, ToolBody& body) {
+  const bool away = got_away(body);
+  if (!away && input.set_backs == tool.set_back) return false;
+  tool.set_back = input.set_backs;
+  if (away) soft.dropped |= kDroppedSetBack;
+  body.release_device();
+  body.set_device(input.device.pose, Vector6::Zero());
+  body.set_back();
+  body.absent = false;
+  ++tool.pending.set_backs;
+  return true;
+}
+
 // To where the touch clock has its handle.
 void bring(ToolTouchState& tool, const ToolInput& input, ToolBody& body) {
   const Vector6 expected = mean_wrench(tool, input);
@@ -99,7 +119,9 @@ void take_inputs(World& world, double T) {
     before.position -= T * linear(input.device.velocity);
     before.rotation = glm::normalize(rotation_of(-T * angular(input.device.velocity)) * before.rotation);
     body->set_device(before, input.device.velocity);
-    if (input.placed) bring(*tool, input, *body);
+    // What the touch clock says of a handle that has since been set back means nothing any more.
+    if (!set_back(*world.soft, *tool, input, *body) && input.placed && input.seen == tool->pending.set_backs)
+      bring(*tool, input, *body);
     tool->pending.time = input.time;
   }
 }

@@ -7,6 +7,7 @@
 
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
+#include "systems/tool/probe_tool.h"
 #include "systems/tool/rigid_state.h"
 #include "systems/tool/rigid_tool.h"
 #include "systems/tool/soft_body_state.h"
@@ -83,6 +84,18 @@ Status add_rigid(const World& world, SoftState& soft) {
   return Done{};
 }
 
+void add_probes(const World& world, SoftState& soft) {
+  for (const Entity entity : probe_tools(world)) {
+    const Probe& probe = world.registry.get<Probe>(entity);
+    const HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
+    auto tool = std::make_unique<RigidTool>(world.meshes[probe.shell], probe_mass(), probe_handle(probe, device),
+                                            Pose{probe.position, probe.rotation});
+    tool->kind = BodyKind::kProbe;
+    tool->absent = true;  // until its device is sensed
+    add(soft, entity, std::move(tool));
+  }
+}
+
 void add_yielding(const World& world, SoftState& soft) {
   for (std::size_t slot = 0; slot < world.touch->objects.size(); ++slot) {
     const Entity entity = world.touch->objects[slot].entity;
@@ -90,6 +103,7 @@ void add_yielding(const World& world, SoftState& soft) {
     soft.yielding.push_back(static_cast<std::uint32_t>(soft.bodies.size()));
     add(soft, entity,
         std::make_unique<YieldingBody>(world.meshes[deformable.mesh], deformable, pose_of(world, entity), slot));
+    soft.bodies.back()->kind = BodyKind::kSurface;
   }
 }
 
@@ -107,6 +121,7 @@ SoftSnapshot first_snapshot(const SoftState& soft) {
   SoftSnapshot snapshot;
   snapshot.contacts.reserve(kMaxShownContacts);
   for (const std::uint32_t i : soft.moving) {
+    if (soft.bodies[i]->kind == BodyKind::kProbe) continue;  // a marker shows it
     snapshot.objects.emplace_back();
     soft.bodies[i]->show(snapshot.objects.back());
     const auto* body = dynamic_cast<const ToolBody*>(soft.bodies[i].get());
@@ -146,6 +161,7 @@ Status prepare_soft(World& world) {
   auto soft = std::make_shared<SoftState>();
   add_soft(world, *soft);
   if (Status status = add_rigid(world, *soft); !status) return status;
+  add_probes(world, *soft);
   if (soft->moving.empty()) return Done{};
   const double T = world.simulation.soft_step;
   if (!(T > 0.0 && T <= 1.0))

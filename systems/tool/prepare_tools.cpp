@@ -4,6 +4,7 @@
 
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
+#include "systems/tool/probe_tool.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
@@ -81,6 +82,36 @@ Status check_free(const World& world, Entity tool, Entity device) {
   return Done{};
 }
 
+// Its working memory; until the device has been sensed, it is held where it stands.
+std::unique_ptr<ToolTouchState> make_tool(Entity entity, Entity device, const Pose* pose) {
+  auto tool = std::make_unique<ToolTouchState>();
+  tool->entity = entity;
+  tool->device = device;
+  HandleModel empty;
+  empty.contacts.resize(kMaxCondensed, kMaxModes);
+  for (HandleModel& slot : tool->model.slots()) slot = empty;
+  tool->pending = empty;
+  tool->contacts.resize(kMaxCondensed, kMaxModes);
+  tool->replay.resize(kMaxCondensed, kMaxModes);
+  if (pose) tool->sensed.pose = *pose;
+  for (ToolInput& slot : tool->input.slots()) slot.device = tool->sensed;
+  tool->limits = {kTickSweeps, kTickTolerance, 0};
+  return tool;
+}
+
+Status add_tool(World& world, Entity entity) {
+  const std::string& wanted = world.registry.get<Handle6>(entity).device;
+  const Entity named = wanted.empty() ? kNoEntity : find_by_name(world, wanted);
+  if (!wanted.empty() && (named == kNoEntity || !world.registry.has<HapticDevice>(named)))
+    return Error{"tool `" + name_of(world, entity) + "`",
+                 "its device `" + wanted + "` has no PLIANT_haptic_device; name a node that has one"};
+  const Entity device = wanted.empty() ? resting_device(world, entity) : named;
+  if (Status status = check_free(world, entity, device); !status) return status.error();
+  world.tools->tools.push_back(make_tool(entity, device, world.registry.find<Pose>(entity)));
+  find_weight(world, *world.tools->tools.back());
+  return Done{};
+}
+
 }  // namespace
 
 Status prepare_tools(World& world) {
@@ -88,28 +119,15 @@ Status prepare_tools(World& world) {
   std::vector<Entity> tools;
   for ([[maybe_unused]] auto [entity, handle] : world.registry.view<Handle6>())
     if (world.registry.has<SoftBody>(entity) || world.registry.has<RigidBody>(entity)) tools.push_back(entity);
-  HandleModel empty;
-  empty.contacts.resize(kMaxCondensed, kMaxModes);
-  for (const Entity entity : tools) {
-    const std::string& wanted = world.registry.get<Handle6>(entity).device;
-    const Entity named = wanted.empty() ? kNoEntity : find_by_name(world, wanted);
-    if (!wanted.empty() && (named == kNoEntity || !world.registry.has<HapticDevice>(named)))
-      return Error{"tool `" + name_of(world, entity) + "`",
-                   "its device `" + wanted + "` has no PLIANT_haptic_device; name a node that has one"};
-    auto tool = std::make_unique<ToolTouchState>();
-    tool->entity = entity;
-    tool->device = wanted.empty() ? resting_device(world, entity) : named;
-    if (Status status = check_free(world, entity, tool->device); !status) return status.error();
-    for (HandleModel& slot : tool->model.slots()) slot = empty;
-    tool->pending = empty;
-    tool->contacts.resize(kMaxCondensed, kMaxModes);
-    tool->replay.resize(kMaxCondensed, kMaxModes);
-    // Until the device has been sensed, the tool is held where it stands.
-    if (const Pose* pose = world.registry.find<Pose>(entity)) tool->sensed.pose = *pose;
-    for (ToolInput& slot : tool->input.slots()) slot.device = tool->sensed;
-    tool->limits = {kTickSweeps, kTickTolerance, 0};
-    find_weight(world, *tool);
-    world.tools->tools.push_back(std::move(tool));
+  for (const Entity entity : tools)
+    if (Status status = add_tool(world, entity); !status) return status.error();
+  for (const Entity entity : probe_tools(world)) {
+    const Probe& probe = world.registry.get<Probe>(entity);
+    const Pose pose{probe.position, probe.rotation};
+    world.tools->tools.push_back(make_tool(entity, probe.device, &pose));
+    ToolTouchState& tool = *world.tools->tools.back();
+    tool.is_probe = tool.away = true;
+    tool.settings = probe_handle(probe, world.registry.get<HapticDevice>(probe.device));
   }
   return Done{};
 }

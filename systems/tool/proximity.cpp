@@ -273,8 +273,10 @@ struct Proximity::Parts {
     c.foretold = look_ahead(pair, c);
     c.source = candidate.source;
     c.key = candidate.key;
-    c.mu_static = std::sqrt(a.friction_static * b.friction_static);
-    c.mu_sliding = std::sqrt(a.friction_sliding * b.friction_sliding);
+    // A probe has no friction of its own: as on a yielding surface, what it touches says how it grips.
+    const Body &first = a.kind == BodyKind::kProbe ? b : a, &second = b.kind == BodyKind::kProbe ? a : b;
+    c.mu_static = std::sqrt(first.friction_static * second.friction_static);
+    c.mu_sliding = std::sqrt(first.friction_sliding * second.friction_sliding);
     carry_over(f.last, c);
     if (c.foretold) find_turning(pair, c);
     return c;
@@ -319,7 +321,7 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i]->self_collides) p.find_within(side(i));
     for (std::size_t k = i + 1; k < bodies.size(); ++k)
-      if (bodies[i]->size() > 0 || bodies[k]->size() > 0) p.find_between(side(i), side(k));
+      if (bodies[i]->meets(*bodies[k])) p.find_between(side(i), side(k));
   }
   p.sides.clear();
   for (const Candidate& c : p.candidates) p.sides.add(c.key, p.found[c.source].meeting.normal);

@@ -13,10 +13,11 @@ ContactMark mark(const ContactPoint& contact, double T) {
 }
 
 void show_bodies(const SoftState& soft, SoftSnapshot& out) {
-  std::size_t handle = 0;
-  for (std::size_t i = 0; i < soft.moving.size(); ++i) {
-    const Body& body = *soft.bodies[soft.moving[i]];
-    body.show(out.objects[i]);
+  std::size_t handle = 0, object = 0;
+  for (const std::uint32_t i : soft.moving) {
+    const Body& body = *soft.bodies[i];
+    if (body.kind == BodyKind::kProbe) continue;
+    body.show(out.objects[object++]);
     const auto* tool = dynamic_cast<const ToolBody*>(&body);
     if (!tool || !tool->has_handle()) continue;
     const Vector6 wrench = tool->handle_wrench();

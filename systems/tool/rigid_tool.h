@@ -28,6 +28,7 @@ class RigidTool final : public ToolBody {
   Vector starting_velocity() const override { return start_; }
   void halt() override;
   void show(SoftObjectSnapshot& out) const override;
+  void unsettle() override { refresh_skin(); }
   const Rows& follow() const override { return follow_; }
   void solve_held(Eigen::Ref<Rows>) const override {}  // no flesh
 

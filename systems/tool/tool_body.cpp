@@ -38,6 +38,13 @@ Vector6 ToolBody::support(dvec3 gravity) const {
   return join(force, cross(handle_->motion().pose.rotation * balance_, force));
 }
 
+void ToolBody::set_back() {
+  if (!device_) return;
+  handle_->place(device_->pose);
+  unsettle();
+  halt();
+}
+
 void ToolBody::couple(double T, dvec3 gravity) {
   const RigidMotion now = handle_->motion();
   start_ = now.velocity;

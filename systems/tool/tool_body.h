@@ -41,9 +41,12 @@ class ToolBody : public Body {
   RigidMotion device_target() const { return device_ ? device_->at(handle_->centre()) : handle_->motion(); }
 
   // Before the first step: the body as it rests under gravity while its handle is held where it is. It knows of no
-  // contacts: unsettle() goes back to the rest shape. Nothing to do for what is rigid.
+  // contacts. Nothing to do for what is rigid.
   virtual void settle(dvec3 gravity) { (void)gravity; }
-  virtual void unsettle() {}
+  virtual void unsettle() = 0;  // to the rest shape, where the handle is
+
+  // The whole tool in its rest shape, at rest, its own frame where the device is. Before free_step.
+  void set_back();
 
   // --- Of the handle; all of the last free_step, at its beginning, unless said otherwise. Only with a handle.
   // [-Z; 1], size() x 6: how the whole tool moves when the handle is moved and flesh follows.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "components/soft_body.h"
+#include "systems/device/safety.h"
 #include "systems/tool/coupling.h"
 #include "systems/tool/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
@@ -21,7 +22,10 @@ bool sense(ToolTouchState& tool, const HapticDevice& device, double dt) {
   tool.sensed.velocity.setZero();
   if (tool.sensing) {
     const dvec3 turn = vector_of(tool.sensed.pose.rotation * glm::conjugate(before.pose.rotation));
-    tool.sensed.velocity = join((tool.sensed.pose.position - before.pose.position) / dt, turn / dt);
+    const dvec3 went = tool.sensed.pose.position - before.pose.position;
+    // What jumps has no velocity that could damp anything.
+    if (length(went) < kFastestHand * dt && length(turn) < kFastestTurn * dt)
+      tool.sensed.velocity = join(went / dt, turn / dt);
     tool.turned += turn;
   }
   return tool.sensing = true;
@@ -48,6 +52,9 @@ int settle_ticks(const HandleModel& model) {
 }
 
 void adopt(ToolTouchState& tool, const HandleModel& model) {
+  if (model.set_backs != tool.models_set_back) tool.placed = tool.away = false;  // the soft clock has moved the tool
+  tool.models_set_back = model.set_backs;
+  if (tool.away) return;
   if (!tool.placed) {
     tool.handle = model.handle;
     tool.wrench = model.force;
@@ -159,6 +166,13 @@ bool finite(const RigidMotion& motion) {
   return std::isfinite(dot(x, x)) && std::isfinite(glm::dot(q, q)) && motion.velocity.allFinite();
 }
 
+// Farther from its device, or faster, than any hand's tool.
+bool got_away(const ToolTouchState& tool, const HandleModel& model) {
+  const Vector6 speed = tool.handle.velocity - tool.sensed.velocity;
+  return length(tool.sensed.at(model.centre).pose.position - tool.handle.pose.position) > kMostStretch ||
+         length(linear(speed)) > kRunaway || length(angular(speed)) > kRunawayTurn;
+}
+
 // A model that is no number must not stay in the handle: nothing is felt until the next one.
 void forget(ToolTouchState& tool) {
   tool.placed = false;
@@ -178,22 +192,30 @@ void tell_soft_clock(ToolTouchState& tool, Tick tick) {
   input.placed = tool.placed;
   input.handle = tool.handle;
   input.impulse = tool.impulse;
+  input.set_backs = tool.set_backs;
+  input.seen = tool.models_set_back;
   tool.input.publish();
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
 
 void feel(World& world, ToolTouchState& tool, Tick tick) {
-  const Handle6& settings = world.registry.get<Handle6>(tool.entity);
+  const Handle6& settings = settings_of(world, tool);
   tool.device_wrench.setZero();
   const bool sensing = sense(tool, world.registry.get<HapticDevice>(tool.device), tick.dt);
   if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
+  if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // its shell comes to its device
   if (tool.placed && sensing) {
     pull_device(tool, model, settings);
     step(tool, model, settings, tick);
     if (!finite(tool.handle)) {
       world.dropped |= kDroppedNonFinite;
       forget(tool);
+    } else if (got_away(tool, model)) {
+      world.dropped |= kDroppedSetBack;
+      ++tool.set_backs;
+      forget(tool);
+      tool.away = true;
     }
   } else {  // the handle stays where it is until there is a device to go to
     tool.handle.velocity.setZero();

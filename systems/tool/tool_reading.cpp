@@ -17,29 +17,44 @@ dvec3 pushed_by(const CondensedContacts& contacts, const CondensedState& state) 
   return sum;
 }
 
+// Contact, normal and depth of a tool; false where nothing pushes it as hard as `least` [N].
+bool read_contact(const ToolTouchState& tool, double least, ProbeReading& out) {
+  const HandleModel& model = tool.model.read();
+  const dvec3 push = pushed_by(model.contacts, tool.contacts);
+  if (!tool.placed || !(length(push) > least)) return false;
+  out.in_contact = true;
+  out.normal = normalize(push);
+  out.depth = tool.sensing ? length(tool.sensed.at(model.centre).pose.position - tool.handle.pose.position) : 0.0;
+  return true;
+}
+
+// The parts of a force that is known along a normal that is.
+void split_force(ProbeReading& out) {
+  const double along = dot(out.force, out.normal);
+  out.normal_force = std::abs(along);
+  out.tangential_force = length(out.force - along * out.normal);
+}
+
 }  // namespace
 
 ProbeReading tool_reading(const World& world, Entity entity) {
   ProbeReading out;
-  if (!world.tools) return out;
-  for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools) {
-    if (tool->entity != entity) continue;
-    const HapticDevice& device = world.registry.get<HapticDevice>(tool->device);
-    const HandleModel& model = tool->model.read();
-    out.position = device.position;
-    out.force = device.force_sent;
-    const dvec3 push = pushed_by(model.contacts, tool->contacts);
-    out.in_contact = dot(push, push) > 0.0;
-    if (out.in_contact) {
-      out.normal = normalize(push);
-      if (tool->placed && tool->sensing)
-        out.depth = length(tool->sensed.at(model.centre).pose.position - tool->handle.pose.position);
-    }
-  }
-  const double along = dot(out.force, out.normal);
-  out.normal_force = std::abs(along);
-  out.tangential_force = length(out.force - along * out.normal);
+  const ToolTouchState* const tool = find_tool(world, entity);
+  if (!tool) return out;
+  const HapticDevice& device = world.registry.get<HapticDevice>(tool->device);
+  out.position = device.position;
+  out.force = device.force_sent;
+  read_contact(*tool, 0.0, out);
+  split_force(out);
   return out;
+}
+
+void add_body_reading(const World& world, Entity probe, ProbeReading& out) {
+  const ToolTouchState* const tool = find_tool(world, probe);
+  if (!tool || !read_contact(*tool, out.in_contact ? out.normal_force : 0.0, out)) return;
+  out.object = kNoEntity;
+  out.height = 0.0;
+  split_force(out);
 }
 
 }  // namespace pliant

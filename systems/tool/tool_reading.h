@@ -9,4 +9,8 @@ namespace pliant {
 // mean direction in which contacts push the tool, by the newest model.
 ProbeReading tool_reading(const World& world, Entity tool);
 
+// Of a probe among soft and rigid bodies, if anything there presses it harder than what `out` already tells of:
+// contact, normal and depth.
+void add_body_reading(const World& world, Entity probe, ProbeReading& out);
+
 }  // namespace pliant

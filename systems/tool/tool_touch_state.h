@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "components/soft_body.h"
 #include "components/world.h"
 #include "systems/device/safety.h"
 #include "systems/tool/handle_model.h"
@@ -27,6 +28,9 @@ inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older tha
 inline constexpr int kLateTicks = 3;              // ticks in a row over budget, then the linear model takes over
 inline constexpr int kTickSweeps = 20;            // a tick's Gauss-Seidel sweeps at most; they start warm
 inline constexpr double kTickTolerance = 1e-3;    // [1] of the fastest closing: good enough, stop
+inline constexpr double kMostStretch = 2.0;       // [m] a handle farther from its device has got away from the hand,
+inline constexpr double kRunaway = 50.0;          // [m/s] and so has one that is faster,
+inline constexpr double kRunawayTurn = 1000.0;    // [rad/s] or turns faster
 inline constexpr std::size_t kPathLength = 1024;  // ticks of the handle's path that may wait for the soft clock
 
 // A tick of the handle's path, for the soft clock to bring its model up to date with.
@@ -36,7 +40,9 @@ struct HandleStep {
 };
 
 struct ToolTouchState {
-  Entity entity;                       // has a Handle6 and a SoftBody
+  Entity entity;  // has a Handle6 and a SoftBody or RigidBody; or a Probe
+  bool is_probe = false;
+  Handle6 settings;                    // of a probe; of a tool: its component's
   Entity device = kNoEntity;           // has a HapticDevice
   TripleBuffer<ToolInput> input;       // touch -> soft
   TripleBuffer<HandleModel> model;     // soft -> touch
@@ -46,6 +52,7 @@ struct ToolTouchState {
   HandleModel pending;
   double heard_at = 0.0;  // [s] of the last input with a placed handle; its `impulse`
   Vector6 heard = Vector6::Zero();
+  std::uint32_t set_back = 0;  // ToolInput::set_backs done
   CondensedState replay;
 
   ToolForce wanted = ToolForce::kContacts;
@@ -69,6 +76,9 @@ struct ToolTouchState {
   bool sensing = false;                     // `sensed` means something
   Vector6 wrench = Vector6::Zero();         // [N], [N m] flesh and contacts on the handle, over the last tick
   Vector6 impulse = Vector6::Zero();        // [N s], [N m s] its sum over time
+  bool away = false;                        // it waits to be set back into the hand
+  std::uint32_t set_backs = 0;              // how often it has asked for that
+  std::uint32_t models_set_back = 0;        // and how often the model in use had been
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its own origin
   SafetyState force_safety, torque_safety;
   dvec3 weight{0};   // [N] of the whole tool where nothing carries it, else 0; constant
@@ -81,5 +91,17 @@ struct ToolTouchState {
 struct ToolTouch {
   std::vector<std::unique_ptr<ToolTouchState>> tools;
 };
+
+inline const Handle6& settings_of(const World& world, const ToolTouchState& tool) {
+  return tool.is_probe ? tool.settings : world.registry.get<Handle6>(tool.entity);
+}
+
+// A tool's or a probe's; null where there is none.
+inline ToolTouchState* find_tool(const World& world, Entity entity) {
+  if (!world.tools) return nullptr;
+  for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools)
+    if (tool->entity == entity) return tool.get();
+  return nullptr;
+}
 
 }  // namespace pliant

@@ -172,7 +172,8 @@ Status prepare_touch(World& world) {
   std::uint32_t tip_count = 0;
   std::size_t contacts_wanted = 0;
   for (auto [entity, probe] : registry.view<Probe>()) {
-    touch->probes.push_back({entity, {}, tips_of(probe), tip_count});
+    const bool meets_surfaces = probe.meets != ProbeMeets::kBodies;
+    touch->probes.push_back({entity, {}, meets_surfaces ? tips_of(probe) : std::vector<Tip>(), tip_count});
     for (const Tip& tip : touch->probes.back().tips)
       contacts_wanted += tip.radius > 0 ? kContactsOfASphere : kContactsOfAPoint;
     tip_count += static_cast<std::uint32_t>(touch->probes.back().tips.size());

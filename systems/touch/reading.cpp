@@ -42,6 +42,7 @@ ProbeReading reading(const World& world, Entity entity) {
   }
   out.normal_force = std::abs(dot(out.force, out.normal));
   out.tangential_force = length(out.force - dot(out.force, out.normal) * out.normal);
+  add_body_reading(world, entity, out);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "content/mesh_build.h"
+#include "content/probe_shell.h"
 #include "systems/schedule.h"
 #include "systems/tool/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
@@ -103,6 +104,12 @@ Entity ToolStage::add_rigid(const Primitive& primitive, RigidBody body, Pose pos
 }
 
 void ToolStage::prepare() {
+  for (auto [entity, probe] : world.registry.view<Probe>()) {
+    if (probe.meets == ProbeMeets::kSurfaces) continue;
+    Result<Mesh> shell = probe_shell(probe);
+    ASSERT(shell.ok());
+    probe.shell = world.meshes.add(std::move(*shell));
+  }
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft}) ASSERT(prepare_system(world).ok());
 }
 
