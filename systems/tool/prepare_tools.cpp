@@ -86,6 +86,7 @@ Status prepare_tools(World& world) {
     if (const Pose* pose = world.registry.find<Pose>(entity)) tool->sensed.pose = *pose;
     for (ToolInput& slot : tool->input.slots()) slot.device = tool->sensed;
     tool->limits = {kTickSweeps, kTickTolerance, 0};
+    tool->wanted = world.registry.get<Handle6>(entity).force;
     find_weight(world, *tool);
     world.tools->tools.push_back(std::move(tool));
   }

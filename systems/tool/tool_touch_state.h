@@ -5,19 +5,13 @@
 #include <memory>
 #include <vector>
 
+#include "components/soft_body.h"
 #include "components/world.h"
 #include "systems/device/safety.h"
 #include "systems/tool/handle_model.h"
 #include "systems/tool/tool_tick.h"
 
 namespace pliant {
-
-// How the 1 kHz force is made, in rising order of truth and cost.
-enum class ToolForce : std::uint8_t {
-  kHeld,      // the last soft step's force, unchanged
-  kLinear,    // LinearModel
-  kContacts,  // CondensedContacts, solved again every tick; kLinear when late
-};
 
 // Tunables of the touch tick. Unit, usual value, and what changing it does.
 inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: a model that is too old fades with this time constant
@@ -46,7 +40,7 @@ struct ToolTouchState {
   HandleModel pending;
   CondensedState replay;
 
-  ToolForce wanted = ToolForce::kContacts;
+  ToolForce wanted = ToolForce::kContacts;  // Handle6::force
   SweepLimits limits;  // of a tick; in lockstep budget_ns is 0: never wall time, always the same bits
 
   // Since the first model.
@@ -65,6 +59,7 @@ struct ToolTouchState {
   // For display and devices.
   RigidMotion sensed;                       // the device
   bool sensing = false;                     // `sensed` means something
+  double sensed_at = 0.0;                   // [s] beginning of the tick that sensed it
   Vector6 wrench = Vector6::Zero();         // [N], [N m] flesh and contacts on the handle, over the last tick
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its own origin
   SafetyState force_safety, torque_safety;
