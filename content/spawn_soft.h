@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "content/lattice.h"
 #include "content/level.h"
 #include "content/mesh_build.h"
 
@@ -13,6 +14,14 @@ struct SoftParts {
   TetMesh tets;                    // nodes in the order free, handle, pinned
   std::vector<std::string> notes;  // of the tetrahedra file
 };
+
+// From this Poisson's ratio on, linear tetrahedra lock: a patch pressed into a block meets over 10 % too much
+// resistance beyond what the same lattice has at 0.3, with the lattice's usual number of tetrahedra; 20 % at 0.49, 50 %
+// at 0.499 (tests/tool/locking_test.cpp). With kManyTets the same is so from the second one on.
+inline constexpr double kLockingPoisson = 0.47, kLockingPoissonOfMany = 0.49;  // [1]
+inline constexpr std::size_t kManyTets = 8 * kUsualTets;
+// A sentence for a body of so many tetrahedra that locks, without its name; "": it does not.
+std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra);
 
 // What about a node's extensions cannot go together, as what follows "node X"; "": nothing.
 std::string soft_fault(const LevelNode& node);
