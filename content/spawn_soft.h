@@ -15,9 +15,9 @@ struct SoftParts {
   std::vector<std::string> notes;  // of the tetrahedra file
 };
 
-// From this Poisson's ratio on, linear tetrahedra lock: a patch pressed into a block meets over 10 % too much
-// resistance beyond what the same lattice has at 0.3, with the lattice's usual number of tetrahedra; 20 % at 0.49, 50 %
-// at 0.499 (tests/tool/locking_test.cpp). With kManyTets the same is so from the second one on.
+// From this Poisson's ratio on, linear tetrahedra lock: a patch pressed into a block of the lattice's usual number of
+// them meets over 10 % too much resistance beside what the same lattice has at 0.3, 20 % at 0.49, a third at 0.499
+// (tests/tool/locking_test.cpp). With kManyTets, half the cell, the same is so from the second ratio on.
 inline constexpr double kLockingPoisson = 0.47, kLockingPoissonOfMany = 0.49;  // [1]
 inline constexpr std::size_t kManyTets = 8 * kUsualTets;
 // A sentence for a body of so many tetrahedra that locks, without its name; "": it does not.
