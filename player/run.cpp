@@ -166,6 +166,7 @@ RunOptions another_level(const RunOptions& options, const std::string& file) {
   other.probes.clear();
   other.sets.clear();
   other.record.clear();
+  other.tool_force.clear();
   other.unit = 1.0;
   if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
   return other;

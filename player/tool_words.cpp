@@ -10,6 +10,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kSaidLoss = 0.02;  // [1] of the run: less is lost while a first step tries which solver is fastest
 constexpr std::array<const char*, 3> kForces{"held", "linear", "contacts"};  // in the order of ToolForce
 
 std::string count(std::uint64_t n, const char* what) {
@@ -56,7 +57,8 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "
                     "creep; make soft_step shorter, or keep masses and stiffnesses of what touches closer together",
                     tally.unconverged, count(figures.steps, "soft step"), tally.residual));
-  if (figures.time_lost > 0.0)
+  const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] at least
+  if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))
     sentences.push_back(fmt::format(
         "the soft clock did not keep up: bodies are {:.2f} s behind after {} of {:g} s; make `cell` larger or "
         "soft_step longer, or leave out --realtime",
