@@ -195,7 +195,7 @@ int parse_and_run(int argc, const char* const* argv) {
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const auto is_asked = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && std::none_of(verbs.begin(), verbs.end(), is_asked))
-    return fail(kUsage, {"arguments", std::string("there is no verb '") + argv[1] + "'; see `pliant --help`"});
+    return fail(kUsage, {"arguments", std::string("unknown verb '") + argv[1] + "'; see `pliant --help`"});
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
