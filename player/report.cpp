@@ -164,8 +164,7 @@ void print_summary(const RunFigures& figures, const std::filesystem::path& out) 
     const Histogram& step = figures.soft->schedule().total();
     fmt::print(
         "  soft: {} steps over {} tetrahedra, {:.2f} ms median, {:.2f} ms p99, {} overruns, {:.1f} contacts, at most "
-        "{:.2f} mm "
-        "into each other\n",
+        "{:.2f} mm into each other\n",
         soft.steps, figures.soft->tetrahedra(), step.percentile_us(0.5) * 1e-3, step.percentile_us(0.99) * 1e-3,
         soft.overruns, mean(soft.contacts_sum, soft.steps), figures.world.soft->tally.deepest * 1e3);
   }

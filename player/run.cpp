@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "content/file_io.h"
 #include "player/body_journal.h"
@@ -291,18 +292,16 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
                      fmt::format("{:016x}", hash.value()),
                      loop.soft,
                      {}};
-  for (const std::string& sentence : explain_run(figures)) {
+  std::vector<std::string> sentences = explain_run(figures);
+  for (const auto& [lost, file] :
+       {std::pair(journal.lost(), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
+    if (lost > 0)
+      sentences.push_back(fmt::format(
+          "{} rows of {} were lost because writing fell behind; take fewer or smaller pictures", lost, file));
+  for (const std::string& sentence : sentences) {
     note(sentence);
     figures.dropped.push_back(sentence);
   }
-  if (journal.lost() > 0)
-    figures.dropped.push_back(
-        fmt::format("{} rows of forces.csv were lost because writing fell behind: take fewer or "
-                    "smaller pictures",
-                    journal.lost()));
-  if (bodies && bodies->lost() > 0)
-    figures.dropped.push_back(fmt::format(
-        "{} rows of bodies.csv were lost because writing fell behind: take fewer or smaller pictures", bodies->lost()));
   figures.dropped.insert(figures.dropped.end(), run.notes.begin(), run.notes.end());
   if (Outcome wrong = write_reports(figures, *out)) return wrong;
   print_summary(figures, options.out.empty() ? "out/" + world.name : options.out);
