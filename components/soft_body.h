@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 #include "components/math.h"
@@ -28,6 +29,13 @@ struct SoftBody {
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };
 
+// How a tool's 1 kHz force is made, in rising order of truth and cost.
+enum class ToolForce : std::uint8_t {
+  kHeld,      // the last soft step's force, unchanged
+  kLinear,    // LinearModel, as P2 has it
+  kContacts,  // CondensedContacts, solved again every tick; kLinear when late
+};
+
 struct Handle6 {
   Box box;  // [m] object frame: what is rigid; empty: the attribute _HANDLE
   Attachment attachment = Attachment::kSlave;
@@ -36,6 +44,7 @@ struct Handle6 {
   double max_force = 3.3;                         // [N]
   double max_torque = 0.3;                        // [N m]
   bool carried = true;                            // the tool's weight is held up, and not felt
+  ToolForce force = ToolForce::kContacts;         // how the touch clock makes its force
   std::string device;                             // node with PLIANT_haptic_device
 };
 

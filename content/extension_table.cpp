@@ -230,7 +230,8 @@ std::vector<Key> soft_body_keys() {
   const auto s = [](auto member) { return at(&LevelNode::soft_body, member); };
   std::vector<Key> keys;
   keys.push_back(number("young", "Pa", {0.0, 1e12, true}, s(&S::young), "Young's modulus"));
-  keys.push_back(number("poisson", "1", {0.0, 0.499}, s(&S::poisson), "Poisson's ratio"));
+  keys.push_back(number("poisson", "1", {0.0, 0.499}, s(&S::poisson),
+                        "Poisson's ratio; from 0.47 on the tetrahedra lock: flesh is over 10 % too stiff"));
   keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", {0.0, 1e3}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
@@ -258,6 +259,9 @@ std::vector<Key> handle_keys() {
   keys.push_back(
       number("coupling.max_torque", "N m", {0.0, 1e4}, h(&H::max_torque), "saturation of the coupling's torque"));
   keys.push_back(flag("carried", h(&H::carried), "hold up the tool's weight, so that the hand does not feel it"));
+  keys.push_back(choice("force", {"held", "linear", "contacts"}, h(&H::force),
+                        "how the touch clock makes its force: held from the last soft step, by the linear model, or "
+                        "with the contacts solved again in every tick"));
   keys.push_back(text("device", KeyType::kNode, h(&H::device),
                       "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
   return keys;

@@ -52,5 +52,9 @@ std::string check_value(const Key& key, const Json& value);
 std::string range_text(const Key& key);
 // The closest of `names`, as "; did you mean X?", or "" if none is close.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
+// "unknown `what` 'word'; did you mean X?", or, if none is close, "...; `all` are A, B, C".
+std::string unknown(const std::string& what, const std::string& word, const std::string& all,
+                    const std::vector<std::string>& names);
+std::string unknown_key(const Extension& extension, const std::string& word);
 
 }  // namespace pliant

@@ -30,48 +30,49 @@ std::string check_value(const Key& key, const Json& value) {
     const double it = value.get<double>();
     const bool inside = (key.range.above_min ? it > key.range.min : it >= key.range.min) && it <= key.range.max;
     return inside ? std::string()
-                  : fmt::format("is {}, out of the range {} {}", value.dump(), range_text(key),
-                                key.unit == "1" ? "" : key.unit);
+                  : fmt::format("must be in the range {}{}; got {}", range_text(key),
+                                key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump());
   };
   const std::string given = value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
+  const auto must_be = [&](const std::string& what) { return "must be " + what + "; got " + given; };
   switch (key.type) {
     case KeyType::kNumber:
-      return value.is_number() ? number() : "is " + given + ", not a number";
+      return value.is_number() ? number() : must_be("a number");
     case KeyType::kNumberOrMaterial:
       if (value == "material") return "";
-      return value.is_number() ? number() : "is " + given + ", neither a number nor \"material\"";
+      return value.is_number() ? number() : must_be("a number or \"material\"");
     case KeyType::kFlag:
-      return value.is_boolean() ? "" : "is " + given + ", neither true nor false";
+      return value.is_boolean() ? "" : must_be("true or false");
     case KeyType::kText:
     case KeyType::kNode:
-      return value.is_string() ? "" : "is " + given + ", not a text";
+      return value.is_string() ? "" : must_be("a text");
     case KeyType::kChoice: {
       std::string all;
       for (const std::string& each : key.choices) {
         if (value == each) return "";
         all += (all.empty() ? "" : ", ") + each;
       }
-      return "is " + given + ", none of " + all;
+      return must_be("one of " + all);
     }
     case KeyType::kColor:
-      return numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
+      return numbers(value, 3, key.range) ? "" : must_be("three numbers in " + range_text(key));
     case KeyType::kPair:
-      return numbers(value, 2, key.range) ? "" : "is " + given + ", not two numbers in " + range_text(key);
+      return numbers(value, 2, key.range) ? "" : must_be("two numbers in " + range_text(key));
     case KeyType::kVector:
       if (value.is_number()) return number();
-      return numbers(value, 3, key.range) ? "" : "is " + given + ", not three numbers in " + range_text(key);
+      return numbers(value, 3, key.range) ? "" : must_be("three numbers in " + range_text(key));
     case KeyType::kPoints: {
       const bool good =
           value.is_array() && value.size() <= kMostPoints &&
           std::all_of(value.begin(), value.end(), [&](const Json& each) { return numbers(each, 3, key.range); });
-      return good ? "" : fmt::format("is {}, not a list of at most {} points [x, y, z]", given, kMostPoints);
+      return good ? "" : must_be(fmt::format("a list of at most {} points [x, y, z]", kMostPoints));
     }
     case KeyType::kBox: {
       const KeyRange any{-1e6, 1e6};
       bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&
                   numbers(value["min"], 3, any) && numbers(value["max"], 3, any);
       for (std::size_t i = 0; good && i < 3; ++i) good = value["min"][i].get<double>() <= value["max"][i].get<double>();
-      return good ? "" : "is " + given + ", not a box {\"min\": [x, y, z], \"max\": [x, y, z]}";
+      return good ? "" : must_be("a box {\"min\": [x, y, z], \"max\": [x, y, z]}");
     }
   }
   return "";
@@ -99,6 +100,20 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     }
   }
   return best.empty() ? "" : "; did you mean " + best + "?";
+}
+
+std::string unknown(const std::string& what, const std::string& word, const std::string& all,
+                    const std::vector<std::string>& names) {
+  const std::string near = suggestion(word, names);
+  return fmt::format("unknown {} '{}'", what, word.substr(0, 100)) +
+         (near.empty() ? fmt::format("; {} are {}", all, fmt::join(names, ", ")) : near);
+}
+
+std::string unknown_key(const Extension& extension, const std::string& word) {
+  std::vector<std::string> names;
+  for (const Key& key : extension.keys) names.push_back(key.name);
+  const std::string owner = "PLIANT_" + extension.name;
+  return unknown("key", word, "keys of " + owner, names);
 }
 
 }  // namespace pliant

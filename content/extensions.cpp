@@ -14,12 +14,6 @@ namespace {
 // What a fingertip or a probe presses with, the radius that tissue stiffnesses are quoted for (methods.md 4).
 constexpr double kContactRadius = 0.004;  // [m]
 
-std::vector<std::string> key_names(const Extension& extension) {
-  std::vector<std::string> names;
-  for (const Key& key : extension.keys) names.push_back(key.name);
-  return names;
-}
-
 // Reads one extension object into its owner, telling `report(pointer, message)` of every fault.
 template <class Report>
 class Reader {
@@ -54,7 +48,7 @@ class Reader {
       if (group && prefix.empty())
         walk(value, dotted + ".", here);
       else
-        report_(here, "is no key of PLIANT_" + extension_.name + suggestion(dotted, key_names(extension_)));
+        report_(here, unknown_key(extension_, dotted));
     }
   }
 
@@ -89,7 +83,7 @@ void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
     const std::string here = pointer + "/" + name;
     const Extension* extension = find_extension(name.substr(7));
     if (!extension || extension->on_scene != on_scene)
-      report(here, "is no extension known here" + suggestion(name, names));
+      report(here, unknown("extension", name, "extensions here", names));
     else
       Reader<Report>(*extension, owner, node_names, report).read(json, here);
   }

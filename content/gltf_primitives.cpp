@@ -84,7 +84,7 @@ class MeshCheck {
     std::string semantic;
     int set;
     if (!split_attribute(name, semantic, set))
-      return check_.error(pointer, "is no attribute that glTF knows; prefix your own with _");
+      return check_.error(pointer, "unknown attribute '" + name.substr(0, 100) + "'; prefix your own with _");
     if (!layout.known || !format_is_allowed(semantic, layout, quantized_, target))
       return check_.error(
           pointer, fmt::format("cannot be of {} {}", accessor["type"].get<std::string>(), layout.component_type));

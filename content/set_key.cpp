@@ -58,23 +58,16 @@ Status set_key(Level& level, const std::string& assignment) {
     return Error{where, "is not NODE.EXTENSION.KEY=VALUE; write for example belly.deformable.stiffness=300"};
   it.value = value_of_text(assignment.substr(equals + 1));
 
-  std::vector<std::string> extensions, keys, nodes;
+  std::vector<std::string> extensions, nodes;
   for (const Extension& each : extension_table()) extensions.push_back(each.name);
   const Extension* extension = find_extension(it.extension);
-  if (!extension)
-    return Error{where, "names the extension '" + it.extension + "', which does not exist" +
-                            suggestion(it.extension, extensions)};
-  for (const Key& each : extension->keys) keys.push_back(each.name);
+  if (!extension) return Error{where, unknown("extension", it.extension, "extensions", extensions)};
   const Key* key = find_key(*extension, it.key);
-  if (!key) {
-    const std::string near = suggestion(it.key, keys);
-    return Error{where, "names '" + it.key + "', which is no key of PLIANT_" + it.extension +
-                            (near.empty() ? fmt::format("; its keys are {}", fmt::join(keys, ", ")) : near)};
-  }
+  if (!key) return Error{where, unknown_key(*extension, it.key)};
   if (key->type == KeyType::kText || key->type == KeyType::kNode || key->type == KeyType::kChoice)
     it.value = assignment.substr(equals + 1);
   const std::string wrong = check_value(*key, it.value);
-  if (!wrong.empty()) return Error{where, it.key + " " + wrong + "; it is: " + key->doc};
+  if (!wrong.empty()) return Error{where, it.key + " " + wrong + " (" + key->doc + ")"};
 
   // Nothing changes unless everything can.
   Level changed;

@@ -1,5 +1,7 @@
 #include "content/spawn_soft.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "content/lattice.h"
@@ -59,6 +61,15 @@ Primitive boundary_primitive(const TetMesh& mesh) {
 }
 
 }  // namespace
+
+std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
+  const double bound = tetrahedra < kManyTets ? kLockingPoisson : kLockingPoissonOfMany;
+  if (body.poisson < bound) return "";
+  return fmt::format(
+      "has a Poisson's ratio of {:g}: from {:g} on its {} tetrahedra lock, and it is over 10 % too stiff where it is "
+      "pressed in; lower `poisson`, to 0.45 for instance, or make `cell` smaller",
+      body.poisson, bound, tetrahedra);
+}
 
 std::string soft_fault(const LevelNode& node) {
   if (node.soft_body && node.deformable)

@@ -135,6 +135,7 @@ void find_in_flesh(const Level& level, const World& world, Findings& findings) {
           fmt::format("its flesh falls into {} parts where its skin has {}: what joins them is thinner than the cell; "
                       "make `cell` smaller",
                       parts, pieces));
+    if (const std::string doubt = locking_doubt(soft_body, tets.tets.size()); !doubt.empty()) warn(doubt);
     if (tets.quality.smallest_dihedral < kSharp)
       warn(
           fmt::format("has a dihedral angle of {:.2g} degrees: steps may need more work; mesh it again, or leave "

@@ -21,7 +21,22 @@ CLI::Validator within(double low, double high) {
       [low, high](std::string& text) -> std::string {
         double value = 0.0;
         if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= low && value <= high) return {};
-        return "'" + text + "' is not between " + CLI::detail::to_string(low) + " and " + CLI::detail::to_string(high);
+        return "must be between " + CLI::detail::to_string(low) + " and " + CLI::detail::to_string(high) + "; got '" +
+               text + "'";
+      },
+      "");
+}
+
+// One of these words; the sentence lists them.
+CLI::Validator one_of(std::vector<std::string> words) {
+  return CLI::Validator(
+      [words](std::string& text) -> std::string {
+        std::string all;
+        for (const std::string& word : words) {
+          if (text == word) return {};
+          all += (all.empty() ? "" : ", ") + word;
+        }
+        return "must be one of " + all + "; got '" + text + "'";
       },
       "");
 }
@@ -37,7 +52,7 @@ std::string parse_size(const std::string& text, RunOptions& run) {
   if (std::sscanf(text.c_str(), "%5dx%5d%n", &run.width, &run.height, &used) != 2 ||
       static_cast<std::size_t>(used) != text.size() || run.width < 16 || run.height < 16 || run.width > 8192 ||
       run.height > 8192)
-    return "--size: '" + text + "' is not WxH with both between 16 and 8192, such as 960x540";
+    return "--size: must be WxH with both between 16 and 8192, such as 960x540; got '" + text + "'";
   run.sized = true;
   return {};
 }
@@ -72,7 +87,10 @@ void add_run(CLI::App& app, RunOptions& run) {
       verb->add_flag("--lockstep", run.lockstep, "virtual time, the same bits every time (default without a window)");
   verb->add_flag("--realtime", run.realtime, "run the clocks; overruns are counted")->excludes(lockstep);
   verb->add_option("--field", run.field, "where the surface is computed: auto, cpu, gpu")
-      ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
+      ->check(one_of({"auto", "cpu", "gpu"}));
+  verb->add_option("--tool-force", run.tool_force,
+                   "how every tool's force is made: held, linear, contacts; default: each tool's key")
+      ->check(one_of({"held", "linear", "contacts"}));
   verb->add_option("--out", run.out, "folder for what is written; default: out/<level name>");
   CLI::Option* frames =
       verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: none")->check(within(0, 9999));
@@ -177,7 +195,7 @@ int parse_and_run(int argc, const char* const* argv) {
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const auto is_asked = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && std::none_of(verbs.begin(), verbs.end(), is_asked))
-    return fail(kUsage, {"arguments", std::string("there is no verb '") + argv[1] + "'; see `pliant --help`"});
+    return fail(kUsage, {"arguments", std::string("unknown verb '") + argv[1] + "'; see `pliant --help`"});
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -12,6 +12,7 @@
 #include "player/exit.h"
 #include "player/inspect_panorama.h"
 #include "player/inspect_tets.h"
+#include "player/tool_words.h"
 #include "player/unit.h"
 #include "player/verbs.h"
 
@@ -92,6 +93,14 @@ Json to_json(const Box& box) {
   return {{"min", {box.min.x, box.min.y, box.min.z}}, {"max", {box.max.x, box.max.y, box.max.z}}};
 }
 
+Json describe_tools(const Level& level) {
+  Json list = Json::array();
+  for (const LevelNode& node : level.nodes)
+    if (node.handle)
+      list.push_back({{"name", node.name}, {"device", node.handle->device}, {"force", name_of(node.handle->force)}});
+  return list;
+}
+
 // The whole answer once, as JSON; the text form reads from it.
 Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   Json json;
@@ -151,6 +160,7 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   json["extensions"] = extensions;
   json["probes"] = probes;
   json["devices"] = devices;
+  json["tools"] = describe_tools(level);
   json["bounds_m"] = to_json(box);
   json["unit_hint"] = unit_hint(box);
   json["touchable"] = touchable;
@@ -187,6 +197,11 @@ void print(const Json& json, const Box& box) {
                object["closed"].get<bool>() ? "closed" : "open",
                object["deformable"].get<bool>() ? ", deformable" : "");
     for (const Json& problem : object["problems"]) fmt::print("    {}\n", problem.get<std::string>());
+  }
+  for (const Json& tool : json["tools"]) {
+    const std::string device = tool["device"];
+    fmt::print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),
+               device.empty() ? "no device" : "device " + device, tool["force"].get<std::string>());
   }
   print_flesh(json["flesh"]);
   for (const Json& sentence : json["notes"]) fmt::print("  note: {}\n", sentence.get<std::string>());

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "content/spawn_soft.h"
 #include "content/tet_boundary.h"
 #include "content/tet_file.h"
 #include "content/tet_parts.h"
@@ -47,8 +48,14 @@ Json describe_flesh(const Level& level) {
   bodies.environment.reset();  // a sky that is missing keeps nobody from looking at flesh
   const Result<World> world = spawn(bodies);
   if (!world) return Json::array({{{"problem", world.error().message()}}});
-  for (auto [entity, body] : world->registry.view<const SoftBody>())
-    list.push_back(describe(world->tet_meshes[body.tets]));
+  for (auto [entity, body] : world->registry.view<const SoftBody>()) {
+    const TetMesh& tets = world->tet_meshes[body.tets];
+    Json flesh = describe(tets);
+    flesh["problems"] = Json::array();
+    if (const std::string doubt = locking_doubt(body, tets.tets.size()); !doubt.empty())
+      flesh["problems"].push_back(doubt);
+    list.push_back(std::move(flesh));
+  }
   return list;
 }
 
@@ -68,6 +75,8 @@ void print_flesh(const Json& flesh) {
     fmt::print("    dihedral angles {:.1f} to {:.1f} degrees, 3 r/R {:.3f} at worst, {:.3f} at the median\n",
                body["smallest_dihedral_deg"].get<double>(), body["largest_dihedral_deg"].get<double>(),
                body["worst_ratio"].get<double>(), body["median_ratio"].get<double>());
+    for (const Json& problem : body.value("problems", Json::array()))
+      fmt::print("    {}\n", problem.get<std::string>());
   }
 }
 

@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-// Flesh of each soft body as it would be spawned: nodes by group, tetrahedra, volume, quality, pieces. An object with
+// Flesh of each soft body as it would be spawned: nodes by group, tetrahedra, volume, quality, pieces, and
+// `problems`, what it will not do well. An object with
 // `problem` stands for a level that cannot be spawned. Empty: the level has no soft body.
 nlohmann::ordered_json describe_flesh(const Level& level);
 void print_flesh(const nlohmann::ordered_json& flesh);

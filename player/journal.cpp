@@ -4,16 +4,57 @@
 #include <cmath>
 
 #include "systems/device/hands.h"
+#include "systems/tool/tool_touch_state.h"
+#include "systems/touch/contacts_of.h"
 #include "systems/touch/hash_state.h"
 
 namespace pliant {
 
-Journal::Journal(const World& world, double seconds)
-    : probes_(hands(world)),
+Journal::Journal(const World& world, double seconds, const BodyJournal* bodies)
+    : bodies_(bodies),
+      probes_(hands(world)),
       recorder_(static_cast<std::size_t>(std::ceil(seconds * world.simulation.touch_rate)) *
                 std::max<std::size_t>(probes_.size(), 1)) {
   for (const Entity probe : probes_) safety_.push_back(find_safety(world, probe));
   for (auto [entity, deformable] : world.registry.view<Deformable>()) awake_.push_back({entity, 0, 0});
+  for (const Entity hand : probes_) {
+    hands_.emplace_back();
+    hands_.back().now.resize(awake_.size());
+    hands_.back().ever.resize(awake_.size());
+    for (std::size_t i = 0; world.tools && i < world.tools->tools.size(); ++i)
+      if (world.tools->tools[i]->entity == hand) hands_.back().tool = world.tools->tools[i].get();
+  }
+}
+
+// The touch clock's own side of the tool: what the tick that has just been run went by.
+void Journal::note_tool(Hand& hand, Tick tick, TickRow& row) {
+  const ToolTouchState& tool = *hand.tool;
+  const HandleModel& model = tool.model.read();
+  row.objects = bodies_ ? bodies_->touching(tool.entity) : 0;
+  row.late = tool.ticks_late > hand.late;
+  row.stale = tool.placed && tick.time - model.time > kStaleSteps * model.soft_step;
+  hand.late = tool.ticks_late;
+}
+
+void Journal::note_probe(const World& world, Entity probe, Hand& hand, TickRow& row) {
+  std::fill(hand.now.begin(), hand.now.end(), std::uint8_t{0});
+  for_contacts_of(world, probe, [&](const Contact& contact) {
+    if (contact.state != ContactState::kTouching) return;
+    for (std::size_t i = 0; i < awake_.size(); ++i)
+      if (awake_[i].object == contact.object) hand.now[i] = hand.ever[i] = 1;
+  });
+  row.objects = static_cast<std::uint32_t>(std::count(hand.now.begin(), hand.now.end(), 1));
+}
+
+std::vector<Entity> Journal::touched(Entity entity) const {
+  std::vector<Entity> objects;
+  for (std::size_t i = 0; i < probes_.size(); ++i) {
+    if (!(probes_[i] == entity)) continue;
+    if (hands_[i].tool) return bodies_ ? bodies_->touched(entity) : objects;
+    for (std::size_t k = 0; k < awake_.size(); ++k)
+      if (hands_[i].ever[k]) objects.push_back(awake_[k].object);
+  }
+  return objects;
 }
 
 void Journal::note(const World& world, Tick tick) {
@@ -30,6 +71,10 @@ void Journal::note(const World& world, Tick tick) {
       row.device_ready = device->status == DeviceStatus::kReady;
     }
     row.limited = safety_[i].now();
+    if (hands_[i].tool)
+      note_tool(hands_[i], tick, row);
+    else
+      note_probe(world, probes_[i], hands_[i], row);
     recorder_.record(row);
   }
   for (AwakeStats& stats : awake_) {

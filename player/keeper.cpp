@@ -6,39 +6,20 @@
 #include <cmath>
 #include <iterator>
 
+#include "player/csv.h"
 #include "systems/device/safety.h"
 #include "systems/tool/rotation_vector.h"
 
 namespace pliant {
 namespace {
 
-constexpr const char* kColumns = "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft\n";
-
-// RFC 4180: names come from files and may hold commas, quotes and line ends.
-std::string csv_text(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string text = "\"";
-  for (char c : name) {
-    if (c == '"') text += '"';
-    text += c;
-  }
-  return text + '"';
-}
+constexpr const char* kColumns =
+    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects";
+constexpr const char* kTorqueColumns = ",tx,ty,tz";  // where there is a tool: only tools make any
 
 std::string name_of(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
   return name ? name->value : std::string();
-}
-
-// Nine digits: exact for a float, and 1e-9 relative for what is kept in double. Adding zero turns -0 into 0; what has
-// decayed to (nearly) less than a double holds is zero, which every reader takes.
-void put(std::string& line, double value) {
-  fmt::format_to(std::back_inserter(line), ",{:.9g}", (std::abs(value) < 1e-100 ? 0.0 : value) + 0.0);
-}
-void put(std::string& line, const dvec3& v) {
-  put(line, v.x);
-  put(line, v.y);
-  put(line, v.z);
 }
 
 }  // namespace
@@ -48,12 +29,15 @@ Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& pro
   Keeper keeper;
   keeper.csv_path_ = csv;
   keeper.csv_.open(csv, std::ios::binary);
-  keeper.csv_ << kColumns;
+  keeper.torque_ =
+      std::any_of(probes.begin(), probes.end(), [&](Entity hand) { return !world.registry.has<Probe>(hand); });
+  keeper.csv_ << kColumns << (keeper.torque_ ? kTorqueColumns : "") << '\n';
   if (!keeper.csv_) return Error{csv.string(), "cannot be written; check the space left"};
   for (std::size_t i = 0; i < probes.size(); ++i) {
     ProbeSummary summary;
     summary.name = name_of(world, probes[i]);
     summary.source = sources[i];
+    summary.tool = !world.registry.has<Probe>(probes[i]);
     keeper.names_.push_back(csv_text(summary.name));
     keeper.summaries_.push_back(summary);
   }
@@ -71,6 +55,7 @@ void Keeper::keep(Journal& journal) {
   rows_.clear();
   journal.drain(rows_);
   for (const TickRow& row : rows_) keep(row);
+  if (bodies_) bodies_->keep();
 }
 
 void Keeper::keep(const TickRow& row) {
@@ -86,6 +71,8 @@ void Keeper::keep(const TickRow& row) {
   put(line_, r.force);
   put(line_, r.normal_force);
   put(line_, r.tangential_force);
+  put(line_, row.objects);
+  if (torque_) put(line_, row.torque);
   line_ += '\n';
   csv_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
 
@@ -95,6 +82,9 @@ void Keeper::keep(const TickRow& row) {
     summary.max_depth = std::max(summary.max_depth, r.depth);
   }
   summary.max_force = std::max(summary.max_force, length(r.force));
+  summary.max_torque = std::max(summary.max_torque, length(row.torque));
+  summary.late_ticks += row.late;
+  summary.stale_ticks += row.stale;
   Last& last = last_[row.probe];
   const bool placed = plausible_position(r.position);  // a lost device may say anything
   if (last.any && placed) {
@@ -127,6 +117,8 @@ void Keeper::record(const TickRow& row) {
 Status Keeper::finish() {
   csv_.close();
   if (!csv_) return Error{csv_path_.string(), "cannot be written to its end; free some space"};
+  if (bodies_)
+    if (Status status = bodies_->finish(); !status) return status;
   return recording_ ? recording_->finish() : Status(Done{});
 }
 

@@ -8,8 +8,9 @@ namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_frame(const std::string& name) {
-  return name.starts_with("frame-") && name.ends_with(".png");
+// What a run may leave out, and an earlier one into the same folder may have written.
+bool comes_and_goes(const std::string& name) {
+  return name == "bodies.csv" || (name.starts_with("frame-") && name.ends_with(".png"));
 }
 
 }  // namespace
@@ -67,7 +68,8 @@ Status OutputFolder::commit() {
   std::vector<fs::path> old;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
     const std::string name = entry.path().filename().string();
-    if (is_frame(name) && std::find(names_.begin(), names_.end(), name) == names_.end()) old.push_back(entry.path());
+    if (comes_and_goes(name) && std::find(names_.begin(), names_.end(), name) == names_.end())
+      old.push_back(entry.path());
   }
   for (const fs::path& file : old) fs::remove(file, error);
   made_.clear();

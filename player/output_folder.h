@@ -20,7 +20,8 @@ class OutputFolder {
 
   // Where to write the file that will be called `name`.
   std::filesystem::path stage(const std::string& name);
-  // Moves every staged file into place; pictures of an earlier, longer run (frame-NNNN.png) go.
+  // Moves every staged file into place; what is an earlier run's alone goes: more pictures (frame-NNNN.png),
+  // bodies.csv.
   Status commit();
   const std::filesystem::path& path() const { return folder_; }
 

@@ -140,6 +140,24 @@ double axis_high(double value) {
   return step * std::ceil(value * 1.05 / step);
 }
 
+// What the curves of a probe and of a tool mean: a tool's contacts are many, and its normal is their mean push.
+struct Captions {
+  const char *depth_axis, *depth, *normal, *tangential;
+};
+constexpr Captions kProbe{"depth [mm]", "depth", "normal", "tangential"};
+constexpr Captions kTool{"past the handle [mm]", "device past the handle", "along the contacts' mean push", "the rest"};
+
+// One line under the title for what is shown.
+std::string subtitle_of(const std::vector<PlotRow>& rows, std::size_t shown) {
+  if (rows.empty()) return "no probe and no tool";
+  if (rows.size() > shown) return fmt::format("the first {} of {} probes and tools", shown, rows.size());
+  const auto tools =
+      static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const PlotRow& row) { return row.tool; }));
+  const std::string probe = "depth below the undeformed surface", tool = "how far the device is led past the handle";
+  const std::string left = tools == 0 ? probe : tools == rows.size() ? tool : "probes: " + probe + "; tools: " + tool;
+  return left + ", and force on the hand";
+}
+
 void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double dt) {
   const double w = (kWidth - kLeft - kRight - kBetween) / 2, h = kRow - kAbove - kBelow;
   Panel depth{kLeft, top + kAbove, w, h, seconds, axis_high(largest(*row.trace, &TraceColumn::depth) * 1e3)};
@@ -153,14 +171,15 @@ void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double d
   pen.color(kInk);
   const double name = pen.text(kLeft, top + 28, 18, 0, row.name, true);
   pen.text(kLeft + name + 14, top + 28, 14, 0, row.source);
-  draw_frame(pen, depth, *row.trace, dt, "depth [mm]");
+  const Captions& captions = row.tool ? kTool : kProbe;
+  draw_frame(pen, depth, *row.trace, dt, captions.depth_axis);
   draw_frame(pen, force, *row.trace, dt, "force [N]");
-  std::vector<LegendEntry> force_legend{{kVermilion, "normal"}, {kGreen, "tangential"}};
+  std::vector<LegendEntry> force_legend{{kVermilion, captions.normal}, {kGreen, captions.tangential}};
   draw_limits(pen, force, *row.trace, dt, force_legend);
   draw_curve(pen, depth, *row.trace, dt, &TraceColumn::depth, 1e3, kBlue);
   draw_curve(pen, force, *row.trace, dt, &TraceColumn::tangential, 1.0, kGreen);
   draw_curve(pen, force, *row.trace, dt, &TraceColumn::normal, 1.0, kVermilion);
-  draw_legend(pen, depth.x + depth.w, top + 28, {{kContact, "in contact"}, {kBlue, "depth"}});
+  draw_legend(pen, depth.x + depth.w, top + 28, {{kContact, "in contact"}, {kBlue, captions.depth}});
   draw_legend(pen, force.x + force.w, top + 28, force_legend);
 }
 
@@ -180,10 +199,7 @@ Status plot_forces(const std::filesystem::path& file, const std::string& title, 
   Pen pen(kWidth, kTitle + kRow * static_cast<double>(std::max<std::size_t>(shown, 1)) + kFoot);
   pen.color(kInk);
   const double width = pen.text(kLeft, 46, 26, 0, title, true);
-  std::string subtitle = "depth below the undeformed surface, and force on the hand";
-  if (rows.size() > shown) subtitle = fmt::format("the first {} of {} probes", shown, rows.size());
-  if (rows.empty()) subtitle = "no probes";
-  pen.text(kLeft + width + 20, 46, 16, 0, subtitle);
+  pen.text(kLeft + width + 20, 46, 16, 0, subtitle_of(rows, shown));
 
   for (std::size_t i = 0; i < shown && seconds > 0.0; ++i)
     draw_row(pen, rows[i], kTitle + kRow * static_cast<double>(i), seconds, dt);

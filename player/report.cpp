@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "components/soft_body.h"
+#include "player/tool_words.h"
+#include "systems/tool/soft_state.h"
 
 namespace pliant {
 namespace {
@@ -37,6 +42,15 @@ Json objects(const RunFigures& figures) {
   return list;
 }
 
+Json names(const World& world, const std::vector<Entity>& entities) {
+  Json list = Json::array();
+  for (const Entity entity : entities) {
+    const Name* name = world.registry.find<Name>(entity);
+    list.push_back(name ? name->value : std::string());
+  }
+  return list;
+}
+
 // How often each limit acted: clipped and withheld always, the others where they did.
 Json limits(const SafetyTally& tally) {
   Json json;
@@ -49,6 +63,14 @@ Json limits(const SafetyTally& tally) {
   return json;
 }
 
+// What only a tool has.
+Json tool(const World& world, Entity entity, const ProbeSummary& summary) {
+  return {{"tool_force", name_of(world.registry.get<Handle6>(entity).force)},
+          {"max_torque_Nm", summary.max_torque},
+          {"late_ticks", summary.late_ticks},
+          {"stale_ticks", summary.stale_ticks}};
+}
+
 Json probes(const RunFigures& figures) {
   Json list = Json::array();
   for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i) {
@@ -58,7 +80,9 @@ Json probes(const RunFigures& figures) {
                {"contact_ticks", probe.contact_ticks},
                {"max_depth_m", probe.max_depth},
                {"max_force_N", probe.max_force},
-               {"net_work_J", probe.net_work}};
+               {"net_work_J", probe.net_work},
+               {"touched", names(figures.world, figures.journal.touched(figures.journal.probes()[i]))}};
+    if (probe.tool) entry.update(tool(figures.world, figures.journal.probes()[i], probe));
     const HandSafety safety = find_safety(figures.world, figures.journal.probes()[i]);
     if (safety.force) entry.update(limits(safety.force->tally));
     if (safety.torque) entry["torque"] = limits(safety.torque->tally);
@@ -80,7 +104,7 @@ Json systems(const Schedule<World>& schedule) {
 }
 
 // Figures of the soft clock.
-Json soft(const SoftClock& clock) {
+Json soft(const SoftClock& clock, const SoftTally& tally) {
   const SoftFigures& figures = clock.figures();
   Json json;
   json["step_ms"] = percentiles(clock.schedule().total(), 1e-3, false);
@@ -89,7 +113,11 @@ Json soft(const SoftClock& clock) {
   json["tetrahedra"] = clock.tetrahedra();
   json["contacts"] = {{"mean", mean(figures.contacts_sum, figures.steps)}, {"max", figures.contacts_max}};
   json["sweeps"] = mean(figures.sweeps_sum, figures.steps);
-  json["residual"] = figures.residual_max;
+  json["residual"] = std::max(figures.residual_max, tally.residual);
+  json["unconverged"] = tally.unconverged;
+  json["contacts_cut"] = tally.contacts_cut;
+  json["deepest_m"] = tally.deepest;
+  json["time_lost_s"] = figures.time_lost;
   json["systems_us"] = systems(clock.schedule());
   return json;
 }
@@ -113,7 +141,7 @@ std::string report_json(const RunFigures& figures) {
                                     {"max", frames ? frames->upload_bytes_max() : 0}};
   json["objects"] = objects(figures);
   json["probes"] = probes(figures);
-  if (figures.soft) json["soft"] = soft(*figures.soft);
+  if (figures.soft) json["soft"] = soft(*figures.soft, figures.world.soft->tally);
   json["dropped"] = figures.dropped;
   json["hash"] = figures.hash;
   json["systems_us"] = systems(figures.schedule);
@@ -127,18 +155,21 @@ void print_summary(const RunFigures& figures, const std::filesystem::path& out) 
              figures.world.name, figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5),
              tick.percentile_us(0.99), figures.overruns, figures.hash);
   for (const ProbeSummary& probe : figures.keeper.summaries())
-    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm deep and {:.2f} N, net work {:.3g} mJ\n",
+    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm {} and {:.2f} N{}, net work {:.3g} mJ\n",
                probe.name, probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
-               probe.max_force, probe.net_work * 1e3);
+               probe.tool ? "led past the handle" : "deep", probe.max_force,
+               probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
   if (figures.soft) {
     const SoftFigures& soft = figures.soft->figures();
     const Histogram& step = figures.soft->schedule().total();
-    fmt::print("  soft: {} steps over {} tetrahedra, {:.2f} ms median, {:.2f} ms p99, {} overruns, {:.1f} contacts\n",
-               soft.steps, figures.soft->tetrahedra(), step.percentile_us(0.5) * 1e-3, step.percentile_us(0.99) * 1e-3,
-               soft.overruns, mean(soft.contacts_sum, soft.steps));
+    fmt::print(
+        "  soft: {} steps over {} tetrahedra, {:.2f} ms median, {:.2f} ms p99, {} overruns, {:.1f} contacts, at most "
+        "{:.2f} mm into each other\n",
+        soft.steps, figures.soft->tetrahedra(), step.percentile_us(0.5) * 1e-3, step.percentile_us(0.99) * 1e-3,
+        soft.overruns, mean(soft.contacts_sum, soft.steps), figures.world.soft->tally.deepest * 1e3);
   }
-  fmt::print("{}: report.json, forces.csv, forces.png", out.string());
-  if (figures.pictures > 0) fmt::print(", {} pictures", figures.pictures);
+  fmt::print("{}: report.json, forces.csv, forces.png{}", out.string(), figures.soft ? ", bodies.csv" : "");
+  if (figures.pictures > 0) fmt::print(", {} picture{}", figures.pictures, figures.pictures == 1 ? "" : "s");
   fmt::print("\n");
 }
 

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "content/file_io.h"
+#include "player/body_journal.h"
 #include "player/frames.h"
 #include "player/journal.h"
 #include "player/keeper.h"
@@ -15,6 +17,7 @@
 #include "player/report.h"
 #include "player/run_setup.h"
 #include "player/sources.h"
+#include "player/tool_words.h"
 #include "player/touch_loop.h"
 #include "player/window_session.h"
 #include "runtime/parallel.h"
@@ -116,8 +119,9 @@ Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Fr
   return {};
 }
 
-// Nothing silent: what kept a hand from what the law says, and who touched nothing at all.
-std::vector<std::string> explain_hands(RunFigures& figures) {
+// Nothing silent: what kept a hand from what the law says, who touched nothing at all, and what soft steps left
+// imperfect.
+std::vector<std::string> explain_run(RunFigures& figures) {
   std::vector<std::string> sentences;
   for (std::size_t i = 0; i < figures.journal.probes().size(); ++i) {
     const Entity hand = figures.journal.probes()[i];
@@ -131,15 +135,19 @@ std::vector<std::string> explain_hands(RunFigures& figures) {
     }
     for (std::string& sentence : explain_limits(figures.world, hand, summary.name))
       sentences.push_back(std::move(sentence));
+    for (std::string& sentence : explain_tool(figures.world, summary)) sentences.push_back(std::move(sentence));
   }
+  if (figures.soft)
+    for (std::string& sentence : explain_soft_steps(figures.world, figures.soft->figures()))
+      sentences.push_back(std::move(sentence));
   return sentences;
 }
 
 Outcome write_reports(const RunFigures& figures, OutputFolder& out) {
   std::vector<PlotRow> rows;
   for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
-    rows.push_back(
-        {figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source, &figures.keeper.traces()[i]});
+    rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source,
+                    &figures.keeper.traces()[i], figures.keeper.summaries()[i].tool});
   const double dt = 1.0 / figures.rate;
   const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
   if (const Status plotted = plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds); !plotted)
@@ -159,6 +167,7 @@ RunOptions another_level(const RunOptions& options, const std::string& file) {
   other.probes.clear();
   other.sets.clear();
   other.record.clear();
+  other.tool_force.clear();
   other.unit = 1.0;
   if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
   return other;
@@ -220,12 +229,20 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   const Interrupt interrupt;  // until all is in place: what is staged must not stay behind
   auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out);
   if (!out) return failed(out.error());
-  Journal journal(world, options.realtime || shown ? kJournalSeconds : 2.0 / rate);
+  const double waiting = options.realtime || shown ? kJournalSeconds : 2.0 / rate;  // [s] of rows
+  std::optional<BodyJournal> bodies;
+  if (world.soft) bodies.emplace(world, static_cast<std::size_t>(waiting / world.simulation.soft_step) + 3);
+  Journal journal(world, waiting, bodies ? &*bodies : nullptr);
   std::vector<std::string> sources;
   for (Entity probe : journal.probes())
     sources.push_back(run.replay ? "replay:" + options.replay : describe_source(world, probe));
   auto keeper = Keeper::create(world, journal.probes(), sources, out->stage("forces.csv"));
   if (!keeper) return failed(keeper.error());
+  if (bodies) {
+    auto kept = BodyKeeper::create(world, *bodies, out->stage("bodies.csv"));
+    if (!kept) return failed(kept.error());
+    keeper->keep_bodies(std::move(kept).value());
+  }
   if (journal.probes().empty())
     say(run, "the level has no probe and no tool, so nothing is touched; give one with --probe NAME=orbit");
   if (!options.record.empty()) {
@@ -244,7 +261,10 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   loop.replay = run.replay ? &*run.replay : nullptr;
   if (options.realtime || shown) limit_tool_ticks(world);
   SoftClock soft(world);
-  if (soft.any()) loop.soft = &soft;
+  if (soft.any()) {
+    loop.soft = &soft;
+    soft.note_in(*bodies);
+  }
   if (frames)
     loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps)
                                          : spread_frames(ticks, options.frames < 0 ? kDefaultFrames : options.frames);
@@ -272,15 +292,16 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
                      fmt::format("{:016x}", hash.value()),
                      loop.soft,
                      {}};
-  for (const std::string& sentence : explain_hands(figures)) {
+  std::vector<std::string> sentences = explain_run(figures);
+  for (const auto& [lost, file] :
+       {std::pair(journal.lost(), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
+    if (lost > 0)
+      sentences.push_back(fmt::format(
+          "{} rows of {} were lost because writing fell behind; take fewer or smaller pictures", lost, file));
+  for (const std::string& sentence : sentences) {
     note(sentence);
     figures.dropped.push_back(sentence);
   }
-  if (journal.lost() > 0)
-    figures.dropped.push_back(
-        fmt::format("{} rows of forces.csv were lost because writing fell behind: take fewer or "
-                    "smaller pictures",
-                    journal.lost()));
   figures.dropped.insert(figures.dropped.end(), run.notes.begin(), run.notes.end());
   if (Outcome wrong = write_reports(figures, *out)) return wrong;
   print_summary(figures, options.out.empty() ? "out/" + world.name : options.out);

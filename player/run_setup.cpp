@@ -5,8 +5,10 @@
 #include <algorithm>
 
 #include "content/level.h"
+#include "content/spawn_soft.h"
 #include "player/content_folder.h"
 #include "player/sources.h"
+#include "player/tool_words.h"
 #include "player/unfelt.h"
 #include "player/unit.h"
 #include "systems/device/hands.h"
@@ -72,6 +74,18 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
   return {};
 }
 
+// --tool-force stands above the key of every tool.
+Outcome choose_tool_force(const RunOptions& options, Level& level) {
+  bool any = false;
+  for (LevelNode& node : level.nodes) {
+    if (!node.handle) continue;
+    node.handle->force = *tool_force_of(options.tool_force);  // the command line has checked it
+    any = true;
+  }
+  if (any) return {};
+  return wrong_arguments({"--tool-force", "is for tools, and the level has no PLIANT_handle; leave it out"});
+}
+
 // Where height fields live. `auto` goes by measured cost where there is a card and a display to refresh; lockstep stays
 // on the processor, so that the same input gives the same bits everywhere.
 FieldPlace choose_field(const RunOptions& options, bool windowed, const World& world) {
@@ -99,6 +113,23 @@ void say_creeping(Prepared& run) {
         name ? name->value : std::string(), deformable.settling_time, ratio, deformable.damping_ratio);
   }
   if (more > 0) sentence += fmt::format(" ({} more surfaces too)", more);
+  if (!sentence.empty()) say(run, sentence);
+}
+
+// Once, however many bodies there are: which of them lock.
+void say_locking(Prepared& run) {
+  std::size_t more = 0;
+  std::string sentence;
+  for (auto [entity, body] : run.world.registry.view<const SoftBody>()) {
+    const std::string doubt = locking_doubt(body, run.world.tet_meshes[body.tets].tets.size());
+    if (doubt.empty()) continue;
+    const Name* name = run.world.registry.find<Name>(entity);
+    if (sentence.empty())
+      sentence = fmt::format("`{}` {}", name ? name->value : std::string(), doubt);
+    else
+      ++more;
+  }
+  if (more > 0) sentence += fmt::format(" ({} more bod{} too)", more, more == 1 ? "y" : "ies");
   if (!sentence.empty()) say(run, sentence);
 }
 
@@ -135,6 +166,8 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
   for (const std::string& assignment : options.sets)
     if (const Status status = set_key(level, assignment); !status) return wrong_arguments(status.error());
+  if (!options.tool_force.empty())
+    if (Outcome wrong = choose_tool_force(options, level)) return wrong;
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
 
@@ -149,6 +182,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);
   if (const auto unfelt = unfelt_bodies(run.world)) say(run, *unfelt);
   say_creeping(run);
+  say_locking(run);
   if (run.replay) {
     if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
     if (run.replay->header.rate != run.world.simulation.touch_rate)

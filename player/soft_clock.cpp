@@ -16,6 +16,7 @@ SoftClock::SoftClock(World& world) : world_(world), schedule_(soft_schedule()) {
 
 void SoftClock::step(double dt) {
   schedule_.run(world_, {figures_.steps, dt, time_});
+  if (journal_) journal_->note(figures_.steps, time_);
   time_ += dt;
   const SoftState& soft = *world_.soft;
   ++figures_.steps;
@@ -36,6 +37,11 @@ void SoftClock::reach(double time) {
     if (time_ > time + 1e-6 * T) return;
     step(T);
   }
+}
+
+LateStep SoftClock::late_step(double late, double soft_step) {
+  const double whole = soft_step + late, length = std::min(whole, kLongestStep * soft_step);
+  return {length, whole - length};
 }
 
 void SoftClock::start() {
@@ -70,11 +76,16 @@ void SoftClock::run() {
     const double late = std::chrono::duration<double>(began - due).count();
     const double T = world_.simulation.soft_step;
     figures_.overruns += late > 0.1 * T ? 1 : 0;
-    step(std::min(T + late, kLongestStep * T));
+    const LateStep next = late_step(late, T);
+    figures_.time_lost += next.lost;
+    step(next.length);
     told_.write() = figures_;
     told_.publish();
     due = began + period;
   }
+  // The last step may have been the one that took too long.
+  const double late = std::chrono::duration<double>(clock::now() - due).count();
+  if (!paused_ && late > 0.0) figures_.time_lost += late_step(late, world_.simulation.soft_step).lost;
 }
 
 }  // namespace pliant

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "components/world.h"
+#include "player/body_journal.h"
 #include "runtime/exchange.h"
 #include "runtime/schedule.h"
 
@@ -23,15 +24,26 @@ struct SoftFigures {
   std::uint32_t contacts = 0, contacts_max = 0;  // of the last step; of any
   std::uint64_t sweeps_sum = 0;
   double residual_max = 0.0;  // [m/s] largest that the contact solve left
+  double time_lost = 0.0;     // [s] in real time: by which bodies fell behind, where steps would have been too long
+};
+
+// A step in real time that begins `late` [s] after it was due.
+struct LateStep {
+  double length = 0.0;  // [s] of the step
+  double lost = 0.0;    // [s] by which bodies fall behind
 };
 
 class SoftClock {
  public:
   static constexpr double kLongestStep = 3.0;  // [1] of soft_step
+  static LateStep late_step(double late, double soft_step);
 
   // A prepared world; one without anything soft has no steps.
   explicit SoftClock(World& world);
   ~SoftClock() { stop(); }
+
+  // Before the first step: every step is noted here from now on. Outlives the clock.
+  void note_in(BodyJournal& journal) { journal_ = &journal; }
 
   // Lockstep. Every step up to `time` [s].
   void reach(double time);
@@ -55,6 +67,7 @@ class SoftClock {
   World& world_;
   Schedule<World> schedule_;
   SoftFigures figures_;
+  BodyJournal* journal_ = nullptr;
   std::uint64_t tetrahedra_ = 0;
   double time_ = 0.0;  // [s] where the next step begins
   TripleBuffer<SoftFigures> told_;

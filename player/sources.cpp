@@ -57,7 +57,7 @@ Result<ProbeSource> parse_source(const std::string& argument) {
   }
   if (what.starts_with("device:"))
     return Error{where, "drivers for devices are not yet built; `pliant devices` lists what is found"};
-  return Error{where, "there is no source '" + what + "'; use script:FILE.csv, orbit, mouse or device:ID"};
+  return Error{where, "unknown source '" + what + "'; sources are script:FILE.csv, orbit, mouse, device:ID"};
 }
 
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {

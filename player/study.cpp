@@ -50,8 +50,7 @@ int study(const StudyOptions& options) {
     status = std::max(status, run_one(known, options));
   }
   if (!found)
-    return fail(kUsage,
-                {"study", "there is no study '" + options.name + "'; `pliant study --list` says which there are"});
+    return fail(kUsage, {"study", "unknown study '" + options.name + "'; `pliant study --list` says which there are"});
   return status;
 }
 

@@ -18,6 +18,7 @@ struct RunOptions {
   bool lockstep = false;                  // asked for, not only the default
   bool window = false, headless = false;  // forced, forbidden; else a window where there is a display
   std::string field = "auto";
+  std::string tool_force;         // held, linear, contacts; empty: each tool's key
   std::string out;                // folder; empty: out/<level name>
   int frames = -1;                // -1: not said
   double fps = 0.0;               // [1/s] of simulated time; 0: not said

@@ -1,5 +1,6 @@
 #include "systems/tool/linearise.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "systems/tool/reduce_tool.h"
@@ -25,17 +26,17 @@ ToolBody* tool_body(const SoftState& soft, std::uint32_t index) {
   return body && body->has_handle() ? body : nullptr;
 }
 
-// One tick of a path that has been gone: the model moves on with it.
-void follow(HandleModel& model, CondensedState& state, const HandleStep& step, double tick, const SweepLimits& limits) {
+// A tick of the model's on a path that has been gone: it moves on with it.
+void follow(HandleModel& model, CondensedState& state, const Vector6& velocity, const SweepLimits& limits) {
+  const double tick = model.contacts.tick;
   TickHandle handle;
   handle.velocity = model.handle.velocity;
   handle.moved = true;
-  handle.next = step.velocity;
+  handle.next = velocity;
   model.force = condensed_tick(model.contacts, state, limits, handle);
-  model.handle.velocity = step.velocity;
-  model.handle.pose.position += tick * linear(step.velocity);
-  model.handle.pose.rotation = glm::normalize(rotation_of(tick * angular(step.velocity)) * model.handle.pose.rotation);
-  model.time = step.time;
+  model.handle.velocity = velocity;
+  model.handle.pose.position += tick * linear(velocity);
+  model.handle.pose.rotation = glm::normalize(rotation_of(tick * angular(velocity)) * model.handle.pose.rotation);
 }
 
 // The model's displacements become zero again, where it is now.
@@ -55,17 +56,35 @@ void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) 
   model.force -= drop_stiff(model.soft_step, kPenetrationShare, Vector6::Zero(), c);
 }
 
-// What the handle has done since the model's time.
+// The handle's ticks since the model's time. Those that come in meanwhile wait: emptying the path as fast as it fills
+// would never end.
+void take_path(ToolTouchState& tool, double since) {
+  tool.gone.clear();
+  HandleStep step;
+  for (std::size_t i = 0; i < kPathLength && tool.path.pop(step); ++i)
+    if (step.time > since) tool.gone.push_back(step);
+}
+
+// Follows what the handle has done since the model's time, in at most kMostFollowed ticks of the model: where the touch
+// clock is fast, several of its ticks are one.
 void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& state) {
+  const double tick = model.contacts.tick;
+  take_path(tool, model.time + 0.5 * tick);
+  if (tool.gone.empty()) return;
+  const std::size_t together = (tool.gone.size() + kMostFollowed - 1) / kMostFollowed;
+  if (together > 1) model.contacts.prepare_tick(static_cast<double>(together) * tick);
   state.start(model.contacts);
   const Vector6 w0 = model.handle.velocity;
-  bool moved = false;
-  for (HandleStep step; tool.path.pop(step);) {
-    if (step.time <= model.time + 0.5 * model.contacts.tick) continue;
-    follow(model, state, step, model.contacts.tick, {kTickSweeps, kTickTolerance, 0});
-    moved = true;
+  for (std::size_t first = 0; first < tool.gone.size(); first += together) {
+    Vector6 mean = Vector6::Zero();
+    for (std::size_t i = first; i < std::min(first + together, tool.gone.size()); ++i)
+      mean += tool.gone[i].velocity / static_cast<double>(together);
+    follow(model, state, mean, {kTickSweeps, kTickTolerance, 0});
   }
-  if (moved) rebase(model, state, w0);
+  model.time = tool.gone.back().time;
+  model.handle.velocity = tool.gone.back().velocity;
+  rebase(model, state, w0);
+  if (together > 1) model.contacts.prepare_tick(tick);
 }
 
 // [N], [N m] of flesh and contacts on the handle, mean over the ticks since the last input.

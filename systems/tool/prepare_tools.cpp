@@ -108,7 +108,9 @@ Status add_tool(World& world, Entity entity) {
   const Entity device = wanted.empty() ? resting_device(world, entity) : named;
   if (Status status = check_free(world, entity, device); !status) return status.error();
   world.tools->tools.push_back(make_tool(entity, device, world.registry.find<Pose>(entity)));
-  find_weight(world, *world.tools->tools.back());
+  ToolTouchState& tool = *world.tools->tools.back();
+  tool.wanted = world.registry.get<Handle6>(entity).force;
+  find_weight(world, tool);
   return Done{};
 }
 

@@ -10,12 +10,12 @@
 namespace pliant {
 
 // Tunables. Unit, usual value, and what changing it does.
-inline constexpr double kProbeMass = 0.02;       // [kg] lighter follows the hand better; heavier is steadier on its spring
-inline constexpr double kProbeInertia = 2e-5;    // [kg m2] of a stylus of that mass and 0.1 m: a tip does not roll
-inline constexpr double kProbeTurn = 1.0;        // [N m/rad] holds its rotation to the device's
+inline constexpr double kProbeMass = 0.02;  // [kg] lighter follows the hand better; heavier is steadier on its spring
+inline constexpr double kProbeInertia = 2e-5;      // [kg m2] of a stylus of that mass and 0.1 m: a tip does not roll
+inline constexpr double kProbeTurn = 1.0;          // [N m/rad] holds its rotation to the device's
 inline constexpr double kProbeTurnDamping = 6e-3;  // [N m s/rad]
-inline constexpr double kProbeMaxTorque = 10.0;  // [N m]
-inline constexpr double kProbeHeadroom = 4.0;    // [1] of the device's largest force, where the coupling saturates
+inline constexpr double kProbeMaxTorque = 10.0;    // [N m]
+inline constexpr double kProbeHeadroom = 4.0;      // [1] of the device's largest force, where the coupling saturates
 
 // Those that meet bodies in this world, in the registry's order.
 std::vector<Entity> probe_tools(const World& world);

@@ -12,12 +12,17 @@
 namespace pliant {
 namespace {
 
-// Device pose and, from two of them, velocity. False: nothing is known, and nothing may be felt.
-bool sense(ToolTouchState& tool, const HapticDevice& device, double dt) {
+// Device pose and, from two of them, velocity: over the time between them, which is longer than a tick where the clock
+// had to skip some. Over one tick alone, the coupling's damper would answer a late tick with a blow. False: nothing is
+// known, and nothing may be felt.
+bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick) {
   const double size = glm::dot(device.rotation, device.rotation);
   if (device.status != DeviceStatus::kReady || !plausible_position(device.position) || !(std::abs(size - 1.0) < 1e-3))
     return tool.sensing = false;
   const RigidMotion before = tool.sensed;
+  const double since = tick.time - tool.sensed_at;
+  const double dt = since > 1.5 * tick.dt ? since : tick.dt;  // without rounding where no tick was skipped
+  tool.sensed_at = tick.time;
   tool.sensed.pose = {device.position, glm::normalize(device.rotation)};
   tool.sensed.velocity.setZero();
   if (tool.sensing) {
@@ -201,7 +206,7 @@ void tell_soft_clock(ToolTouchState& tool, Tick tick) {
 void feel(World& world, ToolTouchState& tool, Tick tick) {
   const Handle6& settings = settings_of(world, tool);
   tool.device_wrench.setZero();
-  const bool sensing = sense(tool, world.registry.get<HapticDevice>(tool.device), tick.dt);
+  const bool sensing = sense(tool, world.registry.get<HapticDevice>(tool.device), tick);
   if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
   if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // its shell comes to its device

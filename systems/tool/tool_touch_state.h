@@ -13,13 +13,6 @@
 
 namespace pliant {
 
-// How the 1 kHz force is made, in rising order of truth and cost.
-enum class ToolForce : std::uint8_t {
-  kHeld,      // the last soft step's force, unchanged
-  kLinear,    // LinearModel
-  kContacts,  // CondensedContacts, solved again every tick; kLinear when late
-};
-
 // Tunables of the touch tick. Unit, usual value, and what changing it does.
 inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: a model that is too old fades with this time constant
 inline constexpr double kJoinShare = 3.0 / 8.0;   // [1] of T: what two models differ by fades evenly; shorter: steeper
@@ -31,7 +24,8 @@ inline constexpr double kTickTolerance = 1e-3;    // [1] of the fastest closing:
 inline constexpr double kMostStretch = 2.0;       // [m] a handle farther from its device has got away from the hand,
 inline constexpr double kRunaway = 50.0;          // [m/s] and so has one that is faster,
 inline constexpr double kRunawayTurn = 1000.0;    // [rad/s] or turns faster
-inline constexpr std::size_t kPathLength = 1024;  // ticks of the handle's path that may wait for the soft clock
+inline constexpr std::size_t kMostFollowed = 32;  // of them, joined, that a model is brought up to date by
+inline constexpr std::size_t kPathLength = 4096;  // ticks of the handle's path that may wait for the soft clock
 
 // A tick of the handle's path, for the soft clock to bring its model up to date with.
 struct HandleStep {
@@ -50,12 +44,13 @@ struct ToolTouchState {
 
   // The soft clock's: the model it is making, and its working memory.
   HandleModel pending;
-  double heard_at = 0.0;  // [s] of the last input with a placed handle; its `impulse`
+  std::vector<HandleStep> gone;  // of the path, since the model
+  double heard_at = 0.0;         // [s] of the last input with a placed handle; its `impulse`
   Vector6 heard = Vector6::Zero();
   std::uint32_t set_back = 0;  // ToolInput::set_backs done
   CondensedState replay;
 
-  ToolForce wanted = ToolForce::kContacts;
+  ToolForce wanted = ToolForce::kContacts;  // Handle6::force
   SweepLimits limits;  // of a tick; in lockstep budget_ns is 0: never wall time, always the same bits
 
   // Since the first model.
@@ -74,6 +69,7 @@ struct ToolTouchState {
   // For display and devices.
   RigidMotion sensed;                       // the device
   bool sensing = false;                     // `sensed` means something
+  double sensed_at = 0.0;                   // [s] beginning of the tick that sensed it
   Vector6 wrench = Vector6::Zero();         // [N], [N m] flesh and contacts on the handle, over the last tick
   Vector6 impulse = Vector6::Zero();        // [N s], [N m s] its sum over time
   bool away = false;                        // it waits to be set back into the hand

@@ -142,6 +142,7 @@ class Difference {
       same(at + " translation coupling", a.handle->translation, b.handle->translation);
       same(at + " rotation coupling", a.handle->rotation, b.handle->rotation);
       same(at + " max torque", a.handle->max_torque, b.handle->max_torque);
+      same(at + " force", a.handle->force == b.handle->force, true);
       same(at + " handle device", a.handle->device, b.handle->device);
     }
     same(at + " motion", a.motion.has_value(), b.motion.has_value());

@@ -129,6 +129,7 @@ Level everything() {
   hand.handle = Handle6{};
   hand.handle->attachment = Attachment::kSpring;
   hand.handle->max_torque = 0.25;
+  hand.handle->force = ToolForce::kLinear;
   hand.handle->device = "hand";
   LevelNode& lamp = level.nodes[3];
   lamp.name = "lamp";

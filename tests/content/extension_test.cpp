@@ -92,10 +92,13 @@ TEST(Extension, WhatIsWrongIsNamedWithWhatWouldBeRight) {
     const std::string refusal = deformable(keys).refusal();
     for (const char* part : parts) EXPECT_NE(refusal.find(part), std::string::npos) << part << " in: " << refusal;
   };
-  expect({{"stifness", 3}}, {"/nodes/0/extensions/PLIANT_deformable/stifness", "did you mean stiffness?"});
+  expect({{"stifness", 3}},
+         {"/nodes/0/extensions/PLIANT_deformable/stifness", "unknown key 'stifness'; did you mean stiffness?"});
   expect({{"stiffness", -3}}, {"/stiffness", "-3", "[1e-06, 10000000]", "N/m"});
-  expect({{"stiffness", "soft"}}, {"\"soft\"", "not a number"});
-  expect({{"shape", "round"}}, {"\"round\"", "kelvinlet"});
+  expect({{"stiffness", "soft"}}, {"\"soft\"", "must be a number; got"});
+  expect({{"shape", "round"}},
+         {"/shape", "must be one of punch, hertz, gaussian, wendland, volume, kelvinlet; got \"round\""});
+  expect({{"quux", 3}}, {"/quux", "unknown key 'quux'; keys of PLIANT_deformable are spring, stiffness, cubic"});
   expect({{"relaxation", {{"tiem", 3}}}}, {"relaxation/tiem", "relaxation.time"});
   expect({{"relaxation", 3}}, {"relaxation", "not an object"});
   expect({{"friction_static", 0.1}, {"friction_sliding", 0.2}},
@@ -183,8 +186,8 @@ TEST(Extension, SetReachesEveryKeyAndSaysWhatItDidNotUnderstand) {
     EXPECT_EQ(level.nodes[0].deformable->stiffness, before);
   };
   says("bely.deformable.stiffness=3", "did you mean belly?");
-  says("belly.deformabel.stiffness=3", "did you mean deformable?");
-  says("belly.deformable.stifness=3", "did you mean stiffness?");
+  says("belly.deformabel.stiffness=3", "unknown extension 'deformabel'; did you mean deformable?");
+  says("belly.deformable.stifness=3", "unknown key 'stifness'; did you mean stiffness?");
   says("belly.deformable.stiffness=-3", "range");
   says("belly.deformable.stiffness", "NODE.EXTENSION.KEY=VALUE");
   says("tip.deformable.stiffness=3", "nodes that have one: belly");
@@ -192,6 +195,28 @@ TEST(Extension, SetReachesEveryKeyAndSaysWhatItDidNotUnderstand) {
   says("*.deformable.friction_static=-0.1", "range");
   for (const char* points : {"3", "[1, 2, 3]", "[[1, 2]]", "[[0, 0, 1e9]]", "[[0, 0, null]]"})
     says((std::string("tip.probe.points=") + points).c_str(), "a list of at most 16 points");
+}
+
+TEST(Extension, HowAToolsForceIsMadeIsReadSetAndWritten) {
+  const auto handle = [](const Json& keys) {
+    return with({{"PLIANT_soft_body", Json::object()}, {"PLIANT_handle", keys}});
+  };
+  EXPECT_EQ(handle(Json::object()).load()->nodes[0].handle->force, ToolForce::kContacts) << "where nothing is said";
+  const std::pair<const char*, ToolForce> all[] = {
+      {"held", ToolForce::kHeld}, {"linear", ToolForce::kLinear}, {"contacts", ToolForce::kContacts}};
+  for (const auto& [name, force] : all) {
+    const Result<Level> level = handle({{"force", name}}).load();
+    ASSERT_TRUE(level.ok()) << level.error().message();
+    EXPECT_EQ(level->nodes[0].handle->force, force);
+    const Json before{{"PLIANT_handle", {{"force", "held"}}}};  // so that the default is written too
+    EXPECT_EQ(node_extensions(level->nodes[0], before)["PLIANT_handle"]["force"], name);
+    Level other = *handle(Json::object()).load();
+    EXPECT_EQ(set(other, ("*.handle.force=" + std::string(name)).c_str()), "");
+    EXPECT_EQ(other.nodes[0].handle->force, force);
+  }
+  EXPECT_NE(handle({{"force", "magic"}}).refusal().find("force: must be one of held, linear, contacts; got \"magic\""),
+            std::string::npos)
+      << handle({{"force", "magic"}}).refusal();
 }
 
 TEST(Extension, TheSchemasInDocsAreThoseOfTheTable) {

@@ -15,12 +15,16 @@
 #include "player/pen.h"
 #include "player/plot.h"
 #include "player/recording.h"
+#include "player/soft_clock.h"
 #include "player/sources.h"
+#include "player/tool_words.h"
 #include "player/trace.h"
 #include "player/unit.h"
 #include "systems/device/safety.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/rotation_vector.h"
+#include "systems/tool/soft_state.h"
+#include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
 
 namespace pliant {
@@ -117,6 +121,71 @@ TEST(Keeper, TheNetWorkOfAToolIsThatOfItsForceAndOfItsTorque) {
   fs::remove(csv);
 }
 
+TEST(SoftClock, ALateStepIsLongerUpToThreeStepsAndTheRestIsLost) {
+  const double T = 0.02;
+  struct Row {
+    double late, length, lost;
+  };
+  for (const Row& row : {Row{0, T, 0}, Row{0.5 * T, 1.5 * T, 0}, Row{2 * T, 3 * T, 0}, Row{5 * T, 3 * T, 3 * T}}) {
+    EXPECT_NEAR(SoftClock::late_step(row.late, T).length, row.length, 1e-15) << row.late;
+    EXPECT_NEAR(SoftClock::late_step(row.late, T).lost, row.lost, 1e-15) << row.late;
+  }
+}
+
+// A tool whose model stays at time 0 while ticks go on, and whose contacts twice took too long.
+TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
+  World world;
+  const Entity tool = world.registry.create();
+  world.registry.add<Name>(tool, {"hand"});
+  world.registry.add<SoftBody>(tool, {});
+  world.registry.add<Pose>(tool, {});
+  world.registry.add<Handle6>(tool, {});
+  ASSERT_TRUE(prepare_touch(world) && prepare_tools(world));
+  ToolTouchState& state = *world.tools->tools[0];
+  state.model.write().soft_step = 0.01;
+  state.model.publish();
+  state.model.acquire();
+  Journal journal(world, 1.0);
+  const fs::path csv = fs::temp_directory_path() / ("pliant-late-" + std::to_string(::getpid()));
+  auto keeper = Keeper::create(world, journal.probes(), {"script"}, csv);
+  ASSERT_TRUE(keeper);
+  for (std::uint64_t i = 0; i < 50; ++i) {  // before the handle is placed there is no model to be old
+    state.placed = i >= 10;
+    if (i == 20 || i == 21) ++state.ticks_late;
+    journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
+  }
+  keeper->keep(journal);
+  fs::remove(csv);
+  const ProbeSummary& summary = keeper->summaries()[0];
+  EXPECT_EQ(summary.late_ticks, 2u);
+  EXPECT_EQ(summary.stale_ticks, 19u) << "ticks 31 to 49: older than 0.03 s";
+  const std::vector<std::string> said = explain_tool(world, summary);
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_NE(said[0].find("`hand`: its contacts were not solved in time in 2 ticks"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("--tool-force linear"), std::string::npos) << said[0];
+  EXPECT_NE(said[1].find("in 19 ticks its model was older than 3 soft steps"), std::string::npos) << said[1];
+  EXPECT_TRUE(explain_tool(world, {}).empty());
+}
+
+TEST(SoftClock, WhatStepsLeaveImperfectIsSaidWithItsCure) {
+  World world;
+  world.soft = std::make_shared<SoftState>();
+  EXPECT_TRUE(explain_soft_steps(world, {}).empty());
+  world.soft->tally = {.contacts_cut = 7, .unconverged = 1, .residual = 0.25, .deepest = 0.001};
+  SoftFigures figures;
+  figures.steps = 20;
+  figures.time_lost = 1.5;
+  const std::vector<std::string> said = explain_soft_steps(world, figures);
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_NE(said[0].find("7 contacts were left out"), std::string::npos) << said[0];
+  EXPECT_NE(said[1].find("1 of 20 soft steps ended unconverged (residual at most 0.25 m/s)"), std::string::npos)
+      << said[1];
+  EXPECT_NE(said[2].find("1.50 s behind after 20 steps"), std::string::npos) << said[2];
+  figures.time_lost = 0.005;  // of 0.33 s
+  EXPECT_EQ(explain_soft_steps(world, figures).size(), 2u) << "the report has it, the console does not";
+  for (const std::string& sentence : said) EXPECT_NE(sentence.find("; "), std::string::npos) << "no cure: " << sentence;
+}
+
 TEST(Trace, KeepsEveryPeakHoweverLongTheRun) {
   std::mt19937 random(5);
   Trace trace;
@@ -147,6 +216,28 @@ TEST(Trace, KeepsWhichLimitsActedHoweverLongTheRun) {
   std::size_t marked = 0;
   for (const TraceColumn& column : trace.columns()) marked += column.limited == bit(SafetyLimit::kWithheld);
   EXPECT_EQ(marked, 1u);
+}
+
+// A tool's curves mean something else than a probe's, and its row says so; so does the line under the title.
+TEST(Plot, CaptionsAToolsCurvesAsAToolsAndAProbesAsAProbes) {
+  const fs::path file = fs::temp_directory_path() / ("pliant-captions-" + std::to_string(::getpid()) + ".png");
+  Trace trace;
+  for (std::uint64_t t = 0; t < 1000; ++t) trace.add(t, reading_at(0.002));
+  const auto drawn = [&](bool tool, double from, double to) {  // the picture between two heights, 0 to 1
+    EXPECT_TRUE(plot_forces(file, "level", {{"a", "orbit", &trace, tool}}, 1e-3, 1.0));
+    const auto image = load_image(file);
+    EXPECT_TRUE(image);
+    if (!image) return std::vector<std::uint8_t>();
+    const auto row = [&](double share) {
+      return image->rgba.begin() + static_cast<std::ptrdiff_t>(share * image->height) * image->width * 4;
+    };
+    return std::vector<std::uint8_t>(row(from), row(to));
+  };
+  const double title = 0.18, legend = 0.29;
+  EXPECT_NE(drawn(true, 0, title), drawn(false, 0, title));
+  EXPECT_NE(drawn(true, title, legend), drawn(false, title, legend));
+  EXPECT_EQ(drawn(true, 0.9, 1.0), drawn(false, 0.9, 1.0)) << "time is time";
+  fs::remove(file);
 }
 
 // The bands have colours that nothing else has.

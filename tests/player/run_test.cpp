@@ -49,7 +49,7 @@ TEST_F(Run, WritesReportForcesAndPlotAsPromised) {
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
   EXPECT_EQ(forces.columns,
             (std::vector<std::string>{"tick", "time_s", "probe", "x", "y", "z", "in_contact", "object", "depth_m",
-                                      "height_m", "nx", "ny", "nz", "fx", "fy", "fz", "fn", "ft"}));
+                                      "height_m", "nx", "ny", "nz", "fx", "fy", "fz", "fn", "ft", "objects"}));
   EXPECT_EQ(forces.rows.size(), 1500u) << "one row per probe and tick";
   EXPECT_EQ(read_text(folder / "out" / "forces.png").substr(1, 3), "PNG");
 }
@@ -68,11 +68,13 @@ TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {
     if (forces.rows[i].at("in_contact") == "1") {
       ++contact;
       EXPECT_EQ(forces.rows[i].at("object"), "plate") << i;
+      EXPECT_EQ(forces.rows[i].at("objects"), "1") << i;
       deepest = std::max(deepest, depth);
       EXPECT_NEAR(depth, -forces.number(i, "y"), 1e-7) << "the plate is flat";
       EXPECT_NEAR(forces.number(i, "ny"), 1.0, 1e-6);
     } else {
       EXPECT_EQ(norm, 0.0) << "nothing is felt in the air";
+      EXPECT_EQ(forces.rows[i].at("objects"), "0") << i;
     }
     if (time > 0.55 && time < 0.69) {  // held still: 300 N/m times 2 mm
       EXPECT_NEAR(fn, 0.6, 0.6e-3) << time;
@@ -88,6 +90,8 @@ TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {
   }
   EXPECT_GT(held, 100);
   EXPECT_EQ(probe["contact_ticks"], contact);
+  EXPECT_EQ(probe["touched"], Json::array({"plate"}));
+  EXPECT_FALSE(probe.contains("tool_force")) << "only tools make their force in one of several ways";
   EXPECT_NEAR(probe["max_depth_m"], deepest, 1e-9);
   EXPECT_NEAR(probe["max_force_N"], strongest, 1e-7);
   EXPECT_NEAR(probe["net_work_J"], work, 1e-8);
@@ -123,6 +127,7 @@ TEST_F(Run, AProbeThatTouchesNothingSaysByHowMuchItMissed) {
   ASSERT_EQ(said.status, 0) << said.err;
   const Json json = report("out");
   EXPECT_EQ(json["probes"][0]["contact_ticks"], 0);
+  EXPECT_TRUE(json["probes"][0]["touched"].empty());
   EXPECT_NEAR(json["probes"][0]["missed_by_m"], 0.015, 2e-4);
   EXPECT_NE(said.err.find("`tip` never touched anything"), std::string::npos) << said.err;
   EXPECT_NE(said.err.find("`plate` (1681 vertices, 141.4 mm across)"), std::string::npos) << said.err;
@@ -354,10 +359,11 @@ TEST_F(Run, PicturesAreSpreadOverTheRunAndDoNotChangeIt) {
     EXPECT_EQ(read_text(folder / "with" / name).substr(1, 3), "PNG") << name;
   EXPECT_FALSE(fs::exists(folder / "with" / "frame-0003.png"));
   // A shorter run into the same folder leaves no picture of the longer one behind.
-  ASSERT_EQ(pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1", "--size",
-                    "160x90"})
-                .status,
-            0);
+  EXPECT_NE(said.out.find("forces.png, 3 pictures\n"), std::string::npos) << said.out;
+  const Said shorter = pliant(
+      {"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1", "--size", "160x90"});
+  ASSERT_EQ(shorter.status, 0) << shorter.err;
+  EXPECT_NE(shorter.out.find("forces.png, 1 picture\n"), std::string::npos) << shorter.out;
   EXPECT_TRUE(fs::exists(folder / "with" / "frame-0000.png"));
   EXPECT_FALSE(fs::exists(folder / "with" / "frame-0001.png"));
 }

@@ -113,6 +113,171 @@ TEST_F(ToolRun, AToolIsReportedLikeAProbeAndTheSoftClockBesideIt) {
   }
 }
 
+TEST_F(ToolRun, WhatTheRowsSayOfTorqueAndTouchIsWhatTheReportSays) {
+  ASSERT_EQ(press("out").status, 0);
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  EXPECT_EQ(std::vector<std::string>(forces.columns.end() - 4, forces.columns.end()),
+            (std::vector<std::string>{"objects", "tx", "ty", "tz"}));
+  double largest = 0.0;
+  for (std::size_t i = 0; i < forces.rows.size(); ++i) {
+    largest = std::max(largest, std::hypot(forces.number(i, "tx"), forces.number(i, "ty"), forces.number(i, "tz")));
+    const double time = forces.number(i, "time_s");
+    if (time > 0.1 && time < 0.3) EXPECT_EQ(forces.rows[i].at("objects"), "0") << time;
+    if (time > 0.7 && time < 0.8) EXPECT_EQ(forces.rows[i].at("objects"), "1") << time;
+  }
+  EXPECT_GT(largest, 1e-4) << "it is turned while it presses";
+  const Json tool = report("out")["probes"][0];
+  EXPECT_NEAR(tool["max_torque_Nm"].get<double>(), largest, 1e-8 * largest);
+  EXPECT_EQ(tool["touched"], Json::array({"ground"}));
+  EXPECT_EQ(tool["late_ticks"], 0) << "lockstep has no time to be late in";
+  EXPECT_EQ(tool["stale_ticks"], 0);
+  const Json soft = report("out")["soft"];
+  for (const char* key : {"unconverged", "contacts_cut", "time_lost_s"}) EXPECT_EQ(soft[key], 0) << key;
+  EXPECT_GE(soft["deepest_m"].get<double>(), 0.0);
+}
+
+TEST_F(ToolRun, TheForceIsMadeAsTheKeySaysUnlessTheOptionSaysOtherwise) {
+  const auto hash = [&](const std::string& out) { return report(out)["hash"].get<std::string>(); };
+  const auto used = [&](const std::string& out) { return report(out)["probes"][0]["tool_force"].get<std::string>(); };
+  ASSERT_EQ(press("usual").status, 0);
+  EXPECT_EQ(used("usual"), "contacts");
+  for (const std::string force : {"held", "linear", "contacts"}) {
+    ASSERT_EQ(press(force, {"--tool-force", force}).status, 0);
+    EXPECT_EQ(used(force), force);
+    ASSERT_EQ(press("key", {"--set", "hand.handle.force=" + force}).status, 0);
+    EXPECT_EQ(hash("key"), hash(force)) << "the key and the option mean the same";
+  }
+  EXPECT_EQ(hash("usual"), hash("contacts"));
+  EXPECT_NE(hash("held"), hash("linear"));
+  EXPECT_NE(hash("linear"), hash("contacts"));
+  ASSERT_EQ(press("both", {"--set", "hand.handle.force=held", "--tool-force", "linear"}).status, 0);
+  EXPECT_EQ(hash("both"), hash("linear")) << "the option stands above the key";
+
+  // What is held differs from what is solved again, in the hand too.
+  const ForcesTable held = read_forces(folder / "held" / "forces.csv"),
+                    solved = read_forces(folder / "contacts" / "forces.csv");
+  double apart = 0.0;
+  for (std::size_t i = 0; i < held.rows.size(); ++i)
+    apart = std::max(apart, std::abs(held.number(i, "fy") - solved.number(i, "fy")));
+  EXPECT_GT(apart, 1e-3);
+}
+
+TEST_F(ToolRun, AWayToMakeTheForceThatThereIsNotIsRefused) {
+  expect_refused({"run", "block.glb", "--tool-force", "magic"}, 2,
+                 "must be one of held, linear, contacts; got 'magic'");
+  expect_refused({"run", "block.glb", "--set", "hand.handle.force=magic"}, 2,
+                 "must be one of held, linear, contacts; got \"magic\"");
+  write_text(folder / "plate.obj", plate_obj());
+  expect_refused({"run", "plate.obj", "--tool-force", "linear"}, 2, "--tool-force");
+}
+
+TEST_F(ToolRun, FleshThatLocksIsSaidByValidateInspectAndOnceByRun) {
+  const std::string sentence = "has a Poisson's ratio of 0.49: from 0.47 on its ";
+  Result<Level> level = load_level(folder / "block.glb");
+  ASSERT_TRUE(level.ok());
+  for (LevelNode& node : level->nodes)
+    if (node.soft_body) node.soft_body->poisson = 0.49;
+  ASSERT_TRUE(save_level(*level, folder / "locks.glb").ok());
+  const Said validated = pliant({"validate", "locks.glb"});
+  EXPECT_EQ(validated.status, 0) << "it can be simulated";
+  EXPECT_NE(validated.out.find(": warning: " + sentence), std::string::npos) << validated.out;
+  EXPECT_NE(pliant({"inspect", "locks.glb"}).out.find(sentence), std::string::npos);
+  const Said said = pliant({"run", "locks.glb", "--seconds", "0.02", "--out", "out", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const std::size_t first = said.err.find("`hand` " + sentence);
+  EXPECT_NE(first, std::string::npos) << said.err;
+  EXPECT_EQ(said.err.find(sentence, first + 10), std::string::npos) << "once";
+  EXPECT_NE(report("out")["dropped"].dump().find(sentence), std::string::npos);
+  for (const char* verb : {"validate", "inspect"})
+    EXPECT_EQ(pliant({verb, "block.glb"}).out.find("Poisson"), std::string::npos) << verb;
+}
+
+TEST_F(ToolRun, InspectSaysHowEachToolsForceIsMade) {
+  const Json json = Json::parse(pliant({"inspect", "block.glb", "--json"}).out);
+  ASSERT_EQ(json["tools"].size(), 1u);
+  EXPECT_EQ(json["tools"][0], (Json{{"name", "hand"}, {"device", "arm"}, {"force", "contacts"}}));
+  EXPECT_NE(pliant({"inspect", "block.glb"}).out.find("tool hand: device arm, force contacts"), std::string::npos);
+}
+
+// x_k = x_0 + g T^2 (k + 1) (k + 2) / 2 is what steps of semi-implicit Euler make of a free fall; after a time t it is
+// g t T / 2 beside g t^2 / 2.
+class FallingRun : public CommandTest {
+ protected:
+  static constexpr double kStep = 1.0 / 60.0, kGravity = 9.81, kTop = 2.0;
+  // [m] of the height after step k
+  static double height(double k) { return kTop - 0.5 * kGravity * kStep * kStep * (k + 1) * (k + 2); }
+  void SetUp() override {
+    CommandTest::SetUp();
+    Level level;
+    level.meshes = {{"box", {box(vec3(0.02f, 0.03f, 0.04f), 2)}}};
+    LevelNode crate;
+    crate.name = "a \"crate\", falling";
+    crate.mesh = 0;
+    crate.local.translation = vec3(0.5f, float(kTop), 0);
+    crate.local.rotation = turned_;
+    crate.rigid_body.emplace();
+    crate.rigid_body->density = 500;
+    LevelNode jelly = crate;
+    jelly.name = "jelly";
+    jelly.local.translation.x = -0.5f;
+    jelly.rigid_body.reset();
+    jelly.soft_body.emplace();
+    jelly.soft_body->young = 2e4;
+    jelly.soft_body->poisson = 0.3;
+    jelly.soft_body->cell = 0.01;
+    level.nodes = {crate, jelly};
+    ASSERT_TRUE(save_level(level, folder / "fall.glb").ok());
+  }
+  const quat turned_{std::cos(0.3f), 0, 0, std::sin(0.3f)};
+};
+
+TEST_F(FallingRun, BodiesAreWrittenWhereTheyFallTo) {
+  const Said said = pliant({"run", "fall.glb", "--seconds", "0.3", "--out", "out", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.out.find("bodies.csv"), std::string::npos);
+  const ForcesTable bodies = read_forces(folder / "out" / "bodies.csv");
+  EXPECT_EQ(bodies.columns,
+            (std::vector<std::string>{"step", "time_s", "body", "x", "y", "z", "qw", "qx", "qy", "qz"}));
+  ASSERT_EQ(bodies.rows.size(), 2u * 18u) << "each body in each step that begins before 0.3 s";
+  std::size_t crates = 0;
+  for (std::size_t i = 0; i < bodies.rows.size(); ++i) {
+    const double step = bodies.number(i, "step"), time = bodies.number(i, "time_s"), y = bodies.number(i, "y");
+    const bool crate = bodies.rows[i].at("body") != "jelly";
+    crates += crate;
+    EXPECT_EQ(step, static_cast<double>(i / 2));
+    EXPECT_NEAR(time, step * kStep, 1e-8);
+    EXPECT_NEAR(bodies.number(i, "x"), crate ? 0.5 : -0.5, 1e-6);
+    EXPECT_NEAR(y, height(step), 1e-6) << "as the integrator has it";
+    const double since = time + kStep;  // the row is the step's end
+    EXPECT_LE(std::abs(y - (kTop - 0.5 * kGravity * since * since)), 0.5 * kGravity * since * kStep + 1e-6);
+    EXPECT_NEAR(bodies.number(i, "z"), 0.0, 1e-6);
+    EXPECT_NEAR(bodies.number(i, "qw"), std::cos(0.3), 1e-6);
+    EXPECT_NEAR(bodies.number(i, "qz"), std::sin(0.3), 1e-6);
+    EXPECT_NEAR(bodies.number(i, "qx"), 0.0, 1e-6);
+  }
+  EXPECT_EQ(crates, 18u);
+  EXPECT_NE(read_text(folder / "out" / "bodies.csv").find("\"a \"\"crate\"\", falling\""), std::string::npos);
+}
+
+TEST_F(FallingRun, WhatNoBodyMovesInHasNoBodiesFileNotEvenAnOldOne) {
+  ASSERT_EQ(pliant({"run", "fall.glb", "--seconds", "0.05", "--out", "out", "--frames", "0"}).status, 0);
+  ASSERT_TRUE(fs::exists(folder / "out" / "bodies.csv"));
+  write_text(folder / "plate.obj", plate_obj());
+  const Said said = pliant({"run", "plate.obj", "--seconds", "0.05", "--out", "out", "--frames", "0"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_FALSE(fs::exists(folder / "out" / "bodies.csv")) << "it would be of another run";
+  EXPECT_EQ(said.out.find("bodies.csv"), std::string::npos);
+}
+
+// More soft steps than touch ticks: none of them is lost.
+TEST_F(FallingRun, StepsBetweenTicksAreAllWritten) {
+  ASSERT_EQ(pliant({"run", "fall.glb", "--seconds", "0.3", "--rate", "10", "--set", "*.simulation.soft_step=0.001",
+                    "--out", "out", "--frames", "0"})
+                .status,
+            0);
+  EXPECT_EQ(read_forces(folder / "out" / "bodies.csv").rows.size(), 2u * 201u) << "ticks at 0, 0.1 and 0.2 s";
+}
+
 TEST_F(ToolRun, LockstepGivesTheSameBitsAndAReplayTheSameAgain) {
   ASSERT_EQ(press("first", {"--record", "hand.rec"}).status, 0);
   ASSERT_EQ(press("second").status, 0);

@@ -1,10 +1,11 @@
-// Probes among soft and rigid bodies. Oracles: the coupling's law where nothing gives way, action and reaction, weights,
-// the same bits where a body is out of reach.
+// Probes among soft and rigid bodies. Oracles: the coupling's law where nothing gives way, action and reaction,
+// weights, the same bits where a body is out of reach.
+#include "systems/tool/probe_tool.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "systems/tool/probe_tool.h"
 #include "systems/tool/tool_touch_state.h"
 #include "tests/scenes/tet_shapes.h"
 #include "tests/scenes/tool_stage.h"
@@ -46,9 +47,9 @@ TEST(ProbeTool, OnAFixedBodyItsCouplingIsFelt) {
     std::vector<vec3> points;
     double reach;  // [m] from the probe's origin down to its lowest point
   };
-  for (const Shape& shape : {Shape{"sphere", 5e-3, 0.0, {}, 5e-3}, Shape{"point", 0.0, 0.0, {}, 5e-4},
-                             Shape{"capsule", 3e-3, 0.1, {}, 3e-3},
-                             Shape{"fork", 2e-3, 0.0, {vec3(-0.01f, -0.01f, 0), vec3(0.01f, -0.01f, 0)}, 0.012}}) {
+  for (const Shape& shape :
+       {Shape{"sphere", 5e-3, 0.0, {}, 5e-3}, Shape{"point", 0.0, 0.0, {}, 5e-4}, Shape{"capsule", 3e-3, 0.1, {}, 3e-3},
+        Shape{"fork", 2e-3, 0.0, {vec3(-0.01f, -0.01f, 0), vec3(0.01f, -0.01f, 0)}, 0.012}}) {
     SCOPED_TRACE(shape.name);
     ToolStage stage(kSoftStep);
     add_fixed(stage, dvec3(0.2, 0.02, 0.2), dvec3(0, -0.01, 0));
@@ -155,8 +156,7 @@ TEST(ProbeTool, TwoProbesLiftASoftCube) {
   body.density = 500.0;
   body.friction_static = 0.8;
   body.friction_sliding = 0.7;
-  const Entity cube =
-      stage.add_soft(tets::box(4, 4, 4, dvec3(-0.015), dvec3(0.015)), body, at({0, 0.0151, 0}));
+  const Entity cube = stage.add_soft(tets::box(4, 4, 4, dvec3(-0.015), dvec3(0.015)), body, at({0, 0.0151, 0}));
   const Entity left = add_probe(stage, {-0.04, 0.015, 0}, 6e-3), right = add_probe(stage, {0.04, 0.015, 0}, 6e-3);
   stage.prepare();
   const auto both = [&](double x, double y, double seconds) {

@@ -12,6 +12,7 @@
 #include "systems/device/devices.h"
 #include "systems/device/safety.h"
 #include "systems/tool/prepare_tools.h"
+#include "systems/tool/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
 #include "tests/scenes/tet_shapes.h"
@@ -113,6 +114,31 @@ TEST(ToolFeedback, IsStableAgainstARigidWallUpToTheExactLimitOfTheDevice) {
     EXPECT_LT(swing(row.mass, row.damping, 0.97 * row.limit), 1e-3) << row.limit;
     EXPECT_GT(swing(row.mass, row.damping, 1.03 * row.limit), 1e-3) << row.limit;
   }
+}
+
+// The clock skips 12 ticks while the device goes on at 50 mm/s: it has moved 0.65 mm in what the next tick takes for
+// one tick. Taken for 13 times its speed, the coupling's damper alone would push 1.2 N.
+TEST(ToolFeedback, ALateTickIsNoBlow) {
+  Handle6 settings = coupling(200.0);
+  settings.translation[1] = 2.0;
+  Stage stage(settings);
+  stage.state().wanted = ToolForce::kLinear;
+  stage.publish();
+  const double speed = 0.05;
+  const auto follow = [&] {
+    stage.hand().position.x = speed * static_cast<double>(stage.ticks) * kTick;
+    stage.hand().rotation = rotation_of(dvec3(0, 0, 0.4 * static_cast<double>(stage.ticks) * kTick));
+    stage.tick();
+  };
+  while (stage.ticks < 40) follow();
+  EXPECT_NEAR(stage.state().sensed.velocity[0], speed, 1e-9);
+  const double before = std::abs(stage.state().device_wrench[0]);
+  stage.ticks += 12;
+  follow();
+  EXPECT_NEAR(stage.state().sensed.velocity[0], speed, 1e-9);
+  EXPECT_NEAR(stage.state().sensed.velocity[5], 0.4, 1e-9);
+  // The spring has the way of 13 ticks to answer for, no more.
+  EXPECT_LT(std::abs(stage.state().device_wrench[0]), before + 1.01 * 200.0 * 13 * kTick * speed);
 }
 
 TEST(ToolFeedback, AModelsUpdateIsNoJump) {

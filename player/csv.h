@@ -1,0 +1,19 @@
+// Text and numbers as the files in CSV have them: forces.csv and bodies.csv.
+#pragma once
+
+#include <string>
+
+#include "components/math.h"
+
+namespace pliant {
+
+// RFC 4180: names come from files and may hold commas, quotes and line ends.
+std::string csv_text(const std::string& name);
+
+// Appends a comma and the value, with nine digits: exact for a float, and 1e-9 relative for what is kept in double. -0
+// becomes 0, and so does what has decayed to (nearly) less than a double holds, so that every reader takes it.
+void put(std::string& line, double value);
+void put(std::string& line, const dvec3& v);  // x, y, z
+void put(std::string& line, const dquat& q);  // w, x, y, z
+
+}  // namespace pliant
