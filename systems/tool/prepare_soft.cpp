@@ -166,7 +166,7 @@ Status prepare_soft(World& world) {
   const double T = world.simulation.soft_step;
   if (!(T > 0.0 && T <= 1.0))
     return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s; give more than 0 and at most 1 s", T)};
-  add_yielding(world, *soft);
+  if (world.touch->presses) add_yielding(world, *soft);  // probes press them by themselves
   soft->margin = margin(*soft);
   settle_tools(world, *soft);
   soft->proximity = std::make_unique<Proximity>(soft->bodies);
