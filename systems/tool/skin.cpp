@@ -213,19 +213,32 @@ void Skin::refit(const Body& body, double T, double reach) {
   still_ = still && same, foretold_ = false;  // a body that has just stopped is foretold to go on, once
   const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
   last_step_ = T;
-  drift_ = dvec3(0.0);
   for (std::uint32_t v = 0; v < count; ++v) {
     const dvec3 went = body.skin_position[v] - position_[v];
     position_[v] = body.skin_position[v];
     ahead_[v] = position_[v] + again * went;
     displacement_[v] = T * body.skin_velocity[v];
-    drift_ += displacement_[v];
   }
-  drift_ /= static_cast<double>(std::max(count, 1u));
+  find_drift();
   find_normals();
   find_curvatures();
   find_live_edges();
   fit_boxes(reach);
+}
+
+void Skin::sweep(const std::vector<dvec3>& velocity, double T) {
+  for (std::size_t v = 0; v < displacement_.size(); ++v) displacement_[v] = T * velocity[v];
+  find_drift();
+  fit_boxes(reach_);
+}
+
+void Skin::find_drift() {
+  drift_ = dvec3(0.0);
+  for (const dvec3& d : displacement_) drift_ += d;
+  drift_ /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
+  double most = 0.0;
+  for (const dvec3& d : displacement_) most = std::max(most, dot(d - drift_, d - drift_));
+  spread_ = std::sqrt(most);
 }
 
 void Skin::find_normals() {

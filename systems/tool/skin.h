@@ -29,6 +29,9 @@ class Skin {
   // what they have.
   void refit(const Body& body, double T, double reach);
 
+  // The same step once more, with `velocity` [m/s, per vertex] instead of the free motion's: displacements and boxes.
+  void sweep(const std::vector<dvec3>& velocity, double T);
+
   // --- Topology
   const Mesh& mesh() const { return *mesh_; }
   const std::vector<SkinEdge>& edges() const { return edges_; }
@@ -75,10 +78,12 @@ class Skin {
     std::vector<dmat3> bend;  // [1/m] per vertex: the normal turns by bend dx along the surface; symmetric
   };
   const Shape& rest() const { return rest_; }
-  dmat3 turn(std::uint32_t t) const;      // of a triangle, from where it rests
-  dvec3 drift() const { return drift_; }  // [m] mean displacement; boxes hold what moves besides
+  dmat3 turn(std::uint32_t t) const;         // of a triangle, from where it rests
+  dvec3 drift() const { return drift_; }     // [m] mean displacement; boxes hold what moves besides
+  double spread() const { return spread_; }  // [m] how far a vertex's displacement is from the mean at most
   // Of triangle runs as in Mesh::tree, level 0 the leaves.
   const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
+  Box whole() const { return boxes_.empty() ? Box() : boxes_.back()[0]; }
   const Box& box(std::uint32_t t) const { return triangle_box_[t]; }
   const Box& vertex_box(std::uint32_t v) const { return vertex_box_[v]; }  // without reach
   // Of the same runs: all outward normals of their triangles, vertices and edges.
@@ -94,6 +99,7 @@ class Skin {
   void find_shortest();
   void find_neighbours(double distance);
   void fit_boxes(double reach);
+  void find_drift();
   void find_normals();
   void find_curvatures();
   void find_rest_bend();
@@ -115,6 +121,7 @@ class Skin {
   std::vector<double> curvature_, edge_count_;
   double last_step_ = 0.0;  // [s]
   dvec3 drift_{0};
+  double spread_ = 0.0;
   double reach_ = -1.0;
   bool still_ = false;     // nothing moved in the last step
   bool foretold_ = false;  // normals are those of ahead()

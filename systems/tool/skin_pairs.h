@@ -11,10 +11,12 @@ namespace pliant {
 struct RelativeSweep {
   vec3 low{0}, high{0};  // [m]
   RelativeSweep() = default;
-  RelativeSweep(const Skin& a, const Skin& b) {
+  explicit RelativeSweep(float reach) : low(-reach), high(reach) {}
+  // `reach` [m]: boxes that come so near to each other meet.
+  RelativeSweep(const Skin& a, const Skin& b, float reach = 0.0f) {
     const vec3 d(a.drift() - b.drift());
-    low = glm::min(d, vec3(0.0f));
-    high = glm::max(d, vec3(0.0f));
+    low = glm::min(d, vec3(0.0f)) - reach;
+    high = glm::max(d, vec3(0.0f)) + reach;
   }
   RelativeSweep reversed() const {
     RelativeSweep r;
@@ -89,18 +91,18 @@ struct PairWalk {
 
 }  // namespace detail
 
-// use(triangle of a, triangle of b)
+// use(triangle of a, triangle of b). Boxes meet from `reach` [m] on, besides what they were grown by.
 template <class Use>
-void for_each_pair(const Skin& a, const Skin& b, Use use) {
+void for_each_pair(const Skin& a, const Skin& b, Use use, float reach = 0.0f) {
   if (a.boxes().empty() || b.boxes().empty()) return;
-  const detail::PairWalk<Use> walk{a, b, RelativeSweep(a, b), use};
+  const detail::PairWalk<Use> walk{a, b, RelativeSweep(a, b, reach), use};
   walk.across(a.boxes().size() - 1, 0, b.boxes().size() - 1, 0);
 }
 // use(triangle, other triangle), each unordered pair once
 template <class Use>
-void for_each_pair_within(const Skin& skin, Use use) {
+void for_each_pair_within(const Skin& skin, Use use, float reach = 0.0f) {
   if (skin.boxes().empty()) return;
-  const detail::PairWalk<Use> walk{skin, skin, RelativeSweep(), use};
+  const detail::PairWalk<Use> walk{skin, skin, RelativeSweep(reach), use};
   walk.within(skin.boxes().size() - 1, 0);
 }
 
