@@ -11,6 +11,7 @@
 #include "systems/tool/contact_memory.h"
 #include "systems/tool/contact_point.h"
 #include "systems/tool/contact_thinning.h"
+#include "systems/tool/shortest_way.h"
 #include "systems/tool/skin.h"
 #include "systems/tool/skin_pairs.h"
 #include "systems/tool/yielding_body.h"
@@ -70,9 +71,10 @@ double facing(const Side& a, std::uint32_t vertex) {
   return a.skin.at_border(vertex) ? 0.0 : -kFacing;
 }
 
-// [m] How far two boxes overlap, along the axis on which that is the least; negative: how far they are apart.
+// [m] By how much one of two boxes must move along an axis to leave the other; negative: how far they are apart. No
+// penetration of what they hold is deeper, if it is left by the shortest way.
 double overlap(const Box& a, const Box& b) {
-  const vec3 by = glm::min(a.max, b.max) - glm::max(a.min, b.min);
+  const vec3 by = glm::min(a.max - b.min, b.max - a.min);
   return static_cast<double>(std::min({by.x, by.y, by.z}));
 }
 
@@ -84,6 +86,8 @@ struct Proximity::Parts {
   std::vector<bool> yields;                   // per body
   // [m] >= 0, per pair of bodies: the deepest penetration that the last step left; infinite before the first step.
   std::vector<double> deepest;
+  // [1] per pair of bodies that began inside each other, until they are out: where the first of them is pushed.
+  std::vector<dvec3> ways;
   ContactMemory memory;
   SideMemory sides;                       // of the last step
   std::optional<double> margin_given;     // of this step's find()
@@ -92,6 +96,7 @@ struct Proximity::Parts {
   double margin = 0.0;                    // [m] of the pair of bodies that is looked at
   Reach reach;                            // likewise
   double* deep = nullptr;                 // likewise: for the next step
+  dvec3* way = nullptr;                   // likewise
   std::vector<VertexMeeting> of_a, of_b;  // vertices of the pair's first body, of its second
   std::vector<Found> found;
   std::vector<Candidate> candidates, thinned;  // those to be kept; all that there were before
@@ -149,10 +154,16 @@ struct Proximity::Parts {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     const ContactPoint* last = memory.find(key);
     const bool met = sides.find(key) != nullptr;
-    if (m.gap < -margin && !met) return;  // edges deep below each other that never met: others hold those bodies
+    // Edges deep below each other that never met: others hold those bodies.
+    if (m.gap < -margin && !met && !(began_inside() && leads_out(a, b, m))) return;
     if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, met)) return;
     if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, met)) return;
     keep({a.index, b.index, true, edge_a, edge_b, m, last}, key, a.skin.point_on_edge(edge_a, m.along_a).position);
+  }
+
+  bool began_inside() const { return *way != dvec3(0.0); }
+  bool leads_out(const Side& a, const Side& b, const Meeting& m) const {
+    return dot(a.index < b.index ? *way : -*way, m.normal) > kSameSide;
   }
 
   // Whether what meets an edge of a sheet, pushed along `push` by it, is in front of it.
@@ -233,11 +244,12 @@ struct Proximity::Parts {
       const bool came = std::any_of(past.begin(), past.end(), [&](const dvec3* normal) {
         return normal && dot(*normal, m.meeting.normal) > kSameSide;
       });
+      if (!came && began_inside() && !leads_out(a, b, m.meeting)) continue;
       if (!behind || (came && !known) || (came == known && m.meeting.gap > behind->meeting.gap)) behind = &m;
       known |= came;
     }
     if (!behind) return {};
-    if (!known && (in_front < -behind->meeting.gap || !inside(a, b, *behind))) return {};
+    if (!known && !began_inside() && (in_front < -behind->meeting.gap || !inside(a, b, *behind))) return {};
     return *behind;
   }
 
@@ -356,8 +368,13 @@ struct Proximity::Parts {
   // Pair i, k (i <= k) with the reach that it needs in this step.
   void look_at(std::uint32_t i, std::uint32_t k) {
     margin = margin_between(i, k);
-    deep = &deepest[i * skins.size() + k];
-    const double most = i == k ? kDeepestWithin * margin : overlap(skins[i].whole(), skins[k].whole());
+    const std::size_t pair = i * skins.size() + k;
+    deep = &deepest[pair], way = &ways[pair];
+    const double most = i == k ? kDeepestWithin * margin : overlap(skins[i].whole(), skins[k].whole()) + margin;
+    if (!late && i != k && std::isinf(*deep) && most > margin)
+      *way = shortest_way(skins[i], skins[k]).value_or(dvec3(0.0));
+    else if (!late && *deep <= margin)
+      *way = dvec3(0.0);
     reach = late ? Reach{0.0, 0.0} : Reach{margin, std::max(margin, std::min(kDeeper * *deep, most))};
     if (!late) *deep = 0.0;
   }
@@ -508,6 +525,7 @@ Proximity::Proximity(const std::vector<std::unique_ptr<Body>>& bodies) : parts_(
     parts_->own_margin.push_back(margin_of(*body));
     parts_->yields.push_back(dynamic_cast<const YieldingBody*>(body.get()) != nullptr);
   }
+  parts_->ways.assign(bodies.size() * bodies.size(), dvec3(0.0));
   parts_->deepest.assign(bodies.size() * bodies.size(), std::numeric_limits<double>::infinity());
 }
 Proximity::~Proximity() = default;
