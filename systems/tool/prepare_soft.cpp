@@ -39,7 +39,7 @@ void add_soft(const World& world, SoftState& soft) {
                                                  pose_of(world, entity));
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
-    state->self_collides = handle != nullptr;  // fingers pinch; a lump does not
+    state->self_collides = true;  // fingers pinch, a strip folds
     add(soft, entity, std::move(state));
   }
 }

@@ -27,7 +27,9 @@ constexpr double kComing = 1e-3;  // [margins] in a step: slower, and it does no
 constexpr double kDeepestWithin = 10.0;     // [margins] no penetration of a body into itself is followed farther
 constexpr double kDeeper = 1.5;             // [1] of a penetration: it may be so much deeper in the next step
 constexpr std::size_t kMostContacts = 400;  // with those that join
-constexpr double kGraze = 0.1;              // [margins] what crosses by less is left to the next step
+constexpr double kRises = 0.95;             // [1] of a penetration: what is left of it where it is being pushed out
+constexpr double kGraze = 0.3;              // [margins] what crosses by less is left to the next step
+constexpr double kSunk = 0.1;               // [margins] what thinning left out joins where it is deeper and stays so
 
 // Tunables of the margin within which pairs are taken along although they are not about to touch.
 constexpr double kMarginOfEdge = 0.1;   // [1] of a mean edge: less misses what the step's end brings together
@@ -370,21 +372,26 @@ struct Proximity::Parts {
     margin = margin_between(i, k);
     const std::size_t pair = i * skins.size() + k;
     deep = &deepest[pair], way = &ways[pair];
-    const double most = i == k ? kDeepestWithin * margin : overlap(skins[i].whole(), skins[k].whole()) + margin;
-    if (!late && i != k && std::isinf(*deep) && most > margin)
+    double most = i == k ? kDeepestWithin * margin : overlap(skins[i].whole(), skins[k].whole()) + margin;
+    if (!late && i != k && std::isinf(*deep) && most > margin) {
       *way = shortest_way(skins[i], skins[k]).value_or(dvec3(0.0));
-    else if (!late && *deep <= margin)
-      *way = dvec3(0.0);
+      if (!began_inside()) most = std::min(most, kDeepestWithin * margin);
+    }
+    if (!late && *deep <= margin) *way = dvec3(0.0);
     reach = late ? Reach{0.0, 0.0} : Reach{margin, std::max(margin, std::min(kDeeper * *deep, most))};
     if (!late) *deep = 0.0;
   }
+
+  // [m] What find() saw moving within a margin of where it does now it has not missed.
+  float least_strayed() const { return late ? static_cast<float>(margin) : -1.0f; }
 
   void find_between(const Side& a, const Side& b) {
     of_a.clear();
     of_b.clear();
     const RelativeSweep sweep(a.skin, b.skin, box_reach());
     for_each_pair(
-        a.skin, b.skin, [&](std::uint32_t s, std::uint32_t t) { try_triangles(a, s, b, t, sweep); }, box_reach());
+        a.skin, b.skin, [&](std::uint32_t s, std::uint32_t t) { try_triangles(a, s, b, t, sweep); }, box_reach(),
+        least_strayed());
     if (late) return take_missed_vertices(a, b, of_a), take_missed_vertices(b, a, of_b);
     take_vertices(a, b, of_a);
     take_vertices(b, a, of_b);
@@ -393,7 +400,8 @@ struct Proximity::Parts {
     of_a.clear();
     const RelativeSweep sweep(box_reach());
     for_each_pair_within(
-        a.skin, [&](std::uint32_t s, std::uint32_t t) { try_triangles(a, s, a, t, sweep); }, box_reach());
+        a.skin, [&](std::uint32_t s, std::uint32_t t) { try_triangles(a, s, a, t, sweep); }, box_reach(),
+        least_strayed());
     if (late) return take_missed_vertices(a, a, of_a);
     take_vertices(a, a, of_a);
   }
@@ -464,8 +472,8 @@ struct Proximity::Parts {
     std::sort(kept.begin(), kept.end());
     for (const Candidate& c : thinned) {
       if (std::binary_search(kept.begin(), kept.end(), c.key) || yields[c.body_low] || yields[c.body_high]) continue;
-      const double end = end_gap(found[c.source]), graze = kGraze * margin_between(c.body_low, c.body_high);
-      if (!(end < std::min(0.0, c.gap) - graze)) continue;
+      const double end = end_gap(found[c.source]), sunk = kSunk * margin_between(c.body_low, c.body_high);
+      if (!(end < std::min(-sunk, kRises * c.gap))) continue;
       candidates.push_back(c);
       candidates.back().end_gap = end;
     }
@@ -474,7 +482,7 @@ struct Proximity::Parts {
   // Whether what the bodies do now may bring together what find() saw apart: not where they move as they did then, or
   // hardly relative to each other.
   bool may_miss(std::uint32_t i, std::uint32_t k) const {
-    const double changed = strayed[i] + strayed[k];
+    const double changed = skins[i].strayed() + skins[k].strayed();
     const double moved = length(skins[i].drift() - skins[k].drift()) + skins[i].spread() + skins[k].spread();
     return std::min(changed, moved) > margin;
   }
@@ -483,14 +491,11 @@ struct Proximity::Parts {
                           std::vector<ContactPoint>& contacts) {
     late = true;
     candidates.clear();
-    strayed.assign(bodies.size(), 0.0);
     std::vector<dvec3> velocity;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       if (bodies[i]->size() == 0) continue;
       bodies[i]->move_skin(velocity);
-      for (std::size_t v = 0; v < velocity.size(); ++v)
-        strayed[i] = std::max(strayed[i], T * length(velocity[v] - bodies[i]->skin_velocity[v]));
-      skins[i].sweep(velocity, T);
+      skins[i].sweep(*bodies[i], velocity, T);
     }
     const auto count = static_cast<std::uint32_t>(bodies.size());
     const auto takes_part = [&](std::uint32_t i) { return bodies[i]->solvable() && !yields[i]; };
@@ -498,11 +503,13 @@ struct Proximity::Parts {
       if (!takes_part(i)) continue;
       const Side a{i, *bodies[i], skins[i]};
       look_at(i, i);
-      if (a.body.self_collides && may_miss(i, i)) find_within(a);
+      if (a.body.self_collides && may_miss(i, i)) skins[i].fit_swept(), find_within(a);
       for (std::uint32_t k = i + 1; k < count; ++k) {
         if ((bodies[i]->size() == 0 && bodies[k]->size() == 0) || !takes_part(k)) continue;
         look_at(i, k);
-        if (may_miss(i, k)) find_between(a, {k, *bodies[k], skins[k]});
+        if (!may_miss(i, k)) continue;
+        skins[i].fit_swept(), skins[k].fit_swept();
+        find_between(a, {k, *bodies[k], skins[k]});
       }
     }
     remember_sides();

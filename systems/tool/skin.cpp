@@ -51,7 +51,12 @@ Skin::Skin(const Body& body) : mesh_(body.skin) {
   std::fill(position_.begin(), position_.end(), dvec3(0.0));
   triangle_box_.resize(mesh_->triangles.size());
   vertex_box_.resize(mesh_->vertex_count);
-  for (const std::vector<Box>& level : mesh_->tree.levels) boxes_.emplace_back(level.size());
+  vertex_strayed_.resize(mesh_->vertex_count);
+  triangle_strayed_.resize(mesh_->triangles.size());
+  for (const std::vector<Box>& level : mesh_->tree.levels) {
+    boxes_.emplace_back(level.size());
+    run_strayed_.emplace_back(level.size());
+  }
   normal_boxes_ = boxes_;
 }
 
@@ -210,6 +215,7 @@ void Skin::refit(const Body& body, double T, double reach) {
                                                      [](const dvec3& v) { return v == dvec3(0); });
   const bool same = std::equal(position_.begin(), position_.end(), body.skin_position.begin());
   if (still && still_ && same && reach == reach_ && !foretold_) return;
+  swept_ = false;
   still_ = still && same, foretold_ = false;  // a body that has just stopped is foretold to go on, once
   const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
   last_step_ = T;
@@ -226,10 +232,35 @@ void Skin::refit(const Body& body, double T, double reach) {
   fit_boxes(reach);
 }
 
-void Skin::sweep(const std::vector<dvec3>& velocity, double T) {
-  for (std::size_t v = 0; v < displacement_.size(); ++v) displacement_[v] = T * velocity[v];
+void Skin::sweep(const Body& body, const std::vector<dvec3>& velocity, double T) {
+  double most = 0.0;
+  for (std::size_t v = 0; v < displacement_.size(); ++v) {
+    const double strayed = T * length(velocity[v] - body.skin_velocity[v]);
+    most = std::max(most, strayed);
+    vertex_strayed_[v] = static_cast<float>(strayed);
+    displacement_[v] = T * velocity[v];
+  }
+  strayed_ = most;
+  swept_ = true;
   find_drift();
+}
+
+void Skin::fit_swept() {
+  if (!swept_) return;
+  swept_ = false;
   fit_boxes(reach_);
+  for (std::uint32_t t = 0; t < triangle_strayed_.size(); ++t) {
+    const uvec3 c = mesh_->triangles[t];
+    triangle_strayed_[t] = std::max({vertex_strayed_[c.x], vertex_strayed_[c.y], vertex_strayed_[c.z]});
+  }
+  const std::vector<float>* below = &triangle_strayed_;
+  for (std::size_t level = 0; level < run_strayed_.size(); ++level) {
+    const std::uint32_t width = level == 0 ? kLeafSize : kTreeWidth;
+    std::vector<float>& runs = run_strayed_[level];
+    std::fill(runs.begin(), runs.end(), 0.0f);
+    for (std::size_t k = 0; k < below->size(); ++k) runs[k / width] = std::max(runs[k / width], (*below)[k]);
+    below = &runs;
+  }
 }
 
 void Skin::find_drift() {

@@ -29,8 +29,10 @@ class Skin {
   // what they have.
   void refit(const Body& body, double T, double reach);
 
-  // The same step once more, with `velocity` [m/s, per vertex] instead of the free motion's: displacements and boxes.
-  void sweep(const std::vector<dvec3>& velocity, double T);
+  // The same step once more, with `velocity` [m/s, per vertex] instead of the body's free one: displacements. Boxes
+  // follow with fit_swept(), which does nothing where they already have.
+  void sweep(const Body& body, const std::vector<dvec3>& velocity, double T);
+  void fit_swept();
 
   // --- Topology
   const Mesh& mesh() const { return *mesh_; }
@@ -83,6 +85,11 @@ class Skin {
   double spread() const { return spread_; }  // [m] how far a vertex's displacement is from the mean at most
   // Of triangle runs as in Mesh::tree, level 0 the leaves.
   const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
+  // [m] How far sweep() led vertices from where the free motion does, at most: anywhere, in a run as boxes() has it, of
+  // a triangle.
+  double strayed() const { return strayed_; }
+  float strayed(std::size_t level, std::uint32_t i) const { return run_strayed_[level][i]; }
+  float strayed(std::uint32_t t) const { return triangle_strayed_[t]; }
   Box whole() const { return boxes_.empty() ? Box() : boxes_.back()[0]; }
   const Box& box(std::uint32_t t) const { return triangle_box_[t]; }
   const Box& vertex_box(std::uint32_t v) const { return vertex_box_[v]; }  // without reach
@@ -121,7 +128,10 @@ class Skin {
   std::vector<double> curvature_, edge_count_;
   double last_step_ = 0.0;  // [s]
   dvec3 drift_{0};
-  double spread_ = 0.0;
+  double spread_ = 0.0, strayed_ = 0.0;
+  bool swept_ = false;  // boxes are not yet those of the displacements
+  std::vector<float> vertex_strayed_, triangle_strayed_;
+  std::vector<std::vector<float>> run_strayed_;
   double reach_ = -1.0;
   bool still_ = false;     // nothing moved in the last step
   bool foretold_ = false;  // normals are those of ahead()
