@@ -482,7 +482,7 @@ struct Proximity::Parts {
   // Whether what the bodies do now may bring together what find() saw apart: not where they move as they did then, or
   // hardly relative to each other.
   bool may_miss(std::uint32_t i, std::uint32_t k) const {
-    const double changed = skins[i].strayed() + skins[k].strayed();
+    const double changed = i == k ? 2.0 * skins[i].strayed_apart() : skins[i].strayed() + skins[k].strayed();
     const double moved = length(skins[i].drift() - skins[k].drift()) + skins[i].spread() + skins[k].spread();
     return std::min(changed, moved) > margin;
   }

@@ -233,14 +233,17 @@ void Skin::refit(const Body& body, double T, double reach) {
 }
 
 void Skin::sweep(const Body& body, const std::vector<dvec3>& velocity, double T) {
-  double most = 0.0;
+  dvec3 mean(0.0);
+  for (std::size_t v = 0; v < displacement_.size(); ++v) mean += T * (velocity[v] - body.skin_velocity[v]);
+  mean /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
+  strayed_ = strayed_apart_ = 0.0;
   for (std::size_t v = 0; v < displacement_.size(); ++v) {
-    const double strayed = T * length(velocity[v] - body.skin_velocity[v]);
-    most = std::max(most, strayed);
-    vertex_strayed_[v] = static_cast<float>(strayed);
+    const dvec3 strayed = T * (velocity[v] - body.skin_velocity[v]);
+    vertex_strayed_[v] = static_cast<float>(length(strayed));
+    strayed_ = std::max(strayed_, length(strayed));
+    strayed_apart_ = std::max(strayed_apart_, length(strayed - mean));
     displacement_[v] = T * velocity[v];
   }
-  strayed_ = most;
   swept_ = true;
   find_drift();
 }

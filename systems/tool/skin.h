@@ -88,6 +88,7 @@ class Skin {
   // [m] How far sweep() led vertices from where the free motion does, at most: anywhere, in a run as boxes() has it, of
   // a triangle.
   double strayed() const { return strayed_; }
+  double strayed_apart() const { return strayed_apart_; }  // [m] besides what all of them strayed on average
   float strayed(std::size_t level, std::uint32_t i) const { return run_strayed_[level][i]; }
   float strayed(std::uint32_t t) const { return triangle_strayed_[t]; }
   Box whole() const { return boxes_.empty() ? Box() : boxes_.back()[0]; }
@@ -128,7 +129,7 @@ class Skin {
   std::vector<double> curvature_, edge_count_;
   double last_step_ = 0.0;  // [s]
   dvec3 drift_{0};
-  double spread_ = 0.0, strayed_ = 0.0;
+  double spread_ = 0.0, strayed_ = 0.0, strayed_apart_ = 0.0;
   bool swept_ = false;  // boxes are not yet those of the displacements
   std::vector<float> vertex_strayed_, triangle_strayed_;
   std::vector<std::vector<float>> run_strayed_;
