@@ -143,10 +143,16 @@ struct Proximity::Parts {
       if (of_s & 1u << i) try_vertex(a, a.skin.mesh().triangles[s][i], b, t, sweep, of_a);
       if (of_t & 1u << i) try_vertex(b, b.skin.mesh().triangles[t][i], a, s, back, a.index == b.index ? of_a : of_b);
     }
-    if (of_s < 8u || of_t < 8u) return;
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3 && (of_s & 8u << i); ++k)
-        if (of_t & 8u << k) try_edges(a, a.skin.edge_of(s, i), b, b.skin.edge_of(t, k), sweep);
+    // Of two edges one that is live, the other too, unless a sharp one is pressed into something that bends.
+    const unsigned edges_s = of_s | a.skin.supple(s), edges_t = of_t | b.skin.supple(t);
+    if (edges_s < 8u || edges_t < 8u || (of_s < 8u && of_t < 8u)) return;
+    for (int i = 0; i < 3; ++i) {
+      const unsigned bit_s = 8u << i;
+      const unsigned others = of_s & bit_s ? of_t | (a.skin.sharp(s) & bit_s ? b.skin.supple(t) : 0u)
+                                           : (a.skin.supple(s) & bit_s ? b.skin.sharp(t) : 0u);
+      for (int k = 0; k < 3; ++k)
+        if (others & 8u << k) try_edges(a, a.skin.edge_of(s, i), b, b.skin.edge_of(t, k), sweep);
+    }
   }
 
   float box_reach() const { return static_cast<float>(std::max(reach.front, reach.behind)); }

@@ -14,6 +14,7 @@ constexpr double kNearEdges = 2.5;  // [mean edges] along the surface: such neig
 constexpr double kFlat = 0.05;      // [rad] edges between triangles that are nearer to one plane cannot touch
 constexpr double kHollow = 0.98;    // [1] cosine across a hollow edge: sharper ones are touched on their flanks
 constexpr double kSmooth = 0.8;     // [1] cosine between a vertex's normal and its triangles': else it is sharp
+constexpr int kRigid = 6;           // degrees of freedom
 constexpr float kRounding = 4e-7f;  // [1] of coordinates: boxes are single precision
 
 Box grown(const Box& box, float by) {
@@ -32,7 +33,7 @@ dvec3 unit_or_zero(dvec3 n) {
 
 }  // namespace
 
-Skin::Skin(const Body& body) : mesh_(body.skin) {
+Skin::Skin(const Body& body) : mesh_(body.skin), deforms_(body.size() > kRigid) {
   ASSERT(body.skin && body.skin_position.size() >= body.skin->vertex_count);
   find_edges();
   find_shortest();
@@ -361,6 +362,7 @@ void Skin::find_rest_bend() {
 // Depth lost to a flat edge that is left out: at most kFlat / 4 of its length.
 void Skin::find_live_edges() {
   live_ = owned_;
+  sharp_.assign(live_.size(), 0), supple_.assign(live_.size(), 0);
   const double flat = std::cos(kFlat);
   for (std::uint32_t t = 0; t < live_.size(); ++t)
     for (int i = 0; i < 3; ++i) {
@@ -369,8 +371,12 @@ void Skin::find_live_edges() {
       if (edge.triangle[0] == edge.triangle[1]) continue;
       const dvec3 across = position_[edge.opposite[1]] - position_[edge.from];
       const bool convex = dot(normal_[edge.triangle[0]], across) < 0.0;
-      if (!convex || dot(normal_[edge.triangle[0]], normal_[edge.triangle[1]]) > flat)
-        live_[t] = static_cast<std::uint8_t>(live_[t] & ~(8u << i));
+      const double alike = dot(normal_[edge.triangle[0]], normal_[edge.triangle[1]]);
+      const auto bit = static_cast<std::uint8_t>(8u << i);
+      if (convex && alike < kSmooth) sharp_[t] |= bit;
+      if (convex && alike <= flat) continue;
+      live_[t] = static_cast<std::uint8_t>(live_[t] & ~bit);
+      if (deforms_) supple_[t] |= bit;
     }
 }
 

@@ -44,6 +44,10 @@ class Skin {
   // The same for this step, without edges that cannot touch: where their triangles lie in a plane vertices do, in a
   // valley nothing does.
   std::uint8_t live(std::uint32_t triangle) const { return live_[triangle]; }
+  // Edges as in live(), of the same triangles. `sharp`: live, and sharper than 37 degrees. `supple`: not live, but of a
+  // skin that bends round a sharp edge that is pressed into it between its vertices.
+  std::uint8_t sharp(std::uint32_t triangle) const { return sharp_[triangle]; }
+  std::uint8_t supple(std::uint32_t triangle) const { return supple_[triangle]; }
   // [m] at rest: the shortest edge of the triangles around a vertex, beside an edge, of a triangle.
   double shortest_at_vertex(std::uint32_t v) const { return shortest_at_vertex_[v]; }
   double shortest_at_edge(std::uint32_t e) const {
@@ -116,7 +120,8 @@ class Skin {
   const Mesh* mesh_;
   std::vector<SkinEdge> edges_;
   std::vector<std::array<std::uint32_t, 3>> edge_of_;
-  std::vector<std::uint8_t> owned_, live_;
+  std::vector<std::uint8_t> owned_, live_, sharp_, supple_;
+  bool deforms_ = false;
   std::vector<bool> at_border_;
   std::vector<double> shortest_, shortest_at_vertex_;
   std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
