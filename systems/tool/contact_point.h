@@ -27,17 +27,28 @@ struct ContactPoint {
   std::uint64_t key = 0;                     // the same pair of features has the same key in the next step: warm start
   dvec3 impulse{0};                          // [N s] along the axes, on a; of the last solve
   bool sliding = false;
+  bool joined = false;       // thinning would have left it out, but without it the bodies sink in
   std::uint32_t source = 0;  // whatever Proximity finds it by, in this step
 };
 
 // `out` comes in with the last contacts and their impulses: side, axes, impulse and sliding carry over by key.
-// Pairs whose gap may close within a step T [s], by the bodies' skin_velocity, at most `margin` [m] apart at the end:
-// broad phase over bodies and over each skin's boxes, then vertex-triangle and edge-edge pairs. Normals do not flip.
+// Pairs whose gap may close within a step T [s], by the bodies' skin_velocity, at most a margin apart at the end: broad
+// phase over bodies and over each skin's boxes, then vertex-triangle and edge-edge pairs. Normals do not flip.
+// Penetrations are followed as deep as the smaller of two bodies is large.
 class Proximity {
  public:
   explicit Proximity(const std::vector<std::unique_ptr<Body>>& bodies);
   ~Proximity();
+  // Every pair of bodies with the margin of its own size and edges (proximity.cpp: margin_of), so that no body changes
+  // what others feel.
+  void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& out);
+  // All pairs with the same `margin` [m].
   void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, double margin, std::vector<ContactPoint>& out);
+  // What find() did not know of and crosses within the step by the bodies' velocities as they now are: what fell beside
+  // something that has been stopped meets it. Appends to the contacts of this step's find(); returns how many crossings
+  // it saw, those that found no room among the contacts included. Surfaces that yield are left out.
+  std::size_t find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                          std::vector<ContactPoint>& contacts);
   // The same contacts, as find() gave them, where the step will end by the bodies' velocities as they now are
   // (contact_geometry.h: look_again). False: nothing to speak of is different there.
   bool look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts);

@@ -3,6 +3,8 @@
 namespace pliant {
 namespace {
 
+constexpr int kMostRounds = 8;  // in which contacts that a solution brings about join; a round reaches one body further
+
 // The contacts of each body.
 void sort_by_body(const std::vector<ContactPoint>& contacts, std::vector<BodyResponse>& of) {
   for (BodyResponse& response : of) response.contacts.clear();
@@ -154,11 +156,24 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 }
 
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
-                            double beta, const SweepLimits& limits, const Delassus& delassus,
-                            std::vector<ContactPoint>& contacts, ContactProblem& problem) {
+                            double beta, const SweepLimits& limits, Delassus& delassus,
+                            std::vector<ContactPoint>& contacts, ContactProblem& problem, std::uint64_t* crossed) {
   problem.own.clear();
   SweepReport report = solve(problem, limits);
   apply_impulses(bodies, delassus, contacts, problem.impulse);
+  for (int round = 0;; ++round) {
+    keep_impulses(problem, contacts);
+    const std::vector<ContactPoint>::size_type known = contacts.size();
+    const std::size_t missed = proximity.find_missed(bodies, T, contacts);
+    if (round == kMostRounds && crossed) *crossed += missed;
+    if (round == kMostRounds) contacts.resize(known);
+    if (contacts.size() == known) break;
+    Vector applied = Vector::Zero(3 * static_cast<Eigen::Index>(contacts.size()));
+    applied.head(3 * static_cast<Eigen::Index>(known)) = problem.impulse.head(3 * static_cast<Eigen::Index>(known));
+    build_problem(bodies, contacts, T, beta, delassus, problem);
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, contacts, problem.impulse.head(applied.size()) - applied);
+  }
   if (proximity.look_again(bodies, T, contacts)) {
     const Vector first = problem.impulse;
     look_again(contacts, T, beta, delassus, problem);

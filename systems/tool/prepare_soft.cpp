@@ -18,10 +18,6 @@
 namespace pliant {
 namespace {
 
-// Tunables of the margin within which pairs are taken along although they are not about to touch.
-constexpr double kMarginOfEdge = 0.1;  // [1] of the shortest mean edge: less misses what the step's end brings together
-constexpr double kMarginOfBody = 0.01;  // [1] of the smallest body's diagonal, for meshes of few large triangles
-
 std::string name_of(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
   return "body `" + (name ? name->value : fmt::format("entity {}", entity.index)) + "`";
@@ -45,7 +41,7 @@ void add_soft(const World& world, SoftState& soft) {
                                                  pose_of(world, entity));
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
-    state->self_collides = handle != nullptr;  // fingers pinch; a lump does not
+    state->self_collides = true;  // fingers pinch, a strip folds
     add(soft, entity, std::move(state));
   }
 }
@@ -107,15 +103,6 @@ void add_yielding(const World& world, SoftState& soft) {
   }
 }
 
-double margin(const SoftState& soft) {
-  double smallest = std::numeric_limits<double>::max();
-  for (const std::uint32_t i : soft.moving) {
-    const Mesh& mesh = *soft.bodies[i]->skin;
-    smallest = std::min({smallest, kMarginOfEdge * mesh.mean_edge, kMarginOfBody * mesh.box.diagonal()});
-  }
-  return smallest;
-}
-
 // Everything of the size that it will have.
 SoftSnapshot first_snapshot(const SoftState& soft) {
   SoftSnapshot snapshot;
@@ -167,7 +154,6 @@ Status prepare_soft(World& world) {
   if (!(T > 0.0 && T <= 1.0))
     return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s; give more than 0 and at most 1 s", T)};
   if (world.touch->presses) add_yielding(world, *soft);  // probes press them by themselves
-  soft->margin = margin(*soft);
   settle_tools(world, *soft);
   soft->proximity = std::make_unique<Proximity>(soft->bodies);
   world.soft_snapshots = std::make_unique<TripleBuffer<SoftSnapshot>>(first_snapshot(*soft));

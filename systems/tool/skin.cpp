@@ -14,6 +14,7 @@ constexpr double kNearEdges = 2.5;  // [mean edges] along the surface: such neig
 constexpr double kFlat = 0.05;      // [rad] edges between triangles that are nearer to one plane cannot touch
 constexpr double kHollow = 0.98;    // [1] cosine across a hollow edge: sharper ones are touched on their flanks
 constexpr double kSmooth = 0.8;     // [1] cosine between a vertex's normal and its triangles': else it is sharp
+constexpr int kRigid = 6;           // degrees of freedom
 constexpr float kRounding = 4e-7f;  // [1] of coordinates: boxes are single precision
 
 Box grown(const Box& box, float by) {
@@ -32,7 +33,7 @@ dvec3 unit_or_zero(dvec3 n) {
 
 }  // namespace
 
-Skin::Skin(const Body& body) : mesh_(body.skin) {
+Skin::Skin(const Body& body) : mesh_(body.skin), deforms_(body.size() > kRigid) {
   ASSERT(body.skin && body.skin_position.size() >= body.skin->vertex_count);
   find_edges();
   find_shortest();
@@ -51,7 +52,12 @@ Skin::Skin(const Body& body) : mesh_(body.skin) {
   std::fill(position_.begin(), position_.end(), dvec3(0.0));
   triangle_box_.resize(mesh_->triangles.size());
   vertex_box_.resize(mesh_->vertex_count);
-  for (const std::vector<Box>& level : mesh_->tree.levels) boxes_.emplace_back(level.size());
+  vertex_strayed_.resize(mesh_->vertex_count);
+  triangle_strayed_.resize(mesh_->triangles.size());
+  for (const std::vector<Box>& level : mesh_->tree.levels) {
+    boxes_.emplace_back(level.size());
+    run_strayed_.emplace_back(level.size());
+  }
   normal_boxes_ = boxes_;
 }
 
@@ -210,22 +216,64 @@ void Skin::refit(const Body& body, double T, double reach) {
                                                      [](const dvec3& v) { return v == dvec3(0); });
   const bool same = std::equal(position_.begin(), position_.end(), body.skin_position.begin());
   if (still && still_ && same && reach == reach_ && !foretold_) return;
+  swept_ = false;
   still_ = still && same, foretold_ = false;  // a body that has just stopped is foretold to go on, once
   const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
   last_step_ = T;
-  drift_ = dvec3(0.0);
   for (std::uint32_t v = 0; v < count; ++v) {
     const dvec3 went = body.skin_position[v] - position_[v];
     position_[v] = body.skin_position[v];
     ahead_[v] = position_[v] + again * went;
     displacement_[v] = T * body.skin_velocity[v];
-    drift_ += displacement_[v];
   }
-  drift_ /= static_cast<double>(std::max(count, 1u));
+  find_drift();
   find_normals();
   find_curvatures();
   find_live_edges();
   fit_boxes(reach);
+}
+
+void Skin::sweep(const Body& body, const std::vector<dvec3>& velocity, double T) {
+  dvec3 mean(0.0);
+  for (std::size_t v = 0; v < displacement_.size(); ++v) mean += T * (velocity[v] - body.skin_velocity[v]);
+  mean /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
+  strayed_ = strayed_apart_ = 0.0;
+  for (std::size_t v = 0; v < displacement_.size(); ++v) {
+    const dvec3 strayed = T * (velocity[v] - body.skin_velocity[v]);
+    vertex_strayed_[v] = static_cast<float>(length(strayed));
+    strayed_ = std::max(strayed_, length(strayed));
+    strayed_apart_ = std::max(strayed_apart_, length(strayed - mean));
+    displacement_[v] = T * velocity[v];
+  }
+  swept_ = true;
+  find_drift();
+}
+
+void Skin::fit_swept() {
+  if (!swept_) return;
+  swept_ = false;
+  fit_boxes(reach_);
+  for (std::uint32_t t = 0; t < triangle_strayed_.size(); ++t) {
+    const uvec3 c = mesh_->triangles[t];
+    triangle_strayed_[t] = std::max({vertex_strayed_[c.x], vertex_strayed_[c.y], vertex_strayed_[c.z]});
+  }
+  const std::vector<float>* below = &triangle_strayed_;
+  for (std::size_t level = 0; level < run_strayed_.size(); ++level) {
+    const std::uint32_t width = level == 0 ? kLeafSize : kTreeWidth;
+    std::vector<float>& runs = run_strayed_[level];
+    std::fill(runs.begin(), runs.end(), 0.0f);
+    for (std::size_t k = 0; k < below->size(); ++k) runs[k / width] = std::max(runs[k / width], (*below)[k]);
+    below = &runs;
+  }
+}
+
+void Skin::find_drift() {
+  drift_ = dvec3(0.0);
+  for (const dvec3& d : displacement_) drift_ += d;
+  drift_ /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
+  double most = 0.0;
+  for (const dvec3& d : displacement_) most = std::max(most, dot(d - drift_, d - drift_));
+  spread_ = std::sqrt(most);
 }
 
 void Skin::find_normals() {
@@ -314,6 +362,7 @@ void Skin::find_rest_bend() {
 // Depth lost to a flat edge that is left out: at most kFlat / 4 of its length.
 void Skin::find_live_edges() {
   live_ = owned_;
+  sharp_.assign(live_.size(), 0), supple_.assign(live_.size(), 0);
   const double flat = std::cos(kFlat);
   for (std::uint32_t t = 0; t < live_.size(); ++t)
     for (int i = 0; i < 3; ++i) {
@@ -322,8 +371,12 @@ void Skin::find_live_edges() {
       if (edge.triangle[0] == edge.triangle[1]) continue;
       const dvec3 across = position_[edge.opposite[1]] - position_[edge.from];
       const bool convex = dot(normal_[edge.triangle[0]], across) < 0.0;
-      if (!convex || dot(normal_[edge.triangle[0]], normal_[edge.triangle[1]]) > flat)
-        live_[t] = static_cast<std::uint8_t>(live_[t] & ~(8u << i));
+      const double alike = dot(normal_[edge.triangle[0]], normal_[edge.triangle[1]]);
+      const auto bit = static_cast<std::uint8_t>(8u << i);
+      if (convex && alike < kSmooth) sharp_[t] |= bit;
+      if (convex && alike <= flat) continue;
+      live_[t] = static_cast<std::uint8_t>(live_[t] & ~bit);
+      if (deforms_) supple_[t] |= bit;
     }
 }
 

@@ -29,6 +29,11 @@ class Skin {
   // what they have.
   void refit(const Body& body, double T, double reach);
 
+  // The same step once more, with `velocity` [m/s, per vertex] instead of the body's free one: displacements. Boxes
+  // follow with fit_swept(), which does nothing where they already have.
+  void sweep(const Body& body, const std::vector<dvec3>& velocity, double T);
+  void fit_swept();
+
   // --- Topology
   const Mesh& mesh() const { return *mesh_; }
   const std::vector<SkinEdge>& edges() const { return edges_; }
@@ -39,6 +44,10 @@ class Skin {
   // The same for this step, without edges that cannot touch: where their triangles lie in a plane vertices do, in a
   // valley nothing does.
   std::uint8_t live(std::uint32_t triangle) const { return live_[triangle]; }
+  // Edges as in live(), of the same triangles. `sharp`: live, and sharper than 37 degrees. `supple`: not live, but of a
+  // skin that bends round a sharp edge that is pressed into it between its vertices.
+  std::uint8_t sharp(std::uint32_t triangle) const { return sharp_[triangle]; }
+  std::uint8_t supple(std::uint32_t triangle) const { return supple_[triangle]; }
   // [m] at rest: the shortest edge of the triangles around a vertex, beside an edge, of a triangle.
   double shortest_at_vertex(std::uint32_t v) const { return shortest_at_vertex_[v]; }
   double shortest_at_edge(std::uint32_t e) const {
@@ -75,10 +84,18 @@ class Skin {
     std::vector<dmat3> bend;  // [1/m] per vertex: the normal turns by bend dx along the surface; symmetric
   };
   const Shape& rest() const { return rest_; }
-  dmat3 turn(std::uint32_t t) const;      // of a triangle, from where it rests
-  dvec3 drift() const { return drift_; }  // [m] mean displacement; boxes hold what moves besides
+  dmat3 turn(std::uint32_t t) const;         // of a triangle, from where it rests
+  dvec3 drift() const { return drift_; }     // [m] mean displacement; boxes hold what moves besides
+  double spread() const { return spread_; }  // [m] how far a vertex's displacement is from the mean at most
   // Of triangle runs as in Mesh::tree, level 0 the leaves.
   const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
+  // [m] How far sweep() led vertices from where the free motion does, at most: anywhere, in a run as boxes() has it, of
+  // a triangle.
+  double strayed() const { return strayed_; }
+  double strayed_apart() const { return strayed_apart_; }  // [m] besides what all of them strayed on average
+  float strayed(std::size_t level, std::uint32_t i) const { return run_strayed_[level][i]; }
+  float strayed(std::uint32_t t) const { return triangle_strayed_[t]; }
+  Box whole() const { return boxes_.empty() ? Box() : boxes_.back()[0]; }
   const Box& box(std::uint32_t t) const { return triangle_box_[t]; }
   const Box& vertex_box(std::uint32_t v) const { return vertex_box_[v]; }  // without reach
   // Of the same runs: all outward normals of their triangles, vertices and edges.
@@ -94,6 +111,7 @@ class Skin {
   void find_shortest();
   void find_neighbours(double distance);
   void fit_boxes(double reach);
+  void find_drift();
   void find_normals();
   void find_curvatures();
   void find_rest_bend();
@@ -102,7 +120,8 @@ class Skin {
   const Mesh* mesh_;
   std::vector<SkinEdge> edges_;
   std::vector<std::array<std::uint32_t, 3>> edge_of_;
-  std::vector<std::uint8_t> owned_, live_;
+  std::vector<std::uint8_t> owned_, live_, sharp_, supple_;
+  bool deforms_ = false;
   std::vector<bool> at_border_;
   std::vector<double> shortest_, shortest_at_vertex_;
   std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
@@ -115,6 +134,10 @@ class Skin {
   std::vector<double> curvature_, edge_count_;
   double last_step_ = 0.0;  // [s]
   dvec3 drift_{0};
+  double spread_ = 0.0, strayed_ = 0.0, strayed_apart_ = 0.0;
+  bool swept_ = false;  // boxes are not yet those of the displacements
+  std::vector<float> vertex_strayed_, triangle_strayed_;
+  std::vector<std::vector<float>> run_strayed_;
   double reach_ = -1.0;
   bool still_ = false;     // nothing moved in the last step
   bool foretold_ = false;  // normals are those of ahead()

@@ -11,10 +11,12 @@ namespace pliant {
 struct RelativeSweep {
   vec3 low{0}, high{0};  // [m]
   RelativeSweep() = default;
-  RelativeSweep(const Skin& a, const Skin& b) {
+  explicit RelativeSweep(float reach) : low(-reach), high(reach) {}
+  // `reach` [m]: boxes that come so near to each other meet.
+  RelativeSweep(const Skin& a, const Skin& b, float reach = 0.0f) {
     const vec3 d(a.drift() - b.drift());
-    low = glm::min(d, vec3(0.0f));
-    high = glm::max(d, vec3(0.0f));
+    low = glm::min(d, vec3(0.0f)) - reach;
+    high = glm::max(d, vec3(0.0f)) + reach;
   }
   RelativeSweep reversed() const {
     RelativeSweep r;
@@ -43,6 +45,7 @@ struct PairWalk {
   const Skin& a;
   const Skin& b;
   const RelativeSweep sweep;
+  const float strayed;  // [m] two runs must have strayed by more than this together (Skin::strayed)
   Use& use;
 
   static std::uint32_t width(std::size_t level) { return level == 0 ? kLeafSize : kTreeWidth; }
@@ -58,6 +61,7 @@ struct PairWalk {
   }
 
   void across(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
+    if (a.strayed(la, ia) + b.strayed(lb, ib) <= strayed) return;
     if (!sweep.meet(box(a, la, ia), box(b, lb, ib)) || !facing(la, ia, lb, ib)) return;
     if (la == 0 && lb == 0) return leaves(ia, ib);
     if (la >= lb) {
@@ -69,15 +73,15 @@ struct PairWalk {
   void leaves(std::uint32_t ia, std::uint32_t ib) const {
     for (std::uint32_t s = ia * kLeafSize; s < end(a, 0, ia); ++s)
       for (std::uint32_t t = ib * kLeafSize; t < end(b, 0, ib); ++t)
-        if (sweep.meet(a.box(s), b.box(t))) use(s, t);
+        if (a.strayed(s) + b.strayed(t) > strayed && sweep.meet(a.box(s), b.box(t))) use(s, t);
   }
   // Of one skin with itself: every unordered pair of different triangles once.
   void within(std::size_t level, std::uint32_t i) const {
-    if (!facing(level, i, level, i)) return;
+    if (2.0f * a.strayed(level, i) <= strayed || !facing(level, i, level, i)) return;
     if (level == 0) {
       for (std::uint32_t s = i * kLeafSize; s < end(a, 0, i); ++s)
         for (std::uint32_t t = s + 1; t < end(a, 0, i); ++t)
-          if (sweep.meet(a.box(s), a.box(t))) use(s, t);
+          if (a.strayed(s) + a.strayed(t) > strayed && sweep.meet(a.box(s), a.box(t))) use(s, t);
       return;
     }
     for (std::uint32_t k = i * kTreeWidth; k < end(a, level, i); ++k) {
@@ -89,18 +93,19 @@ struct PairWalk {
 
 }  // namespace detail
 
-// use(triangle of a, triangle of b)
+// use(triangle of a, triangle of b). Boxes meet from `reach` [m] on, besides what they were grown by;
+// triangles that have strayed by no more than `strayed` [m] together are left out.
 template <class Use>
-void for_each_pair(const Skin& a, const Skin& b, Use use) {
+void for_each_pair(const Skin& a, const Skin& b, Use use, float reach = 0.0f, float strayed = -1.0f) {
   if (a.boxes().empty() || b.boxes().empty()) return;
-  const detail::PairWalk<Use> walk{a, b, RelativeSweep(a, b), use};
+  const detail::PairWalk<Use> walk{a, b, RelativeSweep(a, b, reach), strayed, use};
   walk.across(a.boxes().size() - 1, 0, b.boxes().size() - 1, 0);
 }
 // use(triangle, other triangle), each unordered pair once
 template <class Use>
-void for_each_pair_within(const Skin& skin, Use use) {
+void for_each_pair_within(const Skin& skin, Use use, float reach = 0.0f, float strayed = -1.0f) {
   if (skin.boxes().empty()) return;
-  const detail::PairWalk<Use> walk{skin, skin, RelativeSweep(), use};
+  const detail::PairWalk<Use> walk{skin, skin, RelativeSweep(reach), strayed, use};
   walk.within(skin.boxes().size() - 1, 0);
 }
 

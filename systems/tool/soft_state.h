@@ -28,6 +28,7 @@ struct SoftTally {
   std::uint64_t unconverged = 0;   // steps whose contacts ended above the stated residual
   double residual = 0.0;           // [m/s] the largest that a step ended with
   double deepest = 0.0;            // [m] >= 0: the deepest penetration that a step began with
+  std::uint64_t crossed = 0;       // crossings that a step's last solution still made, summed over the steps
 };
 
 struct SoftState {
@@ -41,7 +42,6 @@ struct SoftState {
   SweepReport report;
   SoftTally tally;
   SoftTimes times;
-  double margin = 1e-3;       // [m] proximity margin, sized from the level
   std::uint64_t steps = 0;    // done
   std::uint64_t began = 0;    // [ns] of the step under way
   std::uint32_t dropped = 0;  // DroppedBit, the soft clock's own

@@ -59,9 +59,10 @@ void find_contacts(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
-  soft.proximity->find(soft.bodies, tick.dt, soft.margin, soft.contacts);
+  soft.proximity->find(soft.bodies, tick.dt, soft.contacts);
   leave_out_failed(soft);
   for (const std::uint32_t i : soft.yielding) soft.surface(i).place(soft.contacts, i, tick.dt);
+  for (const ContactPoint& contact : soft.contacts) soft.tally.deepest = std::max(soft.tally.deepest, contact.depth);
   soft.times.proximity = ms_since(begin);
 }
 
@@ -73,7 +74,7 @@ void solve_contacts(World& world, Tick tick) {
   soft.times.delassus = ms_since(begin);
   const std::uint64_t built = now_ns();
   soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, kPenetrationShare, kSweeps, soft.delassus,
-                                soft.contacts, soft.problem);
+                                soft.contacts, soft.problem, &soft.tally.crossed);
   soft.times.sweeps = ms_since(built);
   stop_non_finite(soft);
 }

@@ -1,6 +1,8 @@
 // The soft step's order of things for tests of contact alone: free motion, contacts, impulses, motion.
 #pragma once
 
+#include <optional>
+
 #include "systems/tool/delassus.h"
 #include "systems/tool/rigid_state.h"
 
@@ -14,10 +16,10 @@ struct ContactLoop {
   ContactProblem problem;
   SweepReport report;
   SweepLimits limits{.sweeps = 200, .tolerance = 1e-8};
-  dvec3 gravity{0, -9.81, 0};  // [m/s2]
-  double margin = 1e-3;        // [m]
-  double beta = 0.15;          // [1]
-  double last = 0.0;           // [s] length of the last step
+  dvec3 gravity{0, -9.81, 0};           // [m/s2]
+  std::optional<double> margin = 1e-3;  // [m] of all pairs; none: of each its own
+  double beta = 0.15;                   // [1]
+  double last = 0.0;                    // [s] length of the last step
 
   template <class Kind, class... Args>
   Kind& add(Args&&... args) {
@@ -31,7 +33,10 @@ struct ContactLoop {
     last = T;
     if (!proximity) proximity = std::make_unique<Proximity>(bodies);
     for (auto& body : bodies) body->free_step(T, gravity);
-    proximity->find(bodies, T, margin, contacts);
+    if (margin)
+      proximity->find(bodies, T, *margin, contacts);
+    else
+      proximity->find(bodies, T, contacts);
     build_problem(bodies, contacts, T, beta, delassus, problem);
     report = solve_and_apply(bodies, *proximity, T, beta, limits, delassus, contacts, problem);
     for (auto& body : bodies) body->advance(T);
