@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 
 // Looser, and stacks and grips creep: 1e-6 of what a step's gravity gives is 0.2 um/s.
-constexpr SweepLimits kSweeps{.sweeps = 400, .tolerance = 1e-6, .newtons = 60};
+constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 
 double ms_since(std::uint64_t begin) {
   return static_cast<double>(now_ns() - begin) * 1e-6;

@@ -22,7 +22,7 @@ namespace {
 using test::ContactLoop;
 
 constexpr double kT = 1.0 / 60.0, kG = 9.81;  // [s], [m/s2]
-constexpr SweepLimits kStep{.sweeps = 400, .tolerance = 1e-6, .newtons = 60};
+constexpr SweepLimits kStep{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 constexpr SweepLimits kNewton{.sweeps = 400, .tolerance = 1e-10, .newtons = 60};
 constexpr SweepLimits kReference{.sweeps = 200000, .tolerance = 1e-12};
 
@@ -323,14 +323,16 @@ TEST(ContactIslands, ASparseOperatorIsWhatImpulsesDo) {
   EXPECT_LT((moved() - before - w * impulse).norm(), 1e-10 * (w * impulse).norm());
 }
 
-TEST(ContactIslands, AWallStandsHoweverManyBlocksItHas) {
+// Too many unknowns for Newton steps: sweeps alone, which are as cheap as the operator is sparse.
+TEST(ContactIslands, AWallStandsAndItsFloorCarriesItsWeight) {
   Pile pile = wall(4, 8);
+  pile.loop.limits.sweeps = 2000;
   pile.run(0.5);
   double floor = 0.0;
   for (std::uint32_t i = 1; i <= 8; ++i) floor += pile.loop.force(i, 0).y;
   const double weight = 30 * 0.5 * kG;
   EXPECT_NEAR(floor, weight, 1e-5 * weight);
-  EXPECT_LT(pile.worst, 1e-3 * kG * kT);
+  EXPECT_EQ(pile.unsettled, 0);
 }
 
 TEST(ContactBudget, CutsWhatCarriesLeastAndCountsIt) {
