@@ -87,6 +87,8 @@ class Body {
   virtual void move_skin(std::vector<dvec3>& out) const { out.assign(skin_position.size(), dvec3(0)); }
   // x += T v; refreshes skin_position.
   virtual void advance(double T) = 0;
+  // Its contacts have a compliance of their own, though nothing of it moves.
+  virtual bool yields() const { return false; }
   // Yielding surfaces: w += compliance [m/(N s)... per T] between contacts on this body; rows 3 * contact.
   struct Side {
     int contact;  // which contact: rows 3 * contact ...

@@ -81,19 +81,14 @@ void thin_contacts(std::vector<Candidate>& candidates, const ThinningLimits& lim
   std::sort(candidates.begin(), candidates.end(),
             [&](const Candidate& x, const Candidate& y) { return order(x) < order(y); });
 
-  // Sorted so, every pair is a run. All spacings grow together until the total fits, too.
-  for (double wider = 1.0; wider < kWidest; wider *= kGrowth) {
-    Run kept = candidates.begin();
-    for (Run first = candidates.begin(); first != candidates.end();) {
-      const Run last = std::find_if(first, candidates.end(), [&](const auto& c) { return !same_pair(c, *first); });
-      const Run end = thin_pair(first, last, {wider * limits.spacing}, limits.most_of_pair);
-      kept = kept == first ? end : std::move(first, end, kept);
-      first = last;
-    }
-    candidates.erase(kept, candidates.end());
-    if (candidates.size() <= limits.most) break;
+  Run kept = candidates.begin();
+  for (Run first = candidates.begin(); first != candidates.end();) {  // sorted so, every pair is a run
+    const Run last = std::find_if(first, candidates.end(), [&](const auto& c) { return !same_pair(c, *first); });
+    const Run end = thin_pair(first, last, {limits.spacing}, limits.most_of_pair);
+    kept = kept == first ? end : std::move(first, end, kept);
+    first = last;
   }
-  if (candidates.size() > limits.most) candidates.resize(limits.most);
+  candidates.erase(kept, candidates.end());
 }
 
 }  // namespace pliant

@@ -24,11 +24,11 @@ struct Candidate {
 struct ThinningLimits {
   double spacing = 0.2;           // [edges] contacts of alike normals nearer than this are one
   std::size_t most_of_pair = 60;  // of two bodies: the spacing grows until no more are left
-  std::size_t most = 200;         // of all
 };
 
 // Leaves those to keep: deepest first, those of the last step preferred; what lies within `spacing` of one that is kept
-// is dropped. The order depends on nothing but the candidates.
+// is dropped. Each pair by itself: what other bodies do changes nothing. The order depends on nothing but the
+// candidates.
 void thin_contacts(std::vector<Candidate>& candidates, const ThinningLimits& limits);
 
 }  // namespace pliant

@@ -21,10 +21,11 @@ struct BodyResponse {
 // Kept from step to step for its memory. Valid from build_problem to the bodies' next free_step.
 struct Delassus {
   std::vector<BodyResponse> of;  // per body
-  Eigen::MatrixXd compliance;    // of yielding bodies
+  Eigen::MatrixXd compliance;    // of yielding bodies, three rows a contact; empty: there are none
 };
 
-// After every body's free_step. Penetrations are worked off by the share `beta` [1] a step (0.1-0.2), so that they add
+// After every body's free_step. Contacts that do not move each other become parts of the problem (contact_islands.h).
+// Penetrations are worked off by the share `beta` [1] a step (0.1-0.2), so that they add
 // no energy worth the name; what a yielding body gives is its own law and is asked for whole. Warm impulses, sliding
 // flags and friction come from the contacts.
 void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,

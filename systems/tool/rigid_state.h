@@ -72,6 +72,7 @@ class FixedBody : public ImmovableBody {
 
   void free_step(double T, dvec3 gravity) override;
   void advance(double T) override;
+  bool yields() const override { return compliance > 0.0; }
   void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
   void show(SoftObjectSnapshot& out) const override;
   const Pose& pose() const { return pose_; }

@@ -41,6 +41,7 @@ class YieldingBody final : public ImmovableBody {
 
   void free_step(double, dvec3) override {}  // a surface without inertia has no motion of its own
   void advance(double) override {}
+  bool yields() const override { return true; }
   void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
   void show(SoftObjectSnapshot&) const override {}
 

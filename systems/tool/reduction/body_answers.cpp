@@ -15,7 +15,7 @@ void shake(const ToolContacts& contacts, BodyAnswers& out) {
   double softest = 0.0;
   for (const int i : out.local) {
     const int row = 3 * contacts.in_step(i);
-    softest = std::max(softest, problem.W(row, row));
+    softest = std::max(softest, problem.diagonal(row));
   }
   out.shaken.setZero(tool.size(), 6 * kShakes);
   out.shaken_answers.setZero(tool.size(), 6 * kShakes);
