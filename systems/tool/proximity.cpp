@@ -24,12 +24,11 @@ constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a fur
 constexpr std::uint32_t kMostOfVertex = 3;
 constexpr double kSlender = 2.0;  // [1] of a mean edge to the shortest one there: beyond, the shortest one counts
 constexpr double kComing = 1e-3;  // [margins] in a step: slower, and it does not go into a sheet but lies in it
-constexpr double kDeepestWithin = 10.0;     // [margins] no penetration of a body into itself is followed farther
-constexpr double kDeeper = 1.5;             // [1] of a penetration: it may be so much deeper in the next step
-constexpr std::size_t kMostContacts = 400;  // with those that join
-constexpr double kRises = 0.95;             // [1] of a penetration: what is left of it where it is being pushed out
-constexpr double kGraze = 0.3;              // [margins] what crosses by less is left to the next step
-constexpr double kSunk = 0.1;               // [margins] what thinning left out joins where it is deeper and stays so
+constexpr double kDeepestWithin = 10.0;  // [margins] no penetration of a body into itself is followed farther
+constexpr double kDeeper = 1.5;
+constexpr double kRises = 0.95;  // [1] of a penetration: what is left of it where it is being pushed out
+constexpr double kGraze = 0.3;   // [margins] what crosses by less is left to the next step
+constexpr double kSunk = 0.1;    // [margins] what thinning left out joins where it is deeper and stays so
 
 // Tunables of the margin within which pairs are taken along although they are not about to touch.
 constexpr double kMarginOfEdge = 0.1;   // [1] of a mean edge: less misses what the step's end brings together
@@ -449,7 +448,7 @@ struct Proximity::Parts {
     std::sort(kept.begin(), kept.end());
     for (const Candidate& c : thinned) {
       const ContactPoint* last = found[c.source].last;
-      if (candidates.size() >= kMostContacts || !last || !last->joined || !(last->impulse.x > 0.0)) continue;
+      if (!last || !last->joined || !(last->impulse.x > 0.0)) continue;
       if (!std::binary_search(kept.begin(), kept.end(), c.key)) candidates.push_back(c);
     }
   }
@@ -525,9 +524,7 @@ struct Proximity::Parts {
     take_sinking(contacts);
     thinned.insert(thinned.end(), crossing.begin(), crossing.end());
     const std::size_t missed = candidates.size();
-    ThinningLimits limits;
-    limits.most = kMostContacts - std::min(kMostContacts, contacts.size());
-    thin_contacts(candidates, limits);
+    thin_contacts(candidates, {});
     for (const Candidate& c : candidates) contacts.push_back(contact_of(bodies, c));
     return missed;
   }
