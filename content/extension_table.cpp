@@ -249,8 +249,8 @@ std::vector<Key> handle_keys() {
   using H = Handle6;
   const auto h = [](auto member) { return at(&LevelNode::handle, member); };
   std::vector<Key> keys;
-  keys.push_back(
-      box("box", h(&H::box), "which part is rigid: a box in the object frame; left out: the attribute _HANDLE"));
+  keys.push_back(box("box", h(&H::box),
+                     "which part of a soft body is rigid: a box in the object frame; left out: the attribute _HANDLE"));
   keys.push_back(choice("attachment", {"spring", "slave"}, h(&H::attachment), "how flesh is held to the handle"));
   keys.push_back(
       pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
@@ -363,8 +363,9 @@ std::vector<Extension> make_table() {
   table.push_back(
       extension("soft_body", "The node's mesh is flesh with inertia.", &LevelNode::soft_body, soft_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->soft_body); };
-  table.push_back(
-      extension("handle", "The rigid part that a person holds a soft body by.", &LevelNode::handle, handle_keys()));
+  table.push_back(extension("handle",
+                            "What a person holds a soft body by, its rigid part, or a rigid one, the whole of it.",
+                            &LevelNode::handle, handle_keys()));
   table.push_back(extension("rigid_body", "The node's mesh is rigid.", &LevelNode::rigid_body, rigid_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->rigid_body); };
   table.push_back(extension("motion", "How an animation or a script carries the node, and all below it.",

@@ -94,6 +94,9 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene) continue;
     const std::string pointer = pointer_of(level, i);
+    if (node.handle && node.rigid_body && !node.soft_body && !node.handle->box.empty())
+      findings.push_back({Severity::kWarning, pointer,
+                          "PLIANT_handle/box has no effect on a rigid body, all of which is its handle; remove it"});
     if (const std::string fault = soft_fault(node); !fault.empty())
       findings.push_back({Severity::kError, pointer, fault});
     if (!node.soft_body || node.soft_body->mesh.empty()) continue;

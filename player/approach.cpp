@@ -71,7 +71,10 @@ std::optional<Miss> find_miss(const World& world, const Approach& approach, doub
 
 std::string explain_miss(const std::string& probe, const std::optional<Miss>& miss) {
   if (!miss)
-    return "probe `" + probe + "` never touched anything: the level has no surface that gives way (PLIANT_deformable)";
+    return "probe `" + probe +
+           "` never touched anything: the level has no surface that gives way (PLIANT_deformable), and no soft or "
+           "rigid "
+           "body came in its way; lead it to one";
   if (miss->behind)
     return fmt::format(
         "probe `{}` never touched anything, although it was behind the surface of `{}`: it came through its back, or "

@@ -44,6 +44,8 @@ BodyJournal::BodyJournal(const World& world, std::size_t steps)
     : soft_(*world.soft), recorder_(std::min(kMostRows, std::max<std::size_t>(steps * world.soft->moving.size(), 1))) {
   for (const std::uint32_t index : soft_.moving) {
     const Body& body = *soft_.bodies[index];
+    if (body.kind == BodyKind::kProbe) continue;  // forces.csv says where it is
+    index_.push_back(index);
     const Pose* pose = world.registry.find<Pose>(body.entity);
     bodies_.push_back(body.entity);
     rotation_.push_back(pose ? pose->rotation : dquat(1, 0, 0, 0));
@@ -55,10 +57,10 @@ BodyJournal::BodyJournal(const World& world, std::size_t steps)
     for (dvec3& node : rest_.back()) node -= centre;
   }
   for (std::uint32_t i = 0; i < soft_.bodies.size(); ++i) {
-    const auto* soft = dynamic_cast<const SoftBodyState*>(soft_.bodies[i].get());
-    if (!soft || !soft->has_handle()) continue;
+    const auto* tool = dynamic_cast<const ToolBody*>(soft_.bodies[i].get());
+    if (!tool || !tool->has_handle()) continue;
     tools_.push_back(std::make_unique<Tool>());
-    tools_.back()->entity = soft->entity;
+    tools_.back()->entity = tool->entity;
     tools_.back()->body = i;
     tools_.back()->now.resize(soft_.bodies.size());
     tools_.back()->ever.resize(soft_.bodies.size());
@@ -72,13 +74,14 @@ void BodyJournal::note(std::uint64_t step, double time) {
 
 void BodyJournal::note_bodies(std::uint64_t step, double time) {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-    const Body& body = *soft_.bodies[soft_.moving[i]];
+    const Body& body = *soft_.bodies[index_[i]];
     Pose pose;
-    if (const auto* rigid = dynamic_cast<const RigidState*>(&body)) {
+    if (const auto* rigid = dynamic_cast<const RigidState*>(&body))
       pose = rigid->pose();
-    } else if (const auto* soft = dynamic_cast<const SoftBodyState*>(&body)) {
-      pose = soft->has_handle() ? soft->handle().object_pose() : mean_pose(soft->flesh(), rest_[i], rotation_[i]);
-    }
+    else if (const auto* tool = dynamic_cast<const ToolBody*>(&body); tool && tool->has_handle())
+      pose = tool->handle().object_pose();
+    else if (const auto* soft = dynamic_cast<const SoftBodyState*>(&body))
+      pose = mean_pose(soft->flesh(), rest_[i], rotation_[i]);
     rotation_[i] = pose.rotation;
     recorder_.record({step, time, i, pose.position, pose.rotation});
   }
@@ -87,12 +90,16 @@ void BodyJournal::note_bodies(std::uint64_t step, double time) {
 void BodyJournal::note_touch() {
   for (const std::unique_ptr<Tool>& tool : tools_) {
     std::fill(tool->now.begin(), tool->now.end(), std::uint8_t{0});
+    double hardest = 0.0;
+    std::uint32_t pressed_most = kNone;
     for (const ContactPoint& contact : soft_.contacts) {
       const bool pressed = contact.impulse.x > 0.0 && contact.body_a != contact.body_b;
       if (!pressed || (contact.body_a != tool->body && contact.body_b != tool->body)) continue;
       const std::uint32_t other = contact.body_a == tool->body ? contact.body_b : contact.body_a;
       tool->now[other] = tool->ever[other] = 1;
+      if (contact.impulse.x > hardest) hardest = contact.impulse.x, pressed_most = other;
     }
+    tool->hardest.store(pressed_most, std::memory_order_relaxed);
     tool->count.store(static_cast<std::uint32_t>(std::count(tool->now.begin(), tool->now.end(), 1)),
                       std::memory_order_relaxed);
   }
@@ -102,6 +109,15 @@ std::uint32_t BodyJournal::touching(Entity tool) const {
   for (const std::unique_ptr<Tool>& each : tools_)
     if (each->entity == tool) return each->count.load(std::memory_order_relaxed);
   return 0;
+}
+
+Entity BodyJournal::touches_most(Entity tool) const {
+  for (const std::unique_ptr<Tool>& each : tools_) {
+    if (!(each->entity == tool)) continue;
+    const std::uint32_t body = each->hardest.load(std::memory_order_relaxed);
+    return body == kNone ? kNoEntity : soft_.bodies[body]->entity;
+  }
+  return kNoEntity;
 }
 
 std::vector<Entity> BodyJournal::touched(Entity tool) const {

@@ -24,7 +24,8 @@ struct BodyRow {
 
 class BodyJournal {
  public:
-  // Every moving body and every tool of a prepared world with World::soft. Holds `steps` steps' rows until drained.
+  // Every moving body, tool and probe among bodies of a prepared world with World::soft. Holds `steps` steps' rows
+  // until drained.
   BodyJournal(const World& world, std::size_t steps);
 
   void note(std::uint64_t step, double time);
@@ -34,22 +35,27 @@ class BodyJournal {
   std::uint64_t lost() const { return recorder_.lost(); }
   // How many objects other than itself this tool pressed on in the last step; 0 of what is no tool. From any thread.
   std::uint32_t touching(Entity tool) const;
+  // The one with the strongest contact of them, or kNoEntity. From any thread.
+  Entity touches_most(Entity tool) const;
   // What this tool has pressed on since the start. Valid while the soft clock stands still.
   std::vector<Entity> touched(Entity tool) const;
 
  private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
   struct Tool {
     Entity entity;
     std::uint32_t body = 0;          // into SoftState::bodies
     std::vector<std::uint8_t> now;   // of each body: pressed on in the last step
     std::vector<std::uint8_t> ever;  // since the start
     std::atomic<std::uint32_t> count{0};
+    std::atomic<std::uint32_t> hardest{kNone};
   };
   void note_bodies(std::uint64_t step, double time);
   void note_touch();
 
   const SoftState& soft_;
   std::vector<Entity> bodies_;
+  std::vector<std::uint32_t> index_;      // into SoftState::bodies, of each
   std::vector<dquat> rotation_;           // the last, of each: where the next one is looked for
   std::vector<std::vector<dvec3>> rest_;  // [m] object frame, per node from the centre of mass; bent bodies only
   std::vector<std::unique_ptr<Tool>> tools_;

@@ -30,7 +30,11 @@ Journal::Journal(const World& world, double seconds, const BodyJournal* bodies)
 void Journal::note_tool(Hand& hand, Tick tick, TickRow& row) {
   const ToolTouchState& tool = *hand.tool;
   const HandleModel& model = tool.model.read();
-  row.objects = bodies_ ? bodies_->touching(tool.entity) : 0;
+  if (bodies_) {
+    row.objects += bodies_->touching(tool.entity);
+    if (row.reading.in_contact && row.reading.object == kNoEntity)
+      row.reading.object = bodies_->touches_most(tool.entity);
+  }
   row.late = tool.ticks_late > hand.late;
   row.stale = tool.placed && tick.time - model.time > kStaleSteps * model.soft_step;
   hand.late = tool.ticks_late;
@@ -50,7 +54,7 @@ std::vector<Entity> Journal::touched(Entity entity) const {
   std::vector<Entity> objects;
   for (std::size_t i = 0; i < probes_.size(); ++i) {
     if (!(probes_[i] == entity)) continue;
-    if (hands_[i].tool) return bodies_ ? bodies_->touched(entity) : objects;
+    if (hands_[i].tool && bodies_) objects = bodies_->touched(entity);
     for (std::size_t k = 0; k < awake_.size(); ++k)
       if (hands_[i].ever[k]) objects.push_back(awake_[k].object);
   }
@@ -71,10 +75,8 @@ void Journal::note(const World& world, Tick tick) {
       row.device_ready = device->status == DeviceStatus::kReady;
     }
     row.limited = safety_[i].now();
-    if (hands_[i].tool)
-      note_tool(hands_[i], tick, row);
-    else
-      note_probe(world, probes_[i], hands_[i], row);
+    if (world.registry.has<Probe>(probes_[i])) note_probe(world, probes_[i], hands_[i], row);
+    if (hands_[i].tool) note_tool(hands_[i], tick, row);
     recorder_.record(row);
   }
   for (AwakeStats& stats : awake_) {

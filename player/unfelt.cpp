@@ -65,6 +65,7 @@ std::optional<std::string> unfelt_bodies(const World& world) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
   for (auto [entity, probe] : world.registry.view<Probe>()) {
+    if (probe.meets != ProbeMeets::kSurfaces) continue;
     if (felt.empty())
       for (const Body& body : unfelt) add(body.name);
     const HapticDevice* device = find_device(world, entity);
@@ -82,8 +83,8 @@ std::optional<std::string> unfelt_bodies(const World& world) {
   std::string list;
   for (std::size_t i = 0; i < names.size() && i < kNamed; ++i) list += (i ? ", `" : "`") + names[i] + "`";
   if (names.size() > kNamed) list += ", ...";
-  return "probes do not feel soft or rigid bodies yet (here " + list +
-         "), only surfaces with PLIANT_deformable; touch those bodies with a tool (PLIANT_handle) instead";
+  return "probes whose PLIANT_probe/meets is `surfaces` pass through soft and rigid bodies (here " + list +
+         "); set it to `all` or `bodies` where they shall be felt";
 }
 
 }  // namespace pliant

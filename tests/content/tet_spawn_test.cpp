@@ -215,8 +215,14 @@ TEST(SpawnSoft, WhatCannotBeIsRefusedInOneSentenceThatNamesTheNode) {
   };
   expect("PLIANT_soft_body and PLIANT_deformable", [](Level&, LevelNode& n) { n.deformable = Deformable{}; });
   expect("PLIANT_soft_body and PLIANT_rigid_body", [](Level&, LevelNode& n) { n.rigid_body = RigidBody{}; });
-  expect("no PLIANT_soft_body", [](Level&, LevelNode& n) {
+  expect("neither PLIANT_soft_body nor PLIANT_rigid_body", [](Level&, LevelNode& n) {
     n.soft_body.reset();
+    n.handle = Handle6{};
+  });
+  expect("PLIANT_handle on a rigid body that is `fixed`", [](Level&, LevelNode& n) {
+    n.soft_body.reset();
+    n.rigid_body = RigidBody{};
+    n.rigid_body->fixed = true;
     n.handle = Handle6{};
   });
   expect("neither a mesh nor a tetrahedra file", [](Level&, LevelNode& n) { n.mesh = -1; });

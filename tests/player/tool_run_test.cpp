@@ -314,19 +314,42 @@ TEST_F(ToolRun, AnOrbitTakesTheToolDownToTheGround) {
   EXPECT_GT(report("orbit")["probes"][0]["contact_ticks"].get<int>(), 200);
 }
 
-// A point probe touches yielding surfaces only, and there is none here.
 TEST_F(ToolRun, AnOrbitWithoutASurfaceHoldsItsProbeAndSaysSo) {
   const Said said = press("out", {"--probe", "finger=orbit", "--seconds", "0.1"});
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_NE(said.err.find("`finger` finds no surface"), std::string::npos) << said.err;
   const Json json = report("out");
   EXPECT_NE(json["dropped"].dump().find("finger"), std::string::npos);
-  for (const Json& probe : json["probes"])
-    if (probe["name"] == "finger") EXPECT_EQ(probe["contact_ticks"], 0);
-  const std::string unfelt = "probes do not feel soft or rigid bodies yet (here `ground`)";
-  const std::size_t first = said.err.find(unfelt);
-  EXPECT_NE(first, std::string::npos) << said.err;
-  EXPECT_EQ(said.err.find(unfelt, first + 1), std::string::npos) << "once";
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  for (std::size_t i = 0; i < forces.rows.size(); ++i)
+    if (forces.rows[i].at("probe") == "finger")
+      for (const char* axis : {"x", "y", "z"}) EXPECT_EQ(forces.number(i, axis), 0.0) << axis;
+}
+
+TEST_F(ToolRun, AProbePressesARigidBodyOrPassesItAsItIsTold) {
+  write_text(folder / "down.csv", "time_s,x,y,z\n0,0.1,0.02,0\n0.3,0.1,0.02,0\n0.6,0.1,-0.002,0\n1.2,0.1,-0.002,0\n");
+  const Said felt = press("felt", {"--probe", "finger=script:down.csv", "--seconds", "1.2"});
+  ASSERT_EQ(felt.status, 0) << felt.err;
+  const auto finger = [](const Json& json) {
+    for (const Json& probe : json["probes"])
+      if (probe["name"] == "finger") return probe;
+    return Json();
+  };
+  const Json pressed = finger(report("felt"));
+  EXPECT_GT(pressed["contact_ticks"].get<int>(), 300);
+  EXPECT_GT(pressed["max_force_N"].get<double>(), 1.0);
+  EXPECT_EQ(pressed["touched"], Json::array({"ground"}));
+
+  const Said passed = press(
+      "passed", {"--probe", "finger=script:down.csv", "--seconds", "1.2", "--set", "finger.probe.meets=surfaces"});
+  ASSERT_EQ(passed.status, 0) << passed.err;
+  EXPECT_EQ(finger(report("passed"))["contact_ticks"], 0);
+  EXPECT_EQ(finger(report("passed"))["max_force_N"], 0.0);
+  const std::string said =
+      "probes whose PLIANT_probe/meets is `surfaces` pass through soft and rigid bodies (here `ground`)";
+  const std::size_t first = passed.err.find(said);
+  EXPECT_NE(first, std::string::npos) << passed.err;
+  EXPECT_EQ(passed.err.find(said, first + 1), std::string::npos) << "once";
 }
 
 TEST_F(ToolRun, RealTimeRunsBothClocksAndStopsThemTogether) {
