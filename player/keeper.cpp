@@ -87,13 +87,15 @@ void Keeper::keep(const TickRow& row) {
   summary.stale_ticks += row.stale;
   Last& last = last_[row.probe];
   const bool placed = plausible_position(r.position);  // a lost device may say anything
-  if (last.any && placed) {
+  // What jumps was not moved by the hand (systems/device/safety.h).
+  const bool jumped = length(r.position - last.position) > kFastestHand * (row.time - last.time) * (1 + 1e-9);
+  if (last.any && placed && !jumped) {
     summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
     const dvec3 torque = last.torque + row.torque;  // only tools make any
     if (torque != dvec3(0))
       summary.net_work += 0.5 * dot(torque, vector_of(row.device_rotation * glm::conjugate(last.rotation)));
   }
-  last = {placed, r.position, r.force, row.torque, row.device_rotation};
+  last = {placed, row.time, r.position, r.force, row.torque, row.device_rotation};
 
   if (placed && summary.contact_ticks == 0) summary.approach.add(r.position, touchable_);
 

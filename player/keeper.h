@@ -50,7 +50,8 @@ class Keeper {
   void keep(const TickRow& row);
   void record(const TickRow& row);
   struct Last {
-    bool any = false;  // with a place that means something
+    bool any = false;   // with a place that means something
+    double time = 0.0;  // [s]
     dvec3 position{0}, force{0}, torque{0};
     dquat rotation{1, 0, 0, 0};
   };

@@ -10,7 +10,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kSaidLoss = 0.02;  // [1] of the run: less is lost while a first step tries which solver is fastest
+constexpr double kSaidResidual = 1e-4;  // [m/s] what creeps more slowly, nobody sees
+constexpr double kSaidLoss = 0.02;      // [1] of the run: less is lost while a first step tries which solver is fastest
 constexpr std::array<const char*, 3> kForces{"held", "linear", "contacts"};  // in the order of ToolForce
 
 std::string count(std::uint64_t n, const char* what) {
@@ -52,7 +53,7 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
         fmt::format("{} left out of soft steps because a limit was reached; press with less of a surface at once, or "
                     "use coarser meshes where bodies touch",
                     count(tally.contacts_cut, "contact") + (tally.contacts_cut == 1 ? " was" : " were")));
-  if (tally.unconverged > 0)
+  if (tally.unconverged > 0 && tally.residual > kSaidResidual)
     sentences.push_back(
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "
                     "creep; make soft_step shorter, or keep masses and stiffnesses of what touches closer together",

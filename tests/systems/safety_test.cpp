@@ -105,6 +105,42 @@ TEST(Safety, LostOrStaleDeviceGetsZeroWithinOneTickAndMustEngageAgain) {
   }
 }
 
+// A device that is suddenly elsewhere: the force falls by the slew limit, no work is counted for the way, and the gate
+// must be passed again. As fast as a hand can be, nothing happens.
+TEST(Safety, ADeviceThatJumpsIsLetGo) {
+  HapticDevice device = plain();
+  device.max_force = 10.0;
+  device.max_slew = 500.0;
+  const double dt = 1e-3, step = kFastestHand * dt;
+  for (const bool jump : {false, true}) {
+    SafetyState state;
+    make_safe(state, device, dvec3(0), dvec3(0), 0, dt);
+    for (int i = 1; i <= 10; ++i) make_safe(state, device, {0, 4, 0}, {0, -1e-4 * i, 0}, 0, dt);
+    const double work = state.work;
+    ASSERT_NEAR(state.force.y, 4.0, 1e-12);
+    const double way = jump ? 0.3 : step;
+    SafetyResult r = make_safe(state, device, {0, 4, 0}, {way, -1e-3, 0}, 0, dt);
+    EXPECT_EQ(r.event, jump ? SafetyEvent::kJumped : SafetyEvent::kNone);
+    EXPECT_NEAR(r.force.y, jump ? 3.5 : 4.0, 1e-12);
+    if (!jump) continue;
+    EXPECT_EQ(state.work, work);
+    for (int i = 1; i < 8; ++i) {
+      r = make_safe(state, device, {0, 4, 0}, {way, -1e-3, 0}, 0, dt);
+      EXPECT_EQ(r.event, SafetyEvent::kNone);
+      EXPECT_NEAR(r.force.y, std::max(0.0, 3.5 - 0.5 * i), 1e-12);
+    }
+    EXPECT_GT(state.tally.of(SafetyLimit::kGated).ticks, 5u);
+    EXPECT_EQ(make_safe(state, device, {0, 4, 0}, {way, -1e-3, 0}, 0, dt).force, dvec3(0)) << "still wanted";
+    EXPECT_EQ(make_safe(state, device, {0, 0.1, 0}, {way, 0, 0}, 0, dt).force.y, 0.1) << "small: let in again";
+  }
+  // A device sampled every 50 ms may go farther between two samples.
+  SafetyState state;
+  device.sensed_at = 1.0;
+  make_safe(state, device, dvec3(0), dvec3(0), 1.0, dt);
+  device.sensed_at = 1.05;
+  EXPECT_EQ(make_safe(state, device, dvec3(0), {0.5, 0, 0}, 1.05, dt).event, SafetyEvent::kNone);
+}
+
 TEST(Safety, PassivityHoldsForAnActiveForceToo) {
   // A force that always pushes along the motion: an engine, if nothing stopped it.
   SafetyState state;

@@ -1,0 +1,149 @@
+// The shipped levels' tools in a hand that does whatever it likes: random ways in all six degrees of freedom, presses,
+// stops and turns, at 0.1 to 3 m/s, and a device that jumps. Oracles: the handle stays near the hand, the force is what
+// the device may have, the hand gets no energy, nothing sinks in, and the same hand gets the same bits.
+// PLIANT_PRESSES: how many of each speed (1).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <random>
+
+#include "content/level.h"
+#include "systems/device/devices.h"
+#include "systems/schedule.h"
+#include "systems/tool/prepare_soft.h"
+#include "systems/tool/prepare_tools.h"
+#include "systems/tool/rotation_vector.h"
+#include "systems/tool/soft_state.h"
+#include "systems/tool/tool_touch_state.h"
+#include "systems/touch/hash_state.h"
+#include "systems/touch/prepare.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kTick = 1e-3;  // [s]
+#ifdef PLIANT_SANITIZED
+constexpr double kSeconds = 0.1;
+#else
+constexpr double kSeconds = 0.8;
+#endif
+
+int presses() {
+  const char* const wanted = std::getenv("PLIANT_PRESSES");
+  return wanted ? std::max(1, std::atoi(wanted)) : 1;
+}
+
+World open(const std::string& name) {
+  Result<Level> level = load_level(std::string(PLIANT_SOURCE_DIR) + "/content/levels/" + name + ".glb");
+  EXPECT_TRUE(level.ok());
+  Result<World> world = spawn(*level);
+  EXPECT_TRUE(world.ok());
+  EXPECT_TRUE(prepare_touch(*world).ok());
+  EXPECT_TRUE(prepare_tools(*world).ok());
+  EXPECT_TRUE(prepare_soft(*world).ok());
+  return std::move(world).value();
+}
+
+// A walk from where the level's own script begins: straight ways, half of them down towards what lies there.
+std::vector<PathRow> random_path(const PathRow& start, double speed, bool jumps, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  std::vector<PathRow> rows{start, start};
+  rows.back().time = 0.1;
+  while (rows.back().time < kSeconds) {
+    PathRow next;
+    next.position = dvec3(uniform(-0.1, 0.1), uniform(0.0, 1.0) < 0.5 ? uniform(0.01, 0.03) : uniform(0.03, 0.1),
+                          uniform(-0.03, 0.11));
+    const dvec3 axis(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+    next.rotation = rotation_of(uniform(0.0, 0.7) * normalize(axis));
+    const double way = length(next.position - rows.back().position);
+    next.time = rows.back().time + (jumps && uniform(0.0, 1.0) < 0.3 ? kTick : std::max(way / speed, 0.02));
+    rows.push_back(next);
+    if (uniform(0.0, 1.0) < 0.3) {
+      rows.push_back(next);
+      rows.back().time += uniform(0.02, 0.1);
+    }
+  }
+  return rows;
+}
+
+struct Felt {
+  double most_stretch = 0.0, most_force = 0.0, work = 0.0, stored = 0.0;  // [m], [N], [J]
+  double deepest = 0.0, farthest = 0.0;                                   // [m]
+  std::uint32_t dropped = 0;
+  std::uint64_t hash = 0;
+};
+
+Felt press(const std::string& level, double speed, bool jumps, unsigned seed) {
+  World world = open(level);
+  ToolTouchState& tool = *world.tools->tools.front();
+  HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
+  Path& path = world.paths[device.path];
+  path.rows = random_path(path.rows.front(), speed, jumps, seed);
+  path.turns = true;
+  path.repeats = false;
+  Schedule<World> touch(touch_schedule()), soft(soft_schedule());
+  const double T = world.simulation.soft_step;
+  Felt out;
+  std::uint64_t steps = 0;
+  Hash hash;
+  for (std::uint64_t tick = 0; static_cast<double>(tick) * kTick < kSeconds; ++tick) {
+    const double time = static_cast<double>(tick) * kTick;
+    for (; static_cast<double>(steps) * T <= time + 1e-9; ++steps)
+      soft.run(world, {steps, T, static_cast<double>(steps) * T});
+    touch.run(world, {tick, kTick, time});
+    hash_forces(world, hash);
+    out.most_force = std::max(out.most_force, length(device.force_sent));
+    if (!tool.placed) continue;
+    const dvec3 wanted = tool.sensed.at(tool.model.read().centre).pose.position;
+    out.most_stretch = std::max(out.most_stretch, length(wanted - tool.handle.pose.position));
+    for (const auto& body : world.soft->bodies)
+      if (body->size() > 0) out.farthest = std::max(out.farthest, length(body->skin_position.front()));
+  }
+  out.work = tool.torque_safety.work;
+  out.stored = std::max(tool.force_safety.stored, tool.torque_safety.stored);
+  out.deepest = world.soft->tally.deepest;
+  out.dropped = world.dropped | world.soft->dropped;
+  out.hash = hash.value();
+  return out;
+}
+
+class RandomPress : public testing::TestWithParam<const char*> {};
+
+TEST_P(RandomPress, TheHandleStaysInTheHand) {
+  for (const double speed : {0.1, 0.6, 3.0})
+    for (int i = 0; i < presses(); ++i) {
+      SCOPED_TRACE(testing::Message() << speed << " m/s, press " << i);
+      const Felt felt = press(GetParam(), speed, false, 100u + static_cast<unsigned>(i));
+      // Against something that does not move, the hand goes on alone: at most as far as its ways are long.
+      EXPECT_LT(felt.most_stretch, 0.2);
+      EXPECT_LE(felt.most_force, 12.0 * (1 + 1e-9));
+      EXPECT_LE(felt.work, kPassivityShare * felt.stored + 1e-3);
+      EXPECT_LT(felt.deepest, 3e-3) << "[m] into each other";
+      EXPECT_LT(felt.farthest, 6.0) << "[m] what is swept off the tray falls";
+      EXPECT_EQ(felt.dropped & (kDroppedNonFinite | kDroppedMotion | kDroppedFactor | kDroppedSetBack | kDroppedJump), 0u);
+    }
+}
+
+TEST_P(RandomPress, ADeviceThatJumpsGivesNoEnergyAway) {
+  for (int i = 0; i < presses(); ++i) {
+    SCOPED_TRACE(i);
+    const Felt felt = press(GetParam(), 0.5, true, 200u + static_cast<unsigned>(i));
+    EXPECT_LT(felt.most_stretch, 0.4);
+    EXPECT_LE(felt.most_force, 12.0 * (1 + 1e-9));
+    EXPECT_LE(felt.work, kPassivityShare * felt.stored + 1e-3);
+    EXPECT_LT(felt.farthest, 6.0);
+    EXPECT_EQ(felt.dropped & (kDroppedNonFinite | kDroppedMotion | kDroppedFactor), 0u);
+  }
+}
+
+TEST_P(RandomPress, TheSameHandFeelsTheSameBits) {
+  EXPECT_EQ(press(GetParam(), 1.0, false, 7).hash, press(GetParam(), 1.0, false, 7).hash);
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, RandomPress, testing::Values("hand", "hand_crowd", "hand_squeeze"),
+                         [](const auto& level) { return std::string(level.param); });
+
+}  // namespace
+}  // namespace pliant
