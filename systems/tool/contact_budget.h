@@ -16,4 +16,9 @@ inline constexpr int kMostOfBody = 384;  // contacts of a body that moves; more:
 std::size_t cut_contacts(const std::vector<std::unique_ptr<Body>>& bodies, int most,
                          std::vector<ContactPoint>& contacts);
 
+// The same where contacts join those of a solve: the first `known` stay, of the others, in their order, those for which
+// every body has room. Returns how many were cut.
+std::size_t cut_late_contacts(const std::vector<std::unique_ptr<Body>>& bodies, int most, std::size_t known,
+                              std::vector<ContactPoint>& contacts);
+
 }  // namespace pliant

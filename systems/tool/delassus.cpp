@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/tool/contact_budget.h"
 #include "systems/tool/contact_islands.h"
 
 namespace pliant {
@@ -309,8 +310,10 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     keep_impulses(problem, contacts);
     const std::vector<ContactPoint>::size_type known = contacts.size();
     const std::size_t missed = proximity.find_missed(bodies, T, contacts);
-    if (round == kMostRounds && crossed) *crossed += missed;
-    if (round == kMostRounds) contacts.resize(known);
+    const bool last = round == kMostRounds;
+    if (last) contacts.resize(known);
+    const std::size_t cut = cut_late_contacts(bodies, kMostOfBody, known, contacts);
+    if (crossed) *crossed += last ? missed : cut;
     if (contacts.size() == known) break;
     Vector applied = Vector::Zero(3 * static_cast<Eigen::Index>(contacts.size()));
     applied.head(3 * static_cast<Eigen::Index>(known)) = problem.impulse.head(3 * static_cast<Eigen::Index>(known));
