@@ -14,6 +14,12 @@ constexpr double kSaidResidual = 1e-4;  // [m/s] what creeps more slowly, nobody
 constexpr double kSaidLoss = 0.02;      // [1] of the run: less is lost while a first step tries which solver is fastest
 constexpr std::array<const char*, 3> kForces{"held", "linear", "contacts"};  // in the order of ToolForce
 
+std::string name_of(const World& world, std::uint32_t body) {
+  const Entity entity = world.soft->bodies[body]->entity;
+  const Name* name = world.registry.find<Name>(entity);
+  return name ? "`" + name->value + "`" : fmt::format("body {}", body);
+}
+
 std::string count(std::uint64_t n, const char* what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
@@ -53,6 +59,15 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
         fmt::format("{} left out of soft steps because a limit was reached; press with less of a surface at once, or "
                     "use coarser meshes where bodies touch",
                     count(tally.contacts_cut, "contact") + (tally.contacts_cut == 1 ? " was" : " were")));
+  if (tally.began_inside > 0.0)
+    sentences.push_back(
+        fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart; move one of them in the level",
+                    name_of(world, tally.inside_a), name_of(world, tally.inside_b), tally.began_inside * 1e3));
+  if (tally.crossed > 0)
+    sentences.push_back(fmt::format(
+        "{} of surfaces went through each other in soft steps, because no solution without that was found in time; make "
+        "soft_step shorter, or press more slowly",
+        count(tally.crossed, "point")));
   if (tally.unconverged > 0 && tally.residual > kSaidResidual)
     sentences.push_back(
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "

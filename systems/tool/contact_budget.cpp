@@ -5,14 +5,22 @@
 #include <tuple>
 
 namespace pliant {
+namespace {
+
+// act() on what is left to each of a contact's bodies that moves.
+template <class Act>
+void for_each_side(const std::vector<std::unique_ptr<Body>>& bodies, const ContactPoint& c, std::vector<int>& left,
+                   Act&& act) {
+  if (bodies[c.body_a]->size() > 0) act(left[c.body_a]);
+  if (c.body_b != c.body_a && bodies[c.body_b]->size() > 0) act(left[c.body_b]);
+}
+
+}  // namespace
 
 std::size_t cut_contacts(const std::vector<std::unique_ptr<Body>>& bodies, int most,
                          std::vector<ContactPoint>& contacts) {
   std::vector<int> left(bodies.size(), most);
-  const auto sides = [&](const ContactPoint& c, auto&& act) {
-    if (bodies[c.body_a]->size() > 0) act(left[c.body_a]);
-    if (c.body_b != c.body_a && bodies[c.body_b]->size() > 0) act(left[c.body_b]);
-  };
+  const auto sides = [&](const ContactPoint& c, auto&& act) { for_each_side(bodies, c, left, act); };
   bool fits = true;
   for (const ContactPoint& c : contacts) sides(c, [&](int& n) { fits &= --n >= 0; });
   if (fits) return 0;
@@ -35,6 +43,22 @@ std::size_t cut_contacts(const std::vector<std::unique_ptr<Body>>& bodies, int m
   std::size_t kept = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (!cut[i]) contacts[kept++] = contacts[i];
+  const std::size_t gone = contacts.size() - kept;
+  contacts.resize(kept);
+  return gone;
+}
+
+std::size_t cut_late_contacts(const std::vector<std::unique_ptr<Body>>& bodies, int most, std::size_t known,
+                              std::vector<ContactPoint>& contacts) {
+  std::vector<int> left(bodies.size(), most);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    bool room = true;
+    for_each_side(bodies, contacts[i], left, [&](const int& n) { room &= n > 0; });
+    if (i >= known && !room) continue;
+    for_each_side(bodies, contacts[i], left, [](int& n) { --n; });
+    contacts[kept++] = contacts[i];
+  }
   const std::size_t gone = contacts.size() - kept;
   contacts.resize(kept);
   return gone;

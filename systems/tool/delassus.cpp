@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/tool/contact_budget.h"
 #include "systems/tool/contact_islands.h"
 
 namespace pliant {
 namespace {
 
+constexpr int kRoundsUnsettled = 2;  // rounds after which a solution that did not settle is not built upon
 constexpr int kMostRounds = 8;  // in which contacts that a solution brings about join; a round reaches one body further
 
 // The contacts of each body.
@@ -309,8 +311,10 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     keep_impulses(problem, contacts);
     const std::vector<ContactPoint>::size_type known = contacts.size();
     const std::size_t missed = proximity.find_missed(bodies, T, contacts);
-    if (round == kMostRounds && crossed) *crossed += missed;
-    if (round == kMostRounds) contacts.resize(known);
+    const bool last = round == kMostRounds || (round >= kRoundsUnsettled && !report.settled);
+    if (last) contacts.resize(known);
+    const std::size_t cut = cut_late_contacts(bodies, kMostOfBody, known, contacts);
+    if (crossed) *crossed += last ? missed : cut;
     if (contacts.size() == known) break;
     Vector applied = Vector::Zero(3 * static_cast<Eigen::Index>(contacts.size()));
     applied.head(3 * static_cast<Eigen::Index>(known)) = problem.impulse.head(3 * static_cast<Eigen::Index>(known));

@@ -7,7 +7,7 @@ namespace pliant {
 namespace {
 
 constexpr double kParallel = 1e-2;  // [1] sine below which two edges have no normal of their own
-constexpr double kLeaning = 0.05;   // [1] sine by which a triangle may lean over its edge (it turns within the step)
+constexpr double kLeaning = 0.05;   // [1] sine by which a triangle may lean over its edge
 constexpr double kSlack = 1e-6;     // [1] beyond the ends
 
 struct Feet {
@@ -25,8 +25,9 @@ std::optional<Feet> feet(dvec3 a0, dvec3 a1, dvec3 b0, dvec3 b1) {
   return Feet{std::clamp(s.a, 0.0, 1.0), std::clamp(s.b, 0.0, 1.0)};
 }
 
-bool leans_over(const EdgeShape& shape, dvec3 outward) {
-  return dot(shape.inward[0], outward) > kLeaning || dot(shape.inward[1], outward) > kLeaning;
+bool leans_over(const EdgeShape& shape, dvec3 outward, double time) {
+  const auto leans = [&](int i) { return dot(shape.inward[i] + time * shape.turning[i], outward) > kLeaning; };
+  return leans(0) || leans(1);
 }
 
 }  // namespace
@@ -42,7 +43,11 @@ std::optional<Meeting> meet_edge(const std::array<Moving, 2>& a, const EdgeShape
   Meeting m;
   m.normal = turned ? -n : n;
   m.gap = dot(m.normal, a[0].x - b[0].x);
-  if (m.gap < -reach.behind || leans_over(shape_a, -m.normal) || leans_over(shape_b, m.normal)) return {};
+  const auto lean = [&](dvec3 normal, double time) {
+    return leans_over(shape_a, -normal, time) || leans_over(shape_b, normal, time);
+  };
+  const bool leaning = lean(m.normal, 0.0);
+  if (m.gap < -reach.behind || (leaning && m.gap < 0.0)) return {};
 
   const std::array<dvec3, 2> a1{a[0].at(1.0), a[1].at(1.0)}, b1{b[0].at(1.0), b[1].at(1.0)};
   const dvec3 n1 = cross(a1[1] - a1[0], b1[1] - b1[0]) * (turned ? -1.0 : 1.0);
@@ -62,11 +67,18 @@ std::optional<Meeting> meet_edge(const std::array<Moving, 2>& a, const EdgeShape
     const int count = find_crossings(b_first, b_last, a[0], a[1], times);
     for (int i = 0; i < count; ++i) {
       const double t = times[i];
-      if (!accept(feet(a[0].at(t), a[1].at(t), b[0].at(t), b[1].at(t)))) continue;
+      const std::array<dvec3, 2> at{a[0].at(t), a[1].at(t)}, bt{b[0].at(t), b[1].at(t)};
+      if (!accept(feet(at[0], at[1], bt[0], bt[1]))) continue;
+      if (leaning) {
+        const dvec3 normal = cross(at[1] - at[0], bt[1] - bt[0]) * (turned ? -1.0 : 1.0);
+        const double size = length(normal);
+        if (!(size > 0.0) || lean(normal / size, t)) continue;
+      }
       m.crosses = true;
       return m;
     }
   }
+  if (leaning) return {};
   if (m.gap <= reach.front && accept(feet(a[0].x, a[1].x, b[0].x, b[1].x))) return m;
   if (m.gap >= 0.0 && m.end_gap >= 0.0 && m.end_gap <= reach.front && accept(feet(a1[0], a1[1], b1[0], b1[1])))
     return m;

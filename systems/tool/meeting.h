@@ -36,14 +36,17 @@ struct Reach {
 std::optional<Meeting> meet_triangle(const Moving& vertex, const std::array<Moving, 3>& triangle, const Reach& reach);
 
 // An edge and the triangles beside it; `outward`: the sum of their normals. `inward[i]`: in the plane of triangle i,
-// perpendicular to the edge, away from it, unit; both the same at a border.
+// perpendicular to the edge, away from it, unit; both the same at a border. `turning`: by how much that changes over
+// the step.
 struct EdgeShape {
   dvec3 outward{0};
   std::array<dvec3, 2> inward;
+  std::array<dvec3, 2> turning{};
 };
 
 // Two edges cross seen from the side; their normal must be one at which both bodies could support each other there (no
-// triangle beside either edge leans over it), which decides its direction: it cannot flip.
+// triangle beside either edge leans over it), which decides its direction: it cannot flip. Where they cross, it is
+// enough that they support each other at that instant: bodies tip onto each other within a step.
 std::optional<Meeting> meet_edge(const std::array<Moving, 2>& a, const EdgeShape& shape_a,
                                  const std::array<Moving, 2>& b, const EdgeShape& shape_b, const Reach& reach);
 

@@ -181,11 +181,15 @@ std::array<Moving, 3> Skin::triangle(std::uint32_t t) const {
 
 EdgeShape Skin::edge_shape(std::uint32_t e) const {
   const SkinEdge& edge = edges_[e];
-  const dvec3 along = unit_or_zero(position_[edge.to] - position_[edge.from]);
+  const auto inward = [&](int i, double time) {
+    const dvec3 from = vertex(edge.from).at(time), side = vertex(edge.opposite[i]).at(time) - from;
+    const dvec3 along = unit_or_zero(vertex(edge.to).at(time) - from);
+    return unit_or_zero(side - dot(side, along) * along);
+  };
   EdgeShape shape;
   for (int i = 0; i < 2; ++i) {
-    const dvec3 side = position_[edge.opposite[i]] - position_[edge.from];
-    shape.inward[i] = unit_or_zero(side - dot(side, along) * along);
+    shape.inward[i] = inward(i, 0.0);
+    shape.turning[i] = inward(i, 1.0) - shape.inward[i];
     shape.outward += normal_[edge.triangle[i]];
   }
   return shape;

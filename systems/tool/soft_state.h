@@ -29,6 +29,10 @@ struct SoftTally {
   double residual = 0.0;           // [m/s] the largest that a step ended with
   double deepest = 0.0;            // [m] >= 0: the deepest penetration that a step began with
   std::uint64_t crossed = 0;       // crossings that a step's last solution still made, summed over the steps
+
+  // [m] How deep the first step found bodies in each other, at most, beyond 1 % of the smaller one's diagonal; and who.
+  double began_inside = 0.0;
+  std::uint32_t inside_a = 0, inside_b = 0;  // into SoftState::bodies
 };
 
 struct SoftState {

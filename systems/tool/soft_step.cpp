@@ -14,6 +14,8 @@ namespace {
 // Looser, and stacks and grips creep: 1e-6 of what a step's gravity gives is 0.2 um/s.
 constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 
+constexpr double kSunken = 0.01;  // [1] of a body's diagonal: what lies so deep in another when a level begins is said
+
 double ms_since(std::uint64_t begin) {
   return static_cast<double>(now_ns() - begin) * 1e-6;
 }
@@ -24,6 +26,17 @@ void leave_out_failed(SoftState& soft) {
     return !soft.bodies[contact.body_a]->solvable() || !soft.bodies[contact.body_b]->solvable();
   };
   soft.contacts.erase(std::remove_if(soft.contacts.begin(), soft.contacts.end(), failed), soft.contacts.end());
+}
+
+// Bodies that a level puts into each other.
+void tally_beginning(SoftState& soft) {
+  const auto size = [&](std::uint32_t body) { return static_cast<double>(soft.bodies[body]->skin->box.diagonal()); };
+  for (const ContactPoint& c : soft.contacts) {
+    const double least = kSunken * std::min(size(c.body_a), size(c.body_b));
+    if (c.depth <= std::max(soft.tally.began_inside, least)) continue;
+    soft.tally.began_inside = c.depth;
+    soft.tally.inside_a = c.body_a, soft.tally.inside_b = c.body_b;
+  }
 }
 
 // A body whose velocity is no number is stopped.
@@ -66,6 +79,7 @@ void find_contacts(World& world, Tick tick) {
   soft.tally.contacts_cut += cut_contacts(soft.bodies, kMostOfBody, soft.contacts);
   for (const std::uint32_t i : soft.yielding) soft.surface(i).place(soft.contacts, i, tick.dt);
   for (const ContactPoint& contact : soft.contacts) soft.tally.deepest = std::max(soft.tally.deepest, contact.depth);
+  if (soft.steps == 0) tally_beginning(soft);
   soft.times.proximity = ms_since(begin);
 }
 

@@ -171,18 +171,19 @@ TEST(SoftClock, WhatStepsLeaveImperfectIsSaidWithItsCure) {
   World world;
   world.soft = std::make_shared<SoftState>();
   EXPECT_TRUE(explain_soft_steps(world, {}).empty());
-  world.soft->tally = {.contacts_cut = 7, .unconverged = 1, .residual = 0.25, .deepest = 0.001};
+  world.soft->tally = {.contacts_cut = 7, .unconverged = 1, .residual = 0.25, .deepest = 0.001, .crossed = 2};
   SoftFigures figures;
   figures.steps = 20;
   figures.time_lost = 1.5;
   const std::vector<std::string> said = explain_soft_steps(world, figures);
-  ASSERT_EQ(said.size(), 3u);
+  ASSERT_EQ(said.size(), 4u);
   EXPECT_NE(said[0].find("7 contacts were left out"), std::string::npos) << said[0];
-  EXPECT_NE(said[1].find("1 of 20 soft steps ended unconverged (residual at most 0.25 m/s)"), std::string::npos)
-      << said[1];
-  EXPECT_NE(said[2].find("1.50 s behind after 20 steps"), std::string::npos) << said[2];
+  EXPECT_NE(said[1].find("2 points of surfaces went through each other"), std::string::npos) << said[1];
+  EXPECT_NE(said[2].find("1 of 20 soft steps ended unconverged (residual at most 0.25 m/s)"), std::string::npos)
+      << said[2];
+  EXPECT_NE(said[3].find("1.50 s behind after 20 steps"), std::string::npos) << said[3];
   figures.time_lost = 0.005;  // of 0.33 s
-  EXPECT_EQ(explain_soft_steps(world, figures).size(), 2u) << "the report has it, the console does not";
+  EXPECT_EQ(explain_soft_steps(world, figures).size(), 3u) << "the report has it, the console does not";
   for (const std::string& sentence : said) EXPECT_NE(sentence.find("; "), std::string::npos) << "no cure: " << sentence;
 }
 

@@ -367,5 +367,24 @@ TEST(ContactBudget, CutsWhatCarriesLeastAndCountsIt) {
   EXPECT_FALSE(std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.key == 1; }));
 }
 
+// What joins a solve that is full: the contacts that there are stay, however little they carry.
+TEST(ContactBudget, WhatJoinsLateTakesTheRoomThatIsLeft) {
+  Pile pile;
+  pile.add(dvec3(0, 0.05, 0));
+  pile.add(dvec3(1, 0.05, 0));
+  std::vector<ContactPoint> contacts(30);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts[i].body_a = i % 3 == 0 ? 2 : 1;
+    contacts[i].body_b = 0;
+    contacts[i].key = i;
+  }
+  EXPECT_EQ(cut_late_contacts(pile.loop.bodies, 20, 15, contacts), 0u);
+  EXPECT_EQ(cut_late_contacts(pile.loop.bodies, 12, 15, contacts), 8u) << "of the first block, which has 20";
+  ASSERT_EQ(contacts.size(), 22u);
+  for (std::size_t i = 0; i < 18; ++i) EXPECT_EQ(contacts[i].key, i) << "15 were there, 2 and one of its own joined";
+  for (std::size_t i = 18; i < 22; ++i) EXPECT_EQ(contacts[i].body_a, 2u);
+  EXPECT_EQ(cut_late_contacts(pile.loop.bodies, 4, 22, contacts), 0u);
+}
+
 }  // namespace
 }  // namespace pliant

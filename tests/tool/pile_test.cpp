@@ -134,6 +134,7 @@ TEST(Pile, ColumnsOfFourSoftCubesStand) {
   pile.run(2.0);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(pile.lowest(i), (i ? pile.highest(i - 1) : 0.0) - 0.01 * kSize) << i;
   EXPECT_LT(pile.tally().deepest, 0.01 * kSize);
+  EXPECT_EQ(pile.tally().began_inside, 0.0);
   EXPECT_LT(pile.fastest(), 1e-4);
 }
 
@@ -233,6 +234,7 @@ TEST(Pile, WhatBeginsInsideIsPushedOutTheShortestWay) {
     pile.rigid(dvec3(0, 0.5, 0) + c.at, kUpright, c.size_b);
     pile.run(kStep);
     EXPECT_NEAR(pile.tally().deepest, c.depth, 1e-6) << i;
+    EXPECT_EQ(pile.tally().began_inside, pile.tally().deepest) << i;
     const double limit = kPenetrationShare * c.depth / kStep;  // [m/s] that contacts ask for at most
     for (int step = 0; step < 60; ++step) {
       pile.stage.step();

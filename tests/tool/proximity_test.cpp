@@ -176,6 +176,25 @@ Depth throw_at_plate(const Mesh& mesh, const RigidMass& mass, double radius, dve
 
 // At 5 m/s a body travels 83 mm in a step and turns by more than a radian in the one in which it is stopped: contacts
 // hold its first order, the second is worked off afterwards.
+// A flat skin, tilted by 0.2 rad about its edge, comes down on a ridge. Where it has come to lie flat when the edges
+// cross, they touch; where it stays tilted, what lies lower than its edge does.
+TEST(Proximity, EdgesMeetIfTheySupportEachOtherWhereTheyCross) {
+  const std::array<Moving, 2> edge{Moving{{-0.01, 0.002, 0.0}, {0, -0.003, 0}},
+                                   Moving{{0.01, 0.002, 0.0}, {0, -0.003, 0}}};
+  const std::array<Moving, 2> ridge{Moving{{0, 0, -0.01}}, Moving{{0, 0, 0.01}}};
+  const dvec3 tilted(0, -std::sin(0.2), std::cos(0.2)), back(0, std::sin(0.1), std::cos(0.1));
+  const EdgeShape of_ridge{dvec3(0, 1, 0), {dvec3(0, -1, 0), dvec3(0, -1, 0)}};
+  EdgeShape of_edge{dvec3(0, -2, 0), {tilted, -tilted}};
+  EXPECT_FALSE(meet_edge(edge, of_edge, ridge, of_ridge, {1e-4, 1e-4}));
+  of_edge.turning = {back - tilted, tilted - back};
+  const std::optional<Meeting> m = meet_edge(edge, of_edge, ridge, of_ridge, {1e-4, 1e-4});
+  ASSERT_TRUE(m);
+  EXPECT_TRUE(m->crosses);
+  EXPECT_NEAR(m->normal.y, 1.0, 1e-12);
+  EXPECT_NEAR(m->gap, 0.002, 1e-12);
+  EXPECT_NEAR(m->end_gap, -0.001, 1e-12);
+}
+
 TEST(Proximity, NothingTunnelsThroughAThinPlate) {
   const Mesh ball = test::sphere_mesh(0.02f, 2), block = test::block_mesh(vec3(0.03f));
   std::mt19937 random(1);
