@@ -6,6 +6,7 @@
 #include "components/soft_body.h"
 #include "systems/schedule.h"
 #include "systems/tool/soft_state.h"
+#include "systems/tool/soft_step.h"
 
 namespace pliant {
 
@@ -15,7 +16,7 @@ SoftClock::SoftClock(World& world) : world_(world), schedule_(soft_schedule()) {
 }
 
 void SoftClock::step(double dt) {
-  schedule_.run(world_, {figures_.steps, dt, time_});
+  run_soft_step(schedule_, world_, {figures_.steps, dt, time_});
   if (journal_) journal_->note(figures_.steps, time_);
   time_ += dt;
   const SoftState& soft = *world_.soft;

@@ -116,32 +116,61 @@ bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, Too
   return true;
 }
 
-// To where the touch clock has its handle.
-void bring(ToolTouchState& tool, const ToolInput& input, ToolBody& body) {
-  const Vector6 expected = mean_wrench(tool, input);
+// Towards where the touch clock has its handle, the share of what is left.
+RigidMotion on_the_way(const RigidMotion& from, const RigidMotion& to, double share) {
+  if (share == 1.0) return to;
+  RigidMotion out = to;
+  out.pose.position = glm::mix(from.pose.position, to.pose.position, share);
+  out.pose.rotation = glm::slerp(from.pose.rotation, to.pose.rotation, share);
+  return out;
+}
+
+void bring(ToolTouchState& tool, const ToolInput& input, double share, ToolBody& body) {
+  const RigidMotion end = on_the_way(body.handle().motion(), input.handle, share);
   if (input.status == DeviceStatus::kReady)
-    body.bring_handle(input.handle, expected);
+    body.bring_handle(end, tool.expected);
   else
-    body.lead_handle(input.handle);  // nobody holds it: it stays where it is
+    body.lead_handle(end);  // nobody holds it: it stays where it is
+}
+
+// What the touch clock says of a handle that has since been set back means nothing any more.
+bool says_where(const ToolTouchState& tool, const ToolInput& input) {
+  return input.placed && input.seen == tool.pending.set_backs;
 }
 
 }  // namespace
 
-void take_inputs(World& world, double T) {
-  if (!world.tools || !world.soft) return;
+double farthest_way(World& world) {
+  double farthest = 0.0;
+  if (!world.tools || !world.soft) return farthest;
   for (const auto& tool : world.tools->tools) {
-    ToolBody* const body = tool_body(*world.soft, body_of(*world.soft, tool->entity));
-    if (!body) continue;
     tool->input.acquire();
     const ToolInput& input = tool->input.read();
+    const ToolBody* const body = tool_body(*world.soft, body_of(*world.soft, tool->entity));
+    if (body && says_where(*tool, input))
+      farthest = std::max(farthest, length(input.handle.pose.position - body->handle().motion().pose.position));
+  }
+  return farthest;
+}
+
+void take_inputs(World& world, double T) {
+  if (!world.tools || !world.soft) return;
+  SoftState& soft = *world.soft;
+  for (const auto& tool : world.tools->tools) {
+    ToolBody* const body = tool_body(soft, body_of(soft, tool->entity));
+    if (!body) continue;
+    if (soft.part == 0) tool->input.acquire();
+    const ToolInput& input = tool->input.read();
+    const double left = T * (soft.parts - soft.part);  // [s] of the step
     Pose before = input.device.pose;
-    before.position -= T * linear(input.device.velocity);
-    before.rotation = glm::normalize(rotation_of(-T * angular(input.device.velocity)) * before.rotation);
+    before.position -= left * linear(input.device.velocity);
+    before.rotation = glm::normalize(rotation_of(-left * angular(input.device.velocity)) * before.rotation);
     body->set_device(before, input.device.velocity);
-    // What the touch clock says of a handle that has since been set back means nothing any more.
-    if (!set_back(*world.soft, *tool, input, *body) && input.placed && input.seen == tool->pending.set_backs)
-      bring(*tool, input, *body);
     tool->pending.time = input.time;
+    if (soft.part == 0 && set_back(soft, *tool, input, *body)) continue;
+    if (!says_where(*tool, input)) continue;
+    if (soft.part == 0) tool->expected = mean_wrench(*tool, input);
+    bring(*tool, input, 1.0 / (soft.parts - soft.part), *body);
   }
 }
 
@@ -154,6 +183,7 @@ void linearise(World& world, double T) {
     const ToolBody* const body = tool_body(soft, index);
     if (!body || !body->solvable()) continue;
     reduce_tool(step, index, 1.0 / world.simulation.touch_rate, tool->pending);
+    tool->pending.soft_step = T * soft.parts;  // until the next one
     ++tool->pending.step;
   }
 }

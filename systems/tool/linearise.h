@@ -13,7 +13,11 @@
 
 namespace pliant {
 
-// All do nothing where no tools are prepared.
+// [m] The longest way that a handle is to go in the soft step that is about to begin. Takes the newest inputs in.
+double farthest_way(World& world);
+
+// All do nothing where no tools are prepared. Of a step in parts (soft_step.h), take_inputs leads each handle its share
+// of what is left.
 void take_inputs(World& world, double T);
 void linearise(World& world, double T);
 void publish_models(World& world);

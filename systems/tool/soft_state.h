@@ -47,6 +47,7 @@ struct SoftState {
   SoftTally tally;
   SoftTimes times;
   std::uint64_t steps = 0;    // done
+  int parts = 1, part = 0;    // of the step under way (run_soft_step)
   std::uint64_t began = 0;    // [ns] of the step under way
   std::uint32_t dropped = 0;  // DroppedBit, the soft clock's own
 

@@ -3,6 +3,7 @@
 #include "systems/tool/soft_step.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "systems/tool/contact_budget.h"
 #include "systems/tool/linearise.h"
@@ -50,9 +51,20 @@ void stop_non_finite(SoftState& soft) {
 
 }  // namespace
 
+void run_soft_step(Schedule<World>& schedule, World& world, Tick tick) {
+  if (!world.soft) return schedule.run(world, tick);
+  SoftState& soft = *world.soft;
+  const double way = farthest_way(world);
+  soft.parts = std::clamp(static_cast<int>(std::ceil(way / kMostWay)), 1, kMostParts);
+  const double dt = tick.dt / soft.parts;
+  for (soft.part = 0; soft.part < soft.parts; ++soft.part)
+    schedule.run(world, {tick.index, dt, tick.time + soft.part * dt});
+  soft.parts = 1, soft.part = 0;
+}
+
 void read_tool_input(World& world, Tick tick) {
   if (!world.soft) return;
-  world.soft->began = now_ns();
+  if (world.soft->part == 0) world.soft->began = now_ns();
   take_inputs(world, tick.dt);
 }
 
@@ -99,7 +111,7 @@ void solve_contacts(World& world, Tick tick) {
 }
 
 void linearise_tools(World& world, Tick tick) {
-  if (!world.soft) return;
+  if (!world.soft || world.soft->part + 1 < world.soft->parts) return;
   const std::uint64_t begin = now_ns();
   linearise(world, tick.dt);
   world.soft->times.linearise = ms_since(begin);
@@ -113,7 +125,7 @@ void advance_bodies(World& world, Tick tick) {
 }
 
 void publish_tools(World& world, Tick) {
-  if (!world.soft) return;
+  if (!world.soft || world.soft->part + 1 < world.soft->parts) return;
   publish_models(world);
   ++world.soft->steps;
   world.soft->times.total = ms_since(world.soft->began);

@@ -47,6 +47,8 @@ struct ToolTouchState {
   std::vector<HandleStep> gone;  // of the path, since the model
   double heard_at = 0.0;         // [s] of the last input with a placed handle; its `impulse`
   Vector6 heard = Vector6::Zero();
+  Vector6 expected =
+      Vector6::Zero();         // [N], [N m] what flesh and contacts did to the handle, mean since the last input
   std::uint32_t set_back = 0;  // ToolInput::set_backs done
   CondensedState replay;
 

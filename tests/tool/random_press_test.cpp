@@ -15,6 +15,7 @@
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/rotation_vector.h"
 #include "systems/tool/soft_state.h"
+#include "systems/tool/soft_step.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/hash_state.h"
 #include "systems/touch/prepare.h"
@@ -91,7 +92,7 @@ Felt press(const std::string& level, double speed, bool jumps, unsigned seed) {
   for (std::uint64_t tick = 0; static_cast<double>(tick) * kTick < kSeconds; ++tick) {
     const double time = static_cast<double>(tick) * kTick;
     for (; static_cast<double>(steps) * T <= time + 1e-9; ++steps)
-      soft.run(world, {steps, T, static_cast<double>(steps) * T});
+      run_soft_step(soft, world, {steps, T, static_cast<double>(steps) * T});
     touch.run(world, {tick, kTick, time});
     hash_forces(world, hash);
     out.most_force = std::max(out.most_force, length(device.force_sent));
@@ -122,7 +123,8 @@ TEST_P(RandomPress, TheHandleStaysInTheHand) {
       EXPECT_LE(felt.work, kPassivityShare * felt.stored + 1e-3);
       EXPECT_LT(felt.deepest, 3e-3) << "[m] into each other";
       EXPECT_LT(felt.farthest, 6.0) << "[m] what is swept off the tray falls";
-      EXPECT_EQ(felt.dropped & (kDroppedNonFinite | kDroppedMotion | kDroppedFactor | kDroppedSetBack | kDroppedJump), 0u);
+      EXPECT_EQ(felt.dropped & (kDroppedNonFinite | kDroppedMotion | kDroppedFactor | kDroppedSetBack | kDroppedJump),
+                0u);
     }
 }
 
