@@ -7,9 +7,10 @@
 namespace pliant::generate {
 namespace {
 
-constexpr double kBlend = 0.005;  // [m] over which a finger flows into the palm
+constexpr double kBlend = 0.005;   // [m] over which a finger flows into the palm
+constexpr double kWaist = 0.0012;  // [m] by which a finger is thinner between two joints
 
-// A digit: three joints in a row, thinner towards the tip.
+// A digit: three joints in a row, thinner between them and towards the tip.
 struct Digit {
   std::array<dvec3, 4> joint;    // [m] from the root, inside the palm, to the tip
   std::array<double, 4> radius;  // [m]
@@ -17,7 +18,7 @@ struct Digit {
 
 // Straight along `heading` (from -Z towards +X) and curling down joint by joint. Angles in degrees.
 Digit make_digit(dvec3 root, double heading, std::array<double, 3> lengths, std::array<double, 3> curl, double thick) {
-  Digit digit{{root}, {thick, thick, 0.96 * thick, 0.88 * thick}};
+  Digit digit{{root}, {1.04 * thick, 1.06 * thick, 1.0 * thick, 0.84 * thick}};
   double down = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     down += glm::radians(curl[i]);
@@ -28,18 +29,26 @@ Digit make_digit(dvec3 root, double heading, std::array<double, 3> lengths, std:
   return digit;
 }
 
-// Distance to a capsule whose radius changes linearly; exact where it does not.
-double bone(dvec3 p, dvec3 a, dvec3 b, double ra, double rb) {
+// About the distance to a capsule whose radius goes from ra to rb and is less by `waist` halfway.
+double bone(dvec3 p, dvec3 a, dvec3 b, double ra, double rb, double waist) {
   const dvec3 ab = b - a;
   const double t = std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0);
-  return length(p - a - t * ab) - glm::mix(ra, rb, t);
+  const double halfway = std::sin(glm::pi<double>() * t);
+  return length(p - a - t * ab) - glm::mix(ra, rb, t) + waist * halfway * halfway;
 }
 
+// The last segment has no waist: it ends in the fingertip.
 double digit_distance(dvec3 p, const Digit& digit) {
   double nearest = 1e9;
   for (std::size_t i = 0; i < 3; ++i)
-    nearest = std::min(nearest, bone(p, digit.joint[i], digit.joint[i + 1], digit.radius[i], digit.radius[i + 1]));
+    nearest = std::min(nearest, bone(p, digit.joint[i], digit.joint[i + 1], digit.radius[i], digit.radius[i + 1],
+                                     i < 2 ? kWaist : 0.0));
   return nearest;
+}
+
+// The knuckle where a finger leaves the palm: a low bump on the back of the hand.
+double knuckle(dvec3 p, const Digit& finger) {
+  return length(p - finger.joint[0] - dvec3(0, 0.0045, -0.004)) - finger.radius[0] - 0.0008;
 }
 
 // A box with edges as round as it is thick, slightly cupped towards the fingers.
@@ -69,6 +78,8 @@ Solid hand_solid() {
     const double middle = palm(p);
     double nearest = middle;
     for (const Digit& digit : digits) nearest = std::min(nearest, join(middle, digit_distance(p, digit)));
+    for (std::size_t finger = 0; finger < 4; ++finger)
+      nearest = std::min(nearest, join(middle, knuckle(p, digits[finger])));
     return nearest;
   };
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "content/generate/instrument_levels.h"
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/minimal.h"
 #include "content/generate/sky.h"
@@ -288,6 +289,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = save_level(ball_level, levels / "turning_ball.glb", draco); !s) return s;
   if (Status s = save_strokes(ball_level, ridged_ball(), ball_strokes(), levels); !s) return s;
   if (Status s = write_tool_levels(levels); !s) return s;
+  if (Status s = write_instrument_levels(levels); !s) return s;
   return write_minimal(levels);
 }
 

@@ -9,7 +9,7 @@ namespace pliant::generate {
 
 // Presses and strokes a soft organ that lies on the ground, with friction, and rolls on it.
 Level hand();
-// Sweeps through four soft bodies on a tray: they slide, roll and bump into one another.
+// Presses on a soft cube that stands on a tray, and on two soft balls in their cups.
 Level hand_crowd();
 // Pushes its fingers between two walls, until they touch one another.
 Level hand_squeeze();

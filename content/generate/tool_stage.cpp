@@ -1,0 +1,121 @@
+#include "content/generate/tool_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/generate/instrument.h"
+#include "content/generate/stage.h"
+#include "content/generate/strokes.h"
+
+namespace pliant::generate {
+namespace {
+
+constexpr double kScriptRate = 100.0;  // [Hz] of rows
+
+}  // namespace
+
+Path lead(const std::vector<Waypoint>& waypoints) {
+  Path path;
+  const int rows = static_cast<int>(std::lround(waypoints.back().time * kScriptRate));
+  for (int row = 0; row <= rows; ++row) {
+    const double t = row / kScriptRate;
+    dvec3 position = waypoints.front().position, turn = waypoints.front().turn;
+    for (std::size_t i = 1; i < waypoints.size(); ++i) {
+      const double s = smooth_step(waypoints[i - 1].time, waypoints[i].time, t);
+      position += (waypoints[i].position - waypoints[i - 1].position) * s;
+      turn += (waypoints[i].turn - waypoints[i - 1].turn) * s;
+    }
+    path.rows.push_back({t, position, glm::normalize(dquat(glm::radians(turn)))});
+  }
+  return path;
+}
+
+Box around(dvec3 half) {
+  return {vec3(-half), vec3(half)};
+}
+
+Solid rounded_box(dvec3 half, double radius) {
+  return [half, radius](dvec3 p) {
+    const dvec3 q = glm::abs(p) - (half - dvec3(radius));
+    return length(glm::max(q, dvec3(0))) + std::min(std::max({q.x, q.y, q.z}), 0.0) - radius;
+  };
+}
+
+Solid ball(double radius) {
+  return [radius](dvec3 p) { return length(p) - radius; };
+}
+
+Solid torus(double major, double minor) {
+  return [major, minor](dvec3 p) { return length(dvec2(length(dvec2(p.x, p.z)) - major, p.y)) - minor; };
+}
+
+LevelNode& add_shape(Level& level, const std::string& name, const Solid& solid, const Box& box, double cell,
+                     std::int32_t material) {
+  Primitive primitive = to_primitive(cover_by_net(solid, box, cell), solid);
+  primitive.material = material;
+  level.meshes.push_back({name, {std::move(primitive)}});
+  LevelNode& node = add_node(level, name);
+  node.mesh = static_cast<std::int32_t>(level.meshes.size()) - 1;
+  return node;
+}
+
+LevelNode& add_mesh(Level& level, const std::string& name, const Net& net, std::int32_t material) {
+  Primitive primitive;
+  for (const dvec3& p : net.position) primitive.position.push_back(vec3(p));
+  for (const uvec3& t : net.triangles) primitive.index.insert(primitive.index.end(), {t.x, t.y, t.z});
+  primitive.material = material;
+  level.meshes.push_back({name, {std::move(primitive)}});
+  LevelNode& node = add_node(level, name);
+  node.mesh = static_cast<std::int32_t>(level.meshes.size()) - 1;
+  return node;
+}
+
+void add_fixed(Level& level, const std::string& name, dvec3 half, dvec3 at, double yaw, std::int32_t material) {
+  LevelNode& node = add_shape(level, name, rounded_box(half, 0.004), around(half + dvec3(0.01)), 0.006, material);
+  node.local.translation = vec3(at);
+  node.local.rotation = quat(dquat(dvec3(0, glm::radians(yaw), 0)));
+  node.rigid_body = RigidBody{};
+  node.rigid_body->fixed = true;
+}
+
+void add_slab(Level& level, const std::string& name, dvec3 half, dvec3 at, std::int32_t material) {
+  LevelNode& node = add_mesh(level, name, box_mesh(half), material);
+  node.local.translation = vec3(at);
+  node.rigid_body = RigidBody{};
+  node.rigid_body->fixed = true;
+}
+
+LevelNode& add_soft(Level& level, const std::string& name, const Solid& solid, const Box& box, double net_cell,
+                    double cell, double young, std::int32_t material) {
+  LevelNode& node = add_shape(level, name, solid, box, net_cell, material);
+  node.soft_body = SoftBody{};
+  node.soft_body->young = young;
+  node.soft_body->poisson = 0.4;
+  node.soft_body->rayleigh = {0.5, 0.01};
+  node.soft_body->cell = cell;
+  return node;
+}
+
+HapticDevice script_device(const std::string& file, double max_force) {
+  HapticDevice device;
+  device.driver = Driver::kScript;
+  device.file = file;
+  device.max_force = max_force;
+  return device;
+}
+
+void place(LevelNode& node, const Waypoint& at) {
+  node.local.translation = vec3(at.position);
+  node.local.rotation = quat(glm::normalize(dquat(glm::radians(at.turn))));
+}
+
+Status write_scene(const Level& level, const std::filesystem::path& folder) {
+  return save_level(level, folder / (level.name + ".glb"), SaveOptions{16});
+}
+
+Status write_path(const std::vector<Waypoint>& path, const std::string& comment, const std::string& file,
+                  const std::filesystem::path& folder) {
+  return save_script(lead(path), comment, folder / file);
+}
+
+}  // namespace pliant::generate
