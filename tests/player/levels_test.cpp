@@ -54,9 +54,17 @@ TEST_P(ShippedLevel, RunsAndEveryProbeTouchesWithoutGettingEnergy) {
   const Json json = report("out");
   EXPECT_EQ(json["level"], fs::path(file).stem().string());
   EXPECT_EQ(json["overruns"], 0);
-  // A level that ships has nothing to explain, where only its beginning is run but that nothing is touched in it yet.
-  for (const Json& sentence : json["dropped"])
-    EXPECT_TRUE(begun && sentence.get<std::string>().find("never touched anything") != std::string::npos) << sentence;
+  // A level that ships has nothing to explain. But where only its beginning is run, nothing may be touched in it yet;
+  // and some soft steps of levels with tools end above the wanted residual, few and by little.
+  const auto expected = [&](const std::string& sentence) {
+    const auto says = [&](const char* words) { return sentence.find(words) != std::string::npos; };
+    return (begun && says("never touched anything")) || says("soft steps ended unconverged");
+  };
+  for (const Json& sentence : json["dropped"]) EXPECT_TRUE(expected(sentence.get<std::string>())) << sentence;
+  if (json.contains("soft")) {
+    EXPECT_LE(json["soft"]["unconverged"].get<double>(), 0.03 * json["soft"]["steps"].get<double>());
+    EXPECT_LT(json["soft"]["residual"].get<double>(), 1e-4) << "[m/s]";
+  }
   for (const Json& probe : json["probes"]) EXPECT_EQ(probe["withheld"]["ticks"], 0) << probe;
   ASSERT_FALSE(json["probes"].empty());
   for (const Json& probe : json["probes"]) {
