@@ -7,7 +7,7 @@
 namespace pliant::generate {
 namespace {
 
-constexpr int kAround = 12;       // corners of a ring
+constexpr int kAround = 12;                                       // corners of a ring
 constexpr double kShaft = 0.0026, kGrip = 0.0048, kEnd = 0.0036;  // [m] radii
 constexpr double kBendAt = -0.068, kTipReach = 0.028;             // [m] along the shaft; from there to the ball
 constexpr double kBend = 20.0;                                    // [degree]

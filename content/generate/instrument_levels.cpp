@@ -75,8 +75,9 @@ dvec3 on_organ(double x, double z) {
 std::vector<Waypoint> stylus_path() {
   const dvec3 from = on_organ(-0.070, -0.020), to = on_organ(-0.026, -0.026), up(0, 1, 0), lean(-5, 0, 25);
   const double clear = kStylusTip + 0.020, deep = kStylusTip - 0.009;
-  return {tip_at(0.0, from + clear * up, lean), tip_at(2.0, from + deep * up, lean), tip_at(2.4, from + deep * up, lean),
-          tip_at(5.4, to + deep * up, lean), tip_at(7.4, to + clear * up, lean), tip_at(8.0, to + clear * up, lean)};
+  return {tip_at(0.0, from + clear * up, lean), tip_at(2.0, from + deep * up, lean),
+          tip_at(2.4, from + deep * up, lean),  tip_at(5.4, to + deep * up, lean),
+          tip_at(7.4, to + clear * up, lean),   tip_at(8.0, to + clear * up, lean)};
 }
 
 constexpr double kFinger = 0.007;  // [m] radius of the probe
@@ -95,7 +96,8 @@ std::vector<Waypoint> finger_path() {
 Level stack() {
   Level level;
   level.name = "stack";
-  const std::int32_t stone = add_material(level, "stone", kStone, 0.7f), wood = add_material(level, "wood", kWood, 0.6f);
+  const std::int32_t stone = add_material(level, "stone", kStone, 0.7f),
+                     wood = add_material(level, "wood", kWood, 0.6f);
   add_box(level, "table", {0.16, 0.006, 0.11}, {0.01, -0.006, 0.0}, 0.0, stone).rigid_body->fixed = true;
   const struct {
     const char* name;
@@ -145,8 +147,8 @@ Level instrument() {
 
 Status write_instrument_levels(const std::filesystem::path& folder) {
   if (Status s = write_scene(stack(), folder); !s) return s;
-  if (Status s = write_path(stack_path(), "presses on the tower, then pushes its topmost box off", "stack_stylus.csv",
-                            folder);
+  if (Status s =
+          write_path(stack_path(), "presses on the tower, then pushes its topmost box off", "stack_stylus.csv", folder);
       !s)
     return s;
   if (Status s = write_scene(instrument(), folder); !s) return s;
