@@ -164,5 +164,26 @@ TEST(RigidTool, TwoInstrumentsPressOnEachOther) {
   EXPECT_NEAR(felt(stage, above).y, -felt(stage, below).y, 0.02 * felt(stage, above).y);
 }
 
+// Farther from its device than any hand reaches: nothing is felt meanwhile, and it is in the hand again.
+TEST(RigidTool, WhatGetsAwayIsSetBackIntoTheHand) {
+  ToolStage stage(kSoftStep);
+  const Entity tool = add_instrument(stage, at({0, 0.1, 0}));
+  stage.prepare();
+  stage.lead(tool, dvec3(0, 0.1, 0), 0.2);
+  EXPECT_EQ((stage.world.dropped | stage.soft().dropped) & kDroppedSetBack, 0u);
+  stage.device_of(tool).position = dvec3(5, 0.1, 0);
+  double most = 0.0;
+  stage.lead(tool, dvec3(5, 0.1, 0), 0.3, [&] { most = std::max(most, length(stage.device_of(tool).force_sent)); });
+  EXPECT_NE(stage.world.dropped & kDroppedSetBack, 0u);
+  EXPECT_NE(stage.world.dropped & kDroppedJump, 0u);
+  EXPECT_LT(length(state_of(stage, tool).handle.pose.position - dvec3(5, 0.1, 0)), 1e-3);
+  EXPECT_LT(length(stage.body(tool).skin_position.front() - dvec3(5, 0.1, 0)), 0.03);
+  EXPECT_LT(most, 0.2) << "[N] below what opens the gate";
+  // And it works as before.
+  stage.lead(tool, dvec3(5.01, 0.1, 0), 0.1);
+  stage.lead(tool, dvec3(5.01, 0.1, 0), 0.3);
+  EXPECT_LT(length(state_of(stage, tool).handle.pose.position - dvec3(5.01, 0.1, 0)), 1e-3);
+}
+
 }  // namespace
 }  // namespace pliant
