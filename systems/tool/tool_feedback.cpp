@@ -48,11 +48,16 @@ void use(ToolTouchState& tool, ToolForce force) {
   tool.settling = 0;
 }
 
+// Somewhere only the contacts know what the handle pushes against (stiff_contacts.h).
+bool has_stiff(const CondensedContacts& contacts) {
+  const auto end = contacts.stiff.begin() + contacts.count;
+  return std::find(contacts.stiff.begin(), end, 1) != end;
+}
+
 // Of a short soft step, half. None where only the contacts know what the handle pushes against (stiff_contacts.h).
 int settle_ticks(const HandleModel& model) {
   const CondensedContacts& contacts = model.contacts;
-  const auto end = contacts.stiff.begin() + contacts.count;
-  if (std::find(contacts.stiff.begin(), end, 1) != end) return 0;
+  if (has_stiff(contacts)) return 0;
   return std::clamp(static_cast<int>(0.5 * model.soft_step / contacts.tick), 1, kSettleTicks);
 }
 
@@ -93,7 +98,9 @@ Vector6 plain_tick(const ToolTouchState& tool, const HandleModel& model, double 
 }
 
 Vector6 contact_tick(ToolTouchState& tool, const HandleModel& model, TickHandle& handle) {
-  const Vector6 wrench = condensed_tick(model.contacts, tool.contacts, tool.limits, handle);
+  SweepLimits limits = tool.limits;
+  if (has_stiff(model.contacts)) limits.sweeps = kStiffSweeps, limits.tolerance = kStiffTolerance;
+  const Vector6 wrench = condensed_tick(model.contacts, tool.contacts, limits, handle);
   tool.late = tool.contacts.report.in_time ? 0 : tool.late + 1;
   tool.ticks_late += !tool.contacts.report.in_time;
   return wrench;

@@ -44,7 +44,7 @@ class ToolLevel : public CommandTest {
   }
 };
 
-// How long a level is run. Not `stack`: what presses a rigid body on rigid bodies feels another force at shorter steps.
+// How long a level is run.
 struct Beginning {
   const char* level;
   double seconds;  // [s] from the script's beginning
@@ -63,7 +63,8 @@ TEST_P(ToolLevelForce, IsThatOfAFinerSoftStepWithinFivePercent) {
 
 INSTANTIATE_TEST_SUITE_P(Levels, ToolLevelForce,
                          ::testing::Values(Beginning{"hand", 2.2}, Beginning{"hand_crowd", 2.6},
-                                           Beginning{"hand_squeeze", 2.6}, Beginning{"instrument", 2.2}),
+                                           Beginning{"hand_squeeze", 2.6}, Beginning{"instrument", 2.2},
+                                           Beginning{"stack", 2.7}),
                          [](const auto& beginning) { return std::string(beginning.param.level); });
 
 TEST_F(ToolLevel, TheTowerStandsUnderTheStylusAndLosesItsTopmostBoxAlone) {
