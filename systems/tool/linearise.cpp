@@ -79,7 +79,7 @@ void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& 
     Vector6 mean = Vector6::Zero();
     for (std::size_t i = first; i < std::min(first + together, tool.gone.size()); ++i)
       mean += tool.gone[i].velocity / static_cast<double>(together);
-    follow(model, state, mean, {kTickSweeps, kTickTolerance, 0});
+    follow(model, state, mean, sweep_limits(model.contacts, {kTickSweeps, kTickTolerance, 0}));
   }
   model.time = tool.gone.back().time;
   model.handle.velocity = tool.gone.back().velocity;
@@ -87,13 +87,13 @@ void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& 
   if (together > 1) model.contacts.prepare_tick(tick);
 }
 
-// [N], [N m] of flesh and contacts on the handle, mean over the ticks since the last input.
-Vector6 mean_wrench(ToolTouchState& tool, const ToolInput& input) {
+// What flesh and contacts did to the handle, mean over the ticks since the last input. Without a new input, what it was.
+void hear_wrench(ToolTouchState& tool, const ToolInput& input) {
   const double elapsed = input.time - tool.heard_at;
-  const Vector6 mean = elapsed > 0.0 ? Vector6((input.impulse - tool.heard) / elapsed) : Vector6(Vector6::Zero());
+  if (!(elapsed > 0.0)) return;
+  tool.expected = (input.impulse - tool.heard) / elapsed;
   tool.heard_at = input.time;
   tool.heard = input.impulse;
-  return mean;
 }
 
 // Whether it moves as no hand's tool does.
@@ -169,7 +169,7 @@ void take_inputs(World& world, double T) {
     tool->pending.time = input.time;
     if (soft.part == 0 && set_back(soft, *tool, input, *body)) continue;
     if (!says_where(*tool, input)) continue;
-    if (soft.part == 0) tool->expected = mean_wrench(*tool, input);
+    if (soft.part == 0) hear_wrench(*tool, input);
     bring(*tool, input, 1.0 / (soft.parts - soft.part), *body);
   }
 }

@@ -17,7 +17,8 @@ namespace {
 // known, and nothing may be felt.
 bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick) {
   const double size = glm::dot(device.rotation, device.rotation);
-  if (device.status != DeviceStatus::kReady || !plausible_position(device.position) || !(std::abs(size - 1.0) < 1e-3))
+  const bool turned = tool.is_probe ? plausible_rotation(device.rotation) : std::abs(size - 1.0) < 1e-3;
+  if (device.status != DeviceStatus::kReady || !plausible_position(device.position) || !turned)
     return tool.sensing = false;
   const RigidMotion before = tool.sensed;
   const double since = tick.time - tool.sensed_at;
@@ -46,12 +47,6 @@ void use(ToolTouchState& tool, ToolForce force) {
   tool.used = force;
   tool.joins = true;
   tool.settling = 0;
-}
-
-// Somewhere only the contacts know what the handle pushes against (stiff_contacts.h).
-bool has_stiff(const CondensedContacts& contacts) {
-  const auto end = contacts.stiff.begin() + contacts.count;
-  return std::find(contacts.stiff.begin(), end, 1) != end;
 }
 
 // Of a short soft step, half. None where only the contacts know what the handle pushes against (stiff_contacts.h).
@@ -98,9 +93,8 @@ Vector6 plain_tick(const ToolTouchState& tool, const HandleModel& model, double 
 }
 
 Vector6 contact_tick(ToolTouchState& tool, const HandleModel& model, TickHandle& handle) {
-  SweepLimits limits = tool.limits;
-  if (has_stiff(model.contacts)) limits.sweeps = kStiffSweeps, limits.tolerance = kStiffTolerance;
-  const Vector6 wrench = condensed_tick(model.contacts, tool.contacts, limits, handle);
+  const Vector6 wrench =
+      condensed_tick(model.contacts, tool.contacts, sweep_limits(model.contacts, tool.limits), handle);
   tool.late = tool.contacts.report.in_time ? 0 : tool.late + 1;
   tool.ticks_late += !tool.contacts.report.in_time;
   return wrench;
@@ -153,7 +147,7 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
     tool.fade_left = std::max(1.0, tool.fade_left - 1.0);
   }
 
-  tool.impulse += tick.dt * tool.wrench;
+  if (tool.wrench.allFinite()) tool.impulse += tick.dt * tool.wrench;  // a sum would never lose what is no number
   tool.gained = handle.velocity - tool.handle.velocity;
   tool.handle.velocity = handle.velocity;
   tool.handle.pose.position += tick.dt * linear(handle.velocity);

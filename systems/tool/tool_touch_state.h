@@ -2,6 +2,7 @@
 // what is marked as the soft clock's.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -20,14 +21,28 @@ inline constexpr int kSettleTicks = 3;            // of a new model, its contact
 inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to nothing
 inline constexpr int kLateTicks = 3;              // ticks in a row over budget, then the linear model takes over
 inline constexpr int kTickSweeps = 20;            // a tick's Gauss-Seidel sweeps at most; they start warm
-inline constexpr int kStiffSweeps = 100;          // the same where rigid bodies stand on each other: fewer, and what is
-inline constexpr double kStiffTolerance = 1e-5;   // pressed sinks in, a little with every model
 inline constexpr double kTickTolerance = 1e-3;    // [1] of the fastest closing: good enough, stop
+inline constexpr int kStiffSweeps = 100;          // both, where rigid bodies stand on each other: a looser solution sinks
+inline constexpr double kStiffTolerance = 1e-5;   // in, a little with every model
 inline constexpr double kMostStretch = 2.0;       // [m] a handle farther from its device has got away from the hand,
 inline constexpr double kRunaway = 50.0;          // [m/s] and so has one that is faster,
 inline constexpr double kRunawayTurn = 1000.0;    // [rad/s] or turns faster
 inline constexpr std::size_t kMostFollowed = 32;  // of them, joined, that a model is brought up to date by
 inline constexpr std::size_t kPathLength = 4096;  // ticks of the handle's path that may wait for the soft clock
+
+// Somewhere only the contacts know what the handle pushes against (stiff_contacts.h).
+inline bool has_stiff(const CondensedContacts& contacts) {
+  const auto end = contacts.stiff.begin() + contacts.count;
+  return std::find(contacts.stiff.begin(), end, 1) != end;
+}
+
+// How far a tick's contacts are solved, in the tick itself and where the soft clock follows it.
+inline SweepLimits sweep_limits(const CondensedContacts& contacts, SweepLimits limits) {
+  if (!has_stiff(contacts)) return limits;
+  limits.sweeps = std::max(limits.sweeps, kStiffSweeps);
+  limits.tolerance = std::min(limits.tolerance, kStiffTolerance);
+  return limits;
+}
 
 // A tick of the handle's path, for the soft clock to bring its model up to date with.
 struct HandleStep {

@@ -9,6 +9,7 @@
 #include "systems/schedule.h"
 #include "systems/tool/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
+#include "systems/tool/soft_step.h"
 #include "systems/touch/prepare.h"
 
 namespace pliant::scenes {
@@ -114,7 +115,7 @@ void ToolStage::prepare() {
 }
 
 void ToolStage::step() {
-  soft_schedule_.run(world, {steps_, soft_step(), static_cast<double>(steps_) * soft_step()});
+  run_soft_step(soft_schedule_, world, {steps_, soft_step(), static_cast<double>(steps_) * soft_step()});
   ++steps_;
 }
 

@@ -395,6 +395,7 @@ TEST(ToolFeedback, AModelThatIsNoNumberIsNotFeltAndTheNextOneIs) {
   }
   EXPECT_EQ(length(stage.hand().force_sent), 0.0);
   EXPECT_NE(stage.world.dropped & kDroppedNonFinite, 0u);
+  EXPECT_TRUE(stage.state().impulse.allFinite()) << "or the soft clock would never hear of a force again";
   press(0.1);
   for (int i = 0; i < 40; ++i) stage.tick();
   EXPECT_NEAR(length(stage.hand().force_sent), 0.1, 0.01);
