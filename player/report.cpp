@@ -116,7 +116,8 @@ Json soft(const SoftClock& clock, const SoftTally& tally) {
   json["residual"] = std::max(figures.residual_max, tally.residual);
   json["unconverged"] = tally.unconverged;
   json["contacts_cut"] = tally.contacts_cut;
-  json["crossed"] = tally.crossed;
+  json["halted"] = tally.halted;
+  json["halted_s"] = tally.halted_for;
   json["deepest_m"] = tally.deepest;
   json["began_inside_m"] = tally.began_inside;
   json["time_lost_s"] = figures.time_lost;

@@ -63,12 +63,11 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
     sentences.push_back(
         fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart; move one of them in the level",
                     name_of(world, tally.inside_a), name_of(world, tally.inside_b), tally.began_inside * 1e3));
-  if (tally.crossed > 0)
+  if (tally.halted_for > 0.0)
     sentences.push_back(
-        fmt::format("{} of surfaces went through each other in soft steps, because no solution without that was found "
-                    "in time; make "
+        fmt::format("bodies stood still for {:.3g} s in soft steps that would have taken them through each other; make "
                     "soft_step shorter, or press more slowly",
-                    count(tally.crossed, "point")));
+                    tally.halted_for));
   if (tally.unconverged > 0 && tally.residual > kSaidResidual)
     sentences.push_back(
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "

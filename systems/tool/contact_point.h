@@ -31,6 +31,12 @@ struct ContactPoint {
   std::uint32_t source = 0;  // whatever Proximity finds it by, in this step
 };
 
+// What a step still takes through each other: how many features, and the first of them when [1] of the step.
+struct Crossings {
+  std::size_t count = 0;
+  double first = 1.0;
+};
+
 // `out` comes in with the last contacts and their impulses: side, axes, impulse and sliding carry over by key.
 // Pairs whose gap may close within a step T [s], by the bodies' skin_velocity, at most a margin apart at the end: broad
 // phase over bodies and over each skin's boxes, then vertex-triangle and edge-edge pairs. Normals do not flip.
@@ -45,10 +51,10 @@ class Proximity {
   // All pairs with the same `margin` [m].
   void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, double margin, std::vector<ContactPoint>& out);
   // What find() did not know of and crosses within the step by the bodies' velocities as they now are: what fell beside
-  // something that has been stopped meets it. Appends to the contacts of this step's find(); returns how many crossings
-  // it saw, those that found no room among the contacts included. Surfaces that yield are left out.
-  std::size_t find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
-                          std::vector<ContactPoint>& contacts);
+  // something that has been stopped meets it. Appends to the contacts of this step's find(); returns the crossings
+  // that it saw, those that found no room among the contacts included. Surfaces that yield are left out.
+  Crossings find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                        std::vector<ContactPoint>& contacts);
   // The same contacts, as find() gave them, where the step will end by the bodies' velocities as they now are
   // (contact_geometry.h: look_again). False: nothing to speak of is different there.
   bool look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts);

@@ -303,19 +303,21 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
-                            std::vector<ContactPoint>& contacts, ContactProblem& problem, std::uint64_t* crossed) {
+                            std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left) {
   problem.own.clear();
   SweepReport report = solve(problem, limits);
   apply_impulses(bodies, delassus, contacts, problem.impulse);
   for (int round = 0;; ++round) {
     keep_impulses(problem, contacts);
     const std::vector<ContactPoint>::size_type known = contacts.size();
-    const std::size_t missed = proximity.find_missed(bodies, T, contacts);
+    const Crossings missed = proximity.find_missed(bodies, T, contacts);
     const bool last = round == kMostRounds || (round >= kRoundsUnsettled && !report.settled);
     if (last) contacts.resize(known);
-    const std::size_t cut = cut_late_contacts(bodies, kMostOfBody, known, contacts);
-    if (crossed) *crossed += last ? missed : cut;
-    if (contacts.size() == known) break;
+    cut_late_contacts(bodies, kMostOfBody, known, contacts);
+    if (contacts.size() == known) {
+      if (left) *left = missed;
+      break;
+    }
     Vector applied = Vector::Zero(3 * static_cast<Eigen::Index>(contacts.size()));
     applied.head(3 * static_cast<Eigen::Index>(known)) = problem.impulse.head(3 * static_cast<Eigen::Index>(known));
     build_problem(bodies, contacts, T, beta, delassus, problem);

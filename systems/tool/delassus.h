@@ -38,14 +38,14 @@ void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Dela
 void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& contacts);
 
 // solve(), and both of the above. Contacts that only the solution brings about (Proximity::find_missed) join and all
-// are solved anew, in a bounded number of rounds; what still crosses after the last one, and what a body has no room
-// for (contact_budget.h), is added to `crossed`. Then once more: now the contacts lie where the step will end by the
-// solution (Proximity::look_again); until then they were where the last step's motion led. In the level `hand` that
-// takes a third off the error of the 1 kHz force, doing so once more changes little. Later sweeps start from the
-// impulses that there are; of a contact that is not foretold the law stays what it was.
+// are solved anew, in a bounded number of rounds; what still crosses after the last one, also for want of room
+// (contact_budget.h), is `left`. Then once more: now the contacts lie where the step will end by the solution
+// (Proximity::look_again); until then they were where the last step's motion led. In the level `hand` that takes a
+// third off the error of the 1 kHz force, doing so once more changes little. Later sweeps start from the impulses that
+// there are; of a contact that is not foretold the law stays what it was.
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
                             std::vector<ContactPoint>& contacts, ContactProblem& problem,
-                            std::uint64_t* crossed = nullptr);
+                            Crossings* left = nullptr);
 
 }  // namespace pliant

@@ -75,6 +75,7 @@ std::optional<Meeting> meet_edge(const std::array<Moving, 2>& a, const EdgeShape
         if (!(size > 0.0) || lean(normal / size, t)) continue;
       }
       m.crosses = true;
+      m.when = t;
       return m;
     }
   }

@@ -183,7 +183,7 @@ void linearise(World& world, double T) {
     const ToolBody* const body = tool_body(soft, index);
     if (!body || !body->solvable()) continue;
     reduce_tool(step, index, 1.0 / world.simulation.touch_rate, tool->pending);
-    tool->pending.soft_step = T * soft.parts;  // until the next one
+    tool->pending.soft_step = soft.step;  // until the next one
     ++tool->pending.step;
   }
 }

@@ -20,6 +20,7 @@ struct Meeting {
   double gap = 0.0;            // [m] along the normal, at the beginning; < 0: behind
   double end_gap = 0.0;        // [m] what it would be at the end
   bool crosses = false;        // in front at the beginning, behind later, through the feature itself
+  double when = 1.0;           // [1] of the step, where it crosses
   dvec3 barycentric{1, 0, 0};  // [1] on the triangle
   double along_a = 0.0;        // [1] 0-1 on the first edge, from its first end
   double along_b = 0.0;        // [1] on the second

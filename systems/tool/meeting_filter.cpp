@@ -11,6 +11,7 @@ namespace {
 constexpr double kSameSide = 0.5;   // [1] cosine: a normal that is still the one of the last step
 constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a further contact (in a corner)
 constexpr std::uint32_t kMostOfVertex = 3;
+constexpr double kFarBehind = 4.0;  // [margins] what is farther behind a triangle that it came from must be inside
 constexpr double kComing = 1e-3;  // [margins] in a step: slower, and it does not go into a sheet but lies in it
 constexpr double kGraze = 0.3;    // [margins] what crosses by less is left to the next step
 
@@ -113,6 +114,7 @@ struct MeetingFilter {
       const bool came = std::any_of(past.begin(), past.end(), [&](const dvec3* normal) {
         return normal && dot(*normal, m.meeting.normal) > kSameSide;
       });
+      if (came && m.meeting.gap < -kFarBehind * pair.margin && !inside(a, b, m)) continue;
       if (!came && began_inside() && !leads_out(a, b, m.meeting)) continue;
       if (!behind || (came && !known) || (came == known && m.meeting.gap > behind->meeting.gap)) behind = &m;
       known |= came;

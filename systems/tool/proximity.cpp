@@ -249,8 +249,8 @@ struct Proximity::Parts {
     return std::min(changed, moved) > margin_between(i, k);
   }
 
-  std::size_t find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
-                          std::vector<ContactPoint>& contacts) {
+  Crossings find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                        std::vector<ContactPoint>& contacts) {
     late = true;
     candidates.clear();
     std::vector<dvec3> velocity;
@@ -272,11 +272,13 @@ struct Proximity::Parts {
     }
     remember_sides();
     const std::vector<Candidate> crossing = candidates;
+    Crossings crossings{crossing.size()};
+    for (const Candidate& c : crossing) crossings.first = std::min(crossings.first, found[c.source].meeting.when);
     take_sinking(contacts);
     thinned.insert(thinned.end(), crossing.begin(), crossing.end());
     thin_contacts(candidates, {});
     for (const Candidate& c : candidates) contacts.push_back(contact_of(bodies, c));
-    return crossing.size();
+    return crossings;
   }
 };
 
@@ -301,8 +303,8 @@ void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T,
   parts_->find(bodies, T, margin, out);
 }
 
-std::size_t Proximity::find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
-                                   std::vector<ContactPoint>& contacts) {
+Crossings Proximity::find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                                 std::vector<ContactPoint>& contacts) {
   return parts_->find_missed(bodies, T, contacts);
 }
 

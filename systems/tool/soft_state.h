@@ -28,7 +28,8 @@ struct SoftTally {
   std::uint64_t unconverged = 0;   // steps whose contacts ended above the stated residual
   double residual = 0.0;           // [m/s] the largest that a step ended with
   double deepest = 0.0;            // [m] >= 0: the deepest penetration that a step began with
-  std::uint64_t crossed = 0;       // crossings that a step's last solution still made, summed over the steps
+  std::uint64_t halted = 0;        // times that bodies stopped in a step before a crossing that no contact prevented
+  double halted_for = 0.0;         // [s] that they stood still, as the step had no more parts
 
   // [m] How deep the first step found bodies in each other, at most, beyond 1 % of the smaller one's diagonal; and who.
   double began_inside = 0.0;
@@ -48,6 +49,9 @@ struct SoftState {
   SoftTimes times;
   std::uint64_t steps = 0;    // done
   int parts = 1, part = 0;    // of the step under way (run_soft_step)
+  int more = 0;               // parts that may still be added to it
+  double share = 1.0;         // [1] of the part under way that bodies go
+  double step = 0.0;          // [s] T of the step under way, all its parts together
   std::uint64_t began = 0;    // [ns] of the step under way
   std::uint32_t dropped = 0;  // DroppedBit, the soft clock's own
 

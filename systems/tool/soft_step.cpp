@@ -15,6 +15,9 @@ namespace {
 // Looser, and stacks and grips creep: 1e-6 of what a step's gravity gives is 0.2 um/s.
 constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 
+constexpr double kShortOf = 0.9;  // [1] of the way to a crossing
+constexpr int kMoreParts = 4;     // that a step may have for the sake of crossings
+
 constexpr double kSunken = 0.01;  // [1] of a body's diagonal: what lies so deep in another when a level begins is said
 
 double ms_since(std::uint64_t begin) {
@@ -49,6 +52,19 @@ void stop_non_finite(SoftState& soft) {
   }
 }
 
+// Nothing goes through anything: what no contact prevents, bodies stop before, and what is left of the step becomes
+// one more part of it, in which they are contacts from its beginning.
+void stop_before(SoftState& soft, const Crossings& left, double T) {
+  soft.share = 1.0;
+  if (left.count == 0) return;
+  soft.share = kShortOf * left.first;
+  ++soft.tally.halted;
+  if (soft.more > 0)
+    --soft.more, ++soft.parts;
+  else
+    soft.tally.halted_for += (1.0 - soft.share) * T;
+}
+
 }  // namespace
 
 void run_soft_step(Schedule<World>& schedule, World& world, Tick tick) {
@@ -56,15 +72,23 @@ void run_soft_step(Schedule<World>& schedule, World& world, Tick tick) {
   SoftState& soft = *world.soft;
   const double way = farthest_way(world);
   soft.parts = std::clamp(static_cast<int>(std::ceil(way / kMostWay)), 1, kMostParts);
-  const double dt = tick.dt / soft.parts;
-  for (soft.part = 0; soft.part < soft.parts; ++soft.part)
-    schedule.run(world, {tick.index, dt, tick.time + soft.part * dt});
-  soft.parts = 1, soft.part = 0;
+  soft.more = kMoreParts;
+  double done = 0.0;
+  for (soft.part = 0; soft.part < soft.parts; ++soft.part) {
+    const double dt = (tick.dt - done) / (soft.parts - soft.part);
+    schedule.run(world, {tick.index, dt, tick.time + done});
+    done += soft.share * dt;
+  }
+  soft.parts = 1, soft.part = 0, soft.more = 0;
 }
 
 void read_tool_input(World& world, Tick tick) {
   if (!world.soft) return;
-  if (world.soft->part == 0) world.soft->began = now_ns();
+  SoftState& soft = *world.soft;
+  if (soft.part == 0) {
+    soft.began = now_ns();
+    soft.step = tick.dt * soft.parts;
+  }
   take_inputs(world, tick.dt);
 }
 
@@ -102,8 +126,10 @@ void solve_contacts(World& world, Tick tick) {
   build_problem(soft.bodies, soft.contacts, tick.dt, kPenetrationShare, soft.delassus, soft.problem);
   soft.times.delassus = ms_since(begin);
   const std::uint64_t built = now_ns();
+  Crossings left;
   soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, kPenetrationShare, kSweeps, soft.delassus,
-                                soft.contacts, soft.problem, &soft.tally.crossed);
+                                soft.contacts, soft.problem, &left);
+  stop_before(soft, left, tick.dt);
   soft.times.sweeps = ms_since(built);
   soft.tally.unconverged += !soft.report.settled;
   soft.tally.residual = std::max(soft.tally.residual, soft.report.residual);
@@ -120,8 +146,9 @@ void linearise_tools(World& world, Tick tick) {
 void advance_bodies(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
-  for (const std::unique_ptr<Body>& body : soft.bodies) body->advance(tick.dt);
-  for (const std::uint32_t i : soft.yielding) soft.surface(i).yield(soft.contacts, tick.dt);
+  const double dt = soft.share * tick.dt;
+  for (const std::unique_ptr<Body>& body : soft.bodies) body->advance(dt);
+  for (const std::uint32_t i : soft.yielding) soft.surface(i).yield(soft.contacts, dt);
 }
 
 void publish_tools(World& world, Tick) {

@@ -93,6 +93,7 @@ std::optional<Meeting> meet_triangle(const Moving& vertex, const std::array<Movi
       if (smallest(w) < -kSlack) continue;
       m.barycentric = clamp_inside(w);
       m.crosses = true;
+      m.when = times[i];
       return m;
     }
   }

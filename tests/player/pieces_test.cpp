@@ -171,14 +171,14 @@ TEST(SoftClock, WhatStepsLeaveImperfectIsSaidWithItsCure) {
   World world;
   world.soft = std::make_shared<SoftState>();
   EXPECT_TRUE(explain_soft_steps(world, {}).empty());
-  world.soft->tally = {.contacts_cut = 7, .unconverged = 1, .residual = 0.25, .deepest = 0.001, .crossed = 2};
+  world.soft->tally = {.contacts_cut = 7, .unconverged = 1, .residual = 0.25, .deepest = 0.001, .halted = 2, .halted_for = 0.02};
   SoftFigures figures;
   figures.steps = 20;
   figures.time_lost = 1.5;
   const std::vector<std::string> said = explain_soft_steps(world, figures);
   ASSERT_EQ(said.size(), 4u);
   EXPECT_NE(said[0].find("7 contacts were left out"), std::string::npos) << said[0];
-  EXPECT_NE(said[1].find("2 points of surfaces went through each other"), std::string::npos) << said[1];
+  EXPECT_NE(said[1].find("stood still for 0.02 s"), std::string::npos) << said[1];
   EXPECT_NE(said[2].find("1 of 20 soft steps ended unconverged (residual at most 0.25 m/s)"), std::string::npos)
       << said[2];
   EXPECT_NE(said[3].find("1.50 s behind after 20 steps"), std::string::npos) << said[3];
