@@ -43,13 +43,13 @@ const ContactPoint* ContactMemory::find(std::uint64_t key) const {
 }
 
 void SideMemory::sort() {
-  std::sort(normals_.begin(), normals_.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::sort(sides_.begin(), sides_.end(), [](const KnownSide& x, const KnownSide& y) { return x.key < y.key; });
 }
 
-const dvec3* SideMemory::find(std::uint64_t key) const {
-  const auto it = std::lower_bound(normals_.begin(), normals_.end(), key,
-                                   [](const auto& x, std::uint64_t k) { return x.first < k; });
-  return it != normals_.end() && it->first == key ? &it->second : nullptr;
+const KnownSide* SideMemory::find(std::uint64_t key) const {
+  const auto it = std::lower_bound(sides_.begin(), sides_.end(), key,
+                                   [](const KnownSide& x, std::uint64_t k) { return x.key < k; });
+  return it != sides_.end() && it->key == key ? &*it : nullptr;
 }
 
 void carry_over(const ContactPoint* last, ContactPoint& contact) {

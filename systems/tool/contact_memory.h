@@ -25,16 +25,21 @@ class ContactMemory {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
 };
 
-// On which side of each other features were, whether or not their contact was kept for the solve.
+// On which side of each other features were and how far apart, whether or not their contact was kept for the solve.
+struct KnownSide {
+  std::uint64_t key = 0;
+  dvec3 normal{0};   // [1]
+  double gap = 0.0;  // [m]
+};
 class SideMemory {
  public:
-  void clear() { normals_.clear(); }
-  void add(std::uint64_t key, dvec3 normal) { normals_.emplace_back(key, normal); }
-  void sort();                                 // once all are added, before find()
-  const dvec3* find(std::uint64_t key) const;  // null where they did not meet
+  void clear() { sides_.clear(); }
+  void add(const KnownSide& side) { sides_.push_back(side); }
+  void sort();                                     // once all are added, before find()
+  const KnownSide* find(std::uint64_t key) const;  // null where they did not meet
 
  private:
-  std::vector<std::pair<std::uint64_t, dvec3>> normals_;
+  std::vector<KnownSide> sides_;
 };
 
 // Axes, impulse and sliding of a contact: those of the last step turned onto the new normal, or fresh ones.

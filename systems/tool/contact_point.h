@@ -1,6 +1,7 @@
 // A pair of skin points that may touch during the step.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -35,6 +36,10 @@ struct ContactPoint {
 struct Crossings {
   std::size_t count = 0;
   double first = 1.0;
+  void add(const Crossings& more) {
+    count += more.count;
+    first = std::min(first, more.first);
+  }
 };
 
 // `out` comes in with the last contacts and their impulses: side, axes, impulse and sliding carry over by key.

@@ -11,23 +11,32 @@ namespace {
 constexpr double kSameSide = 0.5;   // [1] cosine: a normal that is still the one of the last step
 constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a further contact (in a corner)
 constexpr std::uint32_t kMostOfVertex = 3;
-constexpr double kFarBehind = 4.0;  // [margins] what is farther behind a triangle that it came from must be inside
+constexpr double kAtOnce = 4.0;   // [margins] what sinks in farther in one step,
+constexpr double kDeepens = 2.0;  // [1] beyond so many times how deep it was, did not
 constexpr double kComing = 1e-3;  // [margins] in a step: slower, and it does not go into a sheet but lies in it
 constexpr double kGraze = 0.3;    // [margins] what crosses by less is left to the next step
 
 struct MeetingFilter {
   const PairView& pair;
   std::vector<Found>& out;
+  Crossings crossings{};  // of what was missed
 
   void take_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     const ContactPoint* last = pair.memory.find(key);
-    const bool met = pair.sides.find(key) != nullptr;
+    const bool met = came_from(pair.sides.find(key), m);
     // Edges deep below each other that never met: others hold those bodies.
     if (m.gap < -pair.margin && !met && !(began_inside() && leads_out(a, b, m))) return;
     if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, met)) return;
     if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, met)) return;
     out.push_back({a.index, b.index, true, edge_a, edge_b, m, last, key});
+  }
+
+  // Whether the last step saw it on this side. Nothing sinks in deep at once: where it would have, it has gone round a
+  // corner, and is deep behind a face that it left.
+  bool came_from(const KnownSide* side, const Meeting& m) const {
+    if (!side || dot(side->normal, m.normal) <= kSameSide) return false;
+    return -m.gap <= kAtOnce * pair.margin + kDeepens * std::max(0.0, -side->gap);
   }
 
   bool began_inside() const { return pair.way != dvec3(0.0); }
@@ -100,7 +109,7 @@ struct MeetingFilter {
   // Of the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
   std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b,
                                                  std::span<const VertexMeeting> met) const {
-    std::array<const dvec3*, kMostOfVertex> past;
+    std::array<const KnownSide*, kMostOfVertex> past;
     for (std::uint32_t k = 0; k < kMostOfVertex; ++k)
       past[k] = pair.sides.find(vertex_key(a.index, b.index, met.front().vertex, k));
     const VertexMeeting* behind = nullptr;
@@ -111,10 +120,8 @@ struct MeetingFilter {
         in_front = std::min(in_front, m.meeting.gap);
         continue;
       }
-      const bool came = std::any_of(past.begin(), past.end(), [&](const dvec3* normal) {
-        return normal && dot(*normal, m.meeting.normal) > kSameSide;
-      });
-      if (came && m.meeting.gap < -kFarBehind * pair.margin && !inside(a, b, m)) continue;
+      const bool came =
+          std::any_of(past.begin(), past.end(), [&](const KnownSide* side) { return came_from(side, m.meeting); });
       if (!came && began_inside() && !leads_out(a, b, m.meeting)) continue;
       if (!behind || (came && !known) || (came == known && m.meeting.gap > behind->meeting.gap)) behind = &m;
       known |= came;
@@ -140,12 +147,20 @@ struct MeetingFilter {
 
   // --- What was missed
   bool crosses(const Meeting& m) const { return m.crosses && m.end_gap < -kGraze * pair.margin; }
+  // What is a contact already has a law that is straight: it may be kept, and the surface bends away under it.
+  bool slips(const Meeting& m) const { return m.crosses && m.end_gap < -pair.margin; }
+  void count(const Meeting& m) { crossings.add({1, m.when}); }
 
   void take_missed_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
-    if (!crosses(m) || pair.sides.find(key)) return;
+    if (!crosses(m)) return;
+    if (pair.sides.find(key)) {
+      if (slips(m)) count(m);
+      return;
+    }
     if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, false)) return;
     if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, false)) return;
+    count(m);
     out.push_back({a.index, b.index, true, edge_a, edge_b, m, pair.memory.find(key), key});
   }
 
@@ -159,8 +174,10 @@ struct MeetingFilter {
     for (const VertexMeeting& m : met) {
       if (m.vertex == done || !crosses(m.meeting)) continue;
       const std::optional<std::uint64_t> key = free_key(a, b, m);
+      if (!key && slips(m.meeting)) count(m.meeting);
       if (!key) continue;
       done = m.vertex;
+      count(m.meeting);
       out.push_back({a.index, b.index, false, m.vertex, m.triangle, m.meeting, pair.memory.find(*key), *key});
     }
   }
@@ -168,9 +185,9 @@ struct MeetingFilter {
     std::optional<std::uint64_t> free;
     for (std::uint32_t k = kMostOfVertex; k-- > 0;) {
       const std::uint64_t key = vertex_key(a.index, b.index, m.vertex, k);
-      const dvec3* normal = pair.sides.find(key);
-      if (normal && dot(*normal, m.meeting.normal) > kSameSide) return {};
-      if (!normal) free = key;
+      const KnownSide* side = pair.sides.find(key);
+      if (side && dot(side->normal, m.meeting.normal) > kSameSide) return {};
+      if (!side) free = key;
     }
     return free;
   }
@@ -185,11 +202,12 @@ void take_contacts(const PairView& pair, const Side& a, const Side& b, Meetings&
   filter.take_vertices(b, a, meetings.of_b);
 }
 
-void take_missed(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out) {
+Crossings take_missed(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out) {
   MeetingFilter filter{pair, out};
   for (const EdgeMeeting& m : meetings.edges) filter.take_missed_edges(a, m.edge_a, b, m.edge_b, m.meeting);
   filter.take_missed_vertices(a, b, meetings.of_a);
   filter.take_missed_vertices(b, a, meetings.of_b);
+  return filter.crossings;
 }
 
 }  // namespace pliant

@@ -66,6 +66,7 @@ struct Proximity::Parts {
   SideMemory sides;                    // of the last step
   std::optional<double> margin_given;  // of this step's find()
   bool late = false;                   // looking for what was missed
+  Crossings crossings;                 // of what was
   Meetings meetings;                   // of the pair of bodies that is looked at
   std::vector<Found> found;
   std::vector<Candidate> candidates, thinned;  // those to be kept; all that there were before
@@ -162,7 +163,10 @@ struct Proximity::Parts {
     const std::size_t first = found.size();
     // What find() saw moving within a margin of where it does now it has not missed.
     find_meetings(a, b, pair.reach, late ? static_cast<float>(pair.margin) : -1.0f, meetings);
-    (late ? take_missed : take_contacts)(pair, a, b, meetings, found);
+    if (late)
+      crossings.add(take_missed(pair, a, b, meetings, found));
+    else
+      take_contacts(pair, a, b, meetings, found);
     if (!late) past = {0.0, pair.way};
     keep(first, past);
     if (past.deepest > 0.0 || past.way != dvec3(0.0))
@@ -213,7 +217,8 @@ struct Proximity::Parts {
   }
 
   void remember_sides() {
-    for (const Candidate& c : candidates) sides.add(c.key, found[c.source].meeting.normal);
+    for (const Candidate& c : candidates)
+      sides.add({c.key, found[c.source].meeting.normal, found[c.source].meeting.gap});
     sides.sort();
   }
 
@@ -252,6 +257,7 @@ struct Proximity::Parts {
   Crossings find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
                         std::vector<ContactPoint>& contacts) {
     late = true;
+    crossings = {};
     candidates.clear();
     std::vector<dvec3> velocity;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -272,8 +278,6 @@ struct Proximity::Parts {
     }
     remember_sides();
     const std::vector<Candidate> crossing = candidates;
-    Crossings crossings{crossing.size()};
-    for (const Candidate& c : crossing) crossings.first = std::min(crossings.first, found[c.source].meeting.when);
     take_sinking(contacts);
     thinned.insert(thinned.end(), crossing.begin(), crossing.end());
     thin_contacts(candidates, {});

@@ -10,8 +10,8 @@ namespace pliant {
 
 // [m] The way that a handle goes in one soft step; a faster one goes it in up to kMostParts shorter steps. What flesh
 // is thick, a finger, must not be gone through in one.
-inline constexpr double kMostWay = 0.02;
-inline constexpr int kMostParts = 4;
+inline constexpr double kMostWay = 0.01;
+inline constexpr int kMostParts = 8;
 
 // One soft step by the soft schedule: as a rule one run of it. Models are published at its end.
 void run_soft_step(Schedule<World>& schedule, World& world, Tick tick);
