@@ -24,7 +24,8 @@ struct MeetingSearch {
     if (!sweep.meet(a.skin.vertex_box(vertex), b.skin.box(triangle))) return;
     if (a.index == b.index) {
       const uvec3 c = b.skin.mesh().triangles[triangle];
-      if (a.skin.near(vertex, c.x) || a.skin.near(vertex, c.y) || a.skin.near(vertex, c.z)) return;
+      const SkinNeighbours& of = a.skin.neighbours();
+      if (of.near(vertex, c.x) || of.near(vertex, c.y) || of.near(vertex, c.z)) return;
     }
     if (const auto m = meet_triangle(a.skin.vertex(vertex), b.skin.triangle(triangle), reach))
       of_vertices.push_back({vertex, triangle, *m});
@@ -38,9 +39,11 @@ struct MeetingSearch {
     box_a.add(a.skin.vertex_box(ea.to));
     box_b.add(b.skin.vertex_box(eb.to));
     if (!sweep.meet(box_a, box_b)) return;
-    if (a.index == b.index && (a.skin.near(ea.from, eb.from) || a.skin.near(ea.from, eb.to) ||
-                               a.skin.near(ea.to, eb.from) || a.skin.near(ea.to, eb.to)))
-      return;
+    if (a.index == b.index) {
+      const SkinNeighbours& of = a.skin.neighbours();
+      if (of.near(ea.from, eb.from) || of.near(ea.from, eb.to) || of.near(ea.to, eb.from) || of.near(ea.to, eb.to))
+        return;
+    }
     const auto m = meet_edge(a.skin.edge(edge_a), a.skin.edge_shape(edge_a), b.skin.edge(edge_b),
                              b.skin.edge_shape(edge_b), reach);
     if (m) out.edges.push_back({edge_a, edge_b, *m});

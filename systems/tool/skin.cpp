@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 
 #include "runtime/assert.h"
 #include "systems/tool/farthest_axis.h"
@@ -37,7 +36,9 @@ Skin::Skin(const Body& body) : mesh_(body.skin), deforms_(body.size() > kRigid) 
   ASSERT(body.skin && body.skin_position.size() >= body.skin->vertex_count);
   find_edges();
   find_shortest();
-  if (body.self_collides) find_neighbours(kNearEdges * static_cast<double>(mesh_->mean_edge));
+  if (body.self_collides)
+    neighbours_ =
+        SkinNeighbours(*mesh_, kNearEdges * static_cast<double>(mesh_->mean_edge), triangles_first_, triangles_of_);
   position_.resize(mesh_->vertex_count, dvec3(0));
   displacement_.resize(mesh_->vertex_count, dvec3(0));
   ahead_.resize(mesh_->vertex_count, dvec3(0));
@@ -112,46 +113,6 @@ void Skin::find_shortest() {
     shortest_.push_back(shortest);
     for (int i = 0; i < 3; ++i) shortest_at_vertex_[t[i]] = std::min(shortest_at_vertex_[t[i]], shortest);
   }
-}
-
-// Dijkstra along edges from every vertex, at rest.
-void Skin::find_neighbours(double distance) {
-  std::vector<double> best(mesh_->vertex_count, 1e300);
-  std::vector<std::uint32_t> reached;
-  using Item = std::pair<double, std::uint32_t>;
-  near_first_.assign(1, 0);
-  for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) {
-    std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
-    const auto offer = [&](std::uint32_t w, double d) {
-      if (d > distance && w != v) return;
-      if (d >= best[w]) return;
-      if (best[w] == 1e300) reached.push_back(w);
-      best[w] = d;
-      open.push({d, w});
-    };
-    offer(v, 0.0);
-    while (!open.empty()) {
-      const auto [d, w] = open.top();
-      open.pop();
-      if (d > best[w]) continue;
-      for (std::uint32_t k = triangles_first_[w]; k < triangles_first_[w + 1]; ++k)
-        for (int i = 0; i < 3; ++i) {
-          const std::uint32_t x = mesh_->triangles[triangles_of_[k]][i];
-          // Whatever shares a triangle is a neighbour, however long its edges are.
-          const double step = static_cast<double>(length(mesh_->position(x) - mesh_->position(w)));
-          offer(x, w == v ? std::min(step, distance) : d + step);
-        }
-    }
-    std::sort(reached.begin(), reached.end());
-    for (const std::uint32_t w : reached) best[w] = 1e300;
-    near_.insert(near_.end(), reached.begin(), reached.end());
-    near_first_.push_back(static_cast<std::uint32_t>(near_.size()));
-    reached.clear();
-  }
-}
-
-bool Skin::near(std::uint32_t a, std::uint32_t b) const {
-  return std::binary_search(near_.begin() + near_first_[a], near_.begin() + near_first_[a + 1], b);
 }
 
 SurfacePoint Skin::point_at_vertex(std::uint32_t v) const {

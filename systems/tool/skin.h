@@ -9,6 +9,7 @@
 
 #include "systems/tool/body.h"
 #include "systems/tool/meeting.h"
+#include "systems/tool/skin_neighbours.h"
 
 namespace pliant {
 
@@ -58,8 +59,7 @@ class Skin {
   SurfacePoint point_at_vertex(std::uint32_t vertex) const;
   SurfacePoint point_on_edge(std::uint32_t edge, double along) const;
   SurfacePoint point_on_triangle(std::uint32_t triangle, dvec3 barycentric) const;
-  // Within a few edges of each other along the surface; only of skins that collide with themselves.
-  bool near(std::uint32_t vertex_a, std::uint32_t vertex_b) const;
+  const SkinNeighbours& neighbours() const { return neighbours_; }  // only of skins that collide with themselves
 
   // --- This step
   Moving vertex(std::uint32_t v) const { return {position_[v], displacement_[v]}; }
@@ -109,7 +109,6 @@ class Skin {
  private:
   void find_edges();
   void find_shortest();
-  void find_neighbours(double distance);
   void fit_boxes(double reach);
   void find_drift();
   void find_normals();
@@ -126,7 +125,7 @@ class Skin {
   std::vector<double> shortest_, shortest_at_vertex_;
   std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
-  std::vector<std::uint32_t> near_first_, near_;               // ascending runs per vertex
+  SkinNeighbours neighbours_;
   std::vector<dvec3> position_, displacement_, ahead_;
   Shape rest_;
   std::vector<dvec3> normal_, vertex_normal_;

@@ -63,7 +63,7 @@ struct PairWalk {
   void across(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
     if (a.strayed(la, ia) + b.strayed(lb, ib) <= strayed) return;
     if (!sweep.meet(box(a, la, ia), box(b, lb, ib)) || !facing(la, ia, lb, ib)) return;
-    if (la == 0 && lb == 0) return leaves(ia, ib);
+    if (la == 0 && lb == 0) return &a == &b ? own_leaves(ia, ib) : leaves(ia, ib);
     if (la >= lb) {
       for (std::uint32_t k = ia * kTreeWidth; k < end(a, la, ia); ++k) across(la - 1, k, lb, ib);
     } else {
@@ -75,14 +75,21 @@ struct PairWalk {
       for (std::uint32_t t = ib * kLeafSize; t < end(b, 0, ib); ++t)
         if (a.strayed(s) + b.strayed(t) > strayed && sweep.meet(a.box(s), b.box(t))) use(s, t);
   }
-  // Of one skin with itself: every unordered pair of different triangles once.
+  // Of one skin with itself, without what its neighbours settle.
+  void own_leaves(std::uint32_t ia, std::uint32_t ib) const {
+    const unsigned settled = a.neighbours().settled(ia, ib);
+    if (settled == (1u << kLeafSize * kLeafSize) - 1u) return;
+    for (std::uint32_t s = ia * kLeafSize; s < end(a, 0, ia); ++s)
+      for (std::uint32_t t = ia == ib ? s + 1 : ib * kLeafSize; t < end(a, 0, ib); ++t) {
+        if (settled >> (kLeafSize * (s % kLeafSize) + t % kLeafSize) & 1u) continue;
+        if (a.strayed(s) + a.strayed(t) > strayed && sweep.meet(a.box(s), a.box(t))) use(s, t);
+      }
+  }
+  // Every unordered pair of different triangles once.
   void within(std::size_t level, std::uint32_t i) const {
     if (2.0f * a.strayed(level, i) <= strayed || !facing(level, i, level, i)) return;
     if (level == 0) {
-      for (std::uint32_t s = i * kLeafSize; s < end(a, 0, i); ++s)
-        for (std::uint32_t t = s + 1; t < end(a, 0, i); ++t)
-          if (a.strayed(s) + a.strayed(t) > strayed && sweep.meet(a.box(s), a.box(t))) use(s, t);
-      return;
+      return own_leaves(i, i);
     }
     for (std::uint32_t k = i * kTreeWidth; k < end(a, level, i); ++k) {
       within(level - 1, k);
