@@ -21,6 +21,7 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   mu_sliding.assign(static_cast<std::size_t>(most_contacts), 0.0);
   lean.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
   turning.assign(static_cast<std::size_t>(most_contacts), dmat2(0.0));
+  key.assign(static_cast<std::size_t>(most_contacts), 0);
   farthest.assign(static_cast<std::size_t>(most_contacts), 0.0);
   reach.assign(static_cast<std::size_t>(most_contacts), 0.0);
   slip.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));

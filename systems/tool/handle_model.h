@@ -64,6 +64,7 @@ struct CondensedContacts {
   std::vector<std::uint8_t> sliding;
   std::vector<dvec2> lean;          // [1] of the normal against the axes that all this is written in
   std::vector<dmat2> turning;       // [1/m] of the normal with slip (contact_point.h)
+  std::vector<std::uint64_t> key;   // the same contact has the same key in the next model (contact_point.h)
   std::vector<double> farthest;     // [m] of slip: beyond it those changes are not believed
   std::vector<double> reach;        // [m] of slip: beyond it an open contact meets nothing (contact_point.h)
   std::vector<dvec2> slip;          // [m] along the tangents, since the axes were laid

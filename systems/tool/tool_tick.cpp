@@ -137,10 +137,15 @@ void CondensedState::resize(int most_contacts, int most_modes) {
   lever.setZero(rows, 6);
   problem.resize(most_contacts);
   problem.own.assign(static_cast<std::size_t>(most_contacts), dmat3(1.0));
+  problem.count = 0;
+  key.assign(static_cast<std::size_t>(most_contacts), 0);
+  last.setZero(rows);
 }
 
 void CondensedState::start(const CondensedContacts& model) {
   const Eigen::Index rows = 3 * model.count, modes = model.modes;
+  const auto known = key.begin() + problem.count;
+  last.head(3 * problem.count) = problem.impulse.head(3 * problem.count);
   q.head(modes).setZero();
   rate.head(modes) = model.rate.head(modes);
   d.setZero();
@@ -154,6 +159,15 @@ void CondensedState::start(const CondensedContacts& model) {
   }
   problem.count = model.count;
   problem.impulse.head(rows) = model.tick * model.force.head(rows);
+  for (int i = 0; i < model.count; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    if (!model.stiff[c]) continue;
+    const auto before = std::find(key.begin(), known, model.key[c]);
+    if (before != known)
+      problem.impulse.segment<3>(3 * i) = model.tick / tick * last.segment<3>(3 * (before - key.begin()));
+  }
+  std::copy_n(model.key.begin(), model.count, key.begin());
+  tick = model.tick;
   std::copy_n(model.mu_static.begin(), model.count, problem.mu_static.begin());
   std::copy_n(model.mu_sliding.begin(), model.count, problem.mu_sliding.begin());
   std::copy_n(model.sliding.begin(), model.count, problem.sliding.begin());

@@ -30,11 +30,16 @@ struct CondensedState {
   std::vector<dvec3> shift;   // [m/s] count: of the contacts' velocities, since where they touch has slipped on
   Vector6 d = Vector6::Zero();
   ContactProblem problem;  // its impulse and sliding flags are the warm start
+  std::vector<std::uint64_t> key;  // of the contacts that `problem` was last solved with
+  double tick = 0.0;               // [s] and how long that tick was
+  Vector last;                     // [N s] working memory: their impulses
   SweepReport report;
   Vector free_rate;  // working memory
   Rows6 lever, levered;
 
   void resize(int most_contacts, int most_modes);
+  // Where the model stands. What its stiff contacts push with it does not know (reduction/stiff_contacts.h): they go on
+  // from what they did in the model before, or the first tick would have to find a whole tower's forces from nothing.
   void start(const CondensedContacts& model);
 };
 

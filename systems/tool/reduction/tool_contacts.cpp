@@ -136,6 +136,7 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     out.lean[static_cast<std::size_t>(i)] = p.lean;
     out.turning[static_cast<std::size_t>(i)] = p.turning;
     out.slip[static_cast<std::size_t>(i)] = dvec2(0.0);
+    out.key[static_cast<std::size_t>(i)] = p.key;
     out.farthest[static_cast<std::size_t>(i)] = farthest(step, p);
     out.reach[static_cast<std::size_t>(i)] = p.reach;
     for (int j = 0; yields(step, row) && j < out.count; ++j)
