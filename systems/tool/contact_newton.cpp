@@ -4,16 +4,19 @@
 #include <cmath>
 
 #include "systems/tool/pivoted_lu.h"
+#include "systems/tool/sparse_lu.h"
 
 namespace pliant {
 namespace {
 
 constexpr int kSweepsBetween = 10, kMostBetween = 20;  // sweeps to a Newton step; the latter after failures
-constexpr int kMostUnknowns = 360;                     // more: a system costs hundreds of sweeps
-constexpr double kMostWork = 4e7;                      // [1] sum of the cubes of the unknowns: about 5 ms
+constexpr int kDense = 240, kMostUnknowns = 900;       // up to the former a dense system is the faster one
+constexpr double kMostWork = 8e7;                      // [1] multiplications in all: about 10 ms
 constexpr int kDrops = 4;                              // times that a step is found anew
 constexpr double kTogether = 2.0;                      // [1] contacts met within so many times the first are dropped
-constexpr double kLeastDamping = 1e-9, kMostDamping = 1e-2;
+// [1] of the diagonal. Less at first, and rigid bodies that meet at more contacts than they have degrees of freedom get
+// impulses without end as long as one contact is taken for closed that opens.
+constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e-2;
 constexpr double kHarder = 30.0, kEasier = 0.1;  // [1] damping after a failure, after a success
 constexpr double kFalls = 0.9;                   // [1] of the residual: a step that achieves less has failed
 constexpr double kOnBorder = 1.0 - 1e-9;         // [1] of the cone: there a contact slides
@@ -25,7 +28,7 @@ double mean_tangential(const dmat3& w) {
 }  // namespace
 
 ContactNewton::ContactNewton(ContactSweeps& sweeps, int most)
-    : s_(sweeps), m_(sweeps.problem().newton), most_(most), wait_(kSweepsBetween), damping_(kLeastDamping) {
+    : s_(sweeps), m_(sweeps.problem().newton), most_(most), wait_(kSweepsBetween), damping_(kFirstDamping) {
   if (most == 0) return;
   const auto count = static_cast<std::size_t>(s_.problem().count), rows = 3 * count;
   for (std::vector<double>* v : {&m_.right, &m_.column, &m_.impulse, &m_.velocity, &m_.extra})
@@ -90,16 +93,12 @@ bool ContactNewton::find_step() {
   std::fill_n(m_.dropped.begin(), s_.problem().count, std::uint8_t{0});
   for (int again = 0;; ++again) {
     if (solves_ == most_ || !choose_unknowns()) return false;
-    const double unknowns = unknowns_;
-    work_ += unknowns * unknowns * unknowns;
-    if (work_ > kMostWork) {
+    fill_system();
+    if (!solve_system()) {
       most_ = solves_;  // no more of them in this solve
       return false;
     }
     ++solves_;
-    fill_system();
-    if (!factorise_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data())) return false;
-    solve_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data(), m_.right.data());
     for (int c = 0; c < unknowns_; ++c)
       if (!std::isfinite(m_.right[c])) return false;
     if (again == kDrops || !drop_pulling()) break;
@@ -167,6 +166,21 @@ void ContactNewton::fill_system() {
     }
     out[c] = (out[c] + m_.extra[c]) * (1.0 + damping_);
   }
+}
+
+bool ContactNewton::solve_system() {
+  double work = kMostWork - work_;
+  if (unknowns_ > kDense) {
+    if (!solve_sparse_lu(m_.matrix, unknowns_, m_.right.data(), work)) return false;
+  } else {
+    const double unknowns = unknowns_;
+    if (unknowns * unknowns * unknowns > work) return false;
+    work = unknowns * unknowns * unknowns;
+    if (!factorise_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data())) return false;
+    solve_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data(), m_.right.data());
+  }
+  work_ += work;
+  return true;
 }
 
 bool ContactNewton::drop_pulling() {

@@ -33,6 +33,7 @@ class ContactNewton {
   bool find_step();        // into base: the impulses that it leads to. False: there is none
   bool choose_unknowns();  // the linear system's, of the contacts that push and are not dropped
   void fill_system();
+  bool solve_system();
   bool drop_pulling();           // of the contacts that the solution would make pull, those that it meets first
   double first_pull() const;     // [1] of the step: where the first contact ceases to push
   double attempt(double share);  // go `share` of the step, and the residual there
@@ -41,7 +42,7 @@ class ContactNewton {
   NewtonMemory& m_;
   int most_, solves_ = 0, wait_, unknowns_ = 0;
   double damping_;     // [1] of the diagonal
-  double work_ = 0.0;  // [1] cubes of the unknowns of the systems that were solved
+  double work_ = 0.0;  // [1] multiplications in the systems that were solved
 };
 
 }  // namespace pliant

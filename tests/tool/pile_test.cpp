@@ -138,6 +138,64 @@ TEST(Pile, ColumnsOfFourSoftCubesStand) {
   EXPECT_LT(pile.fastest(), 1e-4);
 }
 
+// As the soft step solves it, ten seconds long, turned so that no two boxes' corners lie above each other.
+TEST(Pile, AColumnOfTenBoxesStandsAtTheSoftStepsOwnLimits) {
+  for (const double turned : {0.0, 0.05}) {
+    Pile pile;
+    for (int i = 0; i < 10; ++i) pile.rigid({0, 0.5 * kSize + 0.0301 * i, 0}, yaw(turned * i));
+    pile.run(10.0);
+    for (std::size_t i = 0; i < 10; ++i) {
+      EXPECT_NEAR(pile.centre(i).y, (double(i) + 0.5) * kSize, 0.01 * kSize) << turned << ' ' << i;
+      EXPECT_LT(std::hypot(pile.centre(i).x, pile.centre(i).z), 0.01 * kSize) << turned << ' ' << i;
+    }
+    EXPECT_LT(pile.tally().deepest, 0.01 * kSize) << turned;
+    EXPECT_LT(pile.fastest(), 1e-4) << turned;
+  }
+}
+
+TEST(Pile, ABlockOfSixtyFourBoxesStands) {
+  Pile pile;
+  for (int i = 0; i < 64; ++i) pile.rigid({0.0302 * (i % 4), 0.5 * kSize + 0.0301 * (i / 16), 0.0302 * (i / 4 % 4)});
+  pile.run(10.0);
+  for (std::size_t i = 0; i < 64; ++i) EXPECT_NEAR(pile.centre(i).y, (double(i / 16) + 0.5) * kSize, 0.01 * kSize) << i;
+  EXPECT_LT(pile.tally().deepest, 0.01 * kSize);
+  EXPECT_LT(pile.fastest(), 1e-4);
+}
+
+// Two cards that lean on each other stand where the floor's friction holds what each pushes out with: seen from the
+// side a card's weight W turns about its foot, W (l / 2) sin(a) = N l cos(a), so that N = W tan(a) / 2 <= mu W.
+TEST(Pile, ACardHouseStandsUpToTheAngleOfFriction) {
+  constexpr double kLong = 0.06, kThick = 0.001;  // [m]
+  for (const double mu : {0.2, 0.4})
+    for (const double share : {0.3, 0.5, 0.8, 0.93, 1.07, 1.2}) {
+      SCOPED_TRACE(testing::Message() << "mu " << mu << ", tangent " << share << " of the steepest");
+      Pile pile;
+      const double lean = std::atan(2.0 * mu * share);
+      for (const double side : {-1.0, 1.0}) {
+        RigidBody card;
+        card.friction_static = card.friction_sliding = mu;
+        const dquat turned = glm::angleAxis(side * lean, dvec3(0, 0, 1));
+        const dvec3 half(0.5 * kThick, 0.5 * kLong, 0.03);
+        double low = 1e300, inner = -1e300;
+        for (int i = 0; i < 4; ++i) {
+          const dvec3 corner = turned * dvec3(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, 0);
+          low = std::min(low, corner.y), inner = std::max(inner, -side * corner.x);
+        }
+        pile.bodies.push_back(pile.stage.add_rigid(scenes::box(2.0 * half), card,
+                                                   Pose{dvec3(side * (inner + 1e-5), 1e-5 - low, 0), turned}));
+      }
+      RigidBody& floor = pile.stage.world.registry.get<RigidBody>(pile.floor);
+      floor.friction_static = floor.friction_sliding = mu;
+      pile.run(2.0);
+      const double upright = kLong * std::cos(lean);
+      if (share < 1.0)
+        EXPECT_NEAR(pile.highest(0), upright, 0.02 * kLong);
+      else
+        EXPECT_LT(pile.highest(0), 0.5 * upright) << "it has slid apart";
+      EXPECT_LT(pile.tally().deepest, 0.5 * kThick);
+    }
+}
+
 TEST(Pile, APyramidOfBoxesStands) {
   Pile pile;
   for (int row = 0; row < 4; ++row)

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "systems/tool/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 #include "tests/scenes/tet_shapes.h"
 #include "tests/scenes/tool_stage.h"
@@ -96,6 +97,33 @@ TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
     for (const dvec3& x : stage.body(between).skin_position)
       EXPECT_TRUE(x.y > -3e-4 && x.y < 0.0303) << "neither pressed in nor thrown up: " << x.y;
   }
+}
+
+// Pressed askew and to the side, so that friction holds it all: nothing creeps, and nothing is heard of the models that
+// come 60 times a second.
+TEST(RigidTool, OnATowerTheForceIsStillForAsLongAsItIsHeld) {
+  ToolStage stage(kSoftStep);
+  add_floor(stage);
+  RigidBody box;
+  box.density = 500.0;
+  constexpr int kBoxes = 4;
+  for (int i = 0; i < kBoxes; ++i)
+    stage.add_rigid(scenes::box(dvec3(0.03)), box,
+                    {dvec3(0, 0.01501 + 0.03002 * i, 0), rotation_of(dvec3(0, 0.07 * i, 0))});
+  const double top = 0.03002 * kBoxes;
+  const dquat askew = rotation_of(dvec3(0.35, 0.0, 0.0));
+  const Entity tool = add_instrument(stage, {dvec3(0, top + 0.04, 0), askew});
+  stage.prepare();
+  stage.device_of(tool).rotation = askew;
+  stage.lead(tool, dvec3(0, top + 0.04, 0), 0.2);
+  stage.lead(tool, dvec3(0.0005, top + 0.015, 0.001), 0.5);
+  stage.lead(tool, dvec3(0.0005, top + 0.015, 0.001), 2.0);
+  const dvec3 before = felt(stage, tool);
+  double noise = 0.0;
+  stage.lead(tool, dvec3(0.0005, top + 0.015, 0.001), 4.0,
+             [&] { noise = std::max(noise, length(felt(stage, tool) - before)); });
+  EXPECT_GT(before.y, 0.5) << "it is pressed on";
+  EXPECT_LT(noise, 60e-6 * 4.0) << "[N] and as much a second at most";
 }
 
 // The same instrument as tetrahedra that all belong to the handle.

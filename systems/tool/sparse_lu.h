@@ -1,0 +1,12 @@
+// A larger system with many zeros: what it holds of a pile couples neighbours only. For the soft clock: it allocates.
+#pragma once
+
+#include <vector>
+
+namespace pliant {
+
+// a: n x n, column after column. x = A^-1 x, n numbers. False: there is no solution, or it would cost more than `work`
+// multiplications; else `work` is what it cost, about.
+[[nodiscard]] bool solve_sparse_lu(const std::vector<double>& a, int n, double* x, double& work);
+
+}  // namespace pliant
