@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSweepsBetween = 10, kMostBetween = 20;  // sweeps to a Newton step; the latter after failures
 constexpr int kDense = 240, kMostUnknowns = 900;       // up to the former a dense system is the faster one
-constexpr double kMostWork = 8e7;                      // [1] multiplications in all: about 10 ms
+constexpr double kMostWork = 4e7;                      // [1] multiplications in all: about 5 ms
 constexpr int kDrops = 4;                              // times that a step is found anew
 constexpr double kTogether = 2.0;                      // [1] contacts met within so many times the first are dropped
 // [1] of the diagonal. Less at first, and rigid bodies that meet at more contacts than they have degrees of freedom get

@@ -3,23 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/kernel.h"
+#include "systems/tool/add_three.h"
 
 namespace pliant {
 namespace {
 
 // A diagonal smaller than this share of the largest one cannot be pushed: such contacts are left alone.
 constexpr double kImmovable = 1e-14;
-
-// u += [w0 w1 w2] d: three neighbouring columns of W. Keeping u whole costs the same as forming each contact's three
-// rows anew (W is symmetric), vectorises without reordering a sum, and contacts that do not change cost nothing.
-PLIANT_KERNEL void add_three(double* __restrict u, const double* __restrict w, std::ptrdiff_t stride, int rows,
-                             double d0, double d1, double d2) {
-  const double* __restrict w0 = w;
-  const double* __restrict w1 = w + stride;
-  const double* __restrict w2 = w + 2 * stride;
-  for (int i = 0; i < rows; ++i) u[i] += (w0[i] * d0 + w1[i] * d1) + w2[i] * d2;
-}
 
 double length2(double x, double y) {
   return std::sqrt(x * x + y * y);
@@ -94,6 +84,8 @@ dmat3 ContactSweeps::read_block(int i) const {
   return turned_ ? glm::transpose(p_.own[i]) * block * p_.own[i] : block;
 }
 
+// Keeping u whole costs the same as forming each contact's three rows anew (W is symmetric), vectorises without
+// reordering a sum, and contacts that do not change cost nothing.
 void ContactSweeps::add_columns(int i, dvec3 d, double* out) const {
   if (p_.sparse.first.empty()) {
     add_three(out, p_.W.data() + 3 * i * stride_, stride_, 3 * p_.count, d.x, d.y, d.z);

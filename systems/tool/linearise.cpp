@@ -177,7 +177,7 @@ void take_inputs(World& world, double T) {
 void linearise(World& world, double T) {
   if (!world.tools || !world.soft) return;
   SoftState& soft = *world.soft;
-  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, kPenetrationShare};
+  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, soft.undone_in(T)};
   for (const auto& tool : world.tools->tools) {
     const std::uint32_t index = body_of(soft, tool->entity);
     const ToolBody* const body = tool_body(soft, index);

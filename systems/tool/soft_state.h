@@ -2,6 +2,7 @@
 // (handle_model.h), what it must know of the hand in ToolInput.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -55,6 +56,8 @@ struct SoftState {
   std::uint64_t began = 0;    // [ns] of the step under way
   std::uint32_t dropped = 0;  // DroppedBit, the soft clock's own
 
+  // [1] Of a penetration, in a part of T [s]: pushed out as fast in many parts as in one.
+  double undone_in(double T) const { return kPenetrationShare * std::min(1.0, T / step); }
   YieldingBody& surface(std::uint32_t body) { return static_cast<YieldingBody&>(*bodies[body]); }
 };
 

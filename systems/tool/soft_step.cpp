@@ -15,8 +15,9 @@ namespace {
 // Looser, and stacks and grips creep: 1e-6 of what a step's gravity gives is 0.2 um/s.
 constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 
-constexpr double kShortOf = 0.9;  // [1] of the way to a crossing
-constexpr int kMoreParts = 4;     // that a step may have for the sake of crossings
+constexpr double kShortOf = 0.9;     // [1] of the way to a crossing
+constexpr int kMoreParts = 4;        // that a step may have for the sake of crossings
+constexpr double kLeastPart = 0.02;  // [1] of a step: what is left of it and shorter is not worth a part
 
 constexpr double kSunken = 0.01;  // [1] of a body's diagonal: what lies so deep in another when a level begins is said
 
@@ -59,10 +60,7 @@ void stop_before(SoftState& soft, const Crossings& left, double T) {
   if (left.count == 0) return;
   soft.share = kShortOf * left.first;
   ++soft.tally.halted;
-  if (soft.more > 0)
-    --soft.more, ++soft.parts;
-  else
-    soft.tally.halted_for += (1.0 - soft.share) * T;
+  if (soft.more > 0 && (1.0 - soft.share) * T > kLeastPart * soft.step) --soft.more, ++soft.parts;
 }
 
 }  // namespace
@@ -79,6 +77,7 @@ void run_soft_step(Schedule<World>& schedule, World& world, Tick tick) {
     schedule.run(world, {tick.index, dt, tick.time + done});
     done += soft.share * dt;
   }
+  if (soft.share < 1.0) soft.tally.halted_for += tick.dt - done;
   soft.parts = 1, soft.part = 0, soft.more = 0;
 }
 
@@ -123,12 +122,13 @@ void solve_contacts(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
-  build_problem(soft.bodies, soft.contacts, tick.dt, kPenetrationShare, soft.delassus, soft.problem);
+  const double undone = soft.undone_in(tick.dt);
+  build_problem(soft.bodies, soft.contacts, tick.dt, undone, soft.delassus, soft.problem);
   soft.times.delassus = ms_since(begin);
   const std::uint64_t built = now_ns();
   Crossings left;
-  soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, kPenetrationShare, kSweeps, soft.delassus,
-                                soft.contacts, soft.problem, &left);
+  soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, undone, kSweeps, soft.delassus, soft.contacts,
+                                soft.problem, &left);
   stop_before(soft, left, tick.dt);
   soft.times.sweeps = ms_since(built);
   soft.tally.unconverged += !soft.report.settled;

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "systems/tool/add_three.h"
+
 namespace pliant {
 namespace {
 
@@ -80,12 +82,15 @@ void fill_bias(const CondensedContacts& model, const CondensedState& state, cons
 void fill_delassus(const CondensedContacts& model, const Eigen::LLT<Matrix6>& factor, const TickHandle& handle,
                    CondensedState& state) {
   const Eigen::Index rows = 3 * model.count;
-  auto W = state.problem.W.topLeftCorner(rows, rows);
-  W = model.delassus.topLeftCorner(rows, rows);
+  Eigen::MatrixXd& W = state.problem.W;
+  W.topLeftCorner(rows, rows) = model.delassus.topLeftCorner(rows, rows);
   if (handle.moved) return;
   const Matrix6 lower = factor.matrixL().solve(Matrix6::Identity());
   state.lever.topRows(rows).noalias() = model.reduced_handle.topRows(rows).lazyProduct(lower.transpose());
-  W.noalias() += state.lever.topRows(rows).lazyProduct(state.lever.topRows(rows).transpose());
+  for (Eigen::Index c = 0; c < rows; ++c) {
+    const Vector6 of_c = state.lever.row(c);
+    add_columns(&W(0, c), state.lever.data(), state.lever.outerStride(), static_cast<int>(rows), of_c.data(), 6);
+  }
 }
 
 // x += T v of everything that moved.
@@ -95,8 +100,10 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
   state.q.head(modes) += tick * state.rate.head(modes);
   state.d += tick * handle.velocity;
   auto moved = state.free_rate.head(rows);  // of the contacts: first the springs', then modes and handle too
-  moved.noalias() = model.flexibility.topLeftCorner(rows, rows).lazyProduct(lambda.head(rows)) / tick;
-  moved = (moved - state.spring.head(rows)) / (tick + model.flexibility_lag);
+  moved.setZero();
+  add_columns(moved.data(), model.flexibility.data(), model.flexibility.outerStride(), static_cast<int>(rows),
+              lambda.data(), static_cast<int>(rows));
+  moved = (moved / tick - state.spring.head(rows)) / (tick + model.flexibility_lag);
   state.spring.head(rows) += tick * moved;
   moved.noalias() += model.from_modes.topLeftCorner(rows, modes).lazyProduct(state.rate.head(modes));
   moved.noalias() += model.from_handle.topRows(rows).lazyProduct(handle.velocity);
@@ -149,7 +156,9 @@ void CondensedState::start(const CondensedContacts& model) {
   q.head(modes).setZero();
   rate.head(modes) = model.rate.head(modes);
   d.setZero();
-  spring.head(rows).noalias() = model.flexibility.topLeftCorner(rows, rows).lazyProduct(model.force.head(rows));
+  spring.head(rows).setZero();
+  add_columns(spring.data(), model.flexibility.data(), model.flexibility.outerStride(), static_cast<int>(rows),
+              model.force.data(), static_cast<int>(rows));
   gap.head(model.count) = model.gap.head(model.count);
   std::copy_n(model.slip.begin(), model.count, slip.begin());
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i) {

@@ -35,7 +35,7 @@ struct CondensedState {
   Vector last;                     // [N s] working memory: their impulses
   SweepReport report;
   Vector free_rate;  // working memory
-  Rows6 lever, levered;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> lever;
 
   void resize(int most_contacts, int most_modes);
   // Where the model stands. What its stiff contacts push with it does not know (reduction/stiff_contacts.h): they go on
