@@ -1,8 +1,8 @@
-// What the contact solver takes, beside the residual that it ends with: sweeps alone, and sweeps with Newton steps, on
-// the same problems. Rigid blocks on a floor: apart, in a column, in a wall, and under a block of a hundred times their
-// mass; random problems, with as many ways to move as contacts have rows, and with a third of them. And whole steps of
-// 64 blocks on a floor and of a column of ten.
-// Every problem starts without impulses, as at an impact. Times of the processor for this thread, least of several.
+// What the contact solver takes, beside the residual that it ends with: sweeps alone, sweeps with Newton steps, and the
+// alternating direction method (contact_admm.h), on the same problems. Rigid blocks on a floor: apart, in a column, in
+// a wall, and under a block of a hundred times their mass; random problems, with as many ways to move as contacts have
+// rows, and with a third of them. And whole steps of 64 blocks on a floor and of a column of ten. Every problem starts
+// without impulses, as at an impact. Times of the processor for this thread, least of several.
 //   bench_contact_solver --out contact_solver.json
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "systems/tool/contact_admm.h"
 #include "tests/tool/contact_loop.h"
 #include "tests/tool/skin_shapes.h"
 
@@ -26,10 +27,12 @@ constexpr double kTolerance = 1e-6;                  // [1] the soft step's
 struct Method {
   const char* name;
   SweepLimits limits;
+  bool admm = false;
 };
 constexpr Method kMethods[]{{"200 sweeps", {200, kTolerance, 0, 0}},
                             {"2000 sweeps", {2000, kTolerance, 0, 0}},
-                            {"200 sweeps, Newton steps", {200, kTolerance, 0, 60}}};
+                            {"200 sweeps, Newton steps", {200, kTolerance, 0, 60}},
+                            {"ADMM, 2000 iterations", {2000, kTolerance, 0, 0}, true}};
 
 double thread_us() {
   timespec t{};
@@ -99,14 +102,26 @@ void add(std::string& list, const std::string& entry) {
   list += (list.empty() ? "\n    " : ",\n    ") + entry;
 }
 
+// From nothing to the end by the alternating direction method alone. `sweeps`: its iterations.
+SweepReport solve_by_admm(ContactProblem& problem, int most) {
+  ContactSweeps sweeps(problem);
+  sweeps.start();
+  SweepReport report;
+  const double enough = kTolerance * sweeps.fastest();
+  report.residual = improve_by_admm(sweeps, sweeps.residual(), enough, {most, 1e9}, report.sweeps);
+  report.settled = report.residual <= enough;
+  return report;
+}
+
 void measure(const char* name, const ContactProblem& problem, int repeats, Report& report) {
   for (const Method& method : kMethods) {
+    if (method.admm && problem.part_count > 0) continue;
     double best = 1e300;
     SweepReport last;
     for (int i = 0; i < repeats; ++i) {
       ContactProblem p = problem;
       const double begin = thread_us();
-      last = solve(p, method.limits);
+      last = method.admm ? solve_by_admm(p, method.limits.sweeps) : solve(p, method.limits);
       best = std::min(best, thread_us() - begin);
     }
     fmt::print("{:<34} {:>8} {:>8} {:<26} {:>10.0f} {:>7} {:>7} {:>10.1e} {:>8}\n", name, problem.count,
@@ -157,6 +172,9 @@ int run(int repeats, const std::string& out) {
   measure("column of 10", column(10), repeats, report);
   measure("column of 3, 100 times as heavy", column(3, 50.0), repeats, report);
   measure("wall of 30", wall(4, 8), repeats, report);
+  measure("column of 20", column(20), repeats, report);
+  measure("column of 32", column(32), repeats, report);
+  measure("wall of 60", wall(8, 8), 1, report);
   measure("random, 24 contacts", random_problem(24, 72), repeats, report);
   measure("random, 48 contacts, 48 freedoms", random_problem(48, 48), repeats, report);
   Piles many, ten;
@@ -178,7 +196,7 @@ int run(int repeats, const std::string& out) {
 
 constexpr const char* kHelp =
     "bench_contact_solver [--out FILE.json]\n"
-    "What the contact solver takes, beside its residual: sweeps alone, and with Newton steps.\n"
+    "What the contact solver takes, beside its residual: sweeps alone, with Newton steps, and ADMM.\n"
     "  --out FILE  the same as JSON\n"
     "Example:\n"
     "  taskset -c 0 bench_contact_solver --out contact_solver.json\n";

@@ -5,11 +5,15 @@
 
 #include "runtime/assert.h"
 #include "runtime/clock.h"
+#include "systems/tool/contact_admm.h"
 #include "systems/tool/contact_newton.h"
 #include "systems/tool/contact_sweeps.h"
 
 namespace pliant {
 namespace {
+
+constexpr int kLarge = 140;       // contacts: of more, Newton steps cost more than what settles walls and heaps anyway,
+constexpr int kLargeSweeps = 10;  // which then comes after so many sweeps
 
 SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
   SweepReport report;
@@ -22,6 +26,7 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
   report.residual = sweeps.residual();
   const int half = (limits.sweeps + 1) / 2;
   int since = 0;  // sweeps since the last Newton step
+  const int alternate_at = limits.newtons == 0 ? -1 : problem.count > kLarge ? std::min(kLargeSweeps, half) : half;
   while (true) {
     report.settled = report.residual <= enough;
     const int begun = report.settled || report.sweeps == half ? sweeps.begin_slips(10.0 * report.residual + enough) : 0;
@@ -31,6 +36,10 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
     if (limits.budget_ns && now_ns() - begin >= limits.budget_ns) {
       report.in_time = false;
       break;
+    }
+    if (report.sweeps == alternate_at && report.alternations == 0) {
+      report.residual = improve_by_admm(sweeps, report.residual, enough, {}, report.alternations);
+      if (report.residual <= enough) continue;
     }
     if (newton.due(since)) {
       report.residual = newton.step(report.residual, enough);
@@ -81,6 +90,7 @@ SweepReport solve_parts(ContactProblem& problem, const SweepLimits& limits) {
     take_back(part, problem);
     report.sweeps = std::max(report.sweeps, of_part.sweeps);
     report.newtons = std::max(report.newtons, of_part.newtons);
+    report.alternations = std::max(report.alternations, of_part.alternations);
     report.residual = std::max(report.residual, of_part.residual);
     report.settled &= of_part.settled;
     report.in_time &= of_part.in_time;

@@ -84,7 +84,7 @@ struct SweepLimits {
   int newtons = 0;              // systems that may be solved for Newton steps, of each part; 0: sweeps alone
 };
 struct SweepReport {
-  int sweeps = 0, newtons = 0;  // of the part that took the most
+  int sweeps = 0, newtons = 0, alternations = 0;  // of the part that took the most (contact_admm.h)
   // [m/s] natural residual: the largest over contacts of min(w lambda_n, u_n) and |w lambda_t - P(w lambda_t - u_t)|, P
   // onto the disc of radius mu w lambda_n, w the diagonal of W. Zero exactly where the contact laws hold.
   double residual = 0.0;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "content/lattice.h"
+#include "systems/tool/contact_admm.h"
 #include "systems/tool/contact_budget.h"
 #include "systems/tool/contact_sweeps.h"
 #include "systems/tool/pivoted_lu.h"
@@ -323,16 +324,59 @@ TEST(ContactIslands, ASparseOperatorIsWhatImpulsesDo) {
   EXPECT_LT((moved() - before - w * impulse).norm(), 1e-10 * (w * impulse).norm());
 }
 
-// Too many unknowns for Newton steps: sweeps alone, which are as cheap as the operator is sparse.
+// Too many unknowns for Newton steps, and 200 sweeps alone do not settle it.
 TEST(ContactIslands, AWallStandsAndItsFloorCarriesItsWeight) {
   Pile pile = wall(4, 8);
-  pile.loop.limits.sweeps = 2000;
   pile.run(0.5);
   double floor = 0.0;
   for (std::uint32_t i = 1; i <= 8; ++i) floor += pile.loop.force(i, 0).y;
   const double weight = 30 * 0.5 * kG;
   EXPECT_NEAR(floor, weight, 1e-5 * weight);
   EXPECT_EQ(pile.unsettled, 0);
+}
+
+TEST(ContactAdmm, EndsWhereLongSweepsEnd) {
+  for (const double mu : {0.0, 0.3, 0.8})
+    for (std::uint32_t seed = 0; seed < 5; ++seed) {
+      ContactProblem p = random_problem(24, 72, mu, seed), q = p;
+      ContactSweeps sweeps(p);
+      sweeps.start();
+      int iterations = 0;
+      const double before = sweeps.residual();
+      const double left = improve_by_admm(sweeps, before, 1e-9, {.iterations = 5000, .work = 1e9}, iterations);
+      EXPECT_EQ(left, sweeps.residual());
+      EXPECT_LT(left, 1e-7) << mu << ' ' << seed << ", of " << before << " after " << iterations;
+      ASSERT_TRUE(solve(q, kReference).settled);
+      EXPECT_LT((p.velocity - q.velocity).cwiseAbs().maxCoeff(), 1e-6) << mu << ' ' << seed;
+    }
+}
+
+// A wall as it falls onto its floor: 200 contacts that all know each other, solved as far as a soft step does.
+TEST(ContactAdmm, SettlesAWallAtAnImpact) {
+  Pile pile = wall(4, 8);
+  pile.run(kT);
+  ContactProblem p = pile.loop.problem;
+  p.impulse.setZero();
+  std::fill(p.sliding.begin(), p.sliding.end(), std::uint8_t{0});
+  ContactProblem q = p, sweeps_alone = p;
+  const SweepReport report = solve(p, kStep);
+  EXPECT_GT(report.alternations, 0);
+  EXPECT_TRUE(report.settled) << report.residual;
+  EXPECT_FALSE(solve(sweeps_alone, {.sweeps = 200, .tolerance = 1e-6}).settled) << "it would prove nothing";
+  ASSERT_TRUE(solve(q, {.sweeps = 20000, .tolerance = 1e-9}).settled);
+  EXPECT_LT((p.velocity - q.velocity).head(3 * p.count).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+// What costs too much is left as it is.
+TEST(ContactAdmm, DoesNothingWhereAFactorCostsTooMuch) {
+  ContactProblem p = random_problem(24, 72, 0.4, 1);
+  ContactSweeps sweeps(p);
+  sweeps.start();
+  const Vector before = p.impulse;
+  int iterations = 0;
+  EXPECT_EQ(improve_by_admm(sweeps, sweeps.residual(), 1e-9, {.work = 1000.0}, iterations), sweeps.residual());
+  EXPECT_EQ(iterations, 0);
+  EXPECT_EQ((p.impulse - before).norm(), 0.0);
 }
 
 TEST(ContactBudget, CutsWhatCarriesLeastAndCountsIt) {
