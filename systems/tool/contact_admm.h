@@ -11,8 +11,8 @@
 namespace pliant {
 
 struct AdmmLimits {
-  int iterations = 100;
-  double work = 4e7;  // [1] multiplications of a factor, about: more, and nothing is done
+  int iterations = 0;
+  double work = 0.0;  // [1] multiplications of a factor, about: more, and nothing is done
 };
 
 // From impulses and velocities with `residual` [m/s] to better ones, or back to the same ones. Returns their residual;

@@ -10,7 +10,8 @@
 //
 // Tried on contact problems of the level hand_crowd at 1/60 s: 200 sweeps end above 1e-6 in 35 of 38, Anderson's
 // extrapolation (5, 10 or 20 sweeps, at most 400) in 16, 14 and 10 of 38 and takes two to four times as long; Newton
-// steps with Alart and Curnier's active set in place of the sweeps' run away on redundant contacts.
+// steps with Alart and Curnier's active set in place of the sweeps' run away on redundant contacts. ADMM
+// (contact_admm.h) settles walls, but takes thousands of iterations for columns that a few Newton steps settle.
 #pragma once
 
 #include "systems/tool/contact_sweeps.h"

@@ -12,8 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr int kLarge = 140;       // contacts: of more, Newton steps cost more than what settles walls and heaps anyway,
-constexpr int kLargeSweeps = 10;  // which then comes after so many sweeps
+// ADMM: where half of the sweeps did not settle it, or, of many contacts, after a few sweeps. Newton steps on so many
+// cost more than it does.
+constexpr int kLarge = 140, kLargeSweeps = 10;
+constexpr AdmmLimits kMuch{.iterations = 100, .work = 1e7};    // about 10 ms,
+constexpr AdmmLimits kLittle{.iterations = 100, .work = 2e6};  // and 2 ms: a tool's contacts all know each other
 
 SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
   SweepReport report;
@@ -38,7 +41,8 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
       break;
     }
     if (report.sweeps == alternate_at && report.alternations == 0) {
-      report.residual = improve_by_admm(sweeps, report.residual, enough, {}, report.alternations);
+      report.residual = improve_by_admm(sweeps, report.residual, enough, problem.count > kLarge ? kMuch : kLittle,
+                                        report.alternations);
       if (report.residual <= enough) continue;
     }
     if (newton.due(since)) {

@@ -45,7 +45,6 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 // there are; of a contact that is not foretold the law stays what it was.
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
-                            std::vector<ContactPoint>& contacts, ContactProblem& problem,
-                            Crossings* left = nullptr);
+                            std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left = nullptr);
 
 }  // namespace pliant
