@@ -192,6 +192,51 @@ TEST(RigidTool, TwoInstrumentsPressOnEachOther) {
   EXPECT_NEAR(felt(stage, above).y, -felt(stage, below).y, 0.02 * felt(stage, above).y);
 }
 
+// Two instruments close on a soft cube from both sides, at any speed: it stays between them, they feel the same, and
+// together they carry its weight.
+TEST(RigidTool, TwoInstrumentsPinchASoftCubeAtAnySpeed) {
+  for (const double speed : {0.01, 0.1, 1.0}) {
+    SCOPED_TRACE(speed);
+    ToolStage stage(kSoftStep);
+    add_floor(stage);
+    SoftBody soft;
+    soft.young = 2e4;
+    soft.poisson = 0.4;
+    soft.density = 500.0;
+    soft.rayleigh = {1.0, 0.01};
+    soft.friction_static = 0.8, soft.friction_sliding = 0.7;
+    const Entity cube = stage.add_soft(tets::box(3, 3, 3, dvec3(-kHalf), dvec3(kHalf)), soft, at({0, kHalf + 1e-5, 0}));
+    const double away = 0.04, near = 2 * kHalf - 0.004, height = kHalf + 0.001;
+    const Entity left = add_instrument(stage, at({-away, height, 0})),
+                 right = add_instrument(stage, at({away, height, 0}));
+    stage.prepare();
+    const auto both = [&](double x, double y, double seconds) {
+      const dvec3 from = stage.device_of(right).position;
+      const int ticks = std::max(1, static_cast<int>(std::lround(seconds / stage.dt())));
+      for (int i = 1; i <= ticks; ++i) {
+        const dvec3 to = from + double(i) / ticks * (dvec3(x, y, 0) - from);
+        stage.device_of(right).position = to;
+        stage.device_of(left).position = dvec3(-to.x, to.y, 0);
+        stage.run(stage.dt());
+      }
+    };
+    both(away, height, 0.2);
+    both(near, height, (away - near) / speed);
+    both(near, height, 0.5);
+    both(near, height + 0.03, 0.03 / std::min(speed, 0.3));
+    both(near, height + 0.03, 1.5);
+    double lowest = 1e300;
+    for (const dvec3& x : stage.body(cube).skin_position) lowest = std::min(lowest, x.y);
+    EXPECT_GT(lowest, 0.02) << "it hangs between the two";
+    const dvec3 of_left = felt(stage, left), of_right = felt(stage, right);
+    EXPECT_GT(of_right.x, 0.2);
+    EXPECT_NEAR(of_right.x, -of_left.x, 0.02 * of_right.x);
+    const double weight = 500.0 * std::pow(2 * kHalf, 3) * 9.81;
+    EXPECT_NEAR(of_left.y + of_right.y, -weight, 0.03 * weight);
+    EXPECT_LT(stage.soft().tally.deepest, 1e-3);
+  }
+}
+
 // Farther from its device than any hand reaches: nothing is felt meanwhile, and it is in the hand again.
 TEST(RigidTool, WhatGetsAwayIsSetBackIntoTheHand) {
   ToolStage stage(kSoftStep);
