@@ -17,6 +17,7 @@
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/rotation_vector.h"
 #include "systems/tool/soft_state.h"
+#include "systems/tool/soft_step.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
 
@@ -72,7 +73,7 @@ void soft_step(World& world, Schedule<World>& schedule, std::uint64_t index, dou
   if (handle) input.handle = *handle;
   input.impulse = tool.heard + T * tool.pending.force;  // expected: what the last step said
   tool.input.publish();
-  schedule.run(world, Tick{index, T, time});
+  run_soft_step(schedule, world, Tick{index, T, time});
 }
 
 class Stopwatch {
@@ -270,7 +271,7 @@ Status run_together(const std::string& level, int ticks, std::size_t length, con
   for (int i = 0; i < ticks; ++i) {
     if (interrupt.requested()) return interrupted();
     const auto index = static_cast<std::uint64_t>(i);
-    if (index % length == 0) soft.run(*world, Tick{index / length, T, i * out.tick});
+    if (index % length == 0) run_soft_step(soft, *world, Tick{index / length, T, i * out.tick});
     touch.run(*world, Tick{index, out.tick, i * out.tick});
     wrench.push_back(tool_of(*world).wrench);
     ContactSet now(tool_of(*world));
