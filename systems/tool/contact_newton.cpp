@@ -93,11 +93,9 @@ bool ContactNewton::find_step() {
   std::fill_n(m_.dropped.begin(), s_.problem().count, std::uint8_t{0});
   for (int again = 0;; ++again) {
     if (solves_ == most_ || !choose_unknowns()) return false;
-    fill_system();
-    if (!solve_system()) {
-      most_ = solves_;  // no more of them in this solve
-      return false;
-    }
+    const bool solved = solve_system();
+    if (work_ > kMostWork) most_ = solves_;  // no more of them in this solve
+    if (!solved) return false;
     ++solves_;
     for (int c = 0; c < unknowns_; ++c)
       if (!std::isfinite(m_.right[c])) return false;
@@ -169,17 +167,19 @@ void ContactNewton::fill_system() {
 }
 
 bool ContactNewton::solve_system() {
-  double work = kMostWork - work_;
   if (unknowns_ > kDense) {
-    if (!solve_sparse_lu(m_.matrix, unknowns_, m_.right.data(), work)) return false;
-  } else {
-    const double unknowns = unknowns_;
-    if (unknowns * unknowns * unknowns > work) return false;
-    work = unknowns * unknowns * unknowns;
-    if (!factorise_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data())) return false;
-    solve_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data(), m_.right.data());
+    fill_system();
+    double work = kMostWork - work_;
+    const bool solved = solve_sparse_lu(m_.matrix, unknowns_, m_.right.data(), work);
+    work_ += work;
+    return solved;
   }
-  work_ += work;
+  const double unknowns = unknowns_;
+  work_ += unknowns * unknowns * unknowns;
+  if (work_ > kMostWork) return false;
+  fill_system();
+  if (!factorise_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data())) return false;
+  solve_lu(m_.matrix.data(), unknowns_, unknowns_, m_.pivots.data(), m_.right.data());
   return true;
 }
 

@@ -57,7 +57,8 @@ class Proximity {
   void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, double margin, std::vector<ContactPoint>& out);
   // What find() did not know of and crosses within the step by the bodies' velocities as they now are: what fell beside
   // something that has been stopped meets it. Appends to the contacts of this step's find(); returns the crossings
-  // that it saw, those that found no room among the contacts included. Surfaces that yield are left out.
+  // that it saw: those that found no room among the contacts are included, and contacts that slip off their face and
+  // would end a margin deep. Surfaces that yield are left out.
   Crossings find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
                         std::vector<ContactPoint>& contacts);
   // The same contacts, as find() gave them, where the step will end by the bodies' velocities as they now are

@@ -87,7 +87,7 @@ void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& 
   if (together > 1) model.contacts.prepare_tick(tick);
 }
 
-// What flesh and contacts did to the handle, mean over the ticks since the last input. Without a new input, what it
+// What tissue and contacts did to the handle, mean over the ticks since the last input. Without a new input, what it
 // was.
 void hear_wrench(ToolTouchState& tool, const ToolInput& input) {
   const double elapsed = input.time - tool.heard_at;

@@ -26,7 +26,7 @@ struct SoftTimes {
 // What soft steps had to leave imperfect, from the first one on. For reports: read once the clocks stand still.
 struct SoftTally {
   std::uint64_t contacts_cut = 0;  // left out of a solve because a limit was reached, summed over the steps
-  std::uint64_t unconverged = 0;   // steps whose contacts ended above the stated residual
+  std::uint64_t unconverged = 0;   // steps, some part of which ended above the stated residual
   double residual = 0.0;           // [m/s] the largest that a step ended with
   double deepest = 0.0;            // [m] >= 0: the deepest penetration that a step began with
   std::uint64_t halted = 0;        // times that bodies stopped in a step before a crossing that no contact prevented
@@ -53,6 +53,7 @@ struct SoftState {
   int more = 0;               // parts that may still be added to it
   double share = 1.0;         // [1] of the part under way that bodies go
   double step = 0.0;          // [s] T of the step under way, all its parts together
+  bool settled = true;        // so far in the step under way
   std::uint64_t began = 0;    // [ns] of the step under way
   std::uint32_t dropped = 0;  // DroppedBit, the soft clock's own
 

@@ -87,6 +87,7 @@ void read_tool_input(World& world, Tick tick) {
   if (soft.part == 0) {
     soft.began = now_ns();
     soft.step = tick.dt * soft.parts;
+    soft.settled = true;
   }
   take_inputs(world, tick.dt);
 }
@@ -131,7 +132,8 @@ void solve_contacts(World& world, Tick tick) {
                                 soft.problem, &left);
   stop_before(soft, left, tick.dt);
   soft.times.sweeps = ms_since(built);
-  soft.tally.unconverged += !soft.report.settled;
+  soft.tally.unconverged += soft.settled && !soft.report.settled;
+  soft.settled = soft.settled && soft.report.settled;
   soft.tally.residual = std::max(soft.tally.residual, soft.report.residual);
   stop_non_finite(soft);
 }

@@ -8,8 +8,8 @@
 
 namespace pliant {
 
-// [m] The way that a handle goes in one soft step; a faster one goes it in up to kMostParts shorter steps. What flesh
-// is thick, a finger, must not be gone through in one.
+// [m] The way that a handle goes in one soft step; a faster one goes it in up to kMostParts shorter steps. A finger's
+// width must not be passed in one.
 inline constexpr double kMostWay = 0.01;
 inline constexpr int kMostParts = 8;
 

@@ -15,8 +15,9 @@ bool solve_sparse_lu(const std::vector<double>& a, int n, double* x, double& wor
   const Eigen::Map<const Eigen::MatrixXd> dense(a.data(), n, n);
   Eigen::VectorXi held = (dense.array() != 0.0).cast<int>().colwise().sum();
   const double cost = kFillIn * held.cast<double>().squaredNorm();
-  if (cost > work) return false;
+  const bool affordable = cost <= work;
   work = cost;
+  if (!affordable) return false;
   matrix.reserve(held);
   for (int c = 0; c < n; ++c)
     for (int r = 0; r < n; ++r)

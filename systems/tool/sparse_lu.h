@@ -6,7 +6,7 @@
 namespace pliant {
 
 // a: n x n, column after column. x = A^-1 x, n numbers. False: there is no solution, or it would cost more than `work`
-// multiplications; else `work` is what it cost, about.
+// multiplications. Afterwards `work` is about what it costs.
 [[nodiscard]] bool solve_sparse_lu(const std::vector<double>& a, int n, double* x, double& work);
 
 }  // namespace pliant

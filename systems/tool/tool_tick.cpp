@@ -172,8 +172,9 @@ void CondensedState::start(const CondensedContacts& model) {
     const auto c = static_cast<std::size_t>(i);
     if (!model.stiff[c]) continue;
     const auto before = std::find(key.begin(), known, model.key[c]);
-    if (before != known)
-      problem.impulse.segment<3>(3 * i) = model.tick / tick * last.segment<3>(3 * (before - key.begin()));
+    if (before == known) continue;
+    const auto known_impulse = last.segment<3>(3 * (before - key.begin()));
+    if (known_impulse.allFinite()) problem.impulse.segment<3>(3 * i) = model.tick / tick * known_impulse;
   }
   std::copy_n(model.key.begin(), model.count, key.begin());
   tick = model.tick;

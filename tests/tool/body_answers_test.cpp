@@ -58,5 +58,30 @@ TEST(BodyAnswers, AreThoseOfTheFleshToItsContactsAndShakesAndTheGramMatrixIsThei
   }
 }
 
+TEST(ToolContacts, LeaveOutAnOpenContactThatNothingCouldBePredictedOf) {
+  PressScene scene(firm_flesh(), firm_handle(), 0.4);
+  for (int i = 1; i <= 8; ++i)
+    scene.step(T, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
+  scene.step(T, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));
+  const FinishedStep step{scene.bodies, scene.contacts, scene.delassus, scene.problem, T, kUndonePenetration};
+  const auto chosen = [&](std::size_t contact) {
+    const std::vector<int> of = contacts_of(step, 0, kMaxCondensed);
+    return std::find(of.begin(), of.end(), static_cast<int>(contact)) != of.end();
+  };
+  std::size_t pushing = 0, open = 0;
+  for (std::size_t i = 0; i < scene.contacts.size(); ++i) {
+    ContactPoint& c = scene.contacts[i];
+    if (i % 2 == 0) c.impulse = dvec3(0.0), c.depth = 0.0;
+    c.foretold = true;
+    pushing += c.impulse.x > 0.0;
+    open += c.impulse.x == 0.0 && c.depth == 0.0;
+    ASSERT_TRUE(chosen(i));
+    c.foretold = false;  // its plane stands where its features were
+    EXPECT_EQ(chosen(i), c.impulse.x > 0.0 || c.depth > 0.0) << "contact " << i;
+  }
+  EXPECT_GT(pushing, 0u);
+  EXPECT_GT(open, 0u);
+}
+
 }  // namespace
 }  // namespace pliant

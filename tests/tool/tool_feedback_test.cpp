@@ -378,6 +378,23 @@ TEST(ToolFeedback, ACarriedToolIsLetGoWhenItsModelIsTooOldToBeBelieved) {
   }
 }
 
+TEST(CondensedState, AStiffContactGoesOnFromItsLastForceUnlessThatIsNoNumber) {
+  CondensedContacts model;
+  model.resize(4, 2);
+  model.count = 1;
+  model.stiff[0] = 1, model.key[0] = 7;
+  model.prepare_tick(kTick);
+  CondensedState state;
+  state.resize(4, 2);
+  state.start(model);
+  state.problem.impulse.head<3>() << 2e-3, 1e-3, 0.0;
+  state.start(model);
+  EXPECT_EQ(state.problem.impulse[0], 2e-3);
+  state.problem.impulse[1] = std::nan("");
+  state.start(model);
+  EXPECT_EQ(state.problem.impulse.head<3>(), Eigen::Vector3d::Zero());
+}
+
 TEST(ToolFeedback, AModelThatIsNoNumberIsNotFeltAndTheNextOneIs) {
   Stage stage(coupling(200.0));
   const auto press = [&](double newton) {

@@ -37,6 +37,12 @@ bool yields(const FinishedStep& step, Eigen::Index row) {
   return compliance.rows() > row && compliance(row, row) > 0.0;
 }
 
+// An open contact whose features part before the step ends: its plane stands where nothing is.
+bool passed_by(const FinishedStep& step, std::size_t i) {
+  const ContactPoint& p = step.contacts[i];
+  return !p.foretold && !(p.impulse.x > 0.0) && p.depth == 0.0 && !yields(step, 3 * static_cast<Eigen::Index>(i));
+}
+
 }  // namespace
 
 std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int most) {
@@ -50,7 +56,7 @@ std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int m
   for (std::size_t i = 0; i < step.contacts.size(); ++i) {
     const ContactPoint& c = step.contacts[i];
     const std::uint32_t nearest = std::min(distance[c.body_a], distance[c.body_b]);
-    if (nearest != kFar) order.push_back({nearest, length(c.impulse), c.gap, static_cast<int>(i)});
+    if (nearest != kFar && !passed_by(step, i)) order.push_back({nearest, length(c.impulse), c.gap, static_cast<int>(i)});
   }
   // What carries force first, wherever it is: what is left out of that could not answer.
   std::stable_sort(order.begin(), order.end(), [](const Place& i, const Place& j) {
