@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "systems/tool/contact_admm.h"
-#include "tests/tool/contact_loop.h"
-#include "tests/tool/skin_shapes.h"
+#include "systems/soft/contact/contact_admm.h"
+#include "tests/soft/contact_loop.h"
+#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "systems/tool/flesh_step.h"
+#include "systems/soft/fem/flesh_step.h"
 #include "tests/scenes/tet_shapes.h"
 
 namespace pliant {

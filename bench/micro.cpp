@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <random>
 
-#include "content/level.h"
-#include "content/mesh_build.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
 #include "systems/touch/amplitude.h"
 #include "systems/touch/box_tree.h"
 #include "systems/touch/field_kernels.h"

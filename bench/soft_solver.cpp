@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "systems/tool/block_cholesky.h"
-#include "systems/tool/flesh.h"
-#include "systems/tool/linear_solver.h"
+#include "systems/soft/fem/flesh.h"
+#include "systems/soft/linear/block_cholesky.h"
+#include "systems/soft/linear/linear_solver.h"
 
 namespace pliant {
 namespace {

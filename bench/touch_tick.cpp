@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "content/mesh_build.h"
+#include "content/mesh/mesh_build.h"
 #include "runtime/clock.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/touch/prepare.h"

@@ -2,10 +2,10 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-install(TARGETS pliant_options pliant_runtime pliant_components pliant_systems pliant_content EXPORT pliant-targets
+install(TARGETS pliant_options pliant_runtime pliant_components pliant_systems pliant_visual pliant_level pliant_content pliant_engine EXPORT pliant-targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY runtime components systems content DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pliant
+install(DIRECTORY runtime components systems content engine DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pliant
         FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY shaders/shared DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pliant/shaders)  # headers include this arithmetic
 install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)

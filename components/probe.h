@@ -16,7 +16,7 @@ namespace pliant {
 struct Mesh;
 
 // What a probe meets. Yielding surfaces (Deformable) it meets where it is, by their own law. Among soft and rigid
-// bodies it is a small rigid tool on a coupling (systems/tool/probe_tool.h).
+// bodies it is a small rigid tool on a coupling (systems/soft/body/probe_tool.h).
 enum class ProbeMeets : std::uint8_t { kAll, kSurfaces, kBodies };
 
 // Rate: touch. Writer: read_devices (pose, velocity), friction_feedback (force).

@@ -42,7 +42,7 @@ enum DroppedBit : std::uint32_t {
 };
 
 struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
-struct SoftState;   // systems/tool/soft_state.h: working memory of the soft step, made by prepare_soft
+struct SoftState;   // systems/soft/soft_state.h: working memory of the soft step, made by prepare_soft
 struct ToolTouch;   // systems/tool/tool_touch_state.h: tools on the touch clock, made by prepare_tools
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
 

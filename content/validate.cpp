@@ -4,16 +4,16 @@
 
 #include <algorithm>
 
-#include "content/device_use.h"
-#include "content/exr.h"
-#include "content/extensions.h"
-#include "content/gltf_document.h"
-#include "content/level.h"
-#include "content/mesh_build.h"
-#include "content/script.h"
-#include "content/spawn_soft.h"
-#include "content/tet_file.h"
-#include "content/tet_parts.h"
+#include "content/files/exr.h"
+#include "content/gltf/gltf_document.h"
+#include "content/keys/extensions.h"
+#include "content/level/device_use.h"
+#include "content/level/script.h"
+#include "content/level/spawn_soft.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
+#include "content/tets/tet_file.h"
+#include "content/tets/tet_parts.h"
 
 namespace pliant {
 

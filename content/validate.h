@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "content/finding.h"
+#include "content/level/finding.h"
 
 namespace pliant {
 

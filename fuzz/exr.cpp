@@ -1,5 +1,5 @@
 // OpenEXR panoramas: finite light for every pixel, or one sentence.
-#include "content/exr.h"
+#include "content/files/exr.h"
 
 #include <cmath>
 #include <cstddef>

@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "content/gltf_document.h"
-#include "content/gltf_save.h"
+#include "content/gltf/gltf_document.h"
+#include "content/gltf/gltf_save.h"
 #include "fuzz/sound_level.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

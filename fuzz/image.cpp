@@ -1,5 +1,5 @@
 // PNG and JPEG pictures: four bytes for every pixel, or one sentence.
-#include "content/image.h"
+#include "content/files/image.h"
 
 #include <cstddef>
 #include <cstdint>

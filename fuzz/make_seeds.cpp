@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <string>
 
-#include "content/file_io.h"
-#include "content/gltf_draco.h"
-#include "content/image.h"
-#include "content/level.h"
+#include "content/files/file_io.h"
+#include "content/files/image.h"
+#include "content/gltf/gltf_draco.h"
+#include "content/level_file.h"
 
 namespace {
 

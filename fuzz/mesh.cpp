@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "content/assimp_import.h"
-#include "content/file_io.h"
+#include "content/files/assimp_import.h"
+#include "content/files/file_io.h"
 #include "fuzz/sound_level.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

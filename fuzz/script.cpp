@@ -1,5 +1,5 @@
 // Scripts: whatever the text, a path whose rows are finite and ascending, or one sentence.
-#include "content/script.h"
+#include "content/level/script.h"
 
 #include <cmath>
 #include <cstddef>

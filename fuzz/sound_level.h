@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "content/level.h"
+#include "content/level/level.h"
 #include "runtime/assert.h"
 
 namespace pliant {

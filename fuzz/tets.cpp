@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "content/tet_file.h"
-#include "content/tet_quality.h"
+#include "content/tets/tet_file.h"
+#include "content/tets/tet_quality.h"
 #include "runtime/assert.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "player/command_line.h"
+#include "player/verbs/command_line.h"
 
 int main(int argc, char** argv) {
   return pliant::command_line(argc, argv);

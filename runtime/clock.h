@@ -53,5 +53,8 @@ bool request_realtime_priority();
 inline std::uint64_t now_ns() {
   return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 }
+inline double ms_since(std::uint64_t begin_ns) {
+  return static_cast<double>(now_ns() - begin_ns) * 1e-6;
+}
 
 }  // namespace pliant

@@ -2,9 +2,10 @@
 #include "systems/schedule.h"
 
 #include "systems/device/devices.h"
-#include "systems/tool/publish_soft.h"
-#include "systems/tool/soft_step.h"
+#include "systems/soft/publish_soft.h"
+#include "systems/soft/soft_step.h"
 #include "systems/tool/tool_feedback.h"
+#include "systems/tool/tool_step.h"
 #include "systems/touch/collision.h"
 #include "systems/touch/dynamics.h"
 #include "systems/touch/force_field.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "content/generate/solid.h"
-#include "content/level.h"
+#include "content/level/level.h"
 
 namespace pliant::generate {
 

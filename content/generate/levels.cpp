@@ -10,6 +10,7 @@
 #include "content/generate/strokes.h"
 #include "content/generate/textures.h"
 #include "content/generate/tool_levels.h"
+#include "content/level_file.h"
 
 namespace pliant::generate {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "components/math.h"
-#include "content/file_io.h"
+#include "content/files/file_io.h"
 #include "content/generate/strokes.h"
 
 namespace pliant::generate {

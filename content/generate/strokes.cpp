@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "content/file_io.h"
+#include "content/files/file_io.h"
 
 namespace pliant::generate {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "content/level.h"
+#include "content/level/level.h"
 
 namespace pliant::generate {
 

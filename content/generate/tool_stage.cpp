@@ -6,6 +6,7 @@
 #include "content/generate/instrument.h"
 #include "content/generate/stage.h"
 #include "content/generate/strokes.h"
+#include "content/level_file.h"
 
 namespace pliant::generate {
 namespace {

@@ -8,7 +8,7 @@
 #include "components/haptic_device.h"
 #include "content/generate/solid.h"
 #include "content/generate/surface_nets.h"
-#include "content/level.h"
+#include "content/level/level.h"
 
 namespace pliant::generate {
 

@@ -1,6 +1,6 @@
 #include "systems/tool/handle_model.h"
 
-#include "systems/tool/symmetric_product.h"
+#include "systems/soft/linear/symmetric_product.h"
 
 namespace pliant {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "components/haptic_device.h"
-#include "systems/tool/handle.h"
+#include "systems/soft/body/handle.h"
 
 namespace pliant {
 

@@ -1,7 +1,7 @@
 #include "systems/tool/hash_soft.h"
 
 #include "components/hash_vector.h"
-#include "systems/tool/soft_state.h"
+#include "systems/soft/soft_state.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/tool/reduce_tool.h"
-#include "systems/tool/reduction/stiff_contacts.h"
-#include "systems/tool/rotation_vector.h"
-#include "systems/tool/soft_state.h"
-#include "systems/tool/tool_body.h"
+#include "systems/soft/body/rotation_vector.h"
+#include "systems/soft/body/tool_body.h"
+#include "systems/soft/soft_state.h"
+#include "systems/tool/reduce/reduce_tool.h"
+#include "systems/tool/reduce/stiff_contacts.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {

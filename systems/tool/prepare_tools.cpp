@@ -4,7 +4,7 @@
 
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
-#include "systems/tool/probe_tool.h"
+#include "systems/soft/body/probe_tool.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "components/soft_body.h"
-#include "systems/device/safety.h"
-#include "systems/tool/coupling.h"
-#include "systems/tool/rotation_vector.h"
+#include "systems/safety/safety.h"
+#include "systems/soft/body/coupling.h"
+#include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {

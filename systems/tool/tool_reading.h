@@ -1,7 +1,7 @@
-// What there is to know about a tool after a tick, in the words of a probe (systems/touch/reading.h).
+// What there is to know about a tool after a tick, in the words of a probe (systems/touch/probe_reading.h).
 #pragma once
 
-#include "systems/touch/reading.h"
+#include "systems/touch/probe_reading.h"
 
 namespace pliant {
 

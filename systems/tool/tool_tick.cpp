@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "systems/tool/add_three.h"
+#include "systems/soft/linear/add_three.h"
 
 namespace pliant {
 namespace {

@@ -2,7 +2,7 @@
 // model, everything about device and handle in TickHandle. Nothing here allocates.
 #pragma once
 
-#include "systems/tool/contact_problem.h"
+#include "systems/soft/contact/contact_problem.h"
 #include "systems/tool/handle_model.h"
 
 namespace pliant {
@@ -29,7 +29,7 @@ struct CondensedState {
   std::vector<dvec2> slip;    // [m] count: along the contacts' tangents, since their axes were laid
   std::vector<dvec3> shift;   // [m/s] count: of the contacts' velocities, since where they touch has slipped on
   Vector6 d = Vector6::Zero();
-  ContactProblem problem;  // its impulse and sliding flags are the warm start
+  ContactProblem problem;          // its impulse and sliding flags are the warm start
   std::vector<std::uint64_t> key;  // of the contacts that `problem` was last solved with
   double tick = 0.0;               // [s] and how long that tick was
   Vector last;                     // [N s] working memory: their impulses

@@ -8,21 +8,21 @@
 
 #include "components/soft_body.h"
 #include "components/world.h"
-#include "systems/device/safety.h"
+#include "systems/safety/safety.h"
 #include "systems/tool/handle_model.h"
 #include "systems/tool/tool_tick.h"
 
 namespace pliant {
 
 // Tunables of the touch tick. Unit, usual value, and what changing it does.
-inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: a model that is too old fades with this time constant
-inline constexpr double kJoinShare = 3.0 / 8.0;   // [1] of T: what two models differ by fades evenly; shorter: steeper
-inline constexpr int kSettleTicks = 3;            // of a new model, its contacts unfelt; fewer: its impacts jump
-inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to nothing
-inline constexpr int kLateTicks = 3;              // ticks in a row over budget, then the linear model takes over
-inline constexpr int kTickSweeps = 20;            // a tick's Gauss-Seidel sweeps at most; they start warm
-inline constexpr double kTickTolerance = 1e-3;    // [1] of the fastest closing: good enough, stop
-inline constexpr int kStiffSweeps = 100;          // both, where rigid bodies stand on each other: a looser solution sinks
+inline constexpr double kFadeShare = 1.0 / 3.0;  // [1] of T: a model that is too old fades with this time constant
+inline constexpr double kJoinShare = 3.0 / 8.0;  // [1] of T: what two models differ by fades evenly; shorter: steeper
+inline constexpr int kSettleTicks = 3;           // of a new model, its contacts unfelt; fewer: its impacts jump
+inline constexpr double kStaleSteps = 3.0;       // [1] of T: a model older than this fades to nothing
+inline constexpr int kLateTicks = 3;             // ticks in a row over budget, then the linear model takes over
+inline constexpr int kTickSweeps = 20;           // a tick's Gauss-Seidel sweeps at most; they start warm
+inline constexpr double kTickTolerance = 1e-3;   // [1] of the fastest closing: good enough, stop
+inline constexpr int kStiffSweeps = 100;  // both, where rigid bodies stand on each other: a looser solution sinks
 inline constexpr double kStiffTolerance = 1e-5;   // in, a little with every model
 inline constexpr double kMostStretch = 2.0;       // [m] a handle farther from its device has got away from the hand,
 inline constexpr double kRunaway = 50.0;          // [m/s] and so has one that is faster,

@@ -1,6 +1,6 @@
 // What the flesh of a tool does to a P1 surface: the soft clock says which points of it press where
-// (systems/tool/yielding_body.h), and the touch tick holds the surface down under them, as it does under probes. They
-// are contacts without a probe: the field follows them, nobody feels them here - their force is the soft step's.
+// (systems/soft/body/yielding_body.h), and the touch tick holds the surface down under them, as it does under probes.
+// They are contacts without a probe: the field follows them, nobody feels them here - their force is the soft step's.
 #pragma once
 
 #include <array>

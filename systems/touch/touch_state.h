@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/world.h"
-#include "systems/device/safety.h"
+#include "systems/safety/safety.h"
 #include "systems/touch/box_tree.h"
 #include "systems/touch/contact_energy.h"
 #include "systems/touch/feed_field.h"

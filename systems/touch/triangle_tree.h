@@ -51,7 +51,7 @@ inline float distance2_limit(double distance, double round) {
 
 namespace tree {
 
-// Depth at most 27 (content/tree.cpp), seven siblings wait on each level.
+// Depth at most 27 (content/mesh/tree.cpp), seven siblings wait on each level.
 inline constexpr std::uint32_t kStack = 256;
 
 struct Entry {

@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// Where x stands over the surface. (A point of a skin that contacts push is systems/tool/body.h.)
+// Where x stands over the surface. (A point of a skin that contacts push is systems/soft/body/body.h.)
 struct SurfaceFoot {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::uint32_t triangle = kNone;

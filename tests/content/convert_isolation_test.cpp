@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "content/isolation.h"
+#include "content/files/isolation.h"
 
 namespace pliant::test {
 namespace {

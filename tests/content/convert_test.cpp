@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "content/level.h"
+#include "content/level_file.h"
 #include "tests/content/document_compare.h"
 
 namespace pliant::test {

@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "content/exr.h"
-#include "content/level.h"
+#include "content/files/exr.h"
+#include "content/level_file.h"
 
 namespace pliant::test {
 namespace {

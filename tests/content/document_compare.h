@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "content/level.h"
+#include "content/level/level.h"
 
 namespace pliant::test {
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "content/file_io.h"
-#include "content/level.h"
+#include "content/files/file_io.h"
+#include "content/level_file.h"
 #include "tests/content/document_compare.h"
 #include "tests/content/gltf_builder.h"
 

@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "content/assimp_import.h"
-#include "content/gltf_draco.h"
+#include "content/files/assimp_import.h"
+#include "content/gltf/gltf_draco.h"
 
 namespace pliant::test {
 namespace {

@@ -1,5 +1,5 @@
 // OpenEXR panoramas written here and read back.
-#include "content/exr.h"
+#include "content/files/exr.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "content/file_io.h"
+#include "content/files/file_io.h"
 
 namespace pliant::test {
 namespace {

@@ -5,8 +5,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "content/extension_table.h"
-#include "content/extensions.h"
+#include "content/keys/extension_table.h"
+#include "content/keys/extensions.h"
+#include "content/level_file.h"
 #include "systems/touch/local_model.h"
 #include "tests/content/gltf_builder.h"
 

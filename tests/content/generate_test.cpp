@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "content/exr.h"
+#include "content/files/exr.h"
 #include "content/generate/hand.h"
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/levels.h"
@@ -15,8 +15,9 @@
 #include "content/generate/strokes.h"
 #include "content/generate/surface_nets.h"
 #include "content/generate/textures.h"
-#include "content/mesh_build.h"
-#include "content/script.h"
+#include "content/level/script.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
 
 namespace pliant::generate {
 namespace {

@@ -1,4 +1,4 @@
-#include "content/image.h"
+#include "content/files/image.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "content/mesh_build.h"
+#include "content/mesh/mesh_build.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "content/hilbert.h"
+#include "content/mesh/hilbert.h"
 #include "runtime/hash.h"
 #include "runtime/parallel.h"
 #include "tests/content/mesh_shapes.h"

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <map>
 
-#include "content/level.h"
-#include "content/mesh_build.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
 
 namespace pliant {
 namespace {

@@ -1,5 +1,5 @@
 // Creases, the normals between them, and the curved surface that they make.
-#include "content/mesh_crease.h"
+#include "content/mesh/mesh_crease.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "components/curved_patch.h"
-#include "content/level.h"
-#include "content/mesh_build.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
 #include "runtime/parallel.h"
 #include "tests/content/mesh_shapes.h"
 

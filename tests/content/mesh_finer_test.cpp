@@ -1,5 +1,5 @@
 // Coarse touch meshes, cut finer along the curved surface that they are touched as.
-#include "content/mesh_finer.h"
+#include "content/mesh/mesh_finer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "content/level.h"
-#include "content/mesh_build.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
 #include "tests/content/mesh_shapes.h"
 
 namespace pliant {

@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "content/hilbert.h"
+#include "content/mesh/hilbert.h"
 
 namespace pliant {
 namespace {

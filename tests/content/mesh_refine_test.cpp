@@ -1,8 +1,8 @@
-#include "content/mesh_refine.h"
+#include "content/mesh/mesh_refine.h"
 
 #include <gtest/gtest.h>
 
-#include "content/mesh_build.h"
+#include "content/mesh/mesh_build.h"
 #include "tests/content/mesh_shapes.h"
 
 namespace pliant {

@@ -10,8 +10,8 @@
 
 #include "components/curved_patch.h"
 #include "components/mesh.h"
-#include "content/level.h"
-#include "content/mesh_build.h"
+#include "content/level/level.h"
+#include "content/mesh/mesh_build.h"
 
 namespace pliant::test {
 

@@ -1,5 +1,5 @@
 // Surfaces wound wrongly: what can be decided is turned, what cannot is counted.
-#include "content/mesh_winding.h"
+#include "content/mesh/mesh_winding.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,8 @@
 #include <filesystem>
 #include <numbers>
 
-#include "content/mesh_build.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
 #include "content/validate.h"
 #include "tests/content/mesh_shapes.h"
 

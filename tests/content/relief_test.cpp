@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "content/level.h"
+#include "content/level_file.h"
 
 namespace pliant {
 namespace {

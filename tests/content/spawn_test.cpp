@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "content/level.h"
-#include "content/script.h"
+#include "content/level/script.h"
+#include "content/level_file.h"
 #include "tests/content/mesh_shapes.h"
 
 namespace pliant {

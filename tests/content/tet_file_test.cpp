@@ -6,10 +6,10 @@
 #include <functional>
 #include <random>
 
-#include "content/lattice.h"
-#include "content/mesh_build.h"
-#include "content/tet_boundary.h"
-#include "content/tet_quality.h"
+#include "content/mesh/mesh_build.h"
+#include "content/tets/lattice.h"
+#include "content/tets/tet_boundary.h"
+#include "content/tets/tet_quality.h"
 #include "tests/content/mesh_shapes.h"
 #include "tests/content/tet_writers.h"
 

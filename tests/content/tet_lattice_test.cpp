@@ -8,12 +8,12 @@
 #include <numbers>
 #include <random>
 
-#include "content/lattice.h"
-#include "content/lattice_inside.h"
-#include "content/mesh_build.h"
-#include "content/tet_boundary.h"
-#include "content/tet_parts.h"
-#include "content/tet_quality.h"
+#include "content/mesh/mesh_build.h"
+#include "content/tets/lattice.h"
+#include "content/tets/lattice_inside.h"
+#include "content/tets/tet_boundary.h"
+#include "content/tets/tet_parts.h"
+#include "content/tets/tet_quality.h"
 #include "runtime/hash.h"
 #include "runtime/parallel.h"
 #include "tests/content/mesh_shapes.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "components/mass_properties.h"
-#include "content/mesh_build.h"
+#include "content/mesh/mesh_build.h"
 #include "tests/content/mesh_shapes.h"
 
 namespace pliant {

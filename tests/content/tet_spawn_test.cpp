@@ -8,8 +8,9 @@
 #include <fstream>
 
 #include "components/mass_properties.h"
-#include "content/gltf_save.h"
-#include "content/tet_quality.h"
+#include "content/gltf/gltf_save.h"
+#include "content/level_file.h"
+#include "content/tets/tet_quality.h"
 #include "content/validate.h"
 #include "tests/content/gltf_builder.h"
 #include "tests/content/mesh_shapes.h"

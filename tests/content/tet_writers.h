@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "content/tet_file.h"
+#include "content/tets/tet_file.h"
 
 namespace pliant::test {
 

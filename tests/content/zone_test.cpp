@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "content/mesh_build.h"
+#include "content/mesh/mesh_build.h"
 #include "tests/content/mesh_shapes.h"
 
 namespace pliant {

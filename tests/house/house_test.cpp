@@ -25,12 +25,31 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"components", {"runtime"}},
     {"systems", {"runtime", "components", "shaders"}},
     {"content", {"runtime", "components"}},
-    {"player", {"runtime", "components", "systems", "content"}},
-    {"editor", {"runtime", "components", "systems", "content", "player"}},
-    {"bench", {"runtime", "components", "systems", "content", "player", "tests", "shaders"}},
-    {"tests", {"runtime", "components", "systems", "content", "player", "editor", "shaders"}},
-    {"fuzz", {"runtime", "components", "systems", "content", "player"}},
+    {"engine", {"runtime", "components", "systems", "content"}},
+    {"player", {"runtime", "components", "systems", "content", "engine"}},
+    {"editor", {"runtime", "components", "systems", "content", "engine", "player"}},
+    {"bench", {"runtime", "components", "systems", "content", "engine", "player", "tests", "shaders"}},
+    {"tests", {"runtime", "components", "systems", "content", "engine", "player", "editor", "shaders"}},
+    {"fuzz", {"runtime", "components", "systems", "content", "engine"}},
 };
+
+// Rooms within systems/ and content/, by the second part of a path. What is not named is put together of all of them.
+const std::map<std::string, std::set<std::string>> kRooms{
+    {"systems/safety", {}},
+    {"systems/touch", {"systems/safety"}},
+    {"systems/soft", {"systems/safety", "systems/touch"}},
+    {"systems/tool", {"systems/safety", "systems/touch", "systems/soft"}},
+    {"systems/device", {"systems/safety", "systems/touch", "systems/soft", "systems/tool"}},
+    {"systems/visual", {"systems/touch"}},
+    {"content/mesh", {"content/level"}},
+    {"content/tets", {"content/level", "content/mesh", "content/files"}},
+    {"content/level", {"content/mesh", "content/tets", "content/files"}},
+};
+
+// "systems/touch" of "systems/touch/foot.h".
+std::string room_of(const std::string& path) {
+  return path.substr(0, path.find('/', path.find('/') + 1));
+}
 
 const std::vector<Source>& sources() {
   static const std::vector<Source> all = [] {
@@ -68,6 +87,22 @@ TEST(House, EveryIncludePointsTowardsTheFoundation) {
     }
   }
   EXPECT_GT(checked, 50u) << "the sources were not found";
+}
+
+TEST(House, EveryRoomIncludesOnlyThoseBelowIt) {
+  const std::regex include("(?:^|\\n)#include\\s+\"([^\"]+)\"");
+  std::size_t checked = 0;
+  for (const Source& source : sources()) {
+    const auto room = kRooms.find(room_of(source.path));
+    if (room == kRooms.end()) continue;
+    for (std::sregex_iterator at(source.text.begin(), source.text.end(), include), end; at != end; ++at) {
+      const std::string target = room_of((*at)[1]);
+      if (target == room->first || target.substr(0, target.find('/')) != source.folder) continue;
+      EXPECT_TRUE(room->second.count(target)) << source.path << " may not include \"" << (*at)[1] << '"';
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 50u) << "the rooms were not found";
 }
 
 TEST(House, EveryHeaderIsReadOnce) {

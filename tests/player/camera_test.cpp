@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "player/camera_control.h"
+#include "player/window/camera_control.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {

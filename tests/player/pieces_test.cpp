@@ -8,22 +8,22 @@
 #include <random>
 
 #include "components/soft_body.h"
-#include "content/image.h"
-#include "player/frames.h"
-#include "player/keeper.h"
-#include "player/panorama_preview.h"
-#include "player/pen.h"
-#include "player/plot.h"
-#include "player/recording.h"
-#include "player/soft_clock.h"
-#include "player/sources.h"
-#include "player/tool_words.h"
-#include "player/trace.h"
-#include "player/unit.h"
-#include "systems/device/safety.h"
+#include "content/files/image.h"
+#include "engine/recording.h"
+#include "engine/soft_clock.h"
+#include "engine/sources.h"
+#include "player/record/keeper.h"
+#include "player/record/pen.h"
+#include "player/record/plot.h"
+#include "player/record/trace.h"
+#include "player/run/frames.h"
+#include "player/run/tool_words.h"
+#include "player/verbs/panorama_preview.h"
+#include "player/verbs/unit.h"
+#include "systems/safety/safety.h"
+#include "systems/soft/body/rotation_vector.h"
+#include "systems/soft/soft_state.h"
 #include "systems/tool/prepare_tools.h"
-#include "systems/tool/rotation_vector.h"
-#include "systems/tool/soft_state.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
 
@@ -171,7 +171,8 @@ TEST(SoftClock, WhatStepsLeaveImperfectIsSaidWithItsCure) {
   World world;
   world.soft = std::make_shared<SoftState>();
   EXPECT_TRUE(explain_soft_steps(world, {}).empty());
-  world.soft->tally = {.contacts_cut = 7, .unconverged = 1, .residual = 0.25, .deepest = 0.001, .halted = 2, .halted_for = 0.02};
+  world.soft->tally = {
+      .contacts_cut = 7, .unconverged = 1, .residual = 0.25, .deepest = 0.001, .halted = 2, .halted_for = 0.02};
   SoftFigures figures;
   figures.steps = 20;
   figures.time_lost = 1.5;

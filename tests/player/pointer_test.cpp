@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "components/soft_body.h"
-#include "player/window_carrier.h"
-#include "player/window_pointer.h"
+#include "player/window/window_carrier.h"
+#include "player/window/window_pointer.h"
 #include "systems/device/mouse.h"
 
 namespace pliant {

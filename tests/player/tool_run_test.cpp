@@ -1,7 +1,7 @@
 // pliant run on a level with a tool: a soft block with a rigid back, over a ground and beside a P1 plate.
 #include <cmath>
 
-#include "content/level.h"
+#include "content/level_file.h"
 #include "tests/player/command.h"
 
 namespace pliant::testing {

@@ -1,7 +1,7 @@
 // The window, on a display that nobody sees (Xvfb), touched by events from a file and by events of X itself.
 #include <cmath>
 
-#include "content/image.h"
+#include "content/files/image.h"
 #include "tests/player/command.h"
 
 namespace pliant::testing {

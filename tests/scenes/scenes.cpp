@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "content/mesh_build.h"
+#include "content/mesh/mesh_build.h"
+#include "systems/hash_state.h"
 #include "systems/schedule.h"
-#include "systems/touch/hash_state.h"
 #include "systems/touch/prepare.h"
 
 namespace pliant::scenes {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "components/world.h"
-#include "content/level.h"
+#include "content/level/level.h"
 #include "runtime/schedule.h"
-#include "systems/touch/reading.h"
+#include "systems/device/reading.h"
 
 namespace pliant::scenes {
 

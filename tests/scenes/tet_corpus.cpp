@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "content/tet_order.h"
+#include "content/tets/tet_order.h"
 
 namespace pliant::scenes {
 namespace {

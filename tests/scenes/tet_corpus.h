@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "components/tet_mesh.h"
-#include "content/tet_file.h"
+#include "content/tets/tet_file.h"
 
 namespace pliant::scenes {
 

@@ -4,12 +4,12 @@
 #include <array>
 #include <map>
 
-#include "content/mesh_build.h"
-#include "content/probe_shell.h"
+#include "content/level/probe_shell.h"
+#include "content/mesh/mesh_build.h"
 #include "systems/schedule.h"
-#include "systems/tool/prepare_soft.h"
+#include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
-#include "systems/tool/soft_step.h"
+#include "systems/tool/tool_step.h"
 #include "systems/touch/prepare.h"
 
 namespace pliant::scenes {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "components/soft_body.h"
-#include "systems/tool/soft_body_state.h"
-#include "systems/tool/soft_state.h"
+#include "systems/soft/body/soft_body_state.h"
+#include "systems/soft/soft_state.h"
 #include "tests/scenes/scenes.h"
 
 namespace pliant::scenes {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "systems/tool/soft_body_state.h"
-#include "tests/tool/bar.h"
+#include "systems/soft/body/soft_body_state.h"
+#include "tests/soft/bar.h"
 
 namespace pliant {
 

@@ -1,5 +1,5 @@
 // How a pressed finger answers to its contacts and to its own shaking, against the same written out at full length.
-#include "systems/tool/reduction/body_answers.h"
+#include "systems/tool/reduce/body_answers.h"
 
 #include <gtest/gtest.h>
 

@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "systems/tool/reduce_tool.h"
-#include "systems/tool/rigid_state.h"
-#include "systems/tool/rotation_vector.h"
-#include "systems/tool/soft_body_state.h"
-#include "tests/tool/bar.h"
+#include "systems/soft/body/rigid_state.h"
+#include "systems/soft/body/rotation_vector.h"
+#include "systems/soft/body/soft_body_state.h"
+#include "systems/tool/reduce/reduce_tool.h"
+#include "tests/soft/bar.h"
 
 namespace pliant {
 

@@ -1,6 +1,6 @@
 // Probes among soft and rigid bodies. Oracles: the coupling's law where nothing gives way, action and reaction,
 // weights, the same bits where a body is out of reach.
-#include "systems/tool/probe_tool.h"
+#include "systems/soft/body/probe_tool.h"
 
 #include <gtest/gtest.h>
 

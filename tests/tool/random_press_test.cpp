@@ -9,16 +9,16 @@
 #include <random>
 #include <utility>
 
-#include "content/level.h"
+#include "content/level_file.h"
 #include "systems/device/devices.h"
+#include "systems/hash_state.h"
 #include "systems/schedule.h"
-#include "systems/tool/prepare_soft.h"
+#include "systems/soft/body/rotation_vector.h"
+#include "systems/soft/prepare_soft.h"
+#include "systems/soft/soft_state.h"
 #include "systems/tool/prepare_tools.h"
-#include "systems/tool/rotation_vector.h"
-#include "systems/tool/soft_state.h"
-#include "systems/tool/soft_step.h"
+#include "systems/tool/tool_step.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/hash_state.h"
 #include "systems/touch/prepare.h"
 #include "tests/scenes/tet_corpus.h"
 #include "tests/scenes/tet_shapes.h"
@@ -155,7 +155,8 @@ World finger_over(const std::filesystem::path& mesh) {
   scenes::ToolStage stage(1.0 / 60.0);
   stage.add_soft(scenes::stand(std::move(*file)), {.young = 2e4, .poisson = 0.4, .rayleigh = {0.0, 1e-3}}, Pose{});
   TetMesh finger = tets::box(2, 6, 2, dvec3(-0.0075, 0.0, -0.0075), dvec3(0.0075, 0.06, 0.0075));
-  tets::hold(finger, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 0.045; });
+  tets::hold(
+      finger, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 0.045; });
   const Handle6 handle{.max_force = 12.0};
   const PathRow above{0.0, dvec3(0.05, 0.15, 0.05), dquat(1, 0, 0, 0)};
   const Entity tool = stage.add_soft(std::move(finger), {.young = 1e5, .poisson = 0.4, .rayleigh = {0.0, 1e-3}},

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "systems/tool/rotation_vector.h"
+#include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 #include "tests/scenes/tet_shapes.h"
 #include "tests/scenes/tool_stage.h"

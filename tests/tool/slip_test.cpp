@@ -5,12 +5,12 @@
 #include <cmath>
 #include <map>
 
-#include "systems/tool/contact_geometry.h"
-#include "systems/tool/immovable_body.h"
-#include "systems/tool/surface_walk.h"
+#include "systems/soft/body/immovable_body.h"
+#include "systems/soft/collide/contact_geometry.h"
+#include "systems/soft/collide/surface_walk.h"
 #include "systems/tool/tool_tick.h"
+#include "tests/soft/skin_shapes.h"
 #include "tests/tool/press_scene.h"
-#include "tests/tool/skin_shapes.h"
 
 namespace pliant {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "systems/device/devices.h"
-#include "systems/device/safety.h"
+#include "systems/safety/safety.h"
+#include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/prepare_tools.h"
-#include "systems/tool/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
 #include "tests/scenes/tet_shapes.h"

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "systems/tool/rotation_vector.h"
+#include "systems/soft/body/rotation_vector.h"
 #include "tests/tool/air_tool.h"
 
 namespace pliant {

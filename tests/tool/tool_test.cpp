@@ -5,7 +5,7 @@
 #include <cstring>
 #include <random>
 
-#include "systems/tool/rotation_vector.h"
+#include "systems/soft/body/rotation_vector.h"
 #include "tests/tool/air_tool.h"
 
 namespace pliant {

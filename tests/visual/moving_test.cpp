@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "content/level.h"
+#include "content/level_file.h"
 #include "systems/schedule.h"
 #include "systems/touch/prepare.h"
 #include "systems/touch/publish.h"

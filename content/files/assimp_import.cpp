@@ -1,0 +1,289 @@
+#include "content/files/assimp_import.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
+
+#include "content/files/image.h"
+#include "content/files/isolation.h"
+#include "content/gltf/gltf_document.h"
+#include "content/gltf/gltf_draco.h"
+#include "content/gltf/gltf_save.h"
+
+namespace pliant {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t kMaxImportBytes = std::uint64_t{512} << 20;
+constexpr std::size_t kMaxNodes = 100'000;
+
+// Counts at the head of an OFF or PLY file, from which Assimp allocates before it has read anything else.
+Status check_claims(const Bytes& bytes, const std::string& extension) {
+  const std::string head(bytes.begin(),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 4096)));
+  std::vector<double> claims;
+  if (extension == ".off") {
+    const std::size_t digits = head.find_first_of("0123456789");
+    double vertices = 0, faces = 0;
+    if (digits != std::string::npos && std::sscanf(head.c_str() + digits, "%lf %lf", &vertices, &faces) == 2)
+      claims = {vertices, faces};
+  }
+  if (extension == ".ply")
+    for (std::size_t at = head.find("element "); at != std::string::npos; at = head.find("element ", at + 1)) {
+      double count = 0;
+      if (std::sscanf(head.c_str() + at, "element %*63s %lf", &count) == 1) claims.push_back(count);
+    }
+  for (const double claim : claims)
+    if (!(claim <= static_cast<double>(bytes.size())))
+      return Error{"", fmt::format("claims {} elements in {} bytes; the file is damaged", claim, bytes.size())};
+  return Done{};
+}
+
+// Names in files are bytes; ours are UTF-8.
+std::string utf8(const std::string& bytes) {
+  return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+}
+
+LocalTransform decompose(const aiMatrix4x4& m) {
+  aiVector3D scale, position;
+  aiQuaternion rotation;
+  m.Decompose(scale, rotation, position);
+  LocalTransform out;
+  out.translation = vec3(position.x, position.y, position.z);
+  out.rotation = glm::normalize(quat(rotation.w, rotation.x, rotation.y, rotation.z));
+  out.scale = vec3(scale.x, scale.y, scale.z);
+  return out;
+}
+
+bool finite(const LocalTransform& local) {
+  const float sum = dot(local.translation, vec3(1)) + dot(local.scale, vec3(1)) + local.rotation.w + local.rotation.x +
+                    local.rotation.y + local.rotation.z;
+  return std::isfinite(sum);
+}
+
+Result<Primitive> read_primitive(const aiMesh& mesh) {
+  Primitive out;
+  out.material = static_cast<std::int32_t>(mesh.mMaterialIndex);
+  out.position.reserve(mesh.mNumVertices);
+  const bool has_normals = mesh.HasNormals(), has_uv = mesh.HasTextureCoords(0);
+  bool sound_normals = has_normals;
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3D& p = mesh.mVertices[v];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      return Error{"", fmt::format("has a position that is not a finite number, vertex {}; repair the mesh", v)};
+    out.position.emplace_back(p.x, p.y, p.z);
+    if (has_normals) {
+      const aiVector3D& n = mesh.mNormals[v];
+      const float size = length(vec3(n.x, n.y, n.z));
+      sound_normals &= std::isfinite(size) && size > 0.0f;
+      out.normal.push_back(vec3(n.x, n.y, n.z) / size);
+    }
+    if (has_uv) {
+      const aiVector3D& t = mesh.mTextureCoords[0][v];
+      // glTF counts v downwards.
+      out.uv.emplace_back(std::isfinite(t.x) ? t.x : 0.0f, std::isfinite(t.y) ? 1.0f - t.y : 0.0f);
+    }
+  }
+  if (!sound_normals) out.normal.clear();  // made anew at spawn
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    for (unsigned i = 0; i < 3; ++i) {
+      if (face.mIndices[i] >= mesh.mNumVertices) return Error{"", "has a triangle with a vertex that does not exist"};
+      out.index.push_back(face.mIndices[i]);
+    }
+  }
+  return out;
+}
+
+Material read_material(const aiMaterial& in, std::string& texture_name) {
+  Material out;
+  aiString name, texture;
+  aiColor4D color;
+  if (in.Get(AI_MATKEY_NAME, name) == AI_SUCCESS) out.name = name.C_Str();
+  if (in.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS)
+    out.base_color = glm::clamp(vec4(color.r, color.g, color.b, 1.0f), 0.0f, 1.0f);
+  float opacity = 1.0f;
+  if (in.Get(AI_MATKEY_OPACITY, opacity) == AI_SUCCESS && opacity < 1.0f && opacity >= 0.0f) {
+    out.base_color.a = opacity;
+    out.alpha = Material::Alpha::kBlend;
+  }
+  if (glm::any(glm::isnan(out.base_color))) out.base_color = vec4(1);
+  out.name = utf8(out.name);
+  if (in.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == AI_SUCCESS) texture_name = utf8(texture.C_Str());
+  return out;
+}
+
+// One Level node a scene node; its meshes become the primitives of one Level mesh.
+Status read_nodes(const aiScene& scene, Level& level) {
+  struct Visit {
+    const aiNode* node;
+    std::int32_t parent;
+  };
+  std::vector<Visit> stack{{scene.mRootNode, -1}};
+  std::uint64_t vertices = 0;
+  while (!stack.empty()) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    if (level.nodes.size() >= kMaxNodes) return Error{"", "has more than 100000 nodes; simplify it"};
+    const std::int32_t here = static_cast<std::int32_t>(level.nodes.size());
+    LevelNode node;
+    node.parent = visit.parent;
+    node.name = visit.node->mName.length > 0 ? utf8(visit.node->mName.C_Str()) : fmt::format("node_{}", here);
+    node.local = decompose(visit.node->mTransformation);
+    if (!finite(node.local)) return Error{"", "has a transformation that is not finite; repair the file"};
+    if (visit.node->mNumMeshes > 0) {
+      LevelMesh mesh;
+      mesh.name = node.name;
+      for (unsigned m = 0; m < visit.node->mNumMeshes; ++m) {
+        const unsigned which = visit.node->mMeshes[m];
+        if (which >= scene.mNumMeshes) return Error{"", "refers to a mesh that it does not have"};
+        Result<Primitive> primitive = read_primitive(*scene.mMeshes[which]);
+        if (!primitive) return primitive.error();
+        if (primitive->index.empty()) continue;
+        vertices += primitive->position.size();
+        if (vertices > (1u << 26)) return Error{"", "has more than 67 million vertices; split it"};
+        mesh.primitives.push_back(std::move(*primitive));
+      }
+      if (!mesh.primitives.empty()) {
+        node.mesh = static_cast<std::int32_t>(level.meshes.size());
+        level.meshes.push_back(std::move(mesh));
+      }
+    }
+    level.nodes.push_back(std::move(node));
+    if (visit.parent >= 0) level.nodes[static_cast<std::size_t>(visit.parent)].children.push_back(here);
+    for (unsigned c = visit.node->mNumChildren; c-- > 0;) stack.push_back({visit.node->mChildren[c], here});
+  }
+  return Done{};
+}
+
+// In the child: the scene as GLB, after a header that names each material's texture.
+Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
+  if (const Status status = check_claims(bytes, extension); !status) return status.error();
+  Assimp::Importer importer;
+  // Only what is read below; skeletons, animations, lights and cameras are dropped.
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
+                                                          aiComponent_CAMERAS | aiComponent_LIGHTS |
+                                                          aiComponent_COLORS | aiComponent_TEXTURES);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const unsigned steps =
+      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
+  const aiScene* scene = importer.ReadFile(path.string(), steps);
+  if (!scene || !scene->mRootNode) {
+    std::string why = importer.GetErrorString();
+    std::replace(why.begin(), why.end(), '\n', ' ');
+    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))) +
+                         "; export it again, or as glTF"};
+  }
+  Level level;
+  Json textures = Json::array();
+  for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
+    std::string texture;
+    level.materials.push_back(read_material(*scene->mMaterials[m], texture));
+    textures.push_back(texture);
+  }
+  if (const Status status = read_nodes(*scene, level); !status) return status.error();
+  for (LevelMesh& mesh : level.meshes)
+    for (Primitive& primitive : mesh.primitives)
+      if (primitive.material >= static_cast<std::int32_t>(level.materials.size())) primitive.material = -1;
+  if (level.meshes.empty()) return Error{"", "has no triangles; a point cloud or an empty mesh cannot be touched"};
+  const Result<Bytes> glb = level_as_glb(level);
+  if (!glb) return glb.error();
+  const std::string header = textures.dump();
+  const std::uint64_t size = header.size();
+  Bytes out;
+  append_bytes(out, &size, sizeof size);
+  append_bytes(out, header.data(), size);
+  append_bytes(out, glb->data(), glb->size());
+  return out;
+}
+
+// In the parent: what the child made is read like any other file.
+Result<Level> receive(const Bytes& answer, const fs::path& folder) {
+  Taker in(answer);
+  std::uint64_t size = 0;
+  std::string header;
+  if (!in.take(&size, sizeof size) || size > in.rest().size())
+    return Error{"", "was not imported to its end; try again"};
+  header.resize(size);
+  in.take(header.data(), size);
+  Result<Level> level = load_gltf(in.rest(), true, {});
+  if (!level) return level;
+  level->source.reset();  // that document was only a messenger
+  const Json textures = Json::parse(header);
+  for (std::size_t m = 0; m < textures.size() && m < level->materials.size(); ++m) {
+    const std::string name = textures[m].get<std::string>();
+    if (name.empty()) continue;
+    const Result<fs::path> path = confined_path(folder, name);
+    Result<Image> image = path ? load_image(*path) : Result<Image>(path.error());
+    if (!image) {
+      level->notes.push_back("the texture " + name + " is left out: " + image.error().what);
+      continue;
+    }
+    image->name = fs::path(name).filename().string();
+    level->materials[m].base_color_texture = static_cast<std::int32_t>(level->images.size());
+    level->images.push_back(std::move(*image));
+  }
+  return level;
+}
+
+}  // namespace
+
+Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::string& name) {
+  Result<DracoMesh> mesh = decode_draco_file(bytes);
+  if (!mesh) return mesh.error();
+  Primitive primitive;
+  primitive.index = std::move(mesh->index);
+  for (const DracoAttribute& attribute : mesh->attributes) {
+    const std::string& semantic = attribute.name;
+    const auto at = [&](std::size_t v, std::size_t c) { return attribute.values[v * attribute.width + c]; };
+    for (std::size_t v = 0; v < mesh->vertices; ++v)
+      for (std::size_t c = 0; c < attribute.width; ++c)
+        if (!std::isfinite(at(v, c))) return Error{"Draco data", "has a number in " + semantic + " that is not finite"};
+    if (semantic == "POSITION" && attribute.width != 3)
+      return Error{"Draco data", "has positions that are not in space"};
+    for (std::size_t v = 0; v < mesh->vertices; ++v) {
+      if (semantic == "POSITION") primitive.position.emplace_back(at(v, 0), at(v, 1), at(v, 2));
+      if (semantic == "NORMAL" && attribute.width == 3) primitive.normal.emplace_back(at(v, 0), at(v, 1), at(v, 2));
+      if (semantic == "TEXCOORD_0" && attribute.width == 2) primitive.uv.emplace_back(at(v, 0), 1.0f - at(v, 1));
+    }
+  }
+  if (primitive.position.empty() || primitive.index.empty()) return Error{"Draco data", "has no triangles to touch"};
+  for (const vec3 normal : primitive.normal)
+    if (std::abs(length(normal) - 1.0f) > 0.006f) {
+      primitive.normal.clear();  // made anew at spawn
+      break;
+    }
+  Level level;
+  level.meshes.push_back({name, {std::move(primitive)}});
+  LevelNode node;
+  node.name = name;
+  node.mesh = 0;
+  level.nodes.push_back(std::move(node));
+  return level;
+}
+
+Result<Level> import_mesh(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  Result<Bytes> bytes = read_file(path, kMaxImportBytes);
+  if (!bytes) return bytes.error();
+  try {
+    if (extension == ".drc") return import_draco(*bytes, path.stem().string());
+    const Result<Bytes> answer = in_isolation(bytes->size(), [&] { return import_scene(path, *bytes, extension); });
+    if (!answer) return answer.error();
+    return receive(*answer, path.parent_path());
+  } catch (const std::exception& e) {
+    return Error{"", std::string("cannot be read: ") + e.what() + "; export it again, or as glTF"};
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,107 @@
+#include "content/files/file_io.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+namespace pliant {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+Result<Bytes> read_file(const fs::path& path, std::uint64_t limit) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (error || !fs::exists(status)) return Error{path.string(), "no such file; check the path"};
+  if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file; name a file"};
+  const std::uint64_t size = fs::file_size(path, error);
+  if (error) return Error{path.string(), "its size cannot be told: " + error.message()};
+  if (size > limit)
+    return Error{path.string(),
+                 fmt::format("is {} bytes, more than the {} that are read; use a smaller file", size, limit)};
+  const File file(std::fopen(path.c_str(), "rb"));
+  if (!file)
+    return Error{path.string(), fmt::format("cannot be opened: {}; check its permissions", std::strerror(errno))};
+  Bytes bytes(size);
+  if (std::fread(bytes.data(), 1, size, file.get()) != size)
+    return Error{path.string(), "could not be read to its end; check the disk"};
+  return bytes;
+}
+
+Status write_files(const std::vector<FileToWrite>& files) {
+  std::vector<fs::path> aside;
+  std::error_code ignored;
+  const auto fail = [&](const fs::path& path, const char* what) {
+    Error error{path.string(), fmt::format("{}: {}; check the folder and its permissions", what, std::strerror(errno))};
+    for (const fs::path& each : aside) fs::remove(each, ignored);
+    return error;
+  };
+  for (const FileToWrite& each : files) {
+    aside.push_back(fs::path(each.path).concat(fmt::format(".{}.part", ::getpid())));
+    File file(std::fopen(aside.back().c_str(), "wb"));
+    if (!file) return fail(each.path, "cannot be written");
+    const bool written = std::fwrite(each.bytes.data(), 1, each.bytes.size(), file.get()) == each.bytes.size();
+    // Closing flushes: a full disk may only show here.
+    if (std::fclose(file.release()) != 0 || !written) return fail(each.path, "could not be written to its end");
+  }
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (std::rename(aside[i].c_str(), files[i].path.c_str()) != 0) return fail(files[i].path, "cannot be put in place");
+  return Done{};
+}
+
+Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  return write_files({{path, bytes}});
+}
+
+Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
+  std::string decoded;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] != '%') {
+      decoded += uri[i];
+      continue;
+    }
+    const int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
+    const int low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : -1;
+    if (high < 0 || low < 0) return Error{uri, "is not a valid URI (a % without two hexadecimal digits)"};
+    decoded += static_cast<char>(high * 16 + low);
+    i += 2;
+  }
+  if (decoded.empty()) return Error{uri, "is an empty URI; name a file"};
+  if (decoded.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte"};
+  // A colon before any slash makes a scheme (RFC 3986, 4.2).
+  const std::size_t colon = decoded.find(':');
+  if (colon != std::string::npos && decoded.find('/') > colon)
+    return Error{uri, "names another place than the level's folder; put the file beside the level"};
+  const fs::path relative(decoded);
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
+  if (error) return Error{folder.string(), "cannot be resolved: " + error.message()};
+  const fs::path whole = fs::weakly_canonical(root / relative, error);
+  if (error) return Error{uri, "cannot be resolved: " + error.message()};
+  const fs::path from_root = whole.lexically_relative(root);
+  if (relative.is_absolute() || from_root.empty() || *from_root.begin() == "..")
+    return Error{uri, "lies outside the level's folder; put the file beside the level"};
+  return whole;
+}
+
+}  // namespace pliant

@@ -1,0 +1,91 @@
+#include "content/files/image.h"
+
+#include <fmt/format.h>
+#include <stb_image.h>
+#include <stb_image_write.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace pliant {
+
+namespace {
+
+// How many pixels a byte of a file can stand for at most: deflate reaches 1030 bytes a byte, and a pixel is at least
+// one bit; a JPEG block of 64 samples takes a few bits. A file that claims more is broken, and is refused before
+// allocation.
+constexpr std::uint64_t kPixelsPerByte = 8300;
+
+// Every chunk of a PNG lies within the file: the decoder allocates by what a chunk says of itself.
+bool png_chunks_fit(std::span<const std::uint8_t> bytes) {
+  for (std::size_t at = 8; at + 12 <= bytes.size();) {
+    const std::uint64_t length = std::uint64_t{bytes[at]} << 24 | std::uint64_t{bytes[at + 1]} << 16 |
+                                 std::uint64_t{bytes[at + 2]} << 8 | bytes[at + 3];
+    if (length > bytes.size() - at - 12) return false;
+    if (std::equal(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 4,
+                   bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8, "IEND"))
+      return true;
+    at += length + 12;
+  }
+  return false;
+}
+
+struct FreePixels {
+  void operator()(void* pixels) const { stbi_image_free(pixels); }
+};
+
+}  // namespace
+
+ImageFormat image_format(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  constexpr std::uint8_t kJpeg[] = {0xff, 0xd8, 0xff};
+  if (bytes.size() >= 8 && std::equal(std::begin(kPng), std::end(kPng), bytes.begin())) return ImageFormat::kPng;
+  if (bytes.size() >= 3 && std::equal(std::begin(kJpeg), std::end(kJpeg), bytes.begin())) return ImageFormat::kJpeg;
+  return ImageFormat::kUnknown;
+}
+
+Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
+  if (image_format(bytes) == ImageFormat::kUnknown)
+    return Error{name, "is neither PNG nor JPEG; convert the picture to one of them"};
+  if (bytes.size() > 0x7fffffff) return Error{name, "is too large a picture; use one below 2 GB"};
+  if (image_format(bytes) == ImageFormat::kPng && !png_chunks_fit(bytes))
+    return Error{name, "is a PNG that is cut off or damaged; save it again"};
+  const int size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) || width <= 0 || height <= 0)
+    return Error{name, fmt::format("is a damaged picture ({}); save it again", stbi_failure_reason())};
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  const std::uint64_t allowed = stbi_is_16_bit_from_memory(bytes.data(), size) ? kMaxImagePixels / 2 : kMaxImagePixels;
+  if (width > 16384 || height > 16384 || pixels > allowed)
+    return Error{name, fmt::format("has {} x {} pixels, more than are read; use at most 8192 x 8192", width, height)};
+  if (pixels > bytes.size() * kPixelsPerByte)
+    return Error{name, fmt::format("claims {} x {} pixels in {} bytes; the picture is damaged", width, height, size)};
+  const std::unique_ptr<stbi_uc, FreePixels> decoded(
+      stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4));
+  if (!decoded) return Error{name, fmt::format("is a damaged picture ({}); save it again", stbi_failure_reason())};
+  Image image;
+  image.name = name;
+  image.width = static_cast<std::uint32_t>(width);
+  image.height = static_cast<std::uint32_t>(height);
+  image.rgba.assign(decoded.get(), decoded.get() + std::size_t{4} * image.width * image.height);
+  return image;
+}
+
+Result<Image> load_image(const std::filesystem::path& path) {
+  Result<Bytes> bytes = read_file(path, std::uint64_t{512} << 20);
+  if (!bytes) return bytes.error();
+  return decode_image(*bytes, path.string());
+}
+
+Bytes encode_png(std::uint32_t width, std::uint32_t height, const std::uint8_t* rgba) {
+  Bytes png;
+  const auto append = [](void* out, void* data, int size) {
+    const auto* begin = static_cast<const std::uint8_t*>(data);
+    static_cast<Bytes*>(out)->insert(static_cast<Bytes*>(out)->end(), begin, begin + size);
+  };
+  stbi_write_png_to_func(append, &png, static_cast<int>(width), static_cast<int>(height), 4, rgba,
+                         static_cast<int>(width * 4));
+  return png;
+}
+
+}  // namespace pliant

@@ -1,0 +1,30 @@
+// Libraries that were not written for hostile input (Assimp, Draco) run in a child process of bounded time and memory:
+// whatever a damaged file makes them do, the level is refused in a sentence and this process goes on.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "content/files/file_io.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// Runs `work` in a child and returns what it returned. `input_bytes`, the size of what it reads, sets the bounds:
+// `seconds` and one more for every 4 MB; 768 MiB and 64 bytes for each of them. The child must not touch threads or
+// devices.
+Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds = 4.0);
+
+// For handing arrays over: what was appended is taken in the same order. take() fails at the end of the bytes.
+void append_bytes(Bytes& out, const void* data, std::size_t size);
+class Taker {
+ public:
+  explicit Taker(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  bool take(void* data, std::size_t size);
+  std::span<const std::uint8_t> rest() const { return bytes_; }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,117 @@
+#include "content/gltf/gltf_animation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "content/gltf/gltf_accessor.h"
+
+namespace pliant {
+namespace {
+
+std::optional<NodeProperty> property_of(const std::string& path) {
+  if (path == "translation") return NodeProperty::kTranslation;
+  if (path == "rotation") return NodeProperty::kRotation;
+  if (path == "scale") return NodeProperty::kScale;
+  return {};
+}
+
+Interpolation interpolation_of(const Json& sampler) {
+  const std::string name = value_of<std::string>(sampler, "interpolation", "LINEAR");
+  if (name == "STEP") return Interpolation::kStep;
+  return name == "CUBICSPLINE" ? Interpolation::kCubicSpline : Interpolation::kLinear;
+}
+
+class AnimationReader {
+ public:
+  AnimationReader(const SourceDocument& document, Level& level) : document_(document), level_(level) {
+    node_of_.assign(array_of(document.json, "nodes").size(), -1);
+    for (std::size_t i = 0; i < document.json_node.size(); ++i)
+      node_of_[static_cast<std::size_t>(document.json_node[i])] = static_cast<std::int32_t>(i);
+  }
+
+  Status animation(const Json& json, std::size_t number) {
+    LevelAnimation out;
+    out.name = value_of<std::string>(json, "name", "");
+    for (std::size_t c = 0; c < json["channels"].size(); ++c)
+      if (Status s = channel(json, c, fmt::format("/animations/{}/channels/{}", number, c), out); !s) return s;
+    for (LevelChannel& channel : out.channels) channel.track.length = out.length;
+    level_.animations.push_back(std::move(out));
+    return Done{};
+  }
+
+ private:
+  Status channel(const Json& animation, std::size_t number, const std::string& pointer, LevelAnimation& out) {
+    const Json& json = animation["channels"][number];
+    const Json& target = json["target"];
+    const std::optional<NodeProperty> property = property_of(target["path"].get<std::string>());
+    if (!property) {
+      level_.notes.emplace_back("animations move nodes; morph weights and what else they animate stay as they are");
+      return Done{};
+    }
+    if (!target.contains("node")) return Done{};  // glTF 2.0: to be ignored
+    const Json& sampler = animation["samplers"][json["sampler"].get<std::size_t>()];
+    const std::size_t input = sampler["input"].get<std::size_t>(), output = sampler["output"].get<std::size_t>();
+    if (!has_data(document_, input) || !has_data(document_, output)) {
+      level_.notes.push_back(pointer + ": is left out: its times or values have no data in this file");
+      return Done{};
+    }
+    keys_ += std::max(layout_of(document_.json["accessors"][input]).count,
+                      layout_of(document_.json["accessors"][output]).count);
+    if (keys_ > kMostKeys)
+      return Error{pointer,
+                   fmt::format("brings the level above {} keys; sample its animations more coarsely", kMostKeys)};
+    LevelChannel channel{node_of_[target["node"].get<std::size_t>()], *property, {}};
+    channel.track.interpolation = interpolation_of(sampler);
+    if (const std::string fault = fill(channel, read_floats(document_, input), read_floats(document_, output));
+        !fault.empty())
+      return Error{pointer, fault};
+    out.length = std::max(out.length, channel.track.times.back());
+    out.channels.push_back(std::move(channel));
+    return Done{};
+  }
+
+  // "" or what is wrong. Sizes have been checked against each other, times against their order.
+  static std::string fill(LevelChannel& channel, const std::vector<float>& times, const std::vector<float>& values) {
+    Track& track = channel.track;
+    const bool turns = channel.property == NodeProperty::kRotation;
+    const bool spline = track.interpolation == Interpolation::kCubicSpline;
+    const std::size_t width = turns ? 4 : 3;
+    track.times.assign(times.begin(), times.end());
+    if (track.times.back() > kFarthest) return fmt::format("lasts longer than {:g} s; shorten it", kFarthest);
+    for (std::size_t i = 0; i + width <= values.size(); i += width)
+      track.values.emplace_back(values[i], values[i + 1], values[i + 2], turns ? values[i + 3] : 0.0f);
+    for (std::size_t i = 0; i < track.values.size(); ++i) {
+      // A tangent is a rate: what counts is what it adds up to until the next key, and that is at most its size here.
+      const bool tangent = spline && i % 3 != 1;
+      double seconds = 1.0;
+      if (tangent && i % 3 == 2 && i / 3 + 1 < track.times.size())
+        seconds = track.times[i / 3 + 1] - track.times[i / 3];
+      if (tangent && i % 3 == 0 && i > 0) seconds = track.times[i / 3] - track.times[i / 3 - 1];
+      const double size = length(track.values[i]) * seconds;
+      if (!(size <= kFarthest))
+        return fmt::format("holds a value larger than {:g} in key {}; correct it", kFarthest, i);
+      if (turns && !tangent && !(size > 1e-3)) return fmt::format("holds a rotation without length in key {}", i);
+    }
+    return "";
+  }
+
+  const SourceDocument& document_;
+  Level& level_;
+  std::vector<std::int32_t> node_of_;  // glTF number -> Level node
+  std::uint64_t keys_ = 0;             // so far, of all channels
+};
+
+}  // namespace
+
+Status read_animations(const SourceDocument& document, Level& level) {
+  AnimationReader reader(document, level);
+  const Json& animations = array_of(document.json, "animations");
+  for (std::size_t a = 0; a < animations.size(); ++a)
+    if (Status s = reader.animation(animations[a], a); !s) return s;
+  return Done{};
+}
+
+}  // namespace pliant

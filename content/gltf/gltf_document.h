@@ -1,0 +1,55 @@
+// A glTF file taken apart and checked: its JSON, the bytes of its buffers and of its pictures. load_level reads from
+// it, save_level writes it back; nothing else knows glTF's containers.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/transform.h"
+#include "content/files/file_io.h"
+#include "content/level/finding.h"
+#include "content/level/level.h"
+
+namespace pliant {
+
+using Json = nlohmann::json;
+
+struct SourceDocument {
+  Json json;
+  std::filesystem::path folder;
+  std::vector<Bytes> buffers;  // as many as json["buffers"]; empty: a placeholder without data
+  std::vector<Bytes> images;   // encoded, as many as json["images"]; empty: not read (a format that is not shown)
+
+  // What load_level made of it, so that save_level writes only what has changed since.
+  std::vector<std::int32_t> json_node;   // Level node -> /nodes/i
+  std::vector<LevelNode> nodes_as_read;  // without meshes: name, transform and extensions
+  std::size_t mesh_count = 0;            // Level meshes
+};
+
+// Opens .gltf or .glb and checks it against the glTF 2.0 specification. Every finding goes to `findings`; the document
+// comes back only if none is an error.
+std::optional<SourceDocument> open_gltf(const std::filesystem::path& path, Findings& findings);
+// The same for a file in memory (`name` is only spoken of); external files are sought in `folder`.
+std::optional<SourceDocument> open_gltf(std::span<const std::uint8_t> bytes, bool expect_glb,
+                                        const std::filesystem::path& folder, Findings& findings);
+
+// The whole of load_level for a file in memory.
+Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, const std::filesystem::path& folder);
+
+// The elements of an object's array member, none if it is absent.
+const Json& array_of(const Json& object, const char* key);
+// A member, or `otherwise` if it is absent. The document has been checked: the type is right.
+template <class T>
+T value_of(const Json& object, const char* key, T otherwise) {
+  const auto it = object.find(key);
+  return it == object.end() ? otherwise : it->template get<T>();
+}
+// object.extensions[name], or null.
+const Json* extension_of(const Json& object, const char* name);
+// A token as part of a JSON pointer.
+std::string escaped(const std::string& token);
+
+}  // namespace pliant

@@ -1,0 +1,248 @@
+// load_level: a checked glTF document -> Level. Nodes come out parents first; meshes, materials and pictures keep their
+// glTF numbers (skinned instances follow after the meshes).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/files/assimp_import.h"
+#include "content/gltf/gltf_animation.h"
+#include "content/gltf/gltf_appearance.h"
+#include "content/gltf/gltf_document.h"
+#include "content/gltf/gltf_mesh.h"
+#include "content/keys/extensions.h"
+#include "content/level_file.h"
+#include "content/tets/tet_file.h"
+#include "content/tets/tet_level.h"
+
+namespace pliant {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kSupported[] = {"KHR_mesh_quantization",
+                                      "KHR_draco_mesh_compression",
+                                      "KHR_lights_punctual",
+                                      "KHR_materials_ior",
+                                      "KHR_materials_transmission",
+                                      "KHR_materials_volume",
+                                      "KHR_materials_emissive_strength",
+                                      "KHR_texture_transform",
+                                      "KHR_materials_unlit",
+                                      "KHR_node_visibility",
+                                      "KHR_materials_variants",
+                                      "KHR_animation_pointer",
+                                      "KHR_materials_specular",
+                                      "KHR_materials_sheen",
+                                      "KHR_materials_clearcoat",
+                                      "KHR_materials_anisotropy",
+                                      "KHR_materials_dispersion",
+                                      "KHR_materials_iridescence"};
+
+LocalTransform transform_of(const Json& node) {
+  LocalTransform local;
+  if (node.contains("matrix")) {
+    double m[16];
+    for (std::size_t i = 0; i < 16; ++i) m[i] = node["matrix"][i].get<double>();
+    dmat3 axes(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
+    dvec3 scale(length(axes[0]), length(axes[1]), length(axes[2]));
+    if (glm::determinant(axes) < 0.0) scale.x = -scale.x;
+    for (int i = 0; i < 3; ++i) axes[i] /= scale[i];
+    local.translation = vec3(dvec3(m[12], m[13], m[14]));
+    local.rotation = quat(glm::normalize(glm::quat_cast(axes)));
+    local.scale = vec3(scale);
+    return local;
+  }
+  local.translation = vector_of(node, "translation", local.translation);
+  local.scale = vector_of(node, "scale", local.scale);
+  const vec4 q = vector_of(node, "rotation", vec4(0, 0, 0, 1));
+  local.rotation = quat(q.w, q.x, q.y, q.z);
+  // A unit quaternion to single precision is kept to the bit, so that saving changes nothing.
+  const dquat exact(local.rotation);
+  if (std::abs(glm::length(exact) - 1.0) > 1e-6) local.rotation = quat(glm::normalize(exact));
+  return local;
+}
+
+// Parents first, the shown scene's roots before all others; every node keeps its number in document.json_node.
+void order_nodes(SourceDocument& document, Level& level) {
+  const Json& nodes = array_of(document.json, "nodes");
+  const Json& scenes = array_of(document.json, "scenes");
+  const std::size_t shown = value_of<std::size_t>(document.json, "scene", 0);
+  std::vector<std::int32_t> parent(nodes.size(), -1);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (const Json& child : array_of(nodes[i], "children"))
+      parent[child.get<std::size_t>()] = static_cast<std::int32_t>(i);
+  struct Visit {
+    std::size_t node;
+    std::int32_t parent;
+    bool in_scene;
+  };
+  std::vector<Visit> roots;
+  std::vector<bool> placed(nodes.size(), false);
+  if (!scenes.empty())
+    for (const Json& root : array_of(scenes[shown], "nodes")) {
+      roots.push_back({root.get<std::size_t>(), -1, true});
+      placed[root.get<std::size_t>()] = true;
+    }
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (parent[i] < 0 && !placed[i]) roots.push_back({i, -1, scenes.empty()});
+  std::vector<Visit> stack(roots.rbegin(), roots.rend());
+  while (!stack.empty()) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    const std::int32_t here = static_cast<std::int32_t>(level.nodes.size());
+    LevelNode node;
+    node.parent = visit.parent;
+    node.in_scene = visit.in_scene;
+    level.nodes.push_back(std::move(node));
+    document.json_node.push_back(static_cast<std::int32_t>(visit.node));
+    if (visit.parent >= 0) level.nodes[static_cast<std::size_t>(visit.parent)].children.push_back(here);
+    const Json& children = array_of(nodes[visit.node], "children");
+    for (std::size_t c = children.size(); c-- > 0;)
+      stack.push_back({children[c].get<std::size_t>(), here, visit.in_scene});
+  }
+}
+
+// Node-to-world matrices by glTF number.
+std::vector<dmat4> world_matrices(const SourceDocument& document, const Level& level) {
+  std::vector<dmat4> world(level.nodes.size()), by_json(level.nodes.size());
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LocalTransform& local = level.nodes[i].local;
+    dmat4 m = glm::mat4_cast(dquat(local.rotation));
+    for (int c = 0; c < 3; ++c) m[c] *= static_cast<double>(local.scale[c]);
+    m[3] = glm::dvec4(dvec3(local.translation), 1.0);
+    world[i] = level.nodes[i].parent < 0 ? m : world[static_cast<std::size_t>(level.nodes[i].parent)] * m;
+    by_json[static_cast<std::size_t>(document.json_node[i])] = world[i];
+  }
+  return by_json;
+}
+
+Status read_nodes(SourceDocument& document, MeshReader& meshes, Level& level) {
+  const Json& nodes = array_of(document.json, "nodes");
+  order_nodes(document, level);
+  std::vector<std::string> json_names(nodes.size());
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const std::size_t number = static_cast<std::size_t>(document.json_node[i]);
+    const Json& json = nodes[number];
+    LevelNode& node = level.nodes[i];
+    node.local = transform_of(json);
+    node.mesh = value_of(json, "mesh", -1);
+    node.name = value_of<std::string>(json, "name", "");
+    if (node.name.empty() && node.mesh >= 0) node.name = level.meshes[static_cast<std::size_t>(node.mesh)].name;
+    if (node.name.empty()) node.name = fmt::format("node_{}", number);
+    json_names[number] = node.name;
+    node.light = light_of(document, json);
+    node.camera = camera_of(document, json, level);
+  }
+  const std::vector<dmat4> world = world_matrices(document, level);
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const std::size_t number = static_cast<std::size_t>(document.json_node[i]);
+    const Json& json = nodes[number];
+    if (json.contains("skin")) {
+      Result<LevelMesh> mesh =
+          meshes.read_skinned(json["mesh"].get<std::size_t>(), json["skin"].get<std::size_t>(), world, number);
+      if (!mesh) return mesh.error();
+      level.notes.push_back("skins are read at rest: " + level.nodes[i].name);
+      level.nodes[i].mesh = static_cast<std::int32_t>(level.meshes.size());
+      level.meshes.push_back(std::move(*mesh));
+    }
+    if (!json.contains("extensions")) continue;
+    const Status status = parse_node_extensions(json["extensions"], fmt::format("/nodes/{}/extensions", number),
+                                                json_names, level.nodes[i]);
+    if (!status) return status;
+  }
+  return check_references(level);
+}
+
+Status read_scene(const SourceDocument& document, Level& level) {
+  const Json& scenes = array_of(document.json, "scenes");
+  if (scenes.empty()) return Done{};
+  const std::size_t shown = value_of<std::size_t>(document.json, "scene", 0);
+  if (!scenes[shown].contains("extensions")) return Done{};
+  return parse_scene_extensions(scenes[shown]["extensions"], fmt::format("/scenes/{}/extensions", shown), level);
+}
+
+Status fill(SourceDocument& document, Level& level) {
+  for (const Json& name : array_of(document.json, "extensionsRequired")) {
+    const std::string& wanted = name.get_ref<const std::string&>();
+    const bool known = wanted.rfind("PLIANT_", 0) == 0 ||
+                       std::find(std::begin(kSupported), std::end(kSupported), wanted) != std::end(kSupported);
+    if (!known)
+      return Error{"/extensionsRequired",
+                   "asks for " + wanted.substr(0, 100) + ", which is not supported; export without it"};
+  }
+  if (const Status status = read_images(document, level); !status) return status;
+  for (const Json& material : array_of(document.json, "materials"))
+    level.materials.push_back(material_of(document, material, level));
+  MeshReader meshes(document);
+  for (std::size_t m = 0; m < array_of(document.json, "meshes").size(); ++m) {
+    Result<LevelMesh> mesh = meshes.read(m);
+    if (!mesh) return mesh.error();
+    level.meshes.push_back(std::move(*mesh));
+  }
+  if (const Status status = read_nodes(document, meshes, level); !status) return status;
+  if (const Status status = read_animations(document, level); !status) return status;
+  if (const Status status = read_scene(document, level); !status) return status;
+  level.notes.insert(level.notes.end(), meshes.notes().begin(), meshes.notes().end());
+  // The same note once, in order of first appearance.
+  std::vector<std::string> once;
+  for (std::string& note : level.notes)
+    if (once.size() < 100 && std::find(once.begin(), once.end(), note) == once.end()) once.push_back(std::move(note));
+  level.notes = std::move(once);
+  document.nodes_as_read = level.nodes;
+  document.mesh_count = level.meshes.size();
+  return Done{};
+}
+
+}  // namespace
+
+Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, const fs::path& folder) {
+  Findings findings;
+  std::optional<SourceDocument> document;
+  Level level;
+  try {
+    document = open_gltf(bytes, expect_glb, folder, findings);
+    if (!document) {
+      for (const Finding& finding : findings)
+        if (finding.severity == Severity::kError) return Error{finding.pointer, finding.message};
+      return Error{"", "cannot be read"};
+    }
+    for (const Finding& finding : findings)
+      if (finding.severity == Severity::kWarning)
+        level.notes.push_back(finding.pointer.empty() ? finding.message : finding.pointer + ": " + finding.message);
+    const Status status = fill(*document, level);
+    if (!status) return status.error();
+  } catch (const std::bad_alloc&) {
+    return Error{"", "needs more memory than there is; split the level"};
+  } catch (const Json::exception& e) {
+    return Error{"", std::string("cannot be read: ") + e.what()};
+  }
+  level.source = std::make_shared<SourceDocument>(std::move(*document));
+  return level;
+}
+
+Result<Level> load_level(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+  Result<Level> level = Error{"", ""};
+  if (is_gltf) {
+    Result<Bytes> bytes = read_file(path);
+    if (!bytes) return bytes.error();
+    level = load_gltf(*bytes, extension == ".glb", path.parent_path());
+  } else {
+    level = is_tet_file(path) ? import_tets(path) : import_mesh(path);
+  }
+  if (!level) {
+    const std::string where = level.error().where;
+    return Error{where.empty() || where == path.string() ? path.string() : path.string() + " " + where,
+                 level.error().what};
+  }
+  level->name = path.stem().string();
+  level->path = path;
+  return level;
+}
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+// Shared by the files that check meaning: the list of findings, and what each bufferView and accessor serves.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "content/gltf/gltf_document.h"
+
+namespace pliant {
+
+enum class BufferUse { kVertices, kIndices, kMatrices, kImage, kOther };
+
+class Meaning {
+ public:
+  Meaning(const Json& json, Findings& findings) : json_(json), findings_(findings) {}
+  void error(std::string pointer, std::string message);
+  void warn(std::string pointer, std::string message);
+  // Notes that an accessor, and the bufferView below it, serve this end; another end before is an error.
+  void use(std::size_t accessor, BufferUse use, const std::string& pointer);
+  void use_view(std::size_t view, BufferUse use, const std::string& pointer);
+
+ private:
+  const Json& json_;
+  Findings& findings_;
+  std::map<std::size_t, BufferUse> accessor_use_, view_use_;
+};
+
+void check_images(const Json& json, Meaning& check);
+void check_cameras(const Json& json, Meaning& check);
+void check_lights_and_variants(const Json& json, Meaning& check);
+void check_meshes(const Json& json, Meaning& check);
+void check_animations(const Json& json, Meaning& check);
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+// glTF meshes as triangles in plain arrays.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "content/gltf/gltf_document.h"
+
+namespace pliant {
+
+// A primitive's corners as triangles, counter-clockwise like the first, by its mode: 4 triangles, 5 a strip, 6 a fan
+// (glTF 2.0, 3.7.2.1).
+std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> corners);
+
+class MeshReader {
+ public:
+  explicit MeshReader(const SourceDocument& document);
+
+  // Every primitive that has triangles: strips, fans, quantised, sparse and Draco data resolved. Points and lines are
+  // left out, with a note. Errors: what Draco data turn out to be, non-finite numbers, too much for memory.
+  Result<LevelMesh> read(std::size_t mesh);
+
+  // The mesh as `skin` shows it at rest: vertices moved by joint matrices times inverse bind matrices, then back into
+  // the node's own frame. `world`: of every /nodes/i.
+  Result<LevelMesh> read_skinned(std::size_t mesh, std::size_t skin, const std::vector<dmat4>& world, std::size_t node);
+
+  const std::set<std::string>& notes() const { return notes_; }
+
+ private:
+  struct Source;  // one primitive's attributes, wherever they come from
+  Result<Primitive> read_primitive(const Json& json, const std::string& pointer);
+  Status read_draco(const Json& json, const std::string& pointer, Source& source);
+  Status spend(std::uint64_t bytes, const std::string& pointer);
+  std::vector<float> attribute(const Source& source, const char* name) const;
+
+  const SourceDocument& document_;
+  std::uint64_t budget_ = 0;  // [byte] that may still be decoded
+  std::set<std::string> notes_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,210 @@
+// The bytes of buffers and pictures: data URIs, files beside the level, the BIN chunk.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+#include "content/files/image.h"
+#include "content/gltf/gltf_check.h"
+#include "content/gltf/gltf_container.h"
+
+namespace pliant {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Base64 with or without padding; no white space.
+bool decode_base64(std::string_view text, Bytes& out) {
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  if (text.size() % 4 == 1) return false;
+  out.clear();
+  out.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    std::uint32_t digit;
+    if (c >= 'A' && c <= 'Z')
+      digit = static_cast<std::uint32_t>(c - 'A');
+    else if (c >= 'a' && c <= 'z')
+      digit = static_cast<std::uint32_t>(c - 'a' + 26);
+    else if (c >= '0' && c <= '9')
+      digit = static_cast<std::uint32_t>(c - '0' + 52);
+    else if (c == '+' || c == '-')
+      digit = 62;
+    else if (c == '/' || c == '_')
+      digit = 63;
+    else
+      return false;
+    bits = bits << 6 | digit;
+    if (++count == 4) {
+      out.push_back(static_cast<std::uint8_t>(bits >> 16));
+      out.push_back(static_cast<std::uint8_t>(bits >> 8));
+      out.push_back(static_cast<std::uint8_t>(bits));
+      count = 0;
+    }
+  }
+  if (count == 2) out.push_back(static_cast<std::uint8_t>(bits >> 4));
+  if (count == 3) {
+    out.push_back(static_cast<std::uint8_t>(bits >> 10));
+    out.push_back(static_cast<std::uint8_t>(bits >> 2));
+  }
+  return true;
+}
+
+// data:MIME[;parameter]*;base64,DATA
+struct DataUri {
+  std::string mime;
+  Bytes bytes;
+};
+std::optional<DataUri> parse_data_uri(const std::string& uri) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string::npos) return std::nullopt;
+  const std::string head = uri.substr(5, comma - 5);
+  if (head.size() < 7 || head.substr(head.size() - 7) != ";base64") return std::nullopt;
+  // What stands between the type and ";base64" are parameters NAME=VALUE.
+  std::istringstream parts(head.substr(0, head.size() - 7));
+  DataUri data;
+  std::getline(parts, data.mime, ';');
+  for (std::string parameter; std::getline(parts, parameter, ';');)
+    if (parameter.find('=') == std::string::npos || parameter[0] == '=') return std::nullopt;
+  if (head.find(";;") != std::string::npos) return std::nullopt;
+  if (!decode_base64(std::string_view(uri).substr(comma + 1), data.bytes)) return std::nullopt;
+  return data;
+}
+bool is_data_uri(const std::string& uri) {
+  return uri.rfind("data:", 0) == 0;
+}
+bool is_remote(const std::string& uri) {
+  return uri.rfind("http://", 0) == 0 || uri.rfind("https://", 0) == 0;
+}
+
+// The bytes that a buffer's or picture's URI stands for.
+std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, const std::string& pointer,
+                             Findings& findings) {
+  if (is_data_uri(uri)) {
+    std::optional<DataUri> data = parse_data_uri(uri);
+    if (!data) add_error(findings, pointer, "is not a valid base64 data URI");
+    return data;
+  }
+  const Result<fs::path> path = confined_path(folder, uri);
+  if (!path) {
+    add_error(findings, pointer, path.error().message());
+    return std::nullopt;
+  }
+  Result<Bytes> bytes = read_file(*path);
+  if (!bytes) {
+    add_error(findings, pointer, bytes.error().message());
+    return std::nullopt;
+  }
+  return DataUri{"", std::move(*bytes)};
+}
+
+}  // namespace
+
+void resolve_buffers(SourceDocument& document, const Container& container, Findings& findings) {
+  const Json& buffers = array_of(document.json, "buffers");
+  std::uint64_t total = 0;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const std::string pointer = fmt::format("/buffers/{}", i);
+    const std::uint64_t length = buffers[i]["byteLength"].get<std::uint64_t>();
+    Bytes bytes;
+    if (is_remote(value_of<std::string>(buffers[i], "uri", ""))) {
+      add_warning(findings, pointer, "lies on another machine and is not fetched; download it beside the level");
+      document.buffers.emplace_back();
+      continue;
+    }
+    if (buffers[i].contains("uri")) {
+      std::optional<DataUri> data =
+          fetch(buffers[i]["uri"].get_ref<const std::string&>(), document.folder, pointer + "/uri", findings);
+      if (!data) return;
+      if (is_data_uri(buffers[i]["uri"]) && data->mime != "application/octet-stream" &&
+          data->mime != "application/gltf-buffer")
+        return add_error(findings, pointer + "/uri",
+                         "has the media type '" + data->mime +
+                             "'; a buffer's is application/octet-stream or application/gltf-buffer");
+      bytes = std::move(data->bytes);
+    } else if (i == 0 && container.has_bin) {
+      bytes.assign(container.bin.begin(), container.bin.end());
+    } else {
+      add_warning(findings, pointer, "has no data: a placeholder; what it would hold is read as absent");
+      document.buffers.emplace_back();
+      continue;
+    }
+    if (bytes.size() < length)
+      return add_error(findings, pointer,
+                       fmt::format("declares {} bytes but has {}; the file is cut off", length, bytes.size()));
+    bytes.resize(length);
+    total += length;
+    if (total > kMaxFileBytes)
+      return add_error(findings, pointer, "makes the buffers exceed 2 GiB together; split the level");
+    document.buffers.push_back(std::move(bytes));
+  }
+}
+
+// Pictures are fetched, recognised and compared with what they claim; they are decoded only by load_level.
+void resolve_images(SourceDocument& document, Findings& findings) {
+  const Json& images = array_of(document.json, "images");
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const Json& image = images[i];
+    const std::string pointer = fmt::format("/images/{}", i);
+    std::string claimed = value_of<std::string>(image, "mimeType", ""), embedded;
+    Bytes bytes;
+    bool foreign = false;
+    if (image.contains("uri")) {
+      const std::string& uri = image["uri"].get_ref<const std::string&>();
+      std::string extension = fs::path(uri.substr(0, 4096)).extension().string();
+      std::transform(extension.begin(), extension.end(), extension.begin(),
+                     [](unsigned char c) { return std::tolower(c); });
+      foreign = is_remote(uri) ||
+                (!is_data_uri(uri) && (extension == ".webp" || extension == ".ktx2" || extension == ".dds"));
+      // A surface can be touched without its picture: a missing one is only told of.
+      if (!foreign && !is_data_uri(uri)) {
+        const Result<fs::path> path = confined_path(document.folder, uri);
+        std::error_code ignored;
+        if (path && !fs::exists(*path, ignored)) {
+          add_warning(findings, pointer + "/uri",
+                      "names " + uri.substr(0, 100) + ", which does not exist; shown as plain white");
+          document.images.emplace_back();
+          continue;
+        }
+      }
+      if (!foreign) {
+        std::optional<DataUri> data = fetch(uri, document.folder, pointer + "/uri", findings);
+        if (!data) return;
+        embedded = data->mime;
+        bytes = std::move(data->bytes);
+      }
+      if (extension == ".webp") claimed = "image/webp";
+    } else {
+      const Json& view = document.json["bufferViews"][image["bufferView"].get<std::size_t>()];
+      const Bytes& buffer = document.buffers[view["buffer"].get<std::size_t>()];
+      if (!buffer.empty()) {
+        const auto begin = buffer.begin() + value_of<std::ptrdiff_t>(view, "byteOffset", 0);
+        bytes.assign(begin, begin + view["byteLength"].get<std::ptrdiff_t>());
+      }
+    }
+    const ImageFormat format = image_format(bytes);
+    const bool webp =
+        claimed == "image/webp" || embedded == "image/webp" ||
+        (bytes.size() >= 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 && std::memcmp(&bytes[8], "WEBP", 4) == 0);
+    if (webp && !extension_is_used(document.json, "EXT_texture_webp"))
+      add_error(findings, pointer, "is WebP, which needs EXT_texture_webp in extensionsUsed; use PNG or JPEG");
+    const bool is_png = format == ImageFormat::kPng, is_jpeg = format == ImageFormat::kJpeg;
+    // Both the member and a data URI may say what the picture is.
+    for (const std::string& mime : {claimed, embedded})
+      if (!mime.empty() && ((is_png && mime != "image/png") || (is_jpeg && mime != "image/jpeg")))
+        add_error(findings, pointer, fmt::format("claims to be {} but is not; correct its type", mime.substr(0, 60)));
+    if (!is_png && !is_jpeg) {
+      if (is_data_uri(value_of<std::string>(image, "uri", "")) && bytes.empty())
+        add_error(findings, pointer + "/uri", "holds no picture");
+      else
+        add_warning(findings, pointer, "is neither PNG nor JPEG and is shown as plain white; convert it");
+      bytes.clear();
+    }
+    document.images.push_back(std::move(bytes));
+  }
+}
+
+}  // namespace pliant

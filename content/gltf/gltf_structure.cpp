@@ -1,0 +1,258 @@
+// Walks a document by the table of gltf_specification.h: types, ranges, references.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "content/gltf/gltf_check.h"
+#include "content/gltf/gltf_specification.h"
+
+namespace pliant {
+
+namespace {
+
+struct Range {
+  double min = -INFINITY, max = INFINITY;
+  bool open = false;  // min itself is out
+  std::string text;
+  bool holds(double value) const { return (open ? value > min : value >= min) && value <= max; }
+};
+
+struct Rule {
+  std::string key, kind, argument;
+  bool required = false;
+  std::vector<std::string> list;
+  std::size_t count = 0;
+  bool or_more = false;
+  Range range;
+};
+
+Range parse_range(const std::string& text) {
+  Range range;
+  range.text = text;
+  const std::size_t dots = text.find("..");
+  std::string low = text.substr(0, dots), high = text.substr(dots + 2);
+  if (!low.empty() && low[0] == '>') {
+    range.open = true;
+    low.erase(0, 1);
+  }
+  if (!low.empty()) range.min = std::strtod(low.c_str(), nullptr);
+  if (!high.empty()) range.max = std::strtod(high.c_str(), nullptr);
+  return range;
+}
+
+struct Table {
+  std::map<std::string, std::vector<Rule>> rules;                        // by object
+  std::map<std::string, std::map<std::string, std::string>> extensions;  // by object: name -> type
+  std::set<std::string> known_extensions;
+
+  Table() {
+    std::istringstream lines(kSpecification);
+    std::string line;
+    while (std::getline(lines, line)) {
+      std::istringstream words(line);
+      std::string object, extra;
+      Rule rule;
+      if (!(words >> object >> rule.key >> rule.kind)) continue;
+      words >> rule.argument >> extra;
+      if (rule.kind == "ext") {
+        extensions[object][rule.key] = rule.argument;
+        known_extensions.insert(rule.key);
+        continue;
+      }
+      if (rule.key.back() == '!') {
+        rule.required = true;
+        rule.key.pop_back();
+      }
+      if (rule.kind == "string" || rule.kind == "ints") {
+        std::istringstream list(rule.argument);
+        for (std::string item; std::getline(list, item, '|');) rule.list.push_back(item);
+      }
+      if (rule.kind == "int" || rule.kind == "number") rule.range = parse_range(rule.argument);
+      if (rule.kind == "numbers") {
+        rule.range = parse_range(extra);
+        rule.count = std::strtoul(rule.argument.c_str(), nullptr, 10);
+        rule.or_more = rule.argument.back() == '+';
+      }
+      rules[object].push_back(rule);
+    }
+  }
+};
+
+class Structure {
+ public:
+  Structure(const Json& root, Findings& findings) : root_(root), findings_(findings) {
+    if (root.is_object() && array_of(root, "extensionsUsed").is_array())
+      for (const Json& name : array_of(root, "extensionsUsed"))
+        if (name.is_string()) used_.insert(name.get<std::string>());
+  }
+
+  void check_object(const Json& json, const std::string& type, const std::string& pointer) {
+    if (!json.is_object()) return mismatch(pointer, json, "an object");
+    if (const auto rules = table().rules.find(type); rules != table().rules.end())
+      for (const Rule& rule : rules->second) {
+        const auto member = json.find(rule.key);
+        if (member != json.end())
+          check_member(*member, rule, pointer + "/" + rule.key);
+        else if (rule.required)
+          error(pointer, "lacks '" + rule.key + "', which glTF requires here");
+      }
+    if (json.contains("name") && !json["name"].is_string()) mismatch(pointer + "/name", json["name"], "a string");
+    if (json.contains("extensions")) check_extensions(json["extensions"], type, pointer + "/extensions");
+  }
+
+ private:
+  static const Table& table() {
+    static const Table table;
+    return table;
+  }
+  void error(const std::string& pointer, std::string message) {
+    if (findings_.size() < 1000) findings_.push_back({Severity::kError, pointer, std::move(message)});
+  }
+  void warn(const std::string& pointer, std::string message) {
+    if (findings_.size() < 1000) findings_.push_back({Severity::kWarning, pointer, std::move(message)});
+  }
+  static std::string shown(const Json& json) {
+    if (json.is_array()) return "an array";
+    if (json.is_object()) return "an object";
+    return json.dump().substr(0, 40);
+  }
+  void mismatch(const std::string& pointer, const Json& json, const std::string& wanted) {
+    error(pointer, fmt::format("is {}, not {}", shown(json), wanted));
+  }
+
+  void check_extensions(const Json& extensions, const std::string& type, const std::string& pointer) {
+    if (!extensions.is_object()) return mismatch(pointer, extensions, "an object");
+    for (const auto& [name, json] : extensions.items()) {
+      const std::string here = pointer + "/" + escaped(name);
+      if (!json.is_object()) {
+        mismatch(here, json, "an object");
+        continue;
+      }
+      if (!used_.count(name)) error(here, "is not declared; add '" + name + "' to extensionsUsed");
+      std::string content = "any";
+      if (table().known_extensions.count(name)) {
+        const auto allowed = table().extensions.find(type);
+        const auto found = allowed == table().extensions.end() ? std::map<std::string, std::string>::const_iterator{}
+                                                               : allowed->second.find(name);
+        if (allowed == table().extensions.end() || found == allowed->second.end()) {
+          error(here, "stands where this extension has no meaning; move or remove it");
+          continue;
+        }
+        content = found->second;
+      }
+      if (content != "any") check_object(json, content, here);
+    }
+  }
+
+  // Calls check(element, pointer) over an array of at least one element.
+  template <class Check>
+  void each(const Json& json, const std::string& pointer, bool unique, const Check& check) {
+    if (!json.is_array()) return mismatch(pointer, json, "an array");
+    if (json.empty()) return error(pointer, "is empty; leave it out instead");
+    std::set<Json> seen;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const std::string here = fmt::format("{}/{}", pointer, i);
+      check(json[i], here);
+      if (unique && json[i].is_primitive() && !seen.insert(json[i]).second) error(here, "repeats an earlier element");
+    }
+  }
+
+  void check_index(const Json& json, const std::string& collection, const std::string& pointer) {
+    if (!json.is_number_integer()) return mismatch(pointer, json, "an integer");
+    const Json* target = &root_;
+    std::istringstream path(collection);
+    for (std::string key; target && std::getline(path, key, '/');)
+      target = target->is_object() && target->contains(key) ? &(*target)[key] : nullptr;
+    const std::size_t count = target && target->is_array() ? target->size() : 0;
+    if (json.is_number_unsigned() ? json.get<std::uint64_t>() >= count : true)
+      error(pointer, fmt::format("refers to element {} of {}, which has {}", json.dump(), collection, count));
+  }
+  void check_number(const Json& json, const Range& range, const std::string& pointer) {
+    if (!json.is_number()) return mismatch(pointer, json, "a number");
+    const double value = json.get<double>();
+    // Everything is read into single precision: a number beyond it would become infinite.
+    if (!std::isfinite(static_cast<float>(value))) return error(pointer, "is too large a number");
+    if (!range.holds(value)) error(pointer, fmt::format("is {}, out of the range {}", json.dump(), range.text));
+  }
+  void check_map(const Json& json, const std::string& collection, const std::string& pointer) {
+    if (!json.is_object()) return mismatch(pointer, json, "an object");
+    if (json.empty()) return error(pointer, "is empty");
+    for (const auto& [name, value] : json.items()) {
+      const std::string here = pointer + "/" + escaped(name);
+      if (!collection.empty())
+        check_index(value, collection, here);
+      else if (!value.is_number_unsigned())
+        mismatch(here, value, "an integer of at least 0");
+    }
+  }
+
+  void check_member(const Json& json, const Rule& rule, const std::string& pointer) {
+    const auto nested = [&](const Json& element, const std::string& here) {
+      check_object(element, rule.argument, here);
+    };
+    const auto index = [&](const Json& element, const std::string& here) { check_index(element, rule.argument, here); };
+    const auto map = [&](const Json& element, const std::string& here) { check_map(element, rule.argument, here); };
+    const auto number = [&](const Json& element, const std::string& here) { check_number(element, rule.range, here); };
+    const auto string = [&](const Json& element, const std::string& here) {
+      if (!element.is_string()) mismatch(here, element, "a string");
+    };
+    if (rule.kind == "object") nested(json, pointer);
+    if (rule.kind == "objects") each(json, pointer, false, nested);
+    if (rule.kind == "index") index(json, pointer);
+    if (rule.kind == "indices") each(json, pointer, true, index);
+    if (rule.kind == "map") map(json, pointer);
+    if (rule.kind == "maps") each(json, pointer, false, map);
+    if (rule.kind == "strings") each(json, pointer, true, string);
+    if (rule.kind == "number") number(json, pointer);
+    if (rule.kind == "bool" && !json.is_boolean()) mismatch(pointer, json, "true or false");
+    if (rule.kind == "int") {
+      if (!json.is_number_integer())
+        mismatch(pointer, json, "an integer");
+      else if (!rule.range.holds(json.get<double>()) || json.get<double>() > 4e9)
+        error(pointer, fmt::format("is {}, out of the range {}", json.dump(), rule.range.text));
+    }
+    if (rule.kind == "numbers") {
+      each(json, pointer, false, number);
+      if (json.is_array() && (rule.or_more ? json.size() < rule.count : json.size() != rule.count))
+        error(pointer, fmt::format("has {} numbers instead of {}", json.size(), rule.count));
+    }
+    if (rule.kind == "string") {
+      string(json, pointer);
+      if (json.is_string() && !rule.list.empty()) check_list(json.get<std::string>(), rule, pointer);
+    }
+    if (rule.kind == "ints") {
+      if (!json.is_number_integer())
+        mismatch(pointer, json, "an integer");
+      else
+        check_list(json.dump(), rule, pointer);
+    }
+  }
+  void check_list(const std::string& value, const Rule& rule, const std::string& pointer) {
+    for (const std::string& each : rule.list)
+      if (each == value) return;
+    warn(pointer, fmt::format("must be one of {}; got {}", fmt::join(rule.list, ", "), value.substr(0, 40)));
+  }
+
+  const Json& root_;
+  Findings& findings_;
+  std::set<std::string> used_;  // extensionsUsed
+};
+
+}  // namespace
+
+void check_structure(const Json& json, Findings& findings) {
+  Structure(json, findings).check_object(json, "root", "");
+}
+
+bool extension_is_used(const Json& json, const std::string& name) {
+  const auto used = json.find("extensionsUsed");
+  if (used == json.end() || !used->is_array()) return false;
+  for (const Json& each : *used)
+    if (each == name) return true;
+  return false;
+}
+
+}  // namespace pliant

@@ -1,0 +1,135 @@
+// The table of keys as JSON Schemas and as Markdown.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "content/keys/extension_table.h"
+
+namespace pliant {
+
+namespace {
+
+Json schema_of(const Key& key, const Json& standard) {
+  Json out = {{"description",
+               key.doc + (key.unit.empty() || key.unit == "1" || key.unit == "node" ? "" : " [" + key.unit + "]")}};
+  const auto bound = [&](Json& json) {
+    if (std::isfinite(key.range.min)) json[key.range.above_min ? "exclusiveMinimum" : "minimum"] = key.range.min;
+    if (std::isfinite(key.range.max)) json["maximum"] = key.range.max;
+  };
+  const auto array = [&](std::size_t count) {
+    Json items = {{"type", "number"}};
+    bound(items);
+    return Json{{"type", "array"}, {"items", items}, {"minItems", count}, {"maxItems", count}};
+  };
+  if (!key.alias && !standard.is_null() && standard != Json("")) out["default"] = standard;
+  switch (key.type) {
+    case KeyType::kNumber:
+      out["type"] = "number";
+      bound(out);
+      break;
+    case KeyType::kNumberOrMaterial: {
+      Json number = {{"type", "number"}};
+      bound(number);
+      out["anyOf"] = Json::array({number, {{"const", "material"}}});
+      break;
+    }
+    case KeyType::kFlag:
+      out["type"] = "boolean";
+      break;
+    case KeyType::kText:
+      out["type"] = "string";
+      break;
+    case KeyType::kNode:
+      out["anyOf"] = Json::array({{{"type", "string"}}, {{"type", "integer"}, {"minimum", 0}}});
+      break;
+    case KeyType::kChoice:
+      out["enum"] = key.choices;
+      break;
+    case KeyType::kColor:
+      out.update(array(3));
+      break;
+    case KeyType::kPair:
+      out.update(array(2));
+      break;
+    case KeyType::kVector:
+      out["anyOf"] = Json::array({array(3), {{"type", "number"}}});
+      break;
+    case KeyType::kPoints:
+      out["type"] = "array";
+      out["items"] = array(3);
+      out["maxItems"] = kMostPoints;
+      break;
+    case KeyType::kBox: {
+      const Json corner = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+      out["type"] = "object";
+      out["properties"] = {{"min", corner}, {"max", corner}};
+      out["required"] = {"min", "max"};
+      out["additionalProperties"] = false;
+      break;
+    }
+  }
+  return out;
+}
+
+// An owner with this extension at its defaults.
+struct Defaults {
+  LevelNode node;
+  Level level;
+  explicit Defaults(const Extension& extension) : owner(extension.on_scene ? static_cast<void*>(&level) : &node) {
+    extension.add(owner);
+  }
+  void* owner;
+};
+
+}  // namespace
+
+std::vector<SchemaFile> extension_schemas() {
+  std::vector<SchemaFile> files;
+  for (const Extension& extension : extension_table()) {
+    Defaults defaults(extension);
+    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                   {"title", "PLIANT_" + extension.name},
+                   {"description", extension.doc},
+                   {"type", "object"},
+                   {"additionalProperties", false}};
+    Json& properties = schema["properties"];
+    for (const Key& key : extension.keys) {
+      const std::size_t dot = key.name.find('.');
+      Json& parent = dot == std::string::npos ? properties : properties[key.name.substr(0, dot)]["properties"];
+      if (dot != std::string::npos) {
+        properties[key.name.substr(0, dot)]["type"] = "object";
+        properties[key.name.substr(0, dot)]["additionalProperties"] = false;
+      }
+      parent[dot == std::string::npos ? key.name : key.name.substr(dot + 1)] = schema_of(key, key.get(defaults.owner));
+    }
+    properties["extras"] = Json::object();
+    properties["extensions"] = {{"type", "object"}};
+    files.push_back({"PLIANT_" + extension.name + ".schema.json", schema.dump(2) + "\n"});
+  }
+  return files;
+}
+
+std::string extension_tables() {
+  std::string out;
+  for (const Extension& extension : extension_table()) {
+    Defaults defaults(extension);
+    out += fmt::format(
+        "### {} extension `PLIANT_{}`\n\n{}\n\n| key | unit | range | default | meaning |\n|---|---|---|---|---|\n",
+        extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
+    for (const Key& key : extension.keys) {
+      std::string range;
+      for (const std::string& each : key.choices) range += (range.empty() ? "`" : " · `") + each + "`";
+      if (range.empty() && key.type != KeyType::kText && key.type != KeyType::kNode && key.type != KeyType::kFlag)
+        range = range_text(key);
+      const Json standard = key.get(defaults.owner);
+      const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
+                                : standard.is_string()                                  ? standard.get<std::string>()
+                                                                                        : standard.dump();
+      out += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit, range, shown, key.doc);
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace pliant

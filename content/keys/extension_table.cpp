@@ -1,0 +1,406 @@
+#include "content/keys/extension_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pliant {
+
+namespace {
+
+// A member of a component as a function from its owner.
+template <class Owner, class T, class Member>
+auto at(std::optional<T> Owner::*slot, Member T::*member) {
+  return [slot, member](void* owner) -> Member& { return (*(static_cast<Owner*>(owner)->*slot)).*member; };
+}
+template <class Owner, class T, class Member>
+auto at(T Owner::*slot, Member T::*member) {
+  return [slot, member](void* owner) -> Member& { return (static_cast<Owner*>(owner)->*slot).*member; };
+}
+
+// get and set of one member through conversions to and from JSON.
+template <class Access, class ToJson, class FromJson>
+Key key(std::string name, std::string unit, KeyType type, std::string doc, Access access, ToJson to_json,
+        FromJson from_json) {
+  Key out;
+  out.name = std::move(name);
+  out.unit = std::move(unit);
+  out.type = type;
+  out.doc = std::move(doc);
+  out.get = [access, to_json](const void* owner) { return Json(to_json(access(const_cast<void*>(owner)))); };
+  out.set = [access, from_json](void* owner, const Json& value) { access(owner) = from_json(value); };
+  return out;
+}
+
+template <class Access>
+Key number(std::string name, std::string unit, KeyRange range, Access access, std::string doc) {
+  Key out = key(
+      std::move(name), std::move(unit), KeyType::kNumber, std::move(doc), access, [](double value) { return value; },
+      [](const Json& json) { return json.get<double>(); });
+  out.range = range;
+  return out;
+}
+template <class Access>
+Key text(std::string name, KeyType type, Access access, std::string doc) {
+  return key(
+      std::move(name), type == KeyType::kNode ? "node" : "", type, std::move(doc), access,
+      [](const std::string& value) { return value; }, [](const Json& json) { return json.get<std::string>(); });
+}
+template <class Access>
+Key flag(std::string name, Access access, std::string doc) {
+  return key(
+      std::move(name), "", KeyType::kFlag, std::move(doc), access, [](bool value) { return value; },
+      [](const Json& json) { return json.get<bool>(); });
+}
+// An enumeration; the names stand in the order of its values.
+template <class Access>
+Key choice(std::string name, std::vector<std::string> names, Access access, std::string doc) {
+  using Enum = std::remove_reference_t<decltype(access(nullptr))>;
+  Key out = key(
+      std::move(name), "", KeyType::kChoice, std::move(doc), access,
+      [names](Enum value) { return names[static_cast<std::size_t>(value)]; },
+      [names](const Json& json) {
+        const auto it = std::find(names.begin(), names.end(), json.get<std::string>());
+        return static_cast<Enum>(it - names.begin());
+      });
+  out.choices = std::move(names);
+  return out;
+}
+template <class Access>
+Key pair(std::string name, std::string unit, Access access, std::string doc) {
+  Key out = key(
+      std::move(name), std::move(unit), KeyType::kPair, std::move(doc), access,
+      [](const std::array<double, 2>& value) { return value; },
+      [](const Json& json) {
+        return std::array<double, 2>{json[0].get<double>(), json[1].get<double>()};
+      });
+  out.range = {0.0, 1e9};
+  return out;
+}
+template <class Access>
+Key box(std::string name, Access access, std::string doc) {
+  const auto corner = [](vec3 p) { return Json::array({p.x, p.y, p.z}); };
+  const auto point = [](const Json& json) {
+    return vec3(json[0].get<float>(), json[1].get<float>(), json[2].get<float>());
+  };
+  return key(
+      std::move(name), "m", KeyType::kBox, std::move(doc), access,
+      [corner](const Box& value) {
+        return value.empty() ? Json() : Json{{"min", corner(value.min)}, {"max", corner(value.max)}};
+      },
+      [point](const Json& json) {
+        return json.is_null() ? Box{} : Box{point(json["min"]), point(json["max"])};
+      });
+}
+
+constexpr KeyRange kFriction{0.0, 10.0};
+
+std::vector<Key> deformable_keys() {
+  using D = Deformable;
+  const auto d = [](auto member) { return at(&LevelNode::deformable, member); };
+  std::vector<Key> keys;
+  keys.push_back(choice("spring", {"linear", "cubic", "exponential", "sls"}, d(&D::spring), "law of the normal force"));
+  keys.push_back(number("stiffness", "N/m", {1e-6, 1e7}, d(&D::stiffness),
+                        "small-depth slope of normal force against depth at the probe"));
+  keys.push_back(number("cubic", "N/m3", {0.0, 1e15}, d(&D::cubic), "k3 of the cubic law"));
+  keys.push_back(number("stiffening", "1/m", {1e-6, 1e5}, d(&D::stiffening), "alpha of the exponential law"));
+  keys.push_back(number("relaxation.stiffness", "N/m", {0.0, 1e7}, d(&D::relaxation_stiffness),
+                        "arm of the standard linear solid"));
+  keys.push_back(number("relaxation.time", "s", {1e-6, 1e6}, d(&D::relaxation_time), "relaxation time of that arm"));
+  keys.push_back(number("damping_ratio", "1", {0.0, 100.0}, d(&D::damping_ratio), "damping ratio of the free surface"));
+  keys.push_back(
+      number("settling_time", "s", {1e-4, 100.0}, d(&D::settling_time), "2 % settling time of the free surface"));
+  Key damping;
+  damping.name = "contact_damping";
+  damping.unit = "N s/m";
+  damping.type = KeyType::kNumberOrMaterial;
+  damping.range = {0.0, 1e6};
+  damping.doc = "rate term of the probe's force; `material` takes b of the local model, as P1 does";
+  damping.get = [](const void* owner) {
+    const D& it = *static_cast<const LevelNode*>(owner)->deformable;
+    return it.contact_damping_material ? Json("material") : Json(it.contact_damping);
+  };
+  damping.set = [](void* owner, const Json& value) {
+    D& it = *static_cast<LevelNode*>(owner)->deformable;
+    it.contact_damping_material = value.is_string();
+    it.contact_damping = value.is_string() ? 0.0 : value.get<double>();
+  };
+  keys.push_back(damping);
+  keys.push_back(choice("response", {"follow", "lag"}, d(&D::response),
+                        "whether the drawn surface follows a pressing probe or lags by its settling time"));
+  keys.push_back(choice("shape", {"punch", "hertz", "gaussian", "wendland", "volume", "kelvinlet"}, d(&D::shape),
+                        "shape of the dent around the probe"));
+  keys.push_back(choice("distance", {"chord", "surface"}, d(&D::distance),
+                        "distance that the shape is a function of: straight, or along the surface"));
+  keys.push_back(number("reach", "m", {0.0, 1e6}, d(&D::reach),
+                        "radius R of the field; 0: 0.08 of the diagonal of the object's box"));
+  keys.push_back(
+      number("volume", "1", {0.0, 1.0}, d(&D::volume), "share of the volume conserved by the shape `volume`"));
+  keys.push_back(number("friction_static", "1", kFriction, d(&D::friction_static),
+                        "coefficient of static friction, at least that of sliding"));
+  keys.push_back(
+      number("friction_sliding", "1", kFriction, d(&D::friction_sliding), "coefficient of sliding friction"));
+  Key both = number("friction", "1", kFriction, d(&D::friction_static), "sets friction_static and friction_sliding");
+  both.alias = true;
+  both.set = [](void* owner, const Json& value) {
+    D& it = *static_cast<LevelNode*>(owner)->deformable;
+    it.friction_static = it.friction_sliding = value.get<double>();
+  };
+  keys.push_back(both);
+  keys.push_back(
+      number("crease_angle", "rad", {0.0, 3.1416}, d(&D::crease_angle),
+             "edges whose faces turn by more are creases; 0: where the file's own normals are split, else 0.7"));
+  keys.push_back(
+      number("young", "Pa", {0.0, 1e12}, d(&D::young), "Young's modulus, instead of `stiffness`; 0: not given"));
+  keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
+  keys.push_back(
+      number("thickness", "m", {0.0, 1e6}, d(&D::thickness), "thickness of the layer, with `young`; 0: deep"));
+  return keys;
+}
+
+std::string settle_deformable(void* owner) {
+  Deformable& it = *static_cast<LevelNode*>(owner)->deformable;
+  if (it.friction_sliding > it.friction_static)
+    return fmt::format("friction_sliding ({}) is above friction_static ({}); lower it, or set `friction` for both",
+                       it.friction_sliding, it.friction_static);
+  if (it.young > 0.0) it.stiffness = calibrated_stiffness(it.young, it.poisson, it.thickness);
+  return "";
+}
+
+std::vector<Key> probe_keys() {
+  std::vector<Key> keys;
+  keys.push_back(
+      number("radius", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::radius), "radius of every tip; 0: a point"));
+  keys.push_back(number("length", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::length),
+                        "length of a capsule's axis, from the node along its +Y; 0: none"));
+  Key points = key(
+      "points", "m", KeyType::kPoints,
+      "places of tips in the node's frame, at most 16, instead of the one at the node: a fork, a brush, a plate",
+      at(&LevelNode::probe, &Probe::points),
+      [](const std::vector<vec3>& places) {
+        Json json = Json::array();
+        for (const vec3& p : places) json.push_back({p.x, p.y, p.z});
+        return json;
+      },
+      [](const Json& json) {
+        std::vector<vec3> places;
+        for (const Json& p : json) places.emplace_back(p[0].get<float>(), p[1].get<float>(), p[2].get<float>());
+        return places;
+      });
+  points.range = {-1e3, 1e3};
+  keys.push_back(points);
+  keys.push_back(choice("meets", {"all", "surfaces", "bodies"}, at(&LevelNode::probe, &Probe::meets),
+                        "yielding surfaces, soft and rigid bodies, or both"));
+  keys.push_back(pair("coupling", "N/m, N s/m", at(&LevelNode::probe, &Probe::coupling),
+                      "spring and damper between the device and what meets soft and rigid bodies"));
+  Key color = key(
+      "color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
+      [](vec3 c) {
+        return Json::array({c.x, c.y, c.z});
+      },
+      [](const Json& json) { return vec3(json[0].get<float>(), json[1].get<float>(), json[2].get<float>()); });
+  color.range = {0.0, 1.0};
+  keys.push_back(color);
+  keys.push_back(text(
+      "device", KeyType::kNode,
+      [](void* owner) -> std::string& { return static_cast<LevelNode*>(owner)->probe_device; },
+      "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
+  return keys;
+}
+
+std::vector<Key> device_keys() {
+  using H = HapticDevice;
+  const auto d = [](auto member) { return at(&LevelNode::device, member); };
+  std::vector<Key> keys;
+  keys.push_back(
+      choice("driver", {"null", "script", "orbit", "mouse", "external"}, d(&H::driver), "what moves the probe"));
+  keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
+  keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
+  keys.push_back(number("scale", "1", {0.0, 1e6, true}, d(&H::scale), "workspace to world"));
+  keys.push_back(number("max_force", "N", {0.0, 1e3}, d(&H::max_force), "norm of the force sent"));
+  keys.push_back(number("max_stiffness", "N/m", {0.0, 1e7}, d(&H::max_stiffness),
+                        "limit on the rise of force with displacement; 0: none"));
+  keys.push_back(
+      number("max_slew", "N/s", {0.0, 1e7, true}, d(&H::max_slew), "limit on the change of force with time"));
+  return keys;
+}
+
+std::vector<Key> soft_body_keys() {
+  using S = SoftBody;
+  const auto s = [](auto member) { return at(&LevelNode::soft_body, member); };
+  std::vector<Key> keys;
+  keys.push_back(number("young", "Pa", {0.0, 1e12, true}, s(&S::young), "Young's modulus"));
+  keys.push_back(number("poisson", "1", {0.0, 0.499}, s(&S::poisson),
+                        "Poisson's ratio; from 0.47 on the tetrahedra lock: flesh is over 10 % too stiff"));
+  keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, s(&S::density), "density"));
+  keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
+  keys.push_back(number("cell", "m", {0.0, 1e3}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
+  keys.push_back(
+      text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
+  keys.push_back(
+      box("pinned", s(&S::pinned), "what is held fast: a box in the object frame; left out: the attribute _PINNED"));
+  keys.push_back(number("friction_static", "1", kFriction, s(&S::friction_static), "coefficient of static friction"));
+  keys.push_back(
+      number("friction_sliding", "1", kFriction, s(&S::friction_sliding), "coefficient of sliding friction"));
+  return keys;
+}
+
+std::vector<Key> handle_keys() {
+  using H = Handle6;
+  const auto h = [](auto member) { return at(&LevelNode::handle, member); };
+  std::vector<Key> keys;
+  keys.push_back(box("box", h(&H::box),
+                     "which part of a soft body is rigid: a box in the object frame; left out: the attribute _HANDLE"));
+  keys.push_back(choice("attachment", {"spring", "slave"}, h(&H::attachment), "how flesh is held to the handle"));
+  keys.push_back(
+      pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
+  keys.push_back(pair("coupling.rotation", "N m/rad, N m s/rad", h(&H::rotation), "the same for rotation"));
+  keys.push_back(number("coupling.max_force", "N", {0.0, 1e4}, h(&H::max_force), "saturation of the coupling's force"));
+  keys.push_back(
+      number("coupling.max_torque", "N m", {0.0, 1e4}, h(&H::max_torque), "saturation of the coupling's torque"));
+  keys.push_back(flag("carried", h(&H::carried), "hold up the tool's weight, so that the hand does not feel it"));
+  keys.push_back(choice("force", {"held", "linear", "contacts"}, h(&H::force),
+                        "how the touch clock makes its force: held from the last soft step, by the linear model, or "
+                        "with the contacts solved again in every tick"));
+  keys.push_back(text("device", KeyType::kNode, h(&H::device),
+                      "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
+  return keys;
+}
+
+std::vector<Key> rigid_body_keys() {
+  using R = RigidBody;
+  const auto r = [](auto member) { return at(&LevelNode::rigid_body, member); };
+  std::vector<Key> keys;
+  keys.push_back(number("mass", "kg", {0.0, 1e9}, r(&R::mass), "mass; 0: from density"));
+  keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, r(&R::density), "density"));
+  keys.push_back(number("friction_static", "1", kFriction, r(&R::friction_static), "coefficient of static friction"));
+  keys.push_back(
+      number("friction_sliding", "1", kFriction, r(&R::friction_sliding), "coefficient of sliding friction"));
+  keys.push_back(flag("fixed", r(&R::fixed), "does not move"));
+  return keys;
+}
+
+std::vector<Key> motion_keys() {
+  using M = NodeMotion;
+  const auto m = [](auto member) { return at(&LevelNode::motion, member); };
+  std::vector<Key> keys;
+  keys.push_back(text("script", KeyType::kText, m(&M::script),
+                      "CSV of where the node is in its parent's frame, relative to the level; instead of animations"));
+  keys.push_back(text("animation", KeyType::kText, m(&M::animation),
+                      "name of the glTF animation that moves it; left out: every one that names the node"));
+  keys.push_back(flag("repeat", m(&M::repeat), "starts over at the end; else the end holds"));
+  keys.push_back(number("speed", "1", {0.0, 1e3}, m(&M::speed), "of the motion's clock; 0: stands at its beginning"));
+  return keys;
+}
+
+std::vector<Key> environment_keys() {
+  using E = LevelEnvironment;
+  const auto e = [](auto member) { return at(&Level::environment, member); };
+  std::vector<Key> keys;
+  keys.push_back(
+      text("panorama", KeyType::kText, e(&E::panorama), "latitude-longitude OpenEXR file, relative to the level"));
+  keys.push_back(number("intensity", "1", {0.0, 1e6}, e(&E::intensity), "factor on the panorama"));
+  keys.push_back(number("rotation", "rad", {-1e3, 1e3}, e(&E::rotation), "about +Y"));
+  return keys;
+}
+
+std::vector<Key> simulation_keys() {
+  using S = Simulation;
+  const auto s = [](auto member) { return at(&Level::simulation, member); };
+  std::vector<Key> keys;
+  keys.push_back(number("touch_rate", "Hz", {10.0, 100000.0}, s(&S::touch_rate), "rate of the touch clock"));
+  keys.push_back(number("soft_step", "s", {1e-4, 1.0}, s(&S::soft_step), "step of the soft clock"));
+  Key gravity = key(
+      "gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),
+      [](dvec3 g) {
+        return Json::array({g.x, g.y, g.z});
+      },
+      [](const Json& json) {
+        return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
+                                : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+      });
+  gravity.range = {-1e3, 1e3};
+  keys.push_back(gravity);
+  return keys;
+}
+
+template <class Owner, class T>
+Extension extension(std::string name, std::string doc, std::optional<T> Owner::*slot, std::vector<Key> keys) {
+  Extension out;
+  out.name = std::move(name);
+  out.doc = std::move(doc);
+  out.on_scene = std::is_same_v<Owner, Level>;
+  out.keys = std::move(keys);
+  out.present = [slot](const void* owner) { return (static_cast<const Owner*>(owner)->*slot).has_value(); };
+  out.add = [slot](void* owner) { (static_cast<Owner*>(owner)->*slot).emplace(); };
+  out.settle = [](void*) { return std::string(); };
+  return out;
+}
+
+std::string settle_device(void* owner) {
+  const HapticDevice& it = *static_cast<LevelNode*>(owner)->device;
+  return it.driver == Driver::kScript && it.file.empty() ? "has the driver script without a `file`; name the CSV file"
+                                                         : "";
+}
+
+template <class T>
+std::string settle_friction(const T& it) {
+  return it.friction_sliding > it.friction_static ? "friction_sliding is above friction_static; lower it" : "";
+}
+
+std::string settle_motion(void* owner) {
+  const NodeMotion& it = *static_cast<LevelNode*>(owner)->motion;
+  return it.script.empty() || it.animation.empty() ? "" : "gives both script and animation; keep one";
+}
+
+std::vector<Extension> make_table() {
+  std::vector<Extension> table;
+  table.push_back(extension("deformable", "The node's mesh gives way.", &LevelNode::deformable, deformable_keys()));
+  table.back().settle = settle_deformable;
+  table.push_back(extension("probe", "What a person holds against the surface.", &LevelNode::probe, probe_keys()));
+  table.push_back(extension("haptic_device", "Moves a probe, and may push back.", &LevelNode::device, device_keys()));
+  table.back().settle = settle_device;
+  table.push_back(
+      extension("soft_body", "The node's mesh is flesh with inertia.", &LevelNode::soft_body, soft_body_keys()));
+  table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->soft_body); };
+  table.push_back(extension("handle",
+                            "What a person holds a soft body by, its rigid part, or a rigid one, the whole of it.",
+                            &LevelNode::handle, handle_keys()));
+  table.push_back(extension("rigid_body", "The node's mesh is rigid.", &LevelNode::rigid_body, rigid_body_keys()));
+  table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->rigid_body); };
+  table.push_back(extension("motion", "How an animation or a script carries the node, and all below it.",
+                            &LevelNode::motion, motion_keys()));
+  table.back().settle = settle_motion;
+  table.push_back(extension("environment", "What surrounds the scene.", &Level::environment, environment_keys()));
+  Extension simulation;
+  simulation.name = "simulation";
+  simulation.doc = "Clocks and gravity.";
+  simulation.on_scene = true;
+  simulation.keys = simulation_keys();
+  simulation.present = [](const void*) { return true; };
+  simulation.add = [](void*) {};
+  simulation.settle = [](void*) { return std::string(); };
+  table.push_back(simulation);
+  return table;
+}
+
+}  // namespace
+
+const std::vector<Extension>& extension_table() {
+  static const std::vector<Extension> table = make_table();
+  return table;
+}
+
+const Extension* find_extension(const std::string& name) {
+  for (const Extension& each : extension_table())
+    if (each.name == name) return &each;
+  return nullptr;
+}
+
+const Key* find_key(const Extension& extension, const std::string& name) {
+  for (const Key& each : extension.keys)
+    if (each.name == name) return &each;
+  return nullptr;
+}
+
+}  // namespace pliant

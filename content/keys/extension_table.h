@@ -1,0 +1,60 @@
+// The rows of extensions.h's table, for the files that walk it.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "content/keys/extensions.h"
+
+namespace pliant {
+
+enum class KeyType { kNumber, kFlag, kText, kChoice, kColor, kPair, kVector, kPoints, kBox, kNode, kNumberOrMaterial };
+
+inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
+
+struct KeyRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  // min itself is out
+};
+
+// One key. Owners are LevelNode (node extensions) or Level (scene extensions), handed over as void*.
+struct Key {
+  std::string name;  // dots are nested objects: relaxation.time
+  std::string unit;
+  KeyType type = KeyType::kNumber;
+  KeyRange range;
+  std::vector<std::string> choices;
+  std::string doc;
+  bool alias = false;  // sets other keys; never saved
+  std::function<Json(const void*)> get;
+  std::function<void(void*, const Json&)> set;  // the value has been checked
+};
+
+struct Extension {
+  std::string name;  // without PLIANT_
+  std::string doc;
+  bool on_scene = false;
+  std::vector<Key> keys;
+  std::function<bool(const void*)> present;
+  std::function<void(void*)> add;            // with defaults
+  std::function<std::string(void*)> settle;  // after keys were set: derives what follows; a sentence if they clash
+};
+
+const std::vector<Extension>& extension_table();
+const Extension* find_extension(const std::string& name);
+const Key* find_key(const Extension& extension, const std::string& name);
+
+// "" or what is wrong with the value.
+std::string check_value(const Key& key, const Json& value);
+std::string range_text(const Key& key);
+// The closest of `names`, as "; did you mean X?", or "" if none is close.
+std::string suggestion(const std::string& word, const std::vector<std::string>& names);
+// "unknown `what` 'word'; did you mean X?", or, if none is close, "...; `all` are A, B, C".
+std::string unknown(const std::string& what, const std::string& word, const std::string& all,
+                    const std::vector<std::string>& names);
+std::string unknown_key(const Extension& extension, const std::string& word);
+
+}  // namespace pliant

@@ -1,0 +1,119 @@
+// What may stand for a key, and the words for what may not.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/keys/extension_table.h"
+
+namespace pliant {
+
+namespace {
+
+bool numbers(const Json& value, std::size_t count, const KeyRange& range) {
+  if (!value.is_array() || value.size() != count) return false;
+  for (const Json& each : value)
+    if (!each.is_number() || !(each.get<double>() >= range.min && each.get<double>() <= range.max)) return false;
+  return true;
+}
+
+}  // namespace
+
+std::string range_text(const Key& key) {
+  const bool low = std::isfinite(key.range.min), high = std::isfinite(key.range.max);
+  if (!low && !high) return "any";
+  return fmt::format("{}{}, {}", key.range.above_min ? "(" : "[", key.range.min, key.range.max) + (high ? "]" : ")");
+}
+
+std::string check_value(const Key& key, const Json& value) {
+  const auto number = [&] {
+    const double it = value.get<double>();
+    const bool inside = (key.range.above_min ? it > key.range.min : it >= key.range.min) && it <= key.range.max;
+    return inside ? std::string()
+                  : fmt::format("must be in the range {}{}; got {}", range_text(key),
+                                key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump());
+  };
+  const std::string given = value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
+  const auto must_be = [&](const std::string& what) { return "must be " + what + "; got " + given; };
+  switch (key.type) {
+    case KeyType::kNumber:
+      return value.is_number() ? number() : must_be("a number");
+    case KeyType::kNumberOrMaterial:
+      if (value == "material") return "";
+      return value.is_number() ? number() : must_be("a number or \"material\"");
+    case KeyType::kFlag:
+      return value.is_boolean() ? "" : must_be("true or false");
+    case KeyType::kText:
+    case KeyType::kNode:
+      return value.is_string() ? "" : must_be("a text");
+    case KeyType::kChoice: {
+      std::string all;
+      for (const std::string& each : key.choices) {
+        if (value == each) return "";
+        all += (all.empty() ? "" : ", ") + each;
+      }
+      return must_be("one of " + all);
+    }
+    case KeyType::kColor:
+      return numbers(value, 3, key.range) ? "" : must_be("three numbers in " + range_text(key));
+    case KeyType::kPair:
+      return numbers(value, 2, key.range) ? "" : must_be("two numbers in " + range_text(key));
+    case KeyType::kVector:
+      if (value.is_number()) return number();
+      return numbers(value, 3, key.range) ? "" : must_be("three numbers in " + range_text(key));
+    case KeyType::kPoints: {
+      const bool good =
+          value.is_array() && value.size() <= kMostPoints &&
+          std::all_of(value.begin(), value.end(), [&](const Json& each) { return numbers(each, 3, key.range); });
+      return good ? "" : must_be(fmt::format("a list of at most {} points [x, y, z]", kMostPoints));
+    }
+    case KeyType::kBox: {
+      const KeyRange any{-1e6, 1e6};
+      bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&
+                  numbers(value["min"], 3, any) && numbers(value["max"], 3, any);
+      for (std::size_t i = 0; good && i < 3; ++i) good = value["min"][i].get<double>() <= value["max"][i].get<double>();
+      return good ? "" : must_be("a box {\"min\": [x, y, z], \"max\": [x, y, z]}");
+    }
+  }
+  return "";
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t least = 1 + std::min<std::size_t>(3, word.size() / 2);
+  for (const std::string& name : names) {
+    // Levenshtein's distance, one row at a time.
+    std::vector<std::size_t> row(name.size() + 1);
+    for (std::size_t j = 0; j <= name.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= std::min<std::size_t>(word.size(), 64); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= name.size(); ++j) {
+        const std::size_t kept = diagonal + (word[i - 1] == name[j - 1] ? 0 : 1);
+        diagonal = row[j];
+        row[j] = std::min({kept, row[j] + 1, row[j - 1] + 1});
+      }
+    }
+    if (row.back() < least) {
+      least = row.back();
+      best = name;
+    }
+  }
+  return best.empty() ? "" : "; did you mean " + best + "?";
+}
+
+std::string unknown(const std::string& what, const std::string& word, const std::string& all,
+                    const std::vector<std::string>& names) {
+  const std::string near = suggestion(word, names);
+  return fmt::format("unknown {} '{}'", what, word.substr(0, 100)) +
+         (near.empty() ? fmt::format("; {} are {}", all, fmt::join(names, ", ")) : near);
+}
+
+std::string unknown_key(const Extension& extension, const std::string& word) {
+  std::vector<std::string> names;
+  for (const Key& key : extension.keys) names.push_back(key.name);
+  const std::string owner = "PLIANT_" + extension.name;
+  return unknown("key", word, "keys of " + owner, names);
+}
+
+}  // namespace pliant

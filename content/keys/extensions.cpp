@@ -1,0 +1,208 @@
+#include "content/keys/extensions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/keys/extension_table.h"
+
+namespace pliant {
+
+namespace {
+
+// What a fingertip or a probe presses with, the radius that tissue stiffnesses are quoted for (methods.md 4).
+constexpr double kContactRadius = 0.004;  // [m]
+
+// Reads one extension object into its owner, telling `report(pointer, message)` of every fault.
+template <class Report>
+class Reader {
+ public:
+  Reader(const Extension& extension, void* owner, const std::vector<std::string>& node_names, const Report& report)
+      : extension_(extension), owner_(owner), node_names_(node_names), report_(report) {}
+
+  void read(const Json& json, const std::string& pointer) {
+    extension_.add(owner_);
+    walk(json, "", pointer);
+    if (extension_.name == "deformable" && given("young") && given("stiffness"))
+      report_(pointer, "gives both young and stiffness; keep one, young is calibrated to a stiffness");
+    if (const std::string clash = extension_.settle(owner_); !clash.empty()) report_(pointer, clash);
+  }
+
+ private:
+  bool given(const char* key) const { return std::find(given_.begin(), given_.end(), key) != given_.end(); }
+
+  // Nested objects are keys with dots.
+  void walk(const Json& json, const std::string& prefix, const std::string& pointer) {
+    if (!json.is_object()) return report_(pointer, "is not an object");
+    for (const auto& [name, value] : json.items()) {
+      const std::string here = pointer + "/" + name;
+      if (prefix.empty() && (name == "extras" || name == "extensions")) continue;
+      const std::string dotted = prefix + name;
+      if (const Key* key = find_key(extension_, dotted)) {
+        take(*key, value, here);
+        continue;
+      }
+      const bool group = std::any_of(extension_.keys.begin(), extension_.keys.end(),
+                                     [&](const Key& each) { return each.name.rfind(dotted + ".", 0) == 0; });
+      if (group && prefix.empty())
+        walk(value, dotted + ".", here);
+      else
+        report_(here, unknown_key(extension_, dotted));
+    }
+  }
+
+  void take(const Key& key, Json value, const std::string& pointer) {
+    if (key.type == KeyType::kNode && value.is_number_unsigned()) {
+      if (value.get<std::uint64_t>() >= node_names_.size())
+        return report_(pointer, fmt::format("refers to node {} of {}", value.dump(), node_names_.size()));
+      value = node_names_[value.get<std::size_t>()];
+    }
+    const std::string wrong = check_value(key, value);
+    if (!wrong.empty()) return report_(pointer, wrong);
+    key.set(owner_, value);
+    given_.push_back(key.name);
+  }
+
+  const Extension& extension_;
+  void* owner_;
+  const std::vector<std::string>& node_names_;
+  const Report& report_;
+  std::vector<std::string> given_;
+};
+
+// Every PLIANT_* extension that an object has.
+template <class Report>
+void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
+              const std::vector<std::string>& node_names, void* owner, const Report& report) {
+  std::vector<std::string> names;
+  for (const Extension& each : extension_table())
+    if (each.on_scene == on_scene) names.push_back("PLIANT_" + each.name);
+  for (const auto& [name, json] : extensions.items()) {
+    if (name.rfind("PLIANT_", 0) != 0) continue;
+    const std::string here = pointer + "/" + name;
+    const Extension* extension = find_extension(name.substr(7));
+    if (!extension || extension->on_scene != on_scene)
+      report(here, unknown("extension", name, "extensions here", names));
+    else
+      Reader<Report>(*extension, owner, node_names, report).read(json, here);
+  }
+}
+
+// The first fault as an error.
+struct FirstFault {
+  std::optional<Error>& error;
+  void operator()(const std::string& pointer, const std::string& message) const {
+    if (!error) error = Error{pointer, message};
+  }
+};
+struct AllFaults {
+  Findings& findings;
+  void operator()(const std::string& pointer, const std::string& message) const {
+    findings.push_back({Severity::kError, pointer, message});
+  }
+};
+
+// json[a][b] for the key a.b.
+Json& place(Json& json, const std::string& dotted) {
+  const std::size_t dot = dotted.find('.');
+  return dot == std::string::npos ? json[dotted] : place(json[dotted.substr(0, dot)], dotted.substr(dot + 1));
+}
+bool has(const Json& json, const std::string& dotted) {
+  const std::size_t dot = dotted.find('.');
+  if (!json.is_object() || !json.contains(dotted.substr(0, dot))) return false;
+  return dot == std::string::npos || has(json[dotted.substr(0, dot)], dotted.substr(dot + 1));
+}
+
+Json write(const Extension& extension, const void* owner, const void* defaults, const Json& before) {
+  Json out = Json::object();
+  // A stiffness that was calibrated follows from `young` again.
+  const bool young = extension.name == "deformable" && static_cast<const LevelNode*>(owner)->deformable->young > 0.0;
+  for (const Key& key : extension.keys) {
+    if (key.alias || (young && key.name == "stiffness")) continue;
+    const Json value = key.get(owner);
+    if (value.is_null() || (value == key.get(defaults) && !has(before, key.name))) continue;
+    place(out, key.name) = value;
+  }
+  for (const char* kept : {"extras", "extensions"})
+    if (has(before, kept)) out[kept] = before[kept];
+  return out;
+}
+
+template <class Owner>
+Json write_all(bool on_scene, const Owner& owner, const Json& before) {
+  Json out = Json::object();
+  for (const Extension& extension : extension_table()) {
+    if (extension.on_scene != on_scene || !extension.present(&owner)) continue;
+    Owner defaults;
+    extension.add(&defaults);
+    const std::string name = "PLIANT_" + extension.name;
+    const bool was = before.is_object() && before.contains(name);
+    Json json = write(extension, &owner, &defaults, was ? before[name] : Json());
+    // PLIANT_simulation is always there in memory; it is written only if it says something.
+    if (extension.name == "simulation" && json.empty() && !was) continue;
+    out[name] = std::move(json);
+  }
+  return out;
+}
+
+}  // namespace
+
+double calibrated_stiffness(double young, double poisson, double thickness) {
+  const double radius = thickness > 0.0 ? std::min(thickness, kContactRadius) : kContactRadius;
+  return 2.0 * young / (1.0 - poisson * poisson) * radius;
+}
+
+Status parse_node_extensions(const Json& extensions, const std::string& pointer,
+                             const std::vector<std::string>& node_names, LevelNode& node) {
+  std::optional<Error> error;
+  read_all(extensions, pointer, false, node_names, &node, FirstFault{error});
+  if (error) return *error;
+  return Done{};
+}
+
+Status parse_scene_extensions(const Json& extensions, const std::string& pointer, Level& level) {
+  std::optional<Error> error;
+  read_all(extensions, pointer, true, {}, &level, FirstFault{error});
+  if (error) return *error;
+  return Done{};
+}
+
+void find_in_node_extensions(const Json& extensions, const std::string& pointer,
+                             const std::vector<std::string>& node_names, Findings& findings) {
+  LevelNode node;
+  read_all(extensions, pointer, false, node_names, &node, AllFaults{findings});
+}
+
+void find_in_scene_extensions(const Json& extensions, const std::string& pointer, Findings& findings) {
+  Level level;
+  read_all(extensions, pointer, true, {}, &level, AllFaults{findings});
+}
+
+Status check_references(const Level& level) {
+  std::vector<std::string> devices;
+  for (const LevelNode& node : level.nodes)
+    if (node.device) devices.push_back(node.name);
+  const auto check = [&](const LevelNode& node, const char* extension, const std::string& device) -> Status {
+    if (device.empty() || std::find(devices.begin(), devices.end(), device) != devices.end()) return Done{};
+    return Error{node.name + "." + extension + ".device", "names '" + device.substr(0, 100) +
+                                                              "', which is no node with a PLIANT_haptic_device" +
+                                                              suggestion(device, devices)};
+  };
+  for (const LevelNode& node : level.nodes) {
+    if (node.probe)
+      if (const Status status = check(node, "probe", node.probe_device); !status) return status;
+    if (node.handle)
+      if (const Status status = check(node, "handle", node.handle->device); !status) return status;
+  }
+  return Done{};
+}
+
+Json node_extensions(const LevelNode& node, const Json& before) {
+  return write_all(false, node, before);
+}
+Json scene_extensions(const Level& level, const Json& before) {
+  return write_all(true, level, before);
+}
+
+}  // namespace pliant

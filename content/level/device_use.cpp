@@ -1,0 +1,33 @@
+#include "content/level/device_use.h"
+
+#include <unordered_map>
+
+namespace pliant {
+
+std::vector<DeviceFault> find_shared_devices(const Level& level) {
+  std::unordered_map<std::string, std::size_t> by_name;  // first node in the scene with this name
+  for (std::size_t n = 0; n < level.nodes.size(); ++n)
+    if (level.nodes[n].in_scene) by_name.try_emplace(level.nodes[n].name, n);
+  std::unordered_map<std::size_t, std::size_t> moves;  // device -> probe or tool
+  std::vector<DeviceFault> faults;
+  const auto use = [&](std::size_t n, const std::string& named) {
+    const auto found = named.empty() ? by_name.end() : by_name.find(named);
+    if (!named.empty() && found == by_name.end()) return;  // spawn says so
+    const std::size_t device = named.empty() ? n : found->second;
+    if (!level.nodes[device].device) return;
+    const auto [taken, fresh] = moves.try_emplace(device, n);
+    if (!fresh)
+      faults.push_back({n, "is moved by the device `" + level.nodes[device].name + "`, which moves `" +
+                               level.nodes[taken->second].name +
+                               "` already; give each a node with PLIANT_haptic_device of its own"});
+  };
+  for (std::size_t n = 0; n < level.nodes.size(); ++n) {
+    const LevelNode& node = level.nodes[n];
+    if (!node.in_scene) continue;
+    if (node.probe) use(n, node.probe_device);
+    if (node.handle) use(n, node.handle->device);
+  }
+  return faults;
+}
+
+}  // namespace pliant

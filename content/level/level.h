@@ -1,0 +1,119 @@
+// A level as a document: what a glTF file says, decoded and checked, before anything is welded, reordered or simulated.
+// load_level reads it, save_level writes what was read, spawn turns it into a World.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/appearance.h"
+#include "components/deformable.h"
+#include "components/haptic_device.h"
+#include "components/kinematic.h"
+#include "components/probe.h"
+#include "components/soft_body.h"
+#include "components/transform.h"
+#include "components/world.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// One primitive as triangles. Attribute arrays are empty or as long as `position`. Strips, fans, quantised, sparse and
+// Draco-compressed data are already resolved; nothing is welded yet.
+struct Primitive {
+  std::vector<vec3> position;  // [m] mesh frame
+  std::vector<vec3> normal;
+  std::vector<vec4> tangent;
+  std::vector<vec2> uv;
+  std::vector<float> stiffness;      // _STIFFNESS
+  std::vector<float> friction;       // _FRICTION
+  std::vector<float> damping;        // _DAMPING
+  std::vector<float> relaxation;     // _RELAXATION
+  std::vector<float> pinned;         // _PINNED
+  std::vector<float> handle;         // _HANDLE
+  std::vector<std::uint32_t> index;  // three per triangle
+  std::int32_t material = -1;
+};
+
+struct NodeMotion {       // PLIANT_motion
+  std::string script;     // .csv, relative to the level; "": animations
+  std::string animation;  // its name; "": every one that names the node
+  bool repeat = true;
+  double speed = 1.0;  // [1]
+};
+
+struct LevelMesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+struct LevelNode {
+  std::string name;
+  std::int32_t parent = -1;
+  std::vector<std::int32_t> children;
+  LocalTransform local;
+  bool in_scene = true;    // reached from the scene that is shown
+  std::int32_t mesh = -1;  // into Level::meshes
+  std::optional<Light> light;
+  std::optional<Camera> camera;
+  std::optional<Deformable> deformable;  // PLIANT_deformable
+  std::optional<Probe> probe;            // PLIANT_probe; `device` is in probe_device
+  std::string probe_device;              // name of the node with the probe's PLIANT_haptic_device; "": none
+  std::optional<HapticDevice> device;    // PLIANT_haptic_device
+  std::optional<SoftBody> soft_body;     // PLIANT_soft_body
+  std::optional<Handle6> handle;         // PLIANT_handle
+  std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
+  std::optional<NodeMotion> motion;      // PLIANT_motion
+};
+
+// What an animation does to one node. Times in seconds from 0; values as glTF has them, rotations x, y, z, w.
+enum class NodeProperty : std::uint8_t { kTranslation, kRotation, kScale };
+struct LevelChannel {
+  std::int32_t node = -1;  // into Level::nodes
+  NodeProperty property = NodeProperty::kTranslation;
+  Track track;
+};
+struct LevelAnimation {
+  std::string name;
+  double length = 0.0;  // [s] of the longest channel: all of them start over together
+  std::vector<LevelChannel> channels;
+};
+
+struct LevelEnvironment {  // PLIANT_environment
+  std::string panorama;    // .exr, relative to the level
+  double intensity = 1.0;  // [1]
+  double rotation = 0.0;   // [rad] about +Y
+};
+
+struct SourceDocument;  // the parsed glTF, kept so that saving loses nothing
+
+struct Level {
+  std::string name;  // file name without extension
+  std::filesystem::path path;
+  std::vector<LevelNode> nodes;  // parents stand before children
+  std::vector<LevelMesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Image> images;
+  std::vector<LevelAnimation> animations;
+  std::optional<LevelEnvironment> environment;
+  Simulation simulation;           // PLIANT_simulation
+  std::vector<std::string> notes;  // what was read differently than a user might expect (skins, skipped points...)
+  // The glTF it came from: while it is there, save_level keeps meshes, materials, pictures and animations from it.
+  // Whoever changes one of those resets it, and everything is then written from the Level alone.
+  std::shared_ptr<SourceDocument> source;
+
+  bool has_pliant() const;  // any PLIANT_* extension; false: a bare mesh
+};
+
+// A bare mesh becomes touchable: every mesh node gets a default Deformable.
+void make_touchable(Level& level);
+
+// Level -> World: nodes become entities (Name, transforms, Hierarchy), meshes are welded, cleaned, put in Hilbert order
+// and zoned, scale is baked in; scripts are read. Progress over a second goes to stderr. The World is not yet prepared
+// for touch (prepare_touch), and its environment has no panorama (level_file.h: spawn). `notes` gets what was read
+// differently than a user might expect of the files that the level names.
+Result<World> spawn_level(const Level& level, std::vector<std::string>* notes = nullptr);
+
+}  // namespace pliant

@@ -1,0 +1,84 @@
+#include "content/level/script.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "content/files/file_io.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
+constexpr std::size_t kMostRows = 4'000'000;
+constexpr std::string_view kPositions = "time_s,x,y,z", kPoses = "time_s,x,y,z,qw,qx,qy,qz";
+
+std::string_view trim(std::string_view s) {
+  const std::size_t begin = s.find_first_not_of(" \t\r");
+  return begin == std::string_view::npos ? std::string_view{}
+                                         : s.substr(begin, s.find_last_not_of(" \t\r") - begin + 1);
+}
+
+// The next line of `text`, which is shortened by it.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return trim(line);
+}
+
+// Exactly `count` finite numbers between commas.
+bool parse_row(std::string_view line, double* values, int count) {
+  for (int i = 0; i < count; ++i) {
+    const std::size_t comma = line.find(',');
+    if ((comma == std::string_view::npos) != (i == count - 1)) return false;
+    const std::string_view cell = trim(line.substr(0, comma));
+    const std::from_chars_result read = std::from_chars(cell.data(), cell.data() + cell.size(), values[i]);
+    if (read.ec != std::errc{} || read.ptr != cell.data() + cell.size() || !std::isfinite(values[i])) return false;
+    if (comma != std::string_view::npos) line.remove_prefix(comma + 1);
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<Path> parse_script(std::string_view text, const std::string& where) {
+  Path path;
+  int columns = 0;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string_view line = take_line(text);
+    const auto error = [&](const char* what) { return Error{where + ":" + std::to_string(number), what}; };
+    if (line.empty() || line.front() == '#') continue;
+    if (columns == 0) {
+      columns = line == kPositions ? 4 : line == kPoses ? 8 : 0;
+      if (columns == 0)
+        return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`; begin the script with one");
+      continue;
+    }
+    double v[8] = {0, 0, 0, 0, 1, 0, 0, 0};
+    if (!parse_row(line, v, columns))
+      return error(columns == 4
+                       ? "this row is not four finite numbers between commas; write time_s,x,y,z"
+                       : "this row is not eight finite numbers between commas; write time_s,x,y,z,qw,qx,qy,qz");
+    if (!path.rows.empty() && !(v[0] > path.rows.back().time))
+      return error("time does not grow from the row before; sort the rows and remove doubles");
+    const dquat rotation(v[4], v[5], v[6], v[7]);
+    const double norm = std::hypot(std::hypot(v[4], v[5]), std::hypot(v[6], v[7]));
+    if (!(norm > 1e-6) || !std::isfinite(norm))
+      return error("the quaternion has no length; write 1,0,0,0 for no rotation");
+    if (path.rows.size() == kMostRows)
+      return error("more than 4,000,000 rows; split the script or sample it more coarsely");
+    path.rows.push_back({v[0], {v[1], v[2], v[3]}, rotation * (1.0 / norm)});
+  }
+  path.turns = columns == 8;
+  if (path.rows.empty())
+    return Error{where, "holds no rows; write a header `time_s,x,y,z` and at least one row below it"};
+  return path;
+}
+
+Result<Path> load_script(const std::filesystem::path& path) {
+  const Result<Bytes> bytes = read_file(path, kMostBytes);
+  if (!bytes) return bytes.error();
+  return parse_script({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string());
+}
+
+}  // namespace pliant

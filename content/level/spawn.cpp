@@ -1,0 +1,328 @@
+// Level -> World. Nodes become entities in order; meshes are built once for every way in which a node scales them.
+#include <cmath>
+#include <optional>
+#include <set>
+#include <unordered_map>
+
+#include "components/mass_properties.h"
+#include "components/soft_body.h"
+#include "content/level/device_use.h"
+#include "content/level/level.h"
+#include "content/level/probe_shell.h"
+#include "content/level/progress.h"
+#include "content/level/script.h"
+#include "content/level/spawn_motion.h"
+#include "content/level/spawn_soft.h"
+#include "content/mesh/mesh_build.h"
+#include "content/mesh/mesh_finer.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kFlat = 1e-9;                                // [1] of the diagonal cubed: no volume
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // over all instances: a small file can name a mesh often
+
+dmat4 inverse(const Pose& pose) {
+  const dquat back = glm::conjugate(pose.rotation);
+  dmat4 m = glm::mat4_cast(back);
+  m[3] = glm::dvec4(back * -pose.position, 1.0);
+  return m;
+}
+
+std::string with_commas(std::size_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, ",");
+  return text;
+}
+
+// A mesh as some node wants it. Nodes that bake the same frame into the same mesh share what was built.
+struct Baked {
+  bool touchable;
+  mat4 to_object;
+  double crease_angle;          // [rad]
+  std::optional<double> reach;  // [m] of the dents that must show, 0: the default; nothing: none need
+  bool refined = false;         // cut finer for that
+  Handle<Mesh> touch;
+  Handle<DrawMesh> draw;
+};
+
+class Spawner {
+ public:
+  explicit Spawner(const Level& level) : level_(level), folder_(level.path.parent_path()) {}
+
+  Status run() {
+    world_.name = level_.name;
+    world_.simulation = level_.simulation;
+    world_.materials = level_.materials;
+    world_.images = level_.images;
+    if (level_.environment) {
+      world_.environment.intensity = static_cast<float>(level_.environment->intensity);
+      world_.environment.rotation = static_cast<float>(level_.environment->rotation);
+    }
+    entities_.assign(level_.nodes.size(), kNoEntity);
+    Result<LevelMotions> motions = make_motions(level_, folder_);
+    if (!motions) return motions.error();
+    motions_ = std::move(*motions);
+    notes_.insert(notes_.end(), motions_.notes.begin(), motions_.notes.end());
+    baked_.resize(level_.meshes.size());
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n)
+      if (Status s = node(n); !s) return s;
+    say_refinement();
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n)
+      if (Status s = link_probe(n); !s) return s;
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n)
+      if (Status s = check_handle(n); !s) return s;
+    if (Status s = give_shells(); !s) return s;
+    const std::vector<DeviceFault> shared = find_shared_devices(level_);
+    if (!shared.empty()) return at(shared.front().node, shared.front().what);
+    return Done{};
+  }
+  World take() { return std::move(world_); }
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  Error at(std::size_t n, std::string what) const {
+    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what)};
+  }
+
+  Status node(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    const auto parent = static_cast<std::size_t>(node.parent);
+    ASSERT(node.parent < 0 || parent < n);
+    if (!node.in_scene) return Done{};
+
+    Registry& registry = world_.registry;
+    const Entity entity = entities_[n] = registry.create();
+    world_.hierarchy.add(entity, node.parent < 0 ? kNoEntity : entities_[parent]);
+    registry.add<Name>(entity, {node.name});
+    registry.add<LocalTransform>(entity, motions_.local[n]);
+    registry.add<WorldTransform>(entity, {mat4(motions_.world[n])});
+    if (std::optional<PrescribedMotion>& motion = motions_.motion[n])
+      registry.add<Kinematic>(entity, {world_.motions.add(std::move(*motion))});
+    if (!by_name_.count(node.name)) by_name_[node.name] = n;
+    if (node.light) registry.add<Light>(entity, *node.light);
+    if (node.camera) registry.add<Camera>(entity, *node.camera);
+    if (const std::string fault = soft_fault(node); !fault.empty()) return at(n, fault);
+    if (node.handle) registry.add<Handle6>(entity, *node.handle);
+    if (Status s = surface(n); !s) return s;
+    if (Status s = device(n); !s) return s;
+    if (node.probe) {
+      const Pose pose = rigid_part(motions_.world[n]);
+      Probe& probe = registry.add<Probe>(entity, *node.probe);
+      probe.position = probe.previous = pose.position;
+      probe.rotation = pose.rotation;
+    }
+    return Done{};
+  }
+
+  // Drawable, and Deformable, SoftBody or RigidBody where the node is one.
+  Status surface(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    if (node.soft_body) return soft_body(n);
+    if (node.mesh < 0) {
+      if (node.deformable)
+        return at(n, "has PLIANT_deformable but no mesh; give the node a mesh, or remove the extension");
+      return Done{};
+    }
+    if (!is_touched(node) && level_.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty()) return Done{};
+    // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
+    const bool has_pose = is_touched(node) || !motions_.moves[n];
+    const Pose pose = rigid_part(motions_.world[n]);
+    Result<Baked> baked = bake(n, has_pose ? mat4(inverse(pose) * motions_.world[n]) : mat4(1));
+    if (!baked) return baked.error();
+    if (has_pose) world_.registry.add<Pose>(entities_[n], pose);
+    world_.registry.add<Drawable>(entities_[n], {baked->draw});
+    if (node.deformable) {
+      Deformable& deformable = world_.registry.add<Deformable>(entities_[n], *node.deformable);
+      deformable.mesh = baked->touch;
+      deformable.field = world_.fields.add({});
+      if (deformable.reach <= 0.0)
+        deformable.reach = kDefaultReach * static_cast<double>(world_.meshes[deformable.mesh].box.diagonal());
+    }
+    if (node.rigid_body) return rigid_body(n, baked->touch);
+    return Done{};
+  }
+
+  Status rigid_body(std::size_t n, Handle<Mesh> skin) {
+    RigidBody& body = world_.registry.add<RigidBody>(entities_[n], *level_.nodes[n].rigid_body);
+    body.skin = skin;
+    const Mesh& mesh = world_.meshes[skin];
+    const double box = std::pow(static_cast<double>(mesh.box.diagonal()), 3.0);
+    if (body.fixed || mass_properties(mesh).volume > kFlat * box) return Done{};
+    return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
+  }
+
+  static bool is_touched(const LevelNode& node) { return node.deformable || node.rigid_body; }
+
+  // Flesh is never shared: which of its nodes are held is the node's own.
+  Status soft_body(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    const LevelMesh* mesh = node.mesh < 0 ? nullptr : &level_.meshes[static_cast<std::size_t>(node.mesh)];
+    if (mesh)
+      if (Status s = count_triangles(n, *mesh); !s) return s;
+    const Pose pose = rigid_part(motions_.world[n]);
+    progress_.say("preparing meshes, now `" + node.name + "`");
+    Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
+    if (!parts) return at(n, parts.error().message());
+    for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
+    note_winding(node.mesh, parts->surface);
+    world_.registry.add<Pose>(entities_[n], pose);
+    SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
+    body.tets = world_.tet_meshes.add(std::move(parts->tets));
+    body.skin = world_.meshes.add(std::move(parts->surface.mesh));
+    world_.registry.add<Drawable>(entities_[n], {world_.draw_meshes.add(std::move(parts->surface.draw))});
+    return Done{};
+  }
+
+  Status count_triangles(std::size_t n, const LevelMesh& mesh) {
+    for (const Primitive& p : mesh.primitives) triangles_ += p.index.size() / 3;
+    if (triangles_ <= kMostTriangles) return Done{};
+    return at(n,
+              "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
+  }
+
+  // Once a mesh, however many nodes show it.
+  void note_winding(std::int32_t mesh, const BuiltMesh& built) {
+    const std::string turned = winding_note(built.report);
+    if (!turned.empty() && noted_.insert(mesh).second) notes_.push_back("mesh `" + built.mesh.name + "`: " + turned);
+  }
+
+  void note_refinement(const LevelNode& node, const BuiltMesh& built) {
+    if (built.report.refined_from == 0) return;
+    constexpr std::size_t kNamed = 3;
+    if (refined_.count++ < kNamed) refined_.names += (refined_.names.empty() ? "`" : ", `") + node.name + "`";
+    if (refined_.count > kNamed) refined_.more = " and " + with_commas(refined_.count - kNamed) + " more";
+    refined_.from += built.report.refined_from;
+    refined_.to += built.mesh.triangles.size();
+  }
+  // One sentence, however many nodes there are.
+  void say_refinement() {
+    if (refined_.count == 0) return;
+    notes_.push_back(refined_.names + refined_.more + ": " + with_commas(refined_.from) + " triangles refined to " +
+                     with_commas(refined_.to) + " so that dents can show");
+  }
+
+  // Whether what was built for one node's dents is what another node wants.
+  bool serves(const Baked& built, const Baked& wanted) const {
+    if (built.reach == wanted.reach) return true;
+    if (built.refined || !wanted.reach) return !built.refined;
+    const Mesh& mesh = world_.meshes[built.touch];
+    return !is_coarse(mesh,
+                      *wanted.reach > 0.0 ? *wanted.reach : kDefaultReach * static_cast<double>(mesh.box.diagonal()));
+  }
+
+  Result<Baked> bake(std::size_t n, const mat4& to_object) {
+    const LevelNode& node = level_.nodes[n];
+    Baked wanted{is_touched(node), to_object, node.deformable ? node.deformable->crease_angle : 0.0, {}, false, {}, {}};
+    if (node.deformable) wanted.reach = std::max(node.deformable->reach, 0.0);
+    std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)];
+    for (const Baked& b : known)
+      if (b.touchable == wanted.touchable && b.to_object == to_object && b.crease_angle == wanted.crease_angle &&
+          serves(b, wanted))
+        return b;
+
+    const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
+    progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
+    if (Status s = count_triangles(n, mesh); !s) return s.error();
+    Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, to_object,
+                                         {wanted.crease_angle, wanted.reach, wanted.touchable});
+    if (!built) return at(n, built.error().message());
+    note_winding(node.mesh, *built);
+    note_refinement(node, *built);
+    wanted.refined = built->report.refined_from != 0;
+    if (wanted.refined) triangles_ += built->mesh.triangles.size();
+    if (wanted.touchable)
+      wanted.touch = world_.meshes.add(std::move(built->mesh));
+    else
+      for (std::uint32_t v = 0; v < built->draw.vertices.size(); ++v) built->draw.vertices[v].touch_vertex = v;
+    wanted.draw = world_.draw_meshes.add(std::move(built->draw));
+    known.push_back(wanted);
+    return wanted;
+  }
+
+  Status device(std::size_t n) {
+    if (!level_.nodes[n].device) return Done{};
+    HapticDevice device = *level_.nodes[n].device;
+    if (device.driver == Driver::kScript) {
+      if (device.file.empty())
+        return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
+      Result<Path> path = load_script(folder_ / device.file);
+      if (!path) return path.error();
+      device.path = world_.paths.add(std::move(*path));
+    }
+    device.position = dvec3(motions_.world[n][3]);
+    world_.registry.add<HapticDevice>(entities_[n], std::move(device));
+    return Done{};
+  }
+
+  // A probe is moved by the device it names, else by the device on its own node, else by nobody.
+  Status link_probe(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    if (!node.probe || !node.in_scene) return Done{};
+    Probe& probe = world_.registry.get<Probe>(entities_[n]);
+    if (node.probe_device.empty()) {
+      if (node.device) probe.device = entities_[n];
+      return Done{};
+    }
+    const auto found = by_name_.find(node.probe_device);
+    if (found == by_name_.end() || !level_.nodes[found->second].device)
+      return at(n,
+                "PLIANT_probe/device names `" + node.probe_device +
+                    "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
+    probe.device = entities_[found->second];
+    return Done{};
+  }
+
+  // Where there is a soft or rigid body, probes have a surface to meet it with.
+  Status give_shells() {
+    const auto is_body = [](const LevelNode& node) { return node.in_scene && (node.soft_body || node.rigid_body); };
+    if (std::none_of(level_.nodes.begin(), level_.nodes.end(), is_body)) return Done{};
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n) {
+      if (!level_.nodes[n].probe || !level_.nodes[n].in_scene) continue;
+      Probe& probe = world_.registry.get<Probe>(entities_[n]);
+      if (probe.meets == ProbeMeets::kSurfaces) continue;
+      Result<Mesh> shell = probe_shell(probe);
+      if (!shell) return shell.error();
+      probe.shell = world_.meshes.add(std::move(*shell));
+    }
+    return Done{};
+  }
+
+  // Who reads a handle finds its device by name; it must be there.
+  Status check_handle(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    if (!node.handle || !node.in_scene || node.handle->device.empty()) return Done{};
+    const auto found = by_name_.find(node.handle->device);
+    if (found != by_name_.end() && level_.nodes[found->second].device) return Done{};
+    return at(n,
+              "PLIANT_handle/device names `" + node.handle->device +
+                  "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
+  }
+
+  const Level& level_;
+  const std::filesystem::path folder_;
+  World world_;
+  std::vector<Entity> entities_;  // of each node; kNoEntity: not in the scene
+  LevelMotions motions_;
+  std::unordered_map<std::string, std::size_t> by_name_;  // first node in the scene with this name
+  std::vector<std::vector<Baked>> baked_;                 // of each mesh of the level
+  std::set<std::int32_t> noted_;                          // meshes whose winding a note speaks of
+  std::size_t triangles_ = 0;                             // built so far
+  struct {
+    std::size_t count = 0, from = 0, to = 0;  // nodes, triangles
+    std::string names, more;
+  } refined_;                       // meshes that were cut finer
+  std::vector<std::string> notes_;  // of tetrahedra and winding, finer meshes
+  Progress progress_;
+};
+
+}  // namespace
+
+Result<World> spawn_level(const Level& level, std::vector<std::string>* notes) {
+  Spawner spawner(level);
+  if (Status s = spawner.run(); !s) return s.error();
+  if (notes) notes->insert(notes->end(), spawner.notes().begin(), spawner.notes().end());
+  return spawner.take();
+}
+
+}  // namespace pliant

@@ -1,0 +1,136 @@
+#include "content/level/spawn_soft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "content/mesh/mesh_refine.h"
+#include "content/tets/lattice.h"
+#include "content/tets/tet_boundary.h"
+#include "content/tets/tet_embed.h"
+#include "content/tets/tet_file.h"
+#include "content/tets/tet_groups.h"
+#include "content/tets/tet_quality.h"
+
+namespace pliant {
+namespace {
+
+// [mean edges of the tetrahedra] Flesh is touched through its skin's vertices: where they are farther apart, whatever
+// presses between them moves those far away and sinks through the flesh below it.
+constexpr double kLongestEdge = 2.0;
+
+// The tetrahedra of the body's file, in the object frame.
+Result<TetMesh> read_tets(const std::string& name, const std::string& file, const mat4& to_object,
+                          const std::filesystem::path& folder, std::vector<std::string>& notes) {
+  const Result<std::filesystem::path> path = confined_path(folder, file);
+  if (!path) return path.error();
+  Result<TetFile> read = load_tets(*path);
+  if (!read) return read.error();
+  notes = std::move(read->notes);
+  const dmat4 m(to_object);
+  TetMesh mesh;
+  mesh.name = name;
+  mesh.nodes = std::move(read->nodes);
+  mesh.tets = std::move(read->tets);
+  for (dvec3& p : mesh.nodes) p = dvec3(m * glm::dvec4(p, 1.0));
+  if (glm::determinant(dmat3(m)) < 0.0)
+    for (Tet& tet : mesh.tets) std::swap(tet[2], tet[3]);
+  for (const Tet& tet : mesh.tets)
+    if (!(tet_volume(mesh.nodes, tet) > 0.0))
+      return Error{file,
+                   "has a tetrahedron without volume in the node's frame; give the node and its parents a scale "
+                   "other than 0"};
+  put_in_order(mesh, {});
+  return mesh;
+}
+
+// [m] Mean over the edges of all tetrahedra.
+double mean_edge(const TetMesh& mesh) {
+  double sum = 0.0;
+  for (const Tet& tet : mesh.tets)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = i + 1; k < 4; ++k) sum += length(mesh.nodes[tet[k]] - mesh.nodes[tet[i]]);
+  return sum / static_cast<double>(6 * mesh.tets.size());
+}
+
+Primitive boundary_primitive(const TetMesh& mesh) {
+  Primitive p;
+  p.position.assign(mesh.nodes.begin(), mesh.nodes.end());
+  for (const uvec3& t : boundary_triangles(mesh.tets)) p.index.insert(p.index.end(), {t.x, t.y, t.z});
+  return p;
+}
+
+}  // namespace
+
+std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
+  const double bound = tetrahedra < kManyTets ? kLockingPoisson : kLockingPoissonOfMany;
+  if (body.poisson < bound) return "";
+  return fmt::format(
+      "has a Poisson's ratio of {:g}: from {:g} on its {} tetrahedra lock, and it is over 10 % too stiff where it is "
+      "pressed in; lower `poisson`, to 0.45 for instance, or make `cell` smaller",
+      body.poisson, bound, tetrahedra);
+}
+
+std::string soft_fault(const LevelNode& node) {
+  if (node.soft_body && node.deformable)
+    return "has both PLIANT_soft_body and PLIANT_deformable; keep one, the node's mesh is flesh or a yielding surface";
+  if (node.soft_body && node.rigid_body)
+    return "has both PLIANT_soft_body and PLIANT_rigid_body; keep one, or mark the rigid part with PLIANT_handle";
+  if (node.rigid_body && node.deformable)
+    return "has both PLIANT_rigid_body and PLIANT_deformable; keep one, a yielding surface does not move";
+  if (node.handle && !node.soft_body && !node.rigid_body)
+    return "has PLIANT_handle but neither PLIANT_soft_body nor PLIANT_rigid_body; add what the handle holds, or remove "
+           "it";
+  if (node.handle && node.rigid_body && node.rigid_body->fixed)
+    return "has PLIANT_handle on a rigid body that is `fixed`; take `fixed` away, so that a hand can move it, or "
+           "remove "
+           "the handle";
+  if (node.soft_body && node.mesh < 0 && node.soft_body->mesh.empty())
+    return "has PLIANT_soft_body but neither a mesh nor a tetrahedra file; give the node a mesh, or name a file in "
+           "`mesh`";
+  if (node.rigid_body && node.mesh < 0)
+    return "has PLIANT_rigid_body but no mesh; give the node a mesh, or remove the extension";
+  return "";
+}
+
+Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, const mat4& to_object,
+                                  const std::filesystem::path& folder) {
+  const SoftBody& body = *node.soft_body;
+  SoftParts parts;
+  const auto build = [&](std::span<const Primitive> primitives, const mat4& frame) -> Status {
+    Result<BuiltMesh> built = build_mesh(node.name, primitives, frame);
+    if (!built) return built.error();
+    parts.surface = std::move(*built);
+    return Done{};
+  };
+  if (mesh)
+    if (Status s = build(mesh->primitives, to_object); !s) return s.error();
+  if (body.mesh.empty()) {
+    Result<TetMesh> tets = make_lattice(parts.surface.mesh, body.cell);
+    if (!tets) return tets.error();
+    parts.tets = std::move(*tets);
+  } else {
+    Result<TetMesh> tets = read_tets(node.name, body.mesh, to_object, folder, parts.notes);
+    if (!tets) return tets.error();
+    parts.tets = std::move(*tets);
+    const Primitive boundary = boundary_primitive(parts.tets);
+    if (!mesh)
+      if (Status s = build({&boundary, 1}, mat4(1.0f)); !s) return s.error();
+    parts.tets.skin = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
+    parts.tets.quality = measure_quality(parts.tets.nodes, parts.tets.tets);
+  }
+  Result<std::vector<NodeGroup>> group =
+      group_nodes(parts.tets.nodes, parts.surface, body, node.handle ? &*node.handle : nullptr);
+  if (!group) return group.error();
+  if (mesh) {
+    std::vector<Primitive> finer = mesh->primitives;
+    if (refine(finer, to_object, kLongestEdge * mean_edge(parts.tets))) {
+      if (Status s = build(finer, to_object); !s) return s.error();
+      parts.tets.skin = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
+    }
+  }
+  put_in_order(parts.tets, *group);
+  return parts;
+}
+
+}  // namespace pliant

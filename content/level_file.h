@@ -1,0 +1,28 @@
+// Level files: read, written, changed by a key, and made a World.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "content/level/level.h"
+
+namespace pliant {
+
+// Reads .gltf, .glb (and, through Assimp, what convert reads). Every failure is one sentence with file and JSON
+// pointer.
+Result<Level> load_level(const std::filesystem::path& path);
+
+struct SaveOptions {
+  int draco_bits = 0;  // 0: no Draco; else position quantisation bits (8..24)
+};
+// Writes .gltf (with a .bin beside it) or .glb by the extension; the file appears whole (written aside, then renamed).
+Status save_level(const Level& level, const std::filesystem::path& path, const SaveOptions& options = {});
+
+// --set NODE.EXT.KEY=VALUE (level-format.md). NODE is a name or `*`. The error names what was not understood.
+Status set_key(Level& level, const std::string& assignment);
+
+// spawn_level, and the panorama that the level names is decoded.
+Result<World> spawn(const Level& level, std::vector<std::string>* notes = nullptr);
+
+}  // namespace pliant

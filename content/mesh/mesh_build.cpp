@@ -1,0 +1,219 @@
+#include "content/mesh/mesh_build.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/level/zones.h"
+#include "content/mesh/mesh_crease.h"
+#include "content/mesh/mesh_draw.h"
+#include "content/mesh/mesh_finer.h"
+#include "content/mesh/mesh_surface.h"
+#include "content/mesh/mesh_weld.h"
+#include "content/mesh/mesh_winding.h"
+
+namespace pliant {
+namespace {
+
+// Welded positions into the touch mesh, padded to whole zones with copies of the last vertex, which nothing names.
+void lay_out(const Welded& welded, Mesh& mesh) {
+  mesh.vertex_count = static_cast<std::uint32_t>(welded.position.size());
+  const std::size_t padded = (welded.position.size() + kZoneSize - 1) / kZoneSize * kZoneSize;
+  mesh.px.resize(padded);
+  mesh.py.resize(padded);
+  mesh.pz.resize(padded);
+  for (std::size_t v = 0; v < padded; ++v) {
+    const vec3 p = welded.position[std::min(v, welded.position.size() - 1)];
+    mesh.px[v] = p.x;
+    mesh.py[v] = p.y;
+    mesh.pz[v] = p.z;
+    mesh.box.add(p);
+  }
+  mesh.nx.assign(padded, 0.0f);
+  mesh.ny.assign(padded, 1.0f);
+  mesh.nz.assign(padded, 0.0f);
+  mesh.area.assign(padded, 0.0f);
+  mesh.triangles = welded.triangle;
+}
+
+// The mean of a painted factor over the painted copies of each vertex; `unpainted` where no copy is painted. Empty:
+// painted nowhere.
+Result<std::vector<float>> paint(const std::string& name, const char* attribute, std::span<const Primitive> primitives,
+                                 std::vector<float> Primitive::*factor, const Gathered& gathered, const Welded& welded,
+                                 std::size_t padded, float unpainted = 1.0f) {
+  std::vector<double> sum;
+  std::vector<std::uint32_t> count;
+  for (std::size_t n = 0; n < primitives.size(); ++n) {
+    const std::vector<float>& values = primitives[n].*factor;
+    if (values.empty() || values.size() != primitives[n].position.size()) continue;
+    sum.resize(padded, 0.0);
+    count.resize(padded, 0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i]) || values[i] < 0.0f)
+        return Error{
+            "mesh `" + name + "`",
+            std::string(attribute) + " holds a factor that is negative or not a number; paint it again, from 0 up"};
+      const std::uint32_t v = welded.touch_vertex[gathered.first_vertex[n] + i];
+      if (v == kNoVertex) continue;
+      sum[v] += static_cast<double>(values[i]);
+      ++count[v];
+    }
+  }
+  std::vector<float> mean(sum.size(), unpainted);
+  for (std::size_t v = 0; v < sum.size(); ++v)
+    if (count[v] != 0) mean[v] = static_cast<float>(sum[v] / count[v]);
+  return mean;
+}
+
+double mean_edge_length(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const uvec3& t : mesh.triangles)
+    for (int i = 0; i < 3; ++i) sum += length(dvec3(mesh.position(t[(i + 1) % 3])) - dvec3(mesh.position(t[i])));
+  return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
+}
+
+}  // namespace
+
+std::string winding_note(const MeshReport& report) {
+  std::string what;
+  const auto add = [&](std::uint32_t count, const char* one, const char* many) {
+    if (count != 0) what += fmt::format("{}{} {}", what.empty() ? "" : " and ", count, count == 1 ? one : many);
+  };
+  add(report.turned_triangles, "triangle wound against its neighbours", "triangles wound against their neighbours");
+  add(report.turned_parts, "part that was inside out", "parts that were inside out");
+  const bool one = report.turned_triangles + report.turned_parts == 1;
+  return what.empty() ? what
+                      : what + (one ? " is" : " are") + " turned over; `pliant convert --reorder` writes it mended";
+}
+
+std::string winding_doubt(const MeshReport& report) {
+  std::string what;
+  const auto add = [&](std::uint32_t count, const char* one, const char* many) {
+    if (count != 0) what += fmt::format("{}{} {}", what.empty() ? "" : ", and ", count, count == 1 ? one : many);
+  };
+  add(report.unorientable_parts, "part has one side only", "parts have one side only");
+  add(report.undecided_parts, "part may be inside out", "parts may be inside out");
+  return what.empty() ? what : what + ", which nothing in the file decides; check the winding where it feels wrong";
+}
+
+namespace {
+
+// What no longer depends on how the surface was found: the tree, zones, paint and what is drawn.
+Status finish(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
+              const Welded& welded, BuiltMesh& built) {
+  Mesh& mesh = built.mesh;
+  mesh.mean_edge = static_cast<float>(mean_edge_length(mesh));
+  mesh.tree = build_tree(mesh);
+  build_zones(mesh);
+  const struct {
+    const char* attribute;
+    std::vector<float> Primitive::*painted;
+    std::vector<float>* factor;
+    float unpainted;
+  } factors[] = {{"_STIFFNESS", &Primitive::stiffness, &mesh.stiffness_factor, 1.0f},
+                 {"_FRICTION", &Primitive::friction, &mesh.friction_factor, 1.0f},
+                 {"_DAMPING", &Primitive::damping, &mesh.damping_factor, 1.0f},
+                 {"_RELAXATION", &Primitive::relaxation, &mesh.relaxation_factor, 1.0f},
+                 {"_PINNED", &Primitive::pinned, &built.pinned, 0.0f},
+                 {"_HANDLE", &Primitive::handle, &built.handle, 0.0f}};
+  for (const auto& each : factors) {
+    auto mean =
+        paint(mesh.name, each.attribute, primitives, each.painted, gathered, welded, mesh.px.size(), each.unpainted);
+    if (!mean) return mean.error();
+    *each.factor = std::move(*mean);
+  }
+  built.draw = build_draw_mesh(primitives, to_object, gathered, welded, mesh, built.report);
+  return Done{};
+}
+
+// Creases and normals as they were before the surface was cut finer, not as the pieces' own angles would have them.
+void take_creases(const FinerMesh& finer, const Welded& welded, const Corners& corners, Mesh& mesh) {
+  const auto given = [&](std::uint32_t corner) {
+    return finer.normal[3 * std::size_t{welded.source_triangle[corner / 3]} + corner % 3];
+  };
+  mesh.crease.resize(mesh.triangles.size());
+  mesh.split_normals.resize(mesh.triangles.size());
+  mesh.corner_normal.resize(3 * mesh.triangles.size());
+  bool any = false;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    mesh.crease[t] = finer.crease[welded.source_triangle[t]];
+    any = any || mesh.crease[t] != 0;
+    mesh.split_normals[t] = 3 * t;
+    for (std::uint32_t i = 0; i < 3; ++i) mesh.corner_normal[3 * t + i] = given(3 * t + i);
+  }
+  if (!any) mesh.crease.clear();
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const std::uint32_t* begin = corners.corner.data() + corners.first[v];
+    const std::uint32_t* end = corners.corner.data() + corners.first[v + 1];
+    const vec3 normal = given(*begin);
+    if (!std::all_of(begin, end, [&](std::uint32_t corner) { return given(corner) == normal; })) continue;
+    mesh.nx[v] = normal.x;
+    mesh.ny[v] = normal.y;
+    mesh.nz[v] = normal.z;
+  }
+  keep_split_normals(mesh);
+}
+
+Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
+  const mat4 as_it_is(1.0f);
+  const Result<Gathered> gathered = gather(coarse.mesh.name, finer.primitives, as_it_is);
+  if (!gathered) return gathered.error();
+  BuiltMesh built;
+  Mesh& mesh = built.mesh;
+  mesh.name = coarse.mesh.name;
+  MeshReport of_pieces;  // what the file lacked is in the report of the coarse mesh
+  const Welded welded = weld(*gathered, of_pieces);
+  lay_out(welded, mesh);
+  const Corners corners = corners_of(mesh);
+  connect_triangles(mesh, corners, of_pieces);
+  measure_vertices(mesh, corners, of_pieces);
+  take_creases(finer, welded, corners, mesh);
+  built.report = coarse.report;
+  built.report.refined_from = static_cast<std::uint32_t>(coarse.mesh.triangles.size());
+  if (Status s = finish(finer.primitives, as_it_is, *gathered, welded, built); !s) return s.error();
+  return built;
+}
+
+}  // namespace
+
+Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object,
+                             const MeshOptions& options) {
+  Result<Gathered> gathered = gather(name, primitives, to_object);
+  if (!gathered) return gathered.error();
+  BuiltMesh built;
+  Mesh& mesh = built.mesh;
+  mesh.name = name;
+
+  Welded welded = weld(*gathered, built.report);
+  if (welded.triangle.empty())
+    return Error{"mesh `" + name + "`",
+                 "no triangle with an area is left; give it a surface, or remove the mesh from its node"};
+  lay_out(welded, mesh);
+  {
+    Corners corners = corners_of(mesh);
+    const std::vector<SideAgainst> against = connect_triangles(mesh, corners, built.report);
+    if (options.mend_winding) {
+      const std::vector<std::uint8_t> turned =
+          find_wrong_winding(primitives, to_object, welded, against, mesh, *gathered, built.report);
+      if (!turned.empty()) {
+        turn_over(turned, mesh, welded, *gathered);
+        corners = corners_of(mesh);
+        connect_triangles(mesh, corners, built.report);
+      }
+    }
+    measure_vertices(mesh, corners, built.report);
+    find_creases(primitives, to_object, *gathered, welded, options.crease_angle, mesh);
+    split_at_creases(corners, mesh);
+  }
+  if (options.reach) {
+    const double reach =
+        *options.reach > 0.0 ? *options.reach : kDefaultReach * static_cast<double>(mesh.box.diagonal());
+    const FinerMesh finer = make_finer(primitives, to_object, *gathered, welded, mesh, reach);
+    if (!finer.primitives.empty()) return build_finer(finer, std::move(built));
+  }
+  if (Status s = finish(primitives, to_object, *gathered, welded, built); !s) return s.error();
+  return built;
+}
+
+}  // namespace pliant

@@ -1,0 +1,164 @@
+#include "content/tets/lattice_inside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pliant {
+namespace {
+
+constexpr double kFarRadii = 2.3;  // [1] a cluster is a dipole from this many of its radii on
+constexpr int kHalvings = 24;      // of the way through a hole
+
+struct Visit {
+  std::uint32_t level, box;
+};
+// Each level leaves at most kTreeWidth - 1 siblings waiting; 32 levels hold any index.
+constexpr std::size_t kDeepest = 32 * kTreeWidth;
+
+// Whether the way from + s along, s in [0, 1], meets the box; `over` is 1 / along.
+bool meets(const Box& box, dvec3 from, dvec3 along, dvec3 over) {
+  double in = 0.0, out = 1.0;
+  for (int i = 0; i < 3; ++i) {
+    const double low = static_cast<double>(box.min[i]), high = static_cast<double>(box.max[i]);
+    if (along[i] == 0.0) {
+      if (from[i] < low || from[i] > high) return false;
+      continue;
+    }
+    const double a = (low - from[i]) * over[i], b = (high - from[i]) * over[i];
+    in = std::max(in, std::min(a, b));
+    out = std::min(out, std::max(a, b));
+  }
+  return in <= out + 1e-9;
+}
+
+}  // namespace
+
+Inside::Inside(const Mesh& surface) : surface_(surface) {
+  const auto& boxes = surface.tree.levels;
+  const auto triangles = static_cast<std::uint32_t>(surface.triangles.size());
+  std::vector<double> weight;  // [m2] of each cluster of the level below
+  for (std::size_t level = 0; level < boxes.size(); ++level) {
+    std::vector<Cluster> clusters(boxes[level].size());
+    std::vector<double> weights(clusters.size(), 0.0);
+    const std::uint32_t width = level == 0 ? kLeafSize : kTreeWidth;
+    const auto below = level == 0 ? triangles : static_cast<std::uint32_t>(boxes[level - 1].size());
+    for (std::uint32_t c = 0; c < clusters.size(); ++c) {
+      Cluster& cluster = clusters[c];
+      cluster.centre = cluster.area = dvec3(0);
+      for (std::uint32_t i = c * width; i < std::min((c + 1) * width, below); ++i) {
+        dvec3 centre, area;
+        double size;
+        if (level == 0) {
+          const uvec3 t = surface.triangles[i];
+          const dvec3 p(surface.position(t.x)), q(surface.position(t.y)), r(surface.position(t.z));
+          centre = (p + q + r) / 3.0;
+          area = 0.5 * cross(q - p, r - p);
+          size = length(area);
+        } else {
+          centre = levels_[level - 1][i].centre;
+          area = levels_[level - 1][i].area;
+          size = weight[i];
+        }
+        cluster.centre += size * centre;
+        cluster.area += area;
+        weights[c] += size;
+      }
+      const Box& box = boxes[level][c];
+      cluster.centre = weights[c] > 0.0 ? cluster.centre / weights[c] : dvec3(box.center());
+      const dvec3 corner = glm::max(dvec3(box.max) - cluster.centre, cluster.centre - dvec3(box.min));
+      cluster.reach2 = kFarRadii * kFarRadii * dot(corner, corner);
+    }
+    levels_.push_back(std::move(clusters));
+    weight = std::move(weights);
+  }
+}
+
+// Van Oosterom and Strackee, "The solid angle of a plane triangle", 1983.
+double Inside::solid_angle(std::uint32_t triangle, dvec3 p) const {
+  const uvec3 t = surface_.triangles[triangle];
+  const dvec3 a = dvec3(surface_.position(t.x)) - p, b = dvec3(surface_.position(t.y)) - p,
+              c = dvec3(surface_.position(t.z)) - p;
+  const double la = length(a), lb = length(b), lc = length(c);
+  return 2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
+double Inside::winding_by_sum(dvec3 p) const {
+  double sum = 0.0;
+  for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) sum += solid_angle(t, p);
+  return sum / (4.0 * std::numbers::pi);
+}
+
+double Inside::winding(dvec3 p) const {
+  Visit stack[kDeepest];
+  std::size_t depth = 0;
+  double sum = 0.0;
+  stack[depth++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
+  while (depth > 0) {
+    const Visit at = stack[--depth];
+    const Cluster& cluster = levels_[at.level][at.box];
+    const dvec3 away = cluster.centre - p;
+    const double d2 = dot(away, away);
+    if (d2 > cluster.reach2) {
+      sum += dot(cluster.area, away) / (d2 * std::sqrt(d2));
+    } else if (at.level == 0) {
+      const auto end = std::min<std::size_t>((at.box + 1) * kLeafSize, surface_.triangles.size());
+      for (std::uint32_t t = at.box * kLeafSize; t < end; ++t) sum += solid_angle(t, p);
+    } else {
+      const auto end = std::min<std::size_t>((at.box + 1) * kTreeWidth, levels_[at.level - 1].size());
+      for (std::uint32_t c = at.box * kTreeWidth; c < end; ++c) stack[depth++] = {at.level - 1, c};
+    }
+  }
+  return sum / (4.0 * std::numbers::pi);
+}
+
+// Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
+void Inside::find_hits(dvec3 from, dvec3 along, std::vector<double>& shares) const {
+  const auto& boxes = surface_.tree.levels;
+  const dvec3 over = 1.0 / along;
+  Visit stack[kDeepest];
+  std::size_t depth = 0;
+  stack[depth++] = {static_cast<std::uint32_t>(boxes.size() - 1), 0};
+  while (depth > 0) {
+    const Visit at = stack[--depth];
+    if (!meets(boxes[at.level][at.box], from, along, over)) continue;
+    if (at.level > 0) {
+      const auto end = std::min<std::size_t>((at.box + 1) * kTreeWidth, boxes[at.level - 1].size());
+      for (std::uint32_t c = at.box * kTreeWidth; c < end; ++c) stack[depth++] = {at.level - 1, c};
+      continue;
+    }
+    const auto end = std::min<std::size_t>((at.box + 1) * kLeafSize, surface_.triangles.size());
+    for (std::uint32_t i = at.box * kLeafSize; i < end; ++i) {
+      const uvec3 t = surface_.triangles[i];
+      const dvec3 a(surface_.position(t.x)), ab = dvec3(surface_.position(t.y)) - a,
+                                             ac = dvec3(surface_.position(t.z)) - a;
+      const dvec3 p = cross(along, ac), s = from - a, q = cross(s, ab);
+      const double det = dot(ab, p), u = dot(s, p) / det, v = dot(along, q) / det, share = dot(ac, q) / det;
+      if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && share >= 0.0 && share <= 1.0) shares.push_back(share);
+    }
+  }
+}
+
+double Inside::crossing(dvec3 inside, dvec3 outside) const {
+  const dvec3 along = outside - inside;
+  std::vector<double> hits;
+  find_hits(inside, along, hits);
+  std::sort(hits.begin(), hits.end());
+  double in = 0.0, out = 1.0;
+  if (hits.empty()) {
+    for (int n = 0; n < kHalvings; ++n) {
+      const double middle = 0.5 * (in + out);
+      ((*this)(inside + middle * along) ? in : out) = middle;
+    }
+    return 0.5 * (in + out);
+  }
+  // Between hits the side is the same: of the stretches before the first hit (inside) to behind the last (outside).
+  std::size_t first = 0, last = hits.size();
+  while (last - first > 1) {
+    const std::size_t middle = (first + last) / 2;
+    ((*this)(inside + 0.5 * (hits[middle - 1] + hits[middle]) * along) ? first : last) = middle;
+  }
+  return hits[first];
+}
+
+}  // namespace pliant

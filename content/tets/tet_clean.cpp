@@ -1,0 +1,85 @@
+#include "content/tets/tet_clean.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/tets/lattice.h"
+#include "content/tets/tet_quality.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kFarthest = 1e9;  // [m]
+// Six volumes over the cube of the longest edge from a corner: below it, an element has no volume worth the name (a
+// regular one has 0.7).
+constexpr double kFlat = 1e-8;
+
+double longest_edge(std::span<const dvec3> nodes, const Tet& t) {
+  double longest = 0.0;
+  for (std::size_t i = 1; i < 4; ++i) longest = std::max(longest, length(nodes[t[i]] - nodes[t[0]]));
+  return longest;
+}
+
+std::string count(std::size_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+}  // namespace
+
+Result<TetFile> clean(RawTets raw, const std::string& name) {
+  TetFile out;
+  out.notes = std::move(raw.notes);
+  const auto note = [&](std::size_t n, const char* one, const char* many) {
+    if (n > 0) out.notes.push_back(count(n, one, many));
+  };
+  if (raw.tets.size() > kMostTets)
+    return Error{name,
+                 fmt::format("holds {} tetrahedra, more than {}; make a coarser mesh", raw.tets.size(), kMostTets)};
+  for (const dvec3& p : raw.nodes)
+    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthest))
+      return Error{name, "has a node that is not a finite number within 1e9 m; repair it, or scale it down"};
+
+  std::size_t flat = 0, turned = 0;
+  out.tets.reserve(raw.tets.size());
+  for (Tet t : raw.tets) {
+    const double longest = longest_edge(raw.nodes, t), size = 6.0 * tet_volume(raw.nodes, t);
+    if (!(std::abs(size) > kFlat * longest * longest * longest)) {
+      ++flat;
+      continue;
+    }
+    if (size < 0.0) {
+      ++turned;
+      std::swap(t[2], t[3]);
+    }
+    out.tets.push_back(t);
+  }
+  if (out.tets.empty())
+    return Error{name, raw.tets.empty()
+                           ? "holds no tetrahedra; fill the mesh with first-order tetrahedra and save again"
+                           : "holds only tetrahedra without volume; repair the mesh"};
+
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> number(raw.nodes.size(), kUnused);
+  for (const Tet& t : out.tets)
+    for (const std::uint32_t corner : t) number[corner] = 0;
+  for (std::uint32_t n = 0; n < number.size(); ++n) {
+    if (number[n] == kUnused) continue;
+    number[n] = static_cast<std::uint32_t>(out.nodes.size());
+    out.nodes.push_back(raw.nodes[n]);
+  }
+  for (Tet& t : out.tets)
+    for (std::uint32_t& corner : t) corner = number[corner];
+
+  note(raw.second_order, "tetrahedron of higher order: only its corners are taken",
+       "tetrahedra of higher order: only their corners are taken");
+  note(raw.other_cells, "cell that is no tetrahedron: skipped", "cells that are no tetrahedra: skipped");
+  note(turned, "inverted tetrahedron: turned", "inverted tetrahedra: turned");
+  note(flat, "tetrahedron without volume: dropped", "tetrahedra without volume: dropped");
+  note(raw.nodes.size() - out.nodes.size(), "node that no tetrahedron names: dropped",
+       "nodes that no tetrahedron names: dropped");
+  return out;
+}
+
+}  // namespace pliant

@@ -1,0 +1,184 @@
+#include "content/tets/tet_embed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/assert.h"
+#include "runtime/parallel.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::uint32_t kNoTet = 0xffffffffu;
+// Of tetrahedra about equally near, the one that extrapolates least wins: a flat one next to the vertex would throw it
+// about.
+constexpr double kAboutEqual = 1.5;
+
+// Ericson, "Real-Time Collision Detection" (2005), 5.1.5.
+dvec3 closest_on_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
+  const dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
+  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  if (d3 >= 0.0 && d4 <= d3) return b;
+  if (d6 >= 0.0 && d5 <= d6) return c;
+  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
+  if (va <= 0.0 && d4 >= d3 && d5 >= d6) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  return a + ab * (vb / (va + vb + vc)) + ac * (vc / (va + vb + vc));
+}
+
+// An implicit tree of boxes over tetrahedra that lie along the Hilbert curve.
+class Tree {
+ public:
+  Tree(const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) : tets_(tets) {
+    std::vector<Bounds> level;
+    for (std::size_t t = 0; t < tets.size(); ++t) {
+      if (t % kWidth == 0) level.emplace_back();
+      for (const std::uint32_t corner : tets[t]) level.back().add(nodes[corner]);
+    }
+    levels_.push_back(std::move(level));
+    while (levels_.back().size() > 1) {
+      std::vector<Bounds> above((levels_.back().size() + kWidth - 1) / kWidth);
+      for (std::size_t i = 0; i < levels_.back().size(); ++i) {
+        above[i / kWidth].add(levels_.back()[i].low);
+        above[i / kWidth].add(levels_.back()[i].high);
+      }
+      levels_.push_back(std::move(above));
+    }
+  }
+
+  // Calls visit(tet) for every tetrahedron whose box is within `reach` [m] of p; visit may lower `reach`.
+  template <class Visit>
+  void visit_near(dvec3 p, const double& reach, Visit visit) const {
+    visit_below(p, reach, visit, levels_.size() - 1, 0);
+  }
+
+ private:
+  static constexpr std::size_t kWidth = 4;
+  struct Bounds {
+    dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
+    void add(dvec3 p) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    double distance(dvec3 p) const { return length(glm::max(glm::max(low - p, p - high), dvec3(0))); }
+  };
+
+  template <class Visit>
+  void visit_below(dvec3 p, const double& reach, Visit& visit, std::size_t level, std::size_t box) const {
+    if (levels_[level][box].distance(p) > reach) return;
+    const std::size_t below = level == 0 ? tets_.size() : levels_[level - 1].size();
+    const std::size_t begin = box * kWidth, end = std::min(begin + kWidth, below);
+    if (level == 0) {
+      for (std::size_t t = begin; t < end; ++t) visit(static_cast<std::uint32_t>(t));
+      return;
+    }
+    // Nearest first, so that `reach` falls early.
+    std::array<std::pair<double, std::size_t>, kWidth> near;
+    std::size_t count = 0;
+    for (std::size_t c = begin; c < end; ++c) {
+      std::size_t place = count++;
+      const double distance = levels_[level - 1][c].distance(p);
+      for (; place > 0 && near[place - 1].first > distance; --place) near[place] = near[place - 1];
+      near[place] = {distance, c};
+    }
+    for (std::size_t c = 0; c < count; ++c) visit_below(p, reach, visit, level - 1, near[c].second);
+  }
+
+  const std::vector<Tet>& tets_;
+  std::vector<std::vector<Bounds>> levels_;
+};
+
+class Embedder {
+ public:
+  Embedder(const std::vector<dvec3>& nodes, const std::vector<Tet>& tets)
+      : nodes_(nodes), tets_(tets), tree_(nodes, tets) {}
+
+  Embedding find(dvec3 p, dvec3 outward) const {
+    Embedding found = best_near(p, 0.0, nullptr);
+    if (found.tet == kNoTet) {
+      // Flesh behind the vertex's tangent plane is its own; what lies in front may be another finger's.
+      double distance = nearest(p, &outward);
+      const bool own = distance < std::numeric_limits<double>::max();
+      if (!own) distance = nearest(p, nullptr);
+      found = best_near(p, kAboutEqual * distance, own ? &outward : nullptr);
+    }
+    ASSERT(found.tet != kNoTet);
+    return found;
+  }
+
+ private:
+  // Weights by Cramer's rule; the first is what the others leave, so that they sum to 1. False: the element is flat.
+  bool weights(const Tet& t, dvec3 p, std::array<double, 4>& w) const {
+    const dvec3 o = nodes_[t[0]], a = nodes_[t[1]] - o, b = nodes_[t[2]] - o, c = nodes_[t[3]] - o, x = p - o;
+    const double det = dot(a, cross(b, c));
+    const double size = std::max({dot(a, a), dot(b, b), dot(c, c)});
+    if (!(det > 1e-9 * size * std::sqrt(size))) return false;
+    w[1] = dot(x, cross(b, c)) / det;
+    w[2] = dot(a, cross(x, c)) / det;
+    w[3] = dot(a, cross(b, x)) / det;
+    w[0] = 1.0 - w[1] - w[2] - w[3];
+    return true;
+  }
+
+  bool behind(const Tet& t, dvec3 p, const dvec3* outward) const {
+    if (!outward) return true;
+    const dvec3 centre = 0.25 * (nodes_[t[0]] + nodes_[t[1]] + nodes_[t[2]] + nodes_[t[3]]);
+    return dot(centre - p, *outward) < 0.0;
+  }
+
+  // [m] from p, which no element holds, to the nearest one; the largest double: there is none.
+  double nearest(dvec3 p, const dvec3* outward) const {
+    constexpr int kFace[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+    double reach = std::numeric_limits<double>::max();
+    tree_.visit_near(p, reach, [&](std::uint32_t tet) {
+      const Tet& t = tets_[tet];
+      std::array<double, 4> w;
+      if (!weights(t, p, w) || !behind(t, p, outward)) return;
+      for (const auto& f : kFace)
+        reach = std::min(reach, length(p - closest_on_triangle(p, nodes_[t[static_cast<std::size_t>(f[0])]],
+                                                               nodes_[t[static_cast<std::size_t>(f[1])]],
+                                                               nodes_[t[static_cast<std::size_t>(f[2])]])));
+    });
+    return reach;
+  }
+
+  // Of the elements with a box within `reach`, the one in which the smallest weight is largest; with a reach of 0 only
+  // one that holds p.
+  Embedding best_near(dvec3 p, double reach, const dvec3* outward) const {
+    Embedding best{kNoTet, {}};
+    double smallest = reach > 0.0 ? std::numeric_limits<double>::lowest() : -1e-12;
+    tree_.visit_near(p, reach, [&](std::uint32_t tet) {
+      std::array<double, 4> w;
+      if (!weights(tets_[tet], p, w) || !behind(tets_[tet], p, outward)) return;
+      const double least = *std::min_element(w.begin(), w.end());
+      if (least <= smallest) return;
+      smallest = least;
+      best = {tet, w};
+    });
+    return best;
+  }
+
+  const std::vector<dvec3>& nodes_;
+  const std::vector<Tet>& tets_;
+  const Tree tree_;
+};
+
+}  // namespace
+
+std::vector<Embedding> embed(const Mesh& surface, const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) {
+  ASSERT(!tets.empty());
+  const Embedder embedder(nodes, tets);
+  std::vector<Embedding> skin(surface.vertex_count);
+  parallel_for(skin.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto vertex = static_cast<std::uint32_t>(v);
+      skin[v] = embedder.find(dvec3(surface.position(vertex)), dvec3(surface.normal(vertex)));
+    }
+  });
+  return skin;
+}
+
+}  // namespace pliant

@@ -1,0 +1,49 @@
+#include "content/tets/tet_file.h"
+
+#include <algorithm>
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{512} << 20;
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// The file beside this one with the same name but for its extension, written as this one's is.
+fs::path partner(fs::path path, const char* lower, const char* upper) {
+  const std::string extension = path.extension().string();
+  const bool is_upper = extension.size() > 1 && std::isupper(static_cast<unsigned char>(extension[1]));
+  return path.replace_extension(is_upper ? upper : lower);
+}
+
+}  // namespace
+
+bool is_tet_file(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".msh" || extension == ".vtk" || extension == ".node" || extension == ".ele";
+}
+
+Result<TetFile> load_tets(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  if (!is_tet_file(path))
+    return Error{path.string(), "is no tetrahedra file that is read; use .msh, .vtk, .node or .ele"};
+  Result<Bytes> bytes = read_file(path, kMostBytes);
+  if (!bytes) return bytes.error();
+  if (extension == ".msh") return parse_msh(*bytes, path.string());
+  if (extension == ".vtk") return parse_vtk(*bytes, path.string());
+  const bool is_node = extension == ".node";
+  Result<Bytes> other =
+      read_file(is_node ? partner(path, ".ele", ".ELE") : partner(path, ".node", ".NODE"), kMostBytes);
+  if (!other) return other.error();
+  const std::string stem = fs::path(path).replace_extension().string();
+  return is_node ? parse_tetgen(*bytes, *other, stem) : parse_tetgen(*other, *bytes, stem);
+}
+
+}  // namespace pliant

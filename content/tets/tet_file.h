@@ -1,0 +1,32 @@
+// Tetrahedra from files: Gmsh .msh (2.2 and 4.1), legacy VTK .vtk, TetGen .node and .ele. ASCII and binary.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/tet_mesh.h"
+#include "content/files/file_io.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct TetFile {
+  std::vector<dvec3> nodes;        // finite, each named by a tetrahedron
+  std::vector<Tet> tets;           // positive volume
+  std::vector<std::string> notes;  // what was skipped, turned or dropped
+};
+
+bool is_tet_file(const std::filesystem::path& path);  // by its extension
+
+// Of TetGen's pair either file may be named; the other lies beside it. Errors name the line or the byte.
+Result<TetFile> load_tets(const std::filesystem::path& path);
+
+// From memory, for tests and fuzzers; `name` stands in errors.
+Result<TetFile> parse_msh(std::span<const std::uint8_t> bytes, const std::string& name);
+Result<TetFile> parse_vtk(std::span<const std::uint8_t> bytes, const std::string& name);
+Result<TetFile> parse_tetgen(std::span<const std::uint8_t> node, std::span<const std::uint8_t> ele,
+                             const std::string& name);
+
+}  // namespace pliant

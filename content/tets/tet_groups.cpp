@@ -1,0 +1,87 @@
+#include "content/tets/tet_groups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/parallel.h"
+
+namespace pliant {
+namespace {
+
+constexpr float kPainted = 0.5f;
+constexpr double kRounding = 1e-6;  // [1] of the diagonal: a box drawn through nodes holds them
+
+std::string text(const Box& box) {
+  return fmt::format("({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g}) m", box.min.x, box.min.y, box.min.z,
+                     box.max.x, box.max.y, box.max.z);
+}
+
+bool is_painted(const std::vector<float>& paint) {
+  return std::any_of(paint.begin(), paint.end(), [](float value) { return value >= kPainted; });
+}
+
+double distance2(const Box& box, dvec3 p) {
+  const dvec3 away = glm::max(glm::max(dvec3(box.min) - p, p - dvec3(box.max)), dvec3(0));
+  return dot(away, away);
+}
+
+// Zones are compact patches, so few of them are nearer than the best vertex so far.
+std::uint32_t nearest_vertex(const Mesh& mesh, dvec3 p) {
+  std::uint32_t best = 0;
+  double least = std::numeric_limits<double>::max();
+  for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
+    if (distance2(mesh.zone_box[zone], p) >= least) continue;
+    for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
+      const dvec3 away = dvec3(mesh.position(v)) - p;
+      if (dot(away, away) >= least) continue;
+      least = dot(away, away);
+      best = v;
+    }
+  }
+  return best;
+}
+
+// Puts the nodes of a box, or of the paint, into a group; says whether there were any.
+bool claim(const std::vector<dvec3>& nodes, const BuiltMesh& surface, const Box& box, const std::vector<float>& paint,
+           NodeGroup which, std::vector<NodeGroup>& group) {
+  const dvec3 slack(kRounding * static_cast<double>(surface.mesh.box.diagonal()));
+  parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const bool held = box.empty() ? paint[nearest_vertex(surface.mesh, nodes[n])] >= kPainted
+                                    : glm::all(glm::greaterThanEqual(nodes[n], dvec3(box.min) - slack)) &&
+                                          glm::all(glm::lessThanEqual(nodes[n], dvec3(box.max) + slack));
+      if (held) group[n] = which;
+    }
+  });
+  return std::find(group.begin(), group.end(), which) != group.end();
+}
+
+}  // namespace
+
+Result<std::vector<NodeGroup>> group_nodes(const std::vector<dvec3>& nodes, const BuiltMesh& surface,
+                                           const SoftBody& body, const Handle6* handle) {
+  std::vector<NodeGroup> group(nodes.size(), NodeGroup::kFree);
+  const std::string extent = "the flesh reaches from " + text(surface.mesh.box);
+  if (!body.pinned.empty() || is_painted(surface.pinned)) {
+    if (!claim(nodes, surface, body.pinned, surface.pinned, NodeGroup::kPinned, group))
+      return Error{"PLIANT_soft_body/pinned",
+                   "holds no node of the tetrahedra; " + (body.pinned.empty() ? "paint _PINNED over more than a cell"
+                                                                              : "move or widen its box: " + extent)};
+  }
+  if (handle) {
+    if (handle->box.empty() && !is_painted(surface.handle))
+      return Error{"PLIANT_handle",
+                   "says nowhere which part is rigid; give it a `box`, or paint _HANDLE with 1 on the mesh"};
+    if (!claim(nodes, surface, handle->box, surface.handle, NodeGroup::kHandle, group))
+      return Error{"PLIANT_handle/box",
+                   "holds no node of the tetrahedra; " +
+                       (handle->box.empty() ? "paint _HANDLE over more than a cell" : "move or widen it: " + extent)};
+  }
+  if (std::find(group.begin(), group.end(), NodeGroup::kFree) == group.end())
+    return Error{"PLIANT_soft_body",
+                 "has no node left that moves by itself; shrink what is held, or use PLIANT_rigid_body"};
+  return group;
+}
+
+}  // namespace pliant

@@ -1,0 +1,146 @@
+#include "engine/sources.h"
+
+#include <algorithm>
+
+#include "components/soft_body.h"
+#include "content/level/script.h"
+#include "systems/device/hands.h"
+#include "systems/device/orbit.h"
+
+namespace pliant {
+namespace {
+
+constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
+
+// The device that moves this probe or tool; made where nobody does.
+Entity own_device(World& world, Entity hand) {
+  if (find_device(world, hand)) return device_of(world, hand);
+  HapticDevice device;
+  if (Handle6* handle = world.registry.find<Handle6>(hand)) {  // a tool without a device's name is its own
+    handle->device.clear();
+    if (const Pose* pose = world.registry.find<Pose>(hand))
+      device.position = pose->position, device.rotation = pose->rotation;
+    world.registry.add<HapticDevice>(hand, device);
+    return hand;
+  }
+  const Entity made = world.registry.create();
+  world.registry.add<HapticDevice>(made, device);
+  world.registry.get<Probe>(hand).device = made;
+  return made;
+}
+
+// The first probe or tool of this name.
+Entity find_hand(const World& world, const std::string& name) {
+  for (const Entity hand : hands(world))
+    if (const Name* its_name = world.registry.find<Name>(hand); its_name && its_name->value == name) return hand;
+  return kNoEntity;
+}
+
+}  // namespace
+
+Result<ProbeSource> parse_source(const std::string& argument) {
+  const std::size_t equals = argument.find('=');
+  const std::string where = "--probe " + argument;
+  if (equals == std::string::npos || equals == 0)
+    return Error{where, "is not NAME=SOURCE; write, say, --probe finger=orbit"};
+  ProbeSource source{argument.substr(0, equals), Driver::kOrbit, {}};
+  const std::string what = argument.substr(equals + 1);
+  if (what == "orbit") return source;
+  if (what.starts_with("script:") && what.size() > 7) {
+    source.driver = Driver::kScript;
+    source.file = what.substr(7);
+    return source;
+  }
+  if (what == "mouse") {
+    source.driver = Driver::kMouse;
+    return source;
+  }
+  if (what.starts_with("device:"))
+    return Error{where, "drivers for devices are not yet built; `pliant devices` lists what is found"};
+  return Error{where, "unknown source '" + what + "'; sources are script:FILE.csv, orbit, mouse, device:ID"};
+}
+
+Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::string& name = sources[i].name;
+    for (std::size_t j = 0; j < i; ++j)
+      if (sources[j].name == name) return Error{"--probe " + name, "is given twice; give each probe one source"};
+    bool taken = false, is_probe = false;
+    for (const LevelNode& node : level.nodes) {
+      if (node.name != name) continue;
+      taken = true;
+      is_probe = is_probe || node.probe.has_value() || node.handle.has_value();
+    }
+    if (is_probe) continue;
+    if (taken)
+      return Error{"--probe " + name,
+                   "the level has a node of that name that is neither probe nor tool; choose another name"};
+    LevelNode node;
+    node.name = name;
+    node.probe.emplace();
+    if (sources[i].driver == Driver::kMouse) node.probe->color = kMouseColor;
+    node.device.emplace();
+    node.probe_device = name;
+    level.nodes.push_back(node);
+  }
+  return Done{};
+}
+
+Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
+  for (const ProbeSource& source : sources) {
+    const Entity hand = find_hand(world, source.name);
+    if (hand == kNoEntity)
+      return Error{"--probe " + source.name, "the level has no such probe or tool; check the name"};
+    Handle<Path> path;
+    if (source.driver == Driver::kScript) {
+      auto script = load_script(source.file);
+      if (!script) return script.error();
+      path = world.paths.add(std::move(script).value());
+    }
+    HapticDevice& device = world.registry.get<HapticDevice>(own_device(world, hand));
+    device.driver = source.driver;
+    device.file = source.file;
+    device.path = path;
+  }
+  return Done{};
+}
+
+std::vector<std::string> make_orbits(World& world) {
+  std::vector<std::string> held;
+  unsigned index = 0;
+  for (const Entity hand : hands(world)) {
+    const HapticDevice* device = find_device(world, hand);
+    if (!device || device->driver != Driver::kOrbit) continue;
+    const Probe* probe = world.registry.find<Probe>(hand);
+    Path path = probe ? make_orbit(world, index++, probe->radius) : make_tool_orbit(world, hand);
+    if (path.rows.empty()) {
+      const Name* name = world.registry.find<Name>(hand);
+      held.push_back("the path `orbit` of `" + (name ? name->value : std::string()) +
+                     "` finds no surface that gives way, so it is held where it stands; give it a script, or a node "
+                     "PLIANT_deformable");
+      continue;
+    }
+    world.registry.get<HapticDevice>(device_of(world, hand)).path = world.paths.add(std::move(path));
+  }
+  return held;
+}
+
+std::string describe_source(const World& world, Entity hand) {
+  const HapticDevice* device = find_device(world, hand);
+  if (!device) return "null";
+  switch (device->driver) {
+    case Driver::kScript:
+      return "script:" + device->file;
+    case Driver::kOrbit:
+      return "orbit";
+    case Driver::kMouse:
+      return "mouse";
+    case Driver::kExternal:
+      return "device:" + device->id;
+    case Driver::kNull:
+      break;
+  }
+  return "null";
+}
+
+}  // namespace pliant

@@ -1,0 +1,36 @@
+// What moves a probe: --probe NAME=SOURCE, and what the level says itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "content/level/level.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct ProbeSource {
+  std::string name;  // of the probe or tool
+  Driver driver = Driver::kOrbit;
+  std::string file;  // of a script, relative to the working directory
+};
+
+// NAME=script:FILE.csv, NAME=orbit or NAME=mouse. `device:ID` gets a sentence that says what it needs.
+Result<ProbeSource> parse_source(const std::string& argument);
+
+// Adds a node for each source that names no node of the level: a point probe with a device of its own. Before --set, so
+// that keys reach it. Fails where a node of that name is not a probe, and where a name comes twice.
+Status add_probes(Level& level, const std::vector<ProbeSource>& sources);
+
+// Gives each named probe or tool its source; scripts are read. Call after spawn.
+Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
+
+// Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch. Says who found nothing to
+// touch and is held where it stands.
+std::vector<std::string> make_orbits(World& world);
+
+// "script:press.csv", "orbit", "mouse", "null": what moves this probe or tool.
+std::string describe_source(const World& world, Entity hand);
+
+}  // namespace pliant

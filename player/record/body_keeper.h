@@ -1,0 +1,34 @@
+// The keeping half of the journal of soft steps: takes rows off the ring and turns them into bodies.csv.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "engine/body_journal.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+class BodyKeeper {
+ public:
+  // `csv` is where the rows go. `journal` outlives it. Names are taken from the world now.
+  static Result<BodyKeeper> create(const World& world, BodyJournal& journal, const std::filesystem::path& csv);
+
+  void keep();      // all rows that wait
+  Status finish();  // closes bodies.csv
+
+ private:
+  explicit BodyKeeper(BodyJournal& journal) : journal_(&journal) {}
+  BodyJournal* journal_;
+  std::filesystem::path path_;
+  std::ofstream csv_;
+  std::string line_;
+  std::vector<BodyRow> rows_;
+  std::vector<std::string> names_;  // of the bodies, quoted for CSV
+};
+
+}  // namespace pliant

@@ -1,0 +1,127 @@
+#include "player/record/keeper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "player/record/csv.h"
+#include "systems/safety/safety.h"
+#include "systems/soft/body/rotation_vector.h"
+
+namespace pliant {
+namespace {
+
+constexpr const char* kColumns =
+    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects";
+constexpr const char* kTorqueColumns = ",tx,ty,tz";  // where there is a tool: only tools make any
+
+std::string name_of(const World& world, Entity entity) {
+  const Name* name = world.registry.find<Name>(entity);
+  return name ? name->value : std::string();
+}
+
+}  // namespace
+
+Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& probes,
+                              const std::vector<std::string>& sources, const std::filesystem::path& csv) {
+  Keeper keeper;
+  keeper.csv_path_ = csv;
+  keeper.csv_.open(csv, std::ios::binary);
+  keeper.torque_ =
+      std::any_of(probes.begin(), probes.end(), [&](Entity hand) { return !world.registry.has<Probe>(hand); });
+  keeper.csv_ << kColumns << (keeper.torque_ ? kTorqueColumns : "") << '\n';
+  if (!keeper.csv_) return Error{csv.string(), "cannot be written; check the space left"};
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    ProbeSummary summary;
+    summary.name = name_of(world, probes[i]);
+    summary.source = sources[i];
+    summary.tool = !world.registry.has<Probe>(probes[i]);
+    keeper.names_.push_back(csv_text(summary.name));
+    keeper.summaries_.push_back(summary);
+  }
+  keeper.traces_.resize(probes.size());
+  keeper.last_.resize(probes.size());
+  keeper.touchable_ = touchable_boxes(world);
+  for (auto [object, deformable] : world.registry.view<Deformable>()) {
+    if (object.index >= keeper.objects_.size()) keeper.objects_.resize(object.index + 1);
+    keeper.objects_[object.index] = csv_text(name_of(world, object));
+  }
+  return keeper;
+}
+
+void Keeper::keep(Journal& journal) {
+  rows_.clear();
+  journal.drain(rows_);
+  for (const TickRow& row : rows_) keep(row);
+  if (bodies_) bodies_->keep();
+}
+
+void Keeper::keep(const TickRow& row) {
+  const ProbeReading& r = row.reading;
+  line_.clear();
+  fmt::format_to(std::back_inserter(line_), "{},{:.9g},{}", row.tick, row.time, names_[row.probe]);
+  put(line_, r.position);
+  line_ += r.in_contact ? ",1," : ",0,";
+  if (r.in_contact && r.object.index < objects_.size()) line_ += objects_[r.object.index];
+  put(line_, r.depth);
+  put(line_, r.height);
+  put(line_, r.normal);
+  put(line_, r.force);
+  put(line_, r.normal_force);
+  put(line_, r.tangential_force);
+  put(line_, row.objects);
+  if (torque_) put(line_, row.torque);
+  line_ += '\n';
+  csv_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
+
+  ProbeSummary& summary = summaries_[row.probe];
+  if (r.in_contact) {
+    ++summary.contact_ticks;
+    summary.max_depth = std::max(summary.max_depth, r.depth);
+  }
+  summary.max_force = std::max(summary.max_force, length(r.force));
+  summary.max_torque = std::max(summary.max_torque, length(row.torque));
+  summary.late_ticks += row.late;
+  summary.stale_ticks += row.stale;
+  Last& last = last_[row.probe];
+  const bool placed = plausible_position(r.position);  // a lost device may say anything
+  // What jumps was not moved by the hand (systems/safety/safety.h).
+  const bool jumped = length(r.position - last.position) > kFastestHand * (row.time - last.time) * (1 + 1e-9);
+  if (last.any && placed && !jumped) {
+    summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
+    const dvec3 torque = last.torque + row.torque;  // only tools make any
+    if (torque != dvec3(0))
+      summary.net_work += 0.5 * dot(torque, vector_of(row.device_rotation * glm::conjugate(last.rotation)));
+  }
+  last = {placed, row.time, r.position, r.force, row.torque, row.device_rotation};
+
+  if (placed && summary.contact_ticks == 0) summary.approach.add(r.position, touchable_);
+
+  traces_[row.probe].add(row.tick, r, row.limited);
+  if (recording_) record(row);
+}
+
+// A full ring may have lost a part of a tick; such a tick is left out.
+void Keeper::record(const TickRow& row) {
+  if (row.probe == 0) {
+    pending_.clear();
+    pending_tick_ = row.tick;
+  }
+  if (row.tick != pending_tick_ || row.probe != pending_.size()) return;
+  pending_.push_back({row.device_position, row.device_rotation, row.device_ready});
+  if (pending_.size() < names_.size()) return;
+  recording_->tick(row.tick);
+  for (const RecordedPose& pose : pending_) recording_->pose(pose);
+}
+
+Status Keeper::finish() {
+  csv_.close();
+  if (!csv_) return Error{csv_path_.string(), "cannot be written to its end; free some space"};
+  if (bodies_)
+    if (Status status = bodies_->finish(); !status) return status;
+  return recording_ ? recording_->finish() : Status(Done{});
+}
+
+}  // namespace pliant

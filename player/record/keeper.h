@@ -1,0 +1,75 @@
+// The keeping half of the journal: takes rows off the ring and turns them into forces.csv, the plot's traces, the
+// figures of the report and, if asked, a recording; with a soft clock, its rows into bodies.csv too.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "engine/journal.h"
+#include "engine/recording.h"
+#include "player/record/body_keeper.h"
+#include "player/record/trace.h"
+#include "player/run/approach.h"
+
+namespace pliant {
+
+struct ProbeSummary {
+  std::string name, source;
+  std::uint64_t contact_ticks = 0;
+  double max_depth = 0.0;         // [m]
+  double max_force = 0.0;         // [N]
+  double max_torque = 0.0;        // [N m] of a tool
+  double net_work = 0.0;          // [J] done by force and torque on the hand: trapezoidal over the ticks
+  Approach approach;              // of a probe, until it touches
+  bool tool = false;              // not a probe
+  std::uint64_t late_ticks = 0;   // of a tool: its contacts were not solved within the tick's budget
+  std::uint64_t stale_ticks = 0;  // of a tool: its model was older than kStaleSteps soft steps
+};
+
+class Keeper {
+ public:
+  // `csv` is where the rows go. Names are taken from the world now.
+  static Result<Keeper> create(const World& world, const std::vector<Entity>& probes,
+                               const std::vector<std::string>& sources, const std::filesystem::path& csv);
+  void record_to(RecordingWriter writer) { recording_.emplace(std::move(writer)); }
+  void keep_bodies(BodyKeeper bodies) { bodies_.emplace(std::move(bodies)); }
+
+  void keep(Journal& journal);                                  // all rows that wait
+  const std::vector<TickRow>& latest() const { return rows_; }  // what the last keep() took
+  Status finish();                                              // closes the files and the recording
+
+  const std::vector<ProbeSummary>& summaries() const { return summaries_; }
+  const std::vector<Trace>& traces() const { return traces_; }
+
+ private:
+  Keeper() = default;
+  void keep(const TickRow& row);
+  void record(const TickRow& row);
+  struct Last {
+    bool any = false;   // with a place that means something
+    double time = 0.0;  // [s]
+    dvec3 position{0}, force{0}, torque{0};
+    dquat rotation{1, 0, 0, 0};
+  };
+  std::filesystem::path csv_path_;
+  std::ofstream csv_;
+  std::string line_;
+  bool torque_ = false;  // forces.csv has its columns
+  std::vector<TickRow> rows_;
+  std::vector<ProbeSummary> summaries_;
+  std::vector<Trace> traces_;
+  std::vector<Last> last_;
+  std::vector<TouchableBox> touchable_;
+  std::vector<std::string> names_;    // of the probes, quoted for CSV
+  std::vector<std::string> objects_;  // by entity index, quoted
+  std::optional<BodyKeeper> bodies_;
+  std::optional<RecordingWriter> recording_;
+  std::uint64_t pending_tick_ = 0;  // whose poses are being gathered: only whole ticks are recorded
+  std::vector<RecordedPose> pending_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,66 @@
+#include "player/record/pen.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#ifdef PLIANT_SANITIZED
+// Fontconfig keeps its configuration, on purpose, until the program ends; the leak sanitizer asks us about it.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libfontconfig\n";
+}
+extern "C" const char* __lsan_default_options() {
+  return "print_suppressions=0";
+}
+#endif
+
+namespace pliant {
+
+Pen::Pen(double width, double height)
+    : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height))),
+      cairo_(cairo_create(surface_)) {
+  color(kPaper);
+  cairo_paint(cairo_);
+}
+Pen::~Pen() {
+  cairo_destroy(cairo_);
+  cairo_surface_destroy(surface_);
+}
+
+void Pen::line(double x0, double y0, double x1, double y1, double width) {
+  cairo_set_line_width(cairo_, width);
+  cairo_move_to(cairo_, x0, y0);
+  cairo_line_to(cairo_, x1, y1);
+  cairo_stroke(cairo_);
+}
+
+double Pen::text(double x, double y, double size, double align, const std::string& words, bool bold) {
+  cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo_, size);
+  cairo_text_extents_t box;
+  cairo_text_extents(cairo_, words.c_str(), &box);
+  cairo_move_to(cairo_, x - align * box.x_advance, y);
+  cairo_show_text(cairo_, words.c_str());
+  return box.x_advance;
+}
+
+void Pen::upright_text(double x, double y, double size, const std::string& words) {
+  cairo_save(cairo_);
+  cairo_translate(cairo_, x, y);
+  cairo_rotate(cairo_, -1.5707963267948966);
+  text(0, 0, size, 0.5, words);
+  cairo_restore(cairo_);
+}
+
+bool Pen::save(const std::filesystem::path& file) {
+  return cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS;
+}
+
+std::string number(double value, double step) {
+  const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+  return fmt::format("{:.{}f}", value, std::min(digits, 9));
+}
+
+}  // namespace pliant

@@ -1,0 +1,210 @@
+#include "player/record/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "player/record/pen.h"
+#include "systems/safety/safety.h"
+
+namespace pliant {
+namespace {
+
+// [pixel]
+constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
+constexpr double kLeft = 84, kRight = 28, kBetween = 100, kAbove = 40, kBelow = 52;
+constexpr double kBand = 6;  // high
+
+struct Panel {
+  double x, y, w, h;     // [pixel] of the plotting area
+  double seconds, high;  // ranges: [0, seconds] and [0, high]
+  double px(double t) const { return x + w * t / seconds; }
+  double py(double v) const { return y + h - h * v / high; }
+};
+
+// Fills the columns that `marked` says yes to, from y on downwards; a stretch is at least a pixel wide.
+template <typename Marked>
+void fill_columns(Pen& pen, const Panel& panel, const Trace& trace, double dt, double y, double h, Marked marked) {
+  const double column = trace.ticks_per_column() * dt;
+  const std::vector<TraceColumn>& columns = trace.columns();
+  for (std::size_t i = 0; i < columns.size();) {
+    std::size_t end = i;
+    while (end < columns.size() && marked(columns[end])) ++end;
+    if (end > i) {
+      const double x0 = panel.px(static_cast<double>(i) * column), x1 = panel.px(static_cast<double>(end) * column);
+      cairo_rectangle(pen.get(), x0, y, std::max(1.0, std::min(x1, panel.x + panel.w) - x0), h);
+      cairo_fill(pen.get());
+    }
+    i = std::max(end, i + 1);
+  }
+}
+
+// Where the probe was in contact, then grid and axes with numbers: what lies under the curves.
+void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, const char* quantity) {
+  pen.color(kContact);
+  fill_columns(pen, panel, trace, dt, panel.y, panel.h, [](const TraceColumn& column) { return column.contact; });
+  const double time_step = tick_step(panel.seconds, 8), value_step = tick_step(panel.high, 5);
+  for (double t = 0; t <= panel.seconds * (1 + 1e-9); t += time_step) {
+    pen.color(kFaint);
+    pen.line(panel.px(t), panel.y, panel.px(t), panel.y + panel.h, 1);
+    pen.color(kInk);
+    pen.text(panel.px(t), panel.y + panel.h + 20, 14, 0.5, number(t, time_step));
+  }
+  for (double v = 0; v <= panel.high * (1 + 1e-9); v += value_step) {
+    pen.color(kFaint);
+    pen.line(panel.x, panel.py(v), panel.x + panel.w, panel.py(v), 1);
+    pen.color(kInk);
+    pen.text(panel.x - 8, panel.py(v) + 5, 14, 1.0, number(v, value_step));
+  }
+  pen.color(kInk);
+  pen.line(panel.x, panel.y, panel.x, panel.y + panel.h, 1.5);
+  pen.line(panel.x, panel.y + panel.h, panel.x + panel.w, panel.y + panel.h, 1.5);
+  pen.text(panel.x + panel.w / 2, panel.y + panel.h + 42, 15, 0.5, "time [s]");
+  pen.upright_text(panel.x - 60, panel.y + panel.h / 2, 15, quantity);
+}
+
+// Through the smallest and the largest value of every column, so that no peak is thinned away.
+void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Range TraceColumn::*quantity, double scale,
+                Color color) {
+  pen.color(color);
+  cairo_set_line_width(pen.get(), 2.2);
+  cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
+  const double column = trace.ticks_per_column() * dt;
+  const std::vector<TraceColumn>& columns = trace.columns();
+  cairo_new_path(pen.get());  // text leaves its end behind as a point to go on from
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].ticks == 0) continue;
+    const double x = panel.px(std::min((static_cast<double>(i) + 0.5) * column, panel.seconds));
+    const Range& range = columns[i].*quantity;
+    cairo_line_to(pen.get(), x, panel.py(static_cast<double>(range.min) * scale));
+    if (range.max > range.min) cairo_line_to(pen.get(), x, panel.py(static_cast<double>(range.max) * scale));
+  }
+  cairo_stroke(pen.get());
+}
+
+struct LegendEntry {
+  Color color;
+  const char* words;
+};
+
+// From right to left; what is shaded shows a box, what is drawn a line.
+void draw_legend(Pen& pen, double right, double y, const std::vector<LegendEntry>& entries) {
+  double x = right;
+  for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
+    pen.color(kInk);
+    x -= pen.text(x, y, 14, 1.0, entry->words) + 8;
+    pen.color(entry->color);
+    if (entry->color == kContact) {
+      cairo_rectangle(pen.get(), x - 26, y - 12, 26, 14);
+      cairo_fill_preserve(pen.get());
+      pen.color(kFaint);
+      cairo_set_line_width(pen.get(), 1);
+      cairo_stroke(pen.get());
+    } else {
+      pen.line(x - 26, y - 5, x, y - 5, 4);
+    }
+    x -= 26 + 22;
+  }
+}
+
+// Thin bands along the time axis, one above the other, where a limit kept the force from what the law says. Adds those
+// that are there to the legend.
+void draw_limits(Pen& pen, const Panel& panel, const Trace& trace, double dt, std::vector<LegendEntry>& legend) {
+  const struct {
+    SafetyLimit limit;
+    LegendEntry entry;
+  } bands[] = {{SafetyLimit::kClipped, {kOrange, "clipped"}}, {SafetyLimit::kWithheld, {kPurple, "withheld"}}};
+  double y = panel.y + panel.h;
+  for (const auto& band : bands) {
+    const auto marked = [&](const TraceColumn& column) { return (column.limited & bit(band.limit)) != 0; };
+    y -= kBand;
+    if (std::none_of(trace.columns().begin(), trace.columns().end(), marked)) continue;
+    pen.color(band.entry.color);
+    fill_columns(pen, panel, trace, dt, y, kBand, marked);
+    legend.push_back(band.entry);
+  }
+}
+
+double largest(const Trace& trace, Range TraceColumn::*quantity) {
+  double most = 0.0;
+  for (const TraceColumn& column : trace.columns())
+    if (column.ticks) most = std::max(most, static_cast<double>((column.*quantity).max));
+  return most;
+}
+
+// Room above the highest value, up to a tick; something to look at where nothing happened.
+double axis_high(double value) {
+  if (!(value > 0.0)) return 1.0;
+  const double step = tick_step(value * 1.05, 5);
+  return step * std::ceil(value * 1.05 / step);
+}
+
+// What the curves of a probe and of a tool mean: a tool's contacts are many, and its normal is their mean push.
+struct Captions {
+  const char *depth_axis, *depth, *normal, *tangential;
+};
+constexpr Captions kProbe{"depth [mm]", "depth", "normal", "tangential"};
+constexpr Captions kTool{"past the handle [mm]", "device past the handle", "along the contacts' mean push", "the rest"};
+
+// One line under the title for what is shown.
+std::string subtitle_of(const std::vector<PlotRow>& rows, std::size_t shown) {
+  if (rows.empty()) return "no probe and no tool";
+  if (rows.size() > shown) return fmt::format("the first {} of {} probes and tools", shown, rows.size());
+  const auto tools =
+      static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const PlotRow& row) { return row.tool; }));
+  const std::string probe = "depth below the undeformed surface", tool = "how far the device is led past the handle";
+  const std::string left = tools == 0 ? probe : tools == rows.size() ? tool : "probes: " + probe + "; tools: " + tool;
+  return left + ", and force on the hand";
+}
+
+void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double dt) {
+  const double w = (kWidth - kLeft - kRight - kBetween) / 2, h = kRow - kAbove - kBelow;
+  Panel depth{kLeft, top + kAbove, w, h, seconds, axis_high(largest(*row.trace, &TraceColumn::depth) * 1e3)};
+  Panel force{
+      kLeft + w + kBetween,
+      top + kAbove,
+      w,
+      h,
+      seconds,
+      axis_high(std::max(largest(*row.trace, &TraceColumn::normal), largest(*row.trace, &TraceColumn::tangential)))};
+  pen.color(kInk);
+  const double name = pen.text(kLeft, top + 28, 18, 0, row.name, true);
+  pen.text(kLeft + name + 14, top + 28, 14, 0, row.source);
+  const Captions& captions = row.tool ? kTool : kProbe;
+  draw_frame(pen, depth, *row.trace, dt, captions.depth_axis);
+  draw_frame(pen, force, *row.trace, dt, "force [N]");
+  std::vector<LegendEntry> force_legend{{kVermilion, captions.normal}, {kGreen, captions.tangential}};
+  draw_limits(pen, force, *row.trace, dt, force_legend);
+  draw_curve(pen, depth, *row.trace, dt, &TraceColumn::depth, 1e3, kBlue);
+  draw_curve(pen, force, *row.trace, dt, &TraceColumn::tangential, 1.0, kGreen);
+  draw_curve(pen, force, *row.trace, dt, &TraceColumn::normal, 1.0, kVermilion);
+  draw_legend(pen, depth.x + depth.w, top + 28, {{kContact, "in contact"}, {kBlue, captions.depth}});
+  draw_legend(pen, force.x + force.w, top + 28, force_legend);
+}
+
+}  // namespace
+
+double tick_step(double high, int most) {
+  if (!(high > 0.0) || !std::isfinite(high)) return 1.0;
+  double step = std::pow(10.0, std::floor(std::log10(high / most)));
+  for (double factor : {1.0, 2.0, 5.0, 10.0})
+    if (high / (step * factor) <= most * (1 + 1e-9)) return step * factor;
+  return step * 10.0;
+}
+
+Status plot_forces(const std::filesystem::path& file, const std::string& title, const std::vector<PlotRow>& rows,
+                   double dt, double seconds) {
+  const std::size_t shown = std::min(rows.size(), kMaxPlotRows);
+  Pen pen(kWidth, kTitle + kRow * static_cast<double>(std::max<std::size_t>(shown, 1)) + kFoot);
+  pen.color(kInk);
+  const double width = pen.text(kLeft, 46, 26, 0, title, true);
+  pen.text(kLeft + width + 20, 46, 16, 0, subtitle_of(rows, shown));
+
+  for (std::size_t i = 0; i < shown && seconds > 0.0; ++i)
+    draw_row(pen, rows[i], kTitle + kRow * static_cast<double>(i), seconds, dt);
+  if (!pen.save(file)) return Error{file.string(), "the plot cannot be written; check the space left"};
+  return Done{};
+}
+
+}  // namespace pliant

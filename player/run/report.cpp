@@ -1,0 +1,179 @@
+#include "player/run/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "components/soft_body.h"
+#include "player/run/tool_words.h"
+#include "systems/soft/soft_state.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json percentiles(const Histogram& histogram, double scale, bool with_p999) {
+  Json json;
+  json["p50"] = histogram.percentile_us(0.5) * scale;
+  json["p99"] = histogram.percentile_us(0.99) * scale;
+  if (with_p999) json["p999"] = histogram.percentile_us(0.999) * scale;
+  json["max"] = histogram.max_us() * scale;
+  return json;
+}
+
+double mean(std::uint64_t sum, std::uint64_t count) {
+  return count ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
+}
+
+Json objects(const RunFigures& figures) {
+  Json list = Json::array();
+  for (const AwakeStats& stats : figures.journal.awake()) {
+    const World& world = figures.world;
+    const Mesh& mesh = world.meshes[world.registry.get<Deformable>(stats.object).mesh];
+    const Name* name = world.registry.find<Name>(stats.object);
+    list.push_back({{"name", name ? name->value : mesh.name},
+                    {"vertices", mesh.vertex_count},
+                    {"triangles", mesh.triangles.size()},
+                    {"zones", mesh.zone_count()},
+                    {"awake_vertices", {{"mean", mean(stats.sum, figures.journal.ticks())}, {"max", stats.max}}}});
+  }
+  return list;
+}
+
+Json names(const World& world, const std::vector<Entity>& entities) {
+  Json list = Json::array();
+  for (const Entity entity : entities) {
+    const Name* name = world.registry.find<Name>(entity);
+    list.push_back(name ? name->value : std::string());
+  }
+  return list;
+}
+
+// How often each limit acted: clipped and withheld always, the others where they did.
+Json limits(const SafetyTally& tally) {
+  Json json;
+  for (std::size_t i = 0; i < kSafetyLimits; ++i) {
+    const auto limit = static_cast<SafetyLimit>(i);
+    const LimitCount& count = tally.of(limit);
+    if (count.ticks > 0 || limit == SafetyLimit::kClipped || limit == SafetyLimit::kWithheld)
+      json[key_of(limit)] = {{"ticks", count.ticks}, {"largest_share", count.largest_share}};
+  }
+  return json;
+}
+
+// What only a tool has.
+Json tool(const World& world, Entity entity, const ProbeSummary& summary) {
+  return {{"tool_force", name_of(world.registry.get<Handle6>(entity).force)},
+          {"max_torque_Nm", summary.max_torque},
+          {"late_ticks", summary.late_ticks},
+          {"stale_ticks", summary.stale_ticks}};
+}
+
+Json probes(const RunFigures& figures) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i) {
+    const ProbeSummary& probe = figures.keeper.summaries()[i];
+    Json entry{{"name", probe.name},
+               {"source", probe.source},
+               {"contact_ticks", probe.contact_ticks},
+               {"max_depth_m", probe.max_depth},
+               {"max_force_N", probe.max_force},
+               {"net_work_J", probe.net_work},
+               {"touched", names(figures.world, figures.journal.touched(figures.journal.probes()[i]))}};
+    if (probe.tool) entry.update(tool(figures.world, figures.journal.probes()[i], probe));
+    const HandSafety safety = find_safety(figures.world, figures.journal.probes()[i]);
+    if (safety.force) entry.update(limits(safety.force->tally));
+    if (safety.torque) entry["torque"] = limits(safety.torque->tally);
+    if (const std::optional<Miss>& miss = figures.misses[i]) entry["missed_by_m"] = miss->distance;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+// Beyond the contract: what each system cost.
+Json systems(const Schedule<World>& schedule) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < schedule.systems().size(); ++i) {
+    Json entry = percentiles(schedule.cost(i), 1.0, true);
+    entry["name"] = schedule.systems()[i].name;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+// Figures of the soft clock.
+Json soft(const SoftClock& clock, const SoftTally& tally) {
+  const SoftFigures& figures = clock.figures();
+  Json json;
+  json["step_ms"] = percentiles(clock.schedule().total(), 1e-3, false);
+  json["steps"] = figures.steps;
+  json["overruns"] = figures.overruns;
+  json["tetrahedra"] = clock.tetrahedra();
+  json["contacts"] = {{"mean", mean(figures.contacts_sum, figures.steps)}, {"max", figures.contacts_max}};
+  json["sweeps"] = mean(figures.sweeps_sum, figures.steps);
+  json["residual"] = std::max(figures.residual_max, tally.residual);
+  json["unconverged"] = tally.unconverged;
+  json["contacts_cut"] = tally.contacts_cut;
+  json["halted"] = tally.halted;
+  json["halted_s"] = tally.halted_for;
+  json["deepest_m"] = tally.deepest;
+  json["began_inside_m"] = tally.began_inside;
+  json["time_lost_s"] = figures.time_lost;
+  json["systems_us"] = systems(clock.schedule());
+  return json;
+}
+
+}  // namespace
+
+std::string report_json(const RunFigures& figures) {
+  static const Histogram none;
+  const FrameFigures* frames = figures.frames;
+  Json json;
+  json["pliant"] = PLIANT_VERSION;
+  json["level"] = figures.world.name;
+  json["mode"] = figures.mode;
+  json["field"] = figures.field;
+  json["rate_hz"] = figures.rate;
+  json["ticks"] = figures.journal.ticks();
+  json["tick_us"] = percentiles(figures.schedule.total(), 1.0, true);
+  json["overruns"] = figures.overruns;
+  json["frame_ms"] = percentiles(frames ? frames->cost() : none, 1e-3, false);
+  json["upload_bytes_per_frame"] = {{"mean", frames ? mean(frames->upload_bytes(), frames->count()) : 0.0},
+                                    {"max", frames ? frames->upload_bytes_max() : 0}};
+  json["objects"] = objects(figures);
+  json["probes"] = probes(figures);
+  if (figures.soft) json["soft"] = soft(*figures.soft, figures.world.soft->tally);
+  json["dropped"] = figures.dropped;
+  json["hash"] = figures.hash;
+  json["systems_us"] = systems(figures.schedule);
+  // Names come from files and may not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void print_summary(const RunFigures& figures, const std::filesystem::path& out) {
+  const Histogram& tick = figures.schedule.total();
+  fmt::print("{}: {} ticks at {} Hz in {}, tick {:.1f} us median, {:.1f} us p99, {} overruns, hash {}\n",
+             figures.world.name, figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5),
+             tick.percentile_us(0.99), figures.overruns, figures.hash);
+  for (const ProbeSummary& probe : figures.keeper.summaries())
+    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm {} and {:.2f} N{}, net work {:.3g} mJ\n",
+               probe.name, probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
+               probe.tool ? "led past the handle" : "deep", probe.max_force,
+               probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
+  if (figures.soft) {
+    const SoftFigures& soft = figures.soft->figures();
+    const Histogram& step = figures.soft->schedule().total();
+    fmt::print(
+        "  soft: {} steps over {} tetrahedra, {:.2f} ms median, {:.2f} ms p99, {} overruns, {:.1f} contacts, at most "
+        "{:.2f} mm into each other\n",
+        soft.steps, figures.soft->tetrahedra(), step.percentile_us(0.5) * 1e-3, step.percentile_us(0.99) * 1e-3,
+        soft.overruns, mean(soft.contacts_sum, soft.steps), figures.world.soft->tally.deepest * 1e3);
+  }
+  fmt::print("{}: report.json, forces.csv, forces.png{}", out.string(), figures.soft ? ", bodies.csv" : "");
+  if (figures.pictures > 0) fmt::print(", {} picture{}", figures.pictures, figures.pictures == 1 ? "" : "s");
+  fmt::print("\n");
+}
+
+}  // namespace pliant

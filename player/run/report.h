@@ -1,0 +1,39 @@
+// report.json, and the few lines a run ends with.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "engine/journal.h"
+#include "engine/soft_clock.h"
+#include "player/record/keeper.h"
+#include "player/run/frames.h"
+#include "runtime/schedule.h"
+
+namespace pliant {
+
+struct RunFigures {
+  const World& world;
+  const Schedule<World>& schedule;
+  const Journal& journal;
+  const Keeper& keeper;
+  const FrameFigures* frames = nullptr;  // of drawing; null: nothing was drawn
+  std::size_t pictures = 0;              // that were written
+  std::string mode;                      // lockstep, realtime
+  std::string field;                     // cpu
+  double rate = 1000.0;                  // [Hz]
+  std::uint64_t overruns = 0;
+  std::vector<std::string> dropped;         // sentences
+  std::string hash;                         // hex
+  const SoftClock* soft = nullptr;          // null: the level has nothing soft or rigid that moves
+  std::vector<std::optional<Miss>> misses;  // of each probe of the journal: nothing where it touched, or no surface is
+};
+
+std::string report_json(const RunFigures& figures);
+void print_summary(const RunFigures& figures, const std::filesystem::path& out);
+
+}  // namespace pliant

@@ -1,0 +1,85 @@
+#include "player/run/tool_words.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "systems/soft/soft_state.h"
+#include "systems/tool/tool_touch_state.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kSaidResidual = 1e-4;  // [m/s] what creeps more slowly, nobody sees
+constexpr double kSaidLoss = 0.02;      // [1] of the run: less is lost while a first step tries which solver is fastest
+constexpr std::array<const char*, 3> kForces{"held", "linear", "contacts"};  // in the order of ToolForce
+
+std::string name_of(const World& world, std::uint32_t body) {
+  const Entity entity = world.soft->bodies[body]->entity;
+  const Name* name = world.registry.find<Name>(entity);
+  return name ? "`" + name->value + "`" : fmt::format("body {}", body);
+}
+
+std::string count(std::uint64_t n, const char* what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+}  // namespace
+
+const char* name_of(ToolForce force) {
+  return kForces[static_cast<std::size_t>(force)];
+}
+
+std::optional<ToolForce> tool_force_of(const std::string& name) {
+  for (std::size_t i = 0; i < kForces.size(); ++i)
+    if (name == kForces[i]) return static_cast<ToolForce>(i);
+  return std::nullopt;
+}
+
+std::vector<std::string> explain_tool(const World& world, const ProbeSummary& summary) {
+  std::vector<std::string> sentences;
+  if (summary.late_ticks > 0)
+    sentences.push_back(fmt::format(
+        "tool `{}`: its contacts were not solved in time in {}, and the linear model took over where {} in a row were "
+        "late; lower --rate, or take --tool-force linear",
+        summary.name, count(summary.late_ticks, "tick"), kLateTicks));
+  if (summary.stale_ticks > 0)
+    sentences.push_back(fmt::format(
+        "tool `{}`: in {} its model was older than {:g} soft steps ({:.3g} s), so its force faded; lower "
+        "--rate, make its `cell` larger, or make soft_step longer",
+        summary.name, count(summary.stale_ticks, "tick"), kStaleSteps, kStaleSteps * world.simulation.soft_step));
+  return sentences;
+}
+
+std::vector<std::string> explain_soft_steps(const World& world, const SoftFigures& figures) {
+  std::vector<std::string> sentences;
+  const SoftTally& tally = world.soft->tally;
+  if (tally.contacts_cut > 0)
+    sentences.push_back(
+        fmt::format("{} left out of soft steps because a limit was reached; press with less of a surface at once, or "
+                    "use coarser meshes where bodies touch",
+                    count(tally.contacts_cut, "contact") + (tally.contacts_cut == 1 ? " was" : " were")));
+  if (tally.began_inside > 0.0)
+    sentences.push_back(
+        fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart; move one of them in the level",
+                    name_of(world, tally.inside_a), name_of(world, tally.inside_b), tally.began_inside * 1e3));
+  if (tally.halted_for > 0.0)
+    sentences.push_back(
+        fmt::format("bodies stood still for {:.3g} s in soft steps that would have taken them through each other; make "
+                    "soft_step shorter, or press more slowly",
+                    tally.halted_for));
+  if (tally.unconverged > 0 && tally.residual > kSaidResidual)
+    sentences.push_back(
+        fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "
+                    "creep; make soft_step shorter, or keep masses and stiffnesses of what touches closer together",
+                    tally.unconverged, count(figures.steps, "soft step"), tally.residual));
+  const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] at least
+  if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))
+    sentences.push_back(fmt::format(
+        "the soft clock did not keep up: bodies are {:.2f} s behind after {} of {:g} s; make `cell` larger or "
+        "soft_step longer, or leave out --realtime",
+        figures.time_lost, count(figures.steps, "step"), world.simulation.soft_step));
+  return sentences;
+}
+
+}  // namespace pliant

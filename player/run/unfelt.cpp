@@ -1,0 +1,90 @@
+#include "player/run/unfelt.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "components/soft_body.h"
+#include "systems/device/hands.h"
+
+namespace pliant {
+namespace {
+
+constexpr float kNear = 0.1f;      // [1] of a surface's diagonal: a path that comes so near means to touch it
+constexpr std::size_t kNamed = 5;  // bodies that the sentence names
+
+struct Body {
+  std::string name;
+  Pose pose;
+  Box box;  // [m] object frame
+};
+
+std::string name_of(const World& world, Entity entity) {
+  const Name* name = world.registry.find<Name>(entity);
+  return name ? name->value : std::string();
+}
+
+// Soft and rigid bodies that are no tools.
+std::vector<Body> bodies(const World& world) {
+  std::vector<Body> list;
+  for (auto [entity, body, pose] : world.registry.view<SoftBody, Pose>())
+    if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) && body.skin.valid())
+      list.push_back({name_of(world, entity), pose, world.meshes[body.skin].box});
+  for (auto [entity, body, pose] : world.registry.view<RigidBody, Pose>())
+    if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) && body.skin.valid())
+      list.push_back({name_of(world, entity), pose, world.meshes[body.skin].box});
+  return list;
+}
+
+std::vector<Body> surfaces(const World& world) {
+  std::vector<Body> list;
+  for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
+    Box box = world.meshes[deformable.mesh].box;
+    const vec3 margin(kNear * box.diagonal());
+    box.min -= margin;
+    box.max += margin;
+    list.push_back({name_of(world, entity), pose, box});
+  }
+  return list;
+}
+
+bool inside(const Body& body, dvec3 x, double radius) {
+  const dvec3 local = body.pose.to_local(x);
+  for (int i = 0; i < 3; ++i)
+    if (local[i] < static_cast<double>(body.box.min[i]) - radius ||
+        local[i] > static_cast<double>(body.box.max[i]) + radius)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+std::optional<std::string> unfelt_bodies(const World& world) {
+  const std::vector<Body> felt = surfaces(world), unfelt = bodies(world);
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (auto [entity, probe] : world.registry.view<Probe>()) {
+    if (probe.meets != ProbeMeets::kSurfaces) continue;
+    if (felt.empty())
+      for (const Body& body : unfelt) add(body.name);
+    const HapticDevice* device = find_device(world, entity);
+    if (!device || !device->path.valid()) continue;
+    const std::vector<PathRow>& rows = world.paths[device->path].rows;
+    const auto enters = [&](const Body& body) {
+      return std::any_of(rows.begin(), rows.end(),
+                         [&](const PathRow& row) { return inside(body, row.position, probe.radius); });
+    };
+    if (std::any_of(felt.begin(), felt.end(), enters)) continue;
+    for (const Body& body : unfelt)
+      if (enters(body)) add(body.name);
+  }
+  if (names.empty()) return {};
+  std::string list;
+  for (std::size_t i = 0; i < names.size() && i < kNamed; ++i) list += (i ? ", `" : "`") + names[i] + "`";
+  if (names.size() > kNamed) list += ", ...";
+  return "probes whose PLIANT_probe/meets is `surfaces` pass through soft and rigid bodies (here " + list +
+         "); set it to `all` or `bodies` where they shall be felt";
+}
+
+}  // namespace pliant

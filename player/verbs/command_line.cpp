@@ -1,0 +1,227 @@
+#include "player/verbs/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "player/exit.h"
+#include "player/study/study.h"
+#include "player/verbs/unit.h"
+#include "player/verbs/verbs.h"
+
+namespace pliant {
+namespace {
+
+// Finite, and within [low, high]; the sentence says the range.
+CLI::Validator within(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) -> std::string {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= low && value <= high) return {};
+        return "must be between " + CLI::detail::to_string(low) + " and " + CLI::detail::to_string(high) + "; got '" +
+               text + "'";
+      },
+      "");
+}
+
+// One of these words; the sentence lists them.
+CLI::Validator one_of(std::vector<std::string> words) {
+  return CLI::Validator(
+      [words](std::string& text) -> std::string {
+        std::string all;
+        for (const std::string& word : words) {
+          if (text == word) return {};
+          all += (all.empty() ? "" : ", ") + word;
+        }
+        return "must be one of " + all + "; got '" + text + "'";
+      },
+      "");
+}
+
+// A variable of the shell that was not set: the demo level is not meant.
+CLI::Validator named() {
+  return CLI::Validator([](std::string& text) { return std::string(text.empty() ? "its name is empty" : ""); }, "");
+}
+
+// "960x540" -> width, height.
+std::string parse_size(const std::string& text, RunOptions& run) {
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%n", &run.width, &run.height, &used) != 2 ||
+      static_cast<std::size_t>(used) != text.size() || run.width < 16 || run.height < 16 || run.width > 8192 ||
+      run.height > 8192)
+    return "--size: must be WxH with both between 16 and 8192, such as 960x540; got '" + text + "'";
+  run.sized = true;
+  return {};
+}
+
+// --unit of `run` and of `convert`.
+void add_unit(CLI::App* verb, double& unit, const char* what) {
+  verb->add_option_function<std::string>(
+          "--unit",
+          [&unit](const std::string& text) {
+            const auto metres = parse_unit(text);
+            if (!metres) throw CLI::ValidationError(metres.error().where + " " + metres.error().what);
+            unit = *metres;
+          },
+          what)
+      ->type_name("m|cm|mm|in|METRES");
+}
+
+void add_run(CLI::App& app, RunOptions& run) {
+  CLI::App* verb = app.add_subcommand("run", "run a level or touch a bare mesh; writes forces, plot, pictures, report");
+  verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)");
+  verb->add_option("--probe", run.probes, "NAME=SOURCE: script:FILE.csv, orbit, mouse, device:ID; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--set", run.sets, "NODE.EXT.KEY=VALUE for this run; NODE may be *; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_unit(verb, run.unit, "what one unit of a bare mesh is (m)");
+  verb->add_option("--seconds", run.seconds, "how long [s]; default: the longest script, at most 60, else 4")
+      ->check(within(1e-4, 86400.0));
+  verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")->check(within(10.0, 20000.0));
+  CLI::Option* lockstep =
+      verb->add_flag("--lockstep", run.lockstep, "virtual time, the same bits every time (default without a window)");
+  verb->add_flag("--realtime", run.realtime, "run the clocks; overruns are counted")->excludes(lockstep);
+  verb->add_option("--field", run.field, "where the surface is computed: auto, cpu, gpu")
+      ->check(one_of({"auto", "cpu", "gpu"}));
+  verb->add_option("--tool-force", run.tool_force,
+                   "how every tool's force is made: held, linear, contacts; default: each tool's key")
+      ->check(one_of({"held", "linear", "contacts"}));
+  verb->add_option("--out", run.out, "folder for what is written; default: out/<level name>");
+  CLI::Option* frames =
+      verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: none")->check(within(0, 9999));
+  verb->add_option("--fps", run.fps, "pictures per simulated second instead")
+      ->check(within(1e-3, 1000))
+      ->excludes(frames);
+  verb->add_option_function<std::string>(
+      "--size",
+      [&run](const std::string& text) {
+        if (const std::string wrong = parse_size(text, run); !wrong.empty()) throw CLI::ValidationError(wrong);
+      },
+      "of the pictures and the window, WxH (960x540, 1280x720)");
+  CLI::Option* headless = verb->add_flag("--headless", run.headless, "no window (default where there is no display)");
+  verb->add_flag("--window", run.window, "in a window (default where there is a display)")
+      ->excludes(headless)
+      ->excludes(lockstep);
+  verb->add_option("--input", run.input, "events for the window from a CSV file")->group("");  // docs/cli.md
+  verb->add_option("--record", run.record, "write every probe's pose per tick to FILE");
+  verb->add_option("--replay", run.replay, "move the probes as FILE says, in lockstep");
+  verb->add_option("--threads", run.threads, "threads for loading and preparing; 0: all")->check(within(0, 1024));
+  verb->footer(
+      "Examples:\n"
+      "  pliant run\n"
+      "  pliant run organ.glb --probe finger=orbit --set '*.deformable.stiffness=500' --frames 4\n"
+      "  pliant run scan_in_millimetres.stl --unit mm\n"
+      "  pliant run level.gltf --probe tip=script:press.csv --record press.pose --out out/press");
+}
+
+void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, ConvertOptions& conversion,
+               std::string& validated) {
+  CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
+  verb->add_option("file", inspected, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
+  verb->add_flag("--json", inspect_json, "as JSON");
+  verb->footer("Example:\n  pliant inspect organ.glb");
+
+  verb = app.add_subcommand("convert", "any mesh format to glTF or GLB; an EXR panorama to a cube map preview (PNG)");
+  verb->add_option("in", conversion.in, "what to read")->required()->check(named());
+  verb->add_option("out", conversion.out, "what to write: .glb, .gltf, or .png for a panorama")
+      ->required()
+      ->check(named());
+  verb->add_option("--draco", conversion.draco_bits, "compress with this many bits per position (8 to 24)")
+      ->check(within(8, 24));
+  verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
+  add_unit(verb, conversion.unit, "what one unit of the input is (m)");
+  verb->footer(
+      "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
+
+  verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
+  verb->add_option("level", validated, "level")->required()->check(named());
+  verb->footer("Example:\n  pliant validate level.gltf");
+}
+
+void add_study(CLI::App& app, StudyOptions& options) {
+  CLI::App* verb = app.add_subcommand("study", "speed against error: figures, data and a plot");
+  CLI::Option* name = verb->add_option("name", options.name, "of a study, or all");
+  CLI::Option* list = verb->add_flag("--list", options.list, "which studies there are");
+  verb->add_option("--out", options.out, "folder for what is written; default: out/study");
+  verb->add_flag("--quick", options.quick, "a shorter run, for a look");
+  name->excludes(list);
+  verb->footer("Example:\n  pliant study all --quick");
+}
+
+// Verbs that are promised and not there yet: whatever they are given, they say so.
+void add_not_yet(CLI::App& app, const char* name, const char* what, const char* footer) {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->allow_extras()->prefix_command(false);
+  verb->footer(footer);
+}
+
+// CLI11 says some things over several lines; ours are one sentence that says where to read more.
+Error usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  std::string where = "arguments", help = "pliant --help";
+  for (const CLI::App* verb : app.get_subcommands()) {
+    where = verb->get_name();
+    help = "pliant " + where + " --help";
+  }
+  std::string what = error.what();
+  what = what.substr(0, what.find('\n'));
+  while (!what.empty() && (what.back() == '.' || what.back() == ' ')) what.pop_back();
+  return {where, what + "; see `" + help + "`"};
+}
+
+int parse_and_run(int argc, const char* const* argv) {
+  CLI::App app{"Pliant: touch soft things, feel the force at 1 kHz", "pliant"};
+  app.set_version_flag("--version", "pliant " PLIANT_VERSION);
+  app.require_subcommand(1);
+  app.footer("Examples:\n  pliant run\n  pliant inspect organ.glb\n  pliant run --help");
+
+  RunOptions run_options;
+  ConvertOptions conversion;
+  std::string inspected, validated;
+  bool inspect_json = false, devices_json = false;
+  add_run(app, run_options);
+  add_files(app, inspected, inspect_json, conversion, validated);
+  CLI::App* verb = app.add_subcommand("devices", "haptic and pointing devices found, and how to use each");
+  verb->add_flag("--json", devices_json, "as JSON");
+  verb->footer("Example:\n  pliant devices --json");
+  StudyOptions study_options;
+  add_study(app, study_options);
+  add_not_yet(app, "edit", "the editor (not yet built)", "Example:\n  pliant edit level.gltf");
+
+  const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+  const auto is_asked = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && std::none_of(verbs.begin(), verbs.end(), is_asked))
+    return fail(kUsage, {"arguments", std::string("unknown verb '") + argv[1] + "'; see `pliant --help`"});
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return fail(kUsage, usage_error(app, error));
+  }
+  const std::string name = app.get_subcommands().front()->get_name();
+  if (name == "run") return run(run_options);
+  if (name == "inspect") return inspect(inspected, inspect_json);
+  if (name == "convert") return convert(conversion);
+  if (name == "validate") return validate(validated);
+  if (name == "devices") return devices(devices_json);
+  if (name == "study") return study(study_options);
+  return fail(kUsage, {name, "not yet built; see `pliant --help` for what is"});
+}
+
+}  // namespace
+
+int command_line(int argc, const char* const* argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return fail(kFailed, {"memory", "there is not enough for this input; use a smaller one"});
+  } catch (const std::exception& error) {  // a library's, that nobody below expected
+    return fail(kFailed, {"pliant", std::string(error.what()) + "; please report this input"});
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,35 @@
+#include "player/verbs/content_folder.h"
+
+#include <cstdlib>
+
+namespace pliant {
+namespace fs = std::filesystem;
+namespace {
+constexpr const char* kDemoLevel = "three_probes";
+}
+
+fs::path content_folder() {
+  if (const char* told = std::getenv("PLIANT_CONTENT"); told && *told) return told;
+  std::error_code no;
+  const fs::path self = fs::read_symlink("/proc/self/exe", no);
+  const fs::path installed = self.parent_path().parent_path() / "share" / "pliant" / "content";
+  return fs::is_directory(installed, no) ? installed : fs::path(PLIANT_CONTENT_DIR);
+}
+
+Result<fs::path> find_level(const std::string& argument) {
+  std::error_code no;
+  if (fs::is_regular_file(argument, no)) return fs::path(argument);
+  if (fs::is_directory(argument, no)) return Error{argument, "is a folder; give the file in it"};
+  if (fs::exists(argument, no)) return Error{argument, "is no regular file; save it as one first"};
+  const std::string name = argument.empty() ? kDemoLevel : argument;
+  if (name.find('/') == std::string::npos) {
+    const fs::path levels = content_folder() / "levels";
+    for (const char* extension : {".gltf", ".glb"})
+      if (const fs::path file = levels / (name + extension); fs::is_regular_file(file, no)) return file;
+    if (argument.empty())
+      return Error{levels.string(), "the demo level is not there; set PLIANT_CONTENT to the folder that holds levels/"};
+  }
+  return Error{argument, "there is no such file and no shipped level of that name; check the path"};
+}
+
+}  // namespace pliant

@@ -1,0 +1,115 @@
+// pliant convert: any mesh format to glTF or GLB; an EXR panorama to a picture of its cube map.
+#include <fmt/format.h>
+
+#include <set>
+#include <string>
+
+#include "content/files/exr.h"
+#include "content/files/file_io.h"
+#include "content/files/image.h"
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
+#include "player/exit.h"
+#include "player/verbs/panorama_preview.h"
+#include "player/verbs/unit.h"
+#include "player/verbs/verbs.h"
+
+namespace pliant {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint32_t kPreviewFace = 256;  // [pixel] side of a cube face
+
+std::string lower_extension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+// The drawn half of a built mesh, back as primitives: welded, without degenerate triangles, in spatial order.
+LevelMesh from_built(const BuiltMesh& built, const LevelMesh& source) {
+  LevelMesh mesh{source.name, {}};
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  for (const DrawPart& part : built.draw.parts) {
+    Primitive out;
+    out.material = part.material;
+    std::vector<std::uint32_t> number(built.draw.vertices.size(), kUnused);
+    for (std::uint32_t i = part.first_index; i < part.first_index + part.index_count; ++i) {
+      const std::uint32_t old = built.draw.indices[i];
+      if (number[old] == kUnused) {
+        number[old] = static_cast<std::uint32_t>(out.position.size());
+        const DrawVertex& v = built.draw.vertices[old];
+        out.position.push_back(v.position);
+        out.normal.push_back(v.normal);
+        out.tangent.push_back(v.tangent);
+        out.uv.push_back(v.uv);
+        if (!built.mesh.stiffness_factor.empty()) out.stiffness.push_back(built.mesh.stiffness_factor[v.touch_vertex]);
+        if (!built.mesh.friction_factor.empty()) out.friction.push_back(built.mesh.friction_factor[v.touch_vertex]);
+        if (!built.mesh.damping_factor.empty()) out.damping.push_back(built.mesh.damping_factor[v.touch_vertex]);
+        if (!built.mesh.relaxation_factor.empty())
+          out.relaxation.push_back(built.mesh.relaxation_factor[v.touch_vertex]);
+        if (!built.pinned.empty()) out.pinned.push_back(built.pinned[v.touch_vertex]);
+        if (!built.handle.empty()) out.handle.push_back(built.handle[v.touch_vertex]);
+      }
+      out.index.push_back(number[old]);
+    }
+    if (!out.index.empty()) mesh.primitives.push_back(std::move(out));
+  }
+  return mesh;
+}
+
+Status reorder(Level& level) {
+  level.source.reset();  // the document it came from holds the meshes in their old order
+  // What is only drawn keeps its winding: a room is seen from within.
+  std::set<std::ptrdiff_t> touched;
+  for (const LevelNode& node : level.nodes)
+    if (!level.has_pliant() || node.deformable || node.rigid_body || node.soft_body) touched.insert(node.mesh);
+  for (LevelMesh& mesh : level.meshes) {
+    if (mesh.primitives.empty()) continue;
+    MeshOptions as_touched;
+    as_touched.mend_winding = touched.count(&mesh - level.meshes.data()) != 0;
+    auto built = build_mesh(mesh.name, mesh.primitives, mat4(1), as_touched);
+    if (!built) return built.error();
+    mesh = from_built(*built, mesh);
+  }
+  return Done{};
+}
+
+int convert_panorama(const ConvertOptions& options) {
+  if (lower_extension(options.out) != ".png")
+    return fail(kUsage, {options.out, "a panorama becomes a picture of its cube map; end the name with .png"});
+  const auto panorama = load_panorama(options.in);
+  if (!panorama) return fail(kFailed, panorama.error());
+  const Image image = cube_cross(*panorama, kPreviewFace);
+  if (const Status s = write_file(options.out, encode_png(image.width, image.height, image.rgba.data())); !s)
+    return fail(kFailed, s.error());
+  fmt::print("{}: {} x {} pixels, a cross of six faces of {}\n", options.out, image.width, image.height, kPreviewFace);
+  return kDone;
+}
+
+}  // namespace
+
+int convert(const ConvertOptions& options) {
+  if (lower_extension(options.in) == ".exr") return convert_panorama(options);
+  const std::string extension = lower_extension(options.out);
+  if (extension != ".gltf" && extension != ".glb")
+    return fail(kUsage, {options.out, "meshes are written as glTF; end the name with .glb or .gltf"});
+  auto level = load_level(options.in);
+  if (!level) return fail(kFailed, level.error());
+  for (const std::string& sentence : level->notes) note(sentence);
+  scale_roots(*level, options.unit);
+  if (options.reorder)
+    if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
+  if (const Status s = save_level(*level, options.out, SaveOptions{options.draco_bits}); !s)
+    return fail(kFailed, s.error());
+
+  std::size_t triangles = 0;
+  for (const LevelMesh& mesh : level->meshes)
+    for (const Primitive& primitive : mesh.primitives) triangles += primitive.index.size() / 3;
+  std::error_code ignored;
+  fmt::print("{}: {} meshes, {} triangles, {} bytes\n", options.out, level->meshes.size(), triangles,
+             fs::file_size(options.out, ignored));
+  return kDone;
+}
+
+}  // namespace pliant

@@ -1,0 +1,237 @@
+// pliant inspect: what is in a file, whether it can be touched, and what is wrong with it.
+#include <fmt/format.h>
+
+#include <bit>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
+#include "content/tets/tet_file.h"
+#include "player/exit.h"
+#include "player/run/tool_words.h"
+#include "player/verbs/content_folder.h"
+#include "player/verbs/inspect_panorama.h"
+#include "player/verbs/inspect_tets.h"
+#include "player/verbs/unit.h"
+#include "player/verbs/verbs.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// One node with a mesh, as it would be touched: in world scale, welded and cleaned.
+struct ObjectReport {
+  std::string name;
+  bool deformable = false;
+  std::size_t file_vertices = 0, file_triangles = 0;
+  std::string refused;  // why it cannot be touched; empty: it can
+  Mesh mesh;
+  MeshReport report;
+  Box box;  // [m] world
+};
+
+std::vector<ObjectReport> inspect_objects(const Level& level) {
+  std::vector<ObjectReport> objects;
+  const std::vector<mat4> world = world_matrices(level);
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (node.mesh < 0 || !node.in_scene) continue;
+    const LevelMesh& source = level.meshes[static_cast<std::size_t>(node.mesh)];
+    ObjectReport object;
+    object.name = node.name.empty() ? source.name : node.name;
+    object.deformable = node.deformable.has_value();
+    for (const Primitive& primitive : source.primitives) {
+      object.file_vertices += primitive.position.size();
+      object.file_triangles += primitive.index.size() / 3;
+    }
+    // A room that is only drawn is seen from within.
+    const bool touched = !level.has_pliant() || node.deformable || node.rigid_body || node.soft_body;
+    auto built = build_mesh(object.name, source.primitives, world[i],
+                            {node.deformable ? node.deformable->crease_angle : 0.0, std::nullopt, touched});
+    if (built) {
+      object.mesh = std::move(built->mesh);
+      object.report = built->report;
+      object.box = object.mesh.box;
+    } else {
+      object.refused = built.error().what;
+    }
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
+std::vector<std::string> problems(const ObjectReport& object) {
+  std::vector<std::string> list;
+  const auto add = [&](std::uint32_t count, const char* one, const char* many, const char* cure) {
+    if (count) list.push_back(fmt::format("{} {}; {}", count, count == 1 ? one : many, cure));
+  };
+  if (!object.refused.empty()) list.push_back(object.refused);
+  const MeshReport& r = object.report;
+  add(r.degenerate_triangles, "degenerate triangle", "degenerate triangles", "dropped");
+  add(r.duplicate_triangles, "duplicate triangle", "duplicate triangles", "dropped");
+  add(r.border_edges, "border edge", "border edges",
+      "the surface is open there: it can be touched, but does not enclose a volume");
+  add(r.non_manifold_edges, "non-manifold edge", "non-manifold edges",
+      "more than two triangles, or two of opposite orientation, meet there");
+  if (const std::string turned = winding_note(r); !turned.empty()) list.push_back(turned);
+  if (const std::string doubt = winding_doubt(r); !doubt.empty()) list.push_back(doubt);
+  if (r.made_normals) list.push_back("no normals in the file; made from the faces");
+  return list;
+}
+
+// Every crease is there from both sides.
+std::size_t count_creases(const Mesh& mesh) {
+  std::size_t sides = 0;
+  for (const std::uint8_t edges : mesh.crease) sides += static_cast<std::size_t>(std::popcount(edges));
+  return sides / 2;
+}
+
+Json to_json(const Box& box) {
+  if (box.empty()) return nullptr;
+  return {{"min", {box.min.x, box.min.y, box.min.z}}, {"max", {box.max.x, box.max.y, box.max.z}}};
+}
+
+Json describe_tools(const Level& level) {
+  Json list = Json::array();
+  for (const LevelNode& node : level.nodes)
+    if (node.handle)
+      list.push_back({{"name", node.name}, {"device", node.handle->device}, {"force", name_of(node.handle->force)}});
+  return list;
+}
+
+// The whole answer once, as JSON; the text form reads from it.
+Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
+  Json json;
+  Box box;
+  std::size_t triangles = 0, vertices = 0;
+  Json list = Json::array();
+  bool touchable = false;
+  for (const ObjectReport& object : objects) {
+    box.add(object.box);
+    triangles += object.file_triangles;
+    vertices += object.file_vertices;
+    touchable = touchable || object.refused.empty();
+    list.push_back({{"name", object.name},
+                    {"deformable", object.deformable},
+                    {"file_vertices", object.file_vertices},
+                    {"file_triangles", object.file_triangles},
+                    {"vertices", object.mesh.vertex_count},
+                    {"triangles", object.mesh.triangles.size()},
+                    {"zones", object.mesh.zone_count()},
+                    {"closed", object.mesh.closed},
+                    {"mean_edge_m", object.mesh.mean_edge},
+                    {"welded_vertices", object.report.welded_vertices},
+                    {"degenerate_triangles", object.report.degenerate_triangles},
+                    {"duplicate_triangles", object.report.duplicate_triangles},
+                    {"border_edges", object.report.border_edges},
+                    {"non_manifold_edges", object.report.non_manifold_edges},
+                    {"turned_triangles", object.report.turned_triangles},
+                    {"turned_parts", object.report.turned_parts},
+                    {"unorientable_parts", object.report.unorientable_parts},
+                    {"undecided_parts", object.report.undecided_parts},
+                    {"creases", count_creases(object.mesh)},
+                    {"bounds_m", to_json(object.box)},
+                    {"problems", problems(object)}});
+  }
+  std::vector<std::string> probes, devices;
+  std::set<std::string> extensions;
+  for (const LevelNode& node : level.nodes) {
+    if (node.probe || node.handle) probes.push_back(node.name);
+    if (node.device) devices.push_back(node.name);
+    if (node.deformable) extensions.insert("PLIANT_deformable");
+    if (node.probe) extensions.insert("PLIANT_probe");
+    if (node.device) extensions.insert("PLIANT_haptic_device");
+    if (node.soft_body) extensions.insert("PLIANT_soft_body");
+    if (node.handle) extensions.insert("PLIANT_handle");
+    if (node.rigid_body) extensions.insert("PLIANT_rigid_body");
+    if (node.motion) extensions.insert("PLIANT_motion");
+  }
+  if (level.environment) extensions.insert("PLIANT_environment");
+
+  json["file"] = level.path.string();
+  json["nodes"] = level.nodes.size();
+  json["meshes"] = level.meshes.size();
+  json["vertices"] = vertices;
+  json["triangles"] = triangles;
+  json["materials"] = level.materials.size();
+  json["images"] = level.images.size();
+  json["extensions"] = extensions;
+  json["probes"] = probes;
+  json["devices"] = devices;
+  json["tools"] = describe_tools(level);
+  json["bounds_m"] = to_json(box);
+  json["unit_hint"] = unit_hint(box);
+  json["touchable"] = touchable;
+  json["bare_mesh"] = !level.has_pliant();
+  json["objects"] = list;
+  json["flesh"] = describe_flesh(level);
+  json["notes"] = level.notes;
+  return json;
+}
+
+std::string join(const Json& list) {
+  std::string text;
+  for (const Json& item : list) text += (text.empty() ? "" : ", ") + item.get<std::string>();
+  return text.empty() ? "none" : text;
+}
+
+void print(const Json& json, const Box& box) {
+  fmt::print("{}\n", json["file"].get<std::string>());
+  fmt::print("  {} nodes, {} meshes, {} triangles, {} vertices, {} materials, {} images\n",
+             json["nodes"].get<std::size_t>(), json["meshes"].get<std::size_t>(), json["triangles"].get<std::size_t>(),
+             json["vertices"].get<std::size_t>(), json["materials"].get<std::size_t>(),
+             json["images"].get<std::size_t>());
+  fmt::print("  extensions: {}\n  probes: {}\n  devices: {}\n", join(json["extensions"]), join(json["probes"]),
+             join(json["devices"]));
+  if (!box.empty())
+    fmt::print("  bounds: {:.4g} x {:.4g} x {:.4g} m about ({:.4g}, {:.4g}, {:.4g})\n", box.size().x, box.size().y,
+               box.size().z, box.center().x, box.center().y, box.center().z);
+  if (const std::string hint = json["unit_hint"]; !hint.empty()) fmt::print("  unit: {}\n", hint);
+  for (const Json& object : json["objects"]) {
+    fmt::print("  object {}: {} vertices (of {}), {} triangles (of {}), {} zones, {}{}\n",
+               object["name"].get<std::string>(), object["vertices"].get<std::size_t>(),
+               object["file_vertices"].get<std::size_t>(), object["triangles"].get<std::size_t>(),
+               object["file_triangles"].get<std::size_t>(), object["zones"].get<std::size_t>(),
+               object["closed"].get<bool>() ? "closed" : "open",
+               object["deformable"].get<bool>() ? ", deformable" : "");
+    for (const Json& problem : object["problems"]) fmt::print("    {}\n", problem.get<std::string>());
+  }
+  for (const Json& tool : json["tools"]) {
+    const std::string device = tool["device"];
+    fmt::print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),
+               device.empty() ? "no device" : "device " + device, tool["force"].get<std::string>());
+  }
+  print_flesh(json["flesh"]);
+  for (const Json& sentence : json["notes"]) fmt::print("  note: {}\n", sentence.get<std::string>());
+  if (!json["touchable"].get<bool>())
+    fmt::print("  cannot be touched: there is no triangle in the scene that is shown\n");
+  else if (json["bare_mesh"].get<bool>())
+    fmt::print("  can be touched as it is, with defaults sized to its bounds: `pliant run FILE`\n");
+  else
+    fmt::print("  can be touched: `pliant run FILE`\n");
+}
+
+}  // namespace
+
+int inspect(const std::string& file, bool as_json) {
+  const auto path = find_level(file);
+  if (!path) return fail(kFailed, path.error());
+  if (is_tet_file(*path)) return inspect_tets(*path, as_json);
+  if (is_panorama_file(*path)) return inspect_panorama(*path, as_json);
+  const auto level = load_level(*path);
+  if (!level) return fail(kFailed, level.error());
+  const std::vector<ObjectReport> objects = inspect_objects(*level);
+  const Json json = describe(*level, objects);
+  if (as_json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    return kDone;
+  }
+  Box box;
+  for (const ObjectReport& object : objects) box.add(object.box);
+  print(json, box);
+  return kDone;
+}
+
+}  // namespace pliant

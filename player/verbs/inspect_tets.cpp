@@ -1,0 +1,107 @@
+#include "player/verbs/inspect_tets.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "content/level/spawn_soft.h"
+#include "content/level_file.h"
+#include "content/tets/tet_boundary.h"
+#include "content/tets/tet_file.h"
+#include "content/tets/tet_parts.h"
+#include "content/tets/tet_quality.h"
+#include "player/exit.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+Json describe(const TetMesh& mesh) {
+  Box box;
+  for (const dvec3& p : mesh.nodes) box.add(vec3(p));
+  const auto corner = [](vec3 p) { return Json::array({p.x, p.y, p.z}); };
+  return {{"name", mesh.name},
+          {"nodes", mesh.node_count()},
+          {"handle_nodes", mesh.handle_count},
+          {"pinned_nodes", mesh.node_count() - mesh.pinned_begin()},
+          {"tetrahedra", mesh.tets.size()},
+          {"boundary_triangles", boundary_triangles(mesh.tets).size()},
+          {"parts", count_parts(mesh)},
+          {"volume_m3", total_volume(mesh)},
+          {"smallest_dihedral_deg", mesh.quality.smallest_dihedral * kDegrees},
+          {"largest_dihedral_deg", mesh.quality.largest_dihedral * kDegrees},
+          {"worst_ratio", mesh.quality.worst_ratio},
+          {"median_ratio", mesh.quality.median_ratio},
+          {"bounds_m", {{"min", corner(box.min)}, {"max", corner(box.max)}}}};
+}
+
+}  // namespace
+
+Json describe_flesh(const Level& level) {
+  Json list = Json::array();
+  bool any = false;
+  for (const LevelNode& node : level.nodes) any = any || (node.in_scene && node.soft_body);
+  if (!any) return list;
+  Level bodies = level;
+  bodies.environment.reset();  // a sky that is missing keeps nobody from looking at flesh
+  const Result<World> world = spawn(bodies);
+  if (!world) return Json::array({{{"problem", world.error().message()}}});
+  for (auto [entity, body] : world->registry.view<const SoftBody>()) {
+    const TetMesh& tets = world->tet_meshes[body.tets];
+    Json flesh = describe(tets);
+    flesh["problems"] = Json::array();
+    if (const std::string doubt = locking_doubt(body, tets.tets.size()); !doubt.empty())
+      flesh["problems"].push_back(doubt);
+    list.push_back(std::move(flesh));
+  }
+  return list;
+}
+
+void print_flesh(const Json& flesh) {
+  for (const Json& body : flesh) {
+    if (body.contains("problem")) {
+      fmt::print("  flesh: {}\n", body["problem"].get<std::string>());
+      continue;
+    }
+    fmt::print(
+        "  flesh {}: {} tetrahedra, {} nodes ({} on the handle, {} pinned), {} boundary triangles, {} part{}, {:.4g} "
+        "m3\n",
+        body["name"].get<std::string>(), body["tetrahedra"].get<std::size_t>(), body["nodes"].get<std::size_t>(),
+        body["handle_nodes"].get<std::size_t>(), body["pinned_nodes"].get<std::size_t>(),
+        body["boundary_triangles"].get<std::size_t>(), body["parts"].get<std::size_t>(),
+        body["parts"].get<std::size_t>() == 1 ? "" : "s", body["volume_m3"].get<double>());
+    fmt::print("    dihedral angles {:.1f} to {:.1f} degrees, 3 r/R {:.3f} at worst, {:.3f} at the median\n",
+               body["smallest_dihedral_deg"].get<double>(), body["largest_dihedral_deg"].get<double>(),
+               body["worst_ratio"].get<double>(), body["median_ratio"].get<double>());
+    for (const Json& problem : body.value("problems", Json::array()))
+      fmt::print("    {}\n", problem.get<std::string>());
+  }
+}
+
+int inspect_tets(const std::filesystem::path& path, bool as_json) {
+  Result<TetFile> file = load_tets(path);
+  if (!file) return fail(kFailed, file.error());
+  TetMesh mesh;
+  mesh.name = path.stem().string();
+  mesh.nodes = std::move(file->nodes);
+  mesh.tets = std::move(file->tets);
+  mesh.free_count = mesh.node_count();
+  mesh.quality = measure_quality(mesh.nodes, mesh.tets);
+  Json json = {{"file", path.string()}};
+  json.update(describe(mesh));
+  json["notes"] = file->notes;
+  if (as_json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    return kDone;
+  }
+  fmt::print("{}\n", path.string());
+  print_flesh(Json::array({json}));
+  for (const std::string& sentence : file->notes) fmt::print("  note: {}\n", sentence);
+  fmt::print("  flesh for a level: name it in PLIANT_soft_body/mesh; its boundary can be touched: `pliant run FILE`\n");
+  return kDone;
+}
+
+}  // namespace pliant

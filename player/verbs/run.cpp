@@ -1,0 +1,330 @@
+// pliant run: a level or mesh, its probes, the loop, and what is written about it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "content/files/file_io.h"
+#include "engine/body_journal.h"
+#include "engine/journal.h"
+#include "engine/sources.h"
+#include "player/record/keeper.h"
+#include "player/record/output_folder.h"
+#include "player/record/plot.h"
+#include "player/run/frames.h"
+#include "player/run/report.h"
+#include "player/run/tool_words.h"
+#include "player/run/touch_loop.h"
+#include "player/verbs/run_setup.h"
+#include "player/window/window_session.h"
+#include "runtime/parallel.h"
+#include "systems/device/hands.h"
+#include "systems/hash_state.h"
+#include "systems/schedule.h"
+#include "systems/soft/soft_state.h"
+#include "systems/tool/prepare_tools.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kDefaultSeconds = 4.0;   // [s] without a script
+constexpr double kLongestDefault = 60.0;  // [s] of a script, unless --seconds asks for more
+constexpr double kJournalSeconds = 8.0;   // [s] of rows that may wait while a picture is drawn and written
+constexpr int kDefaultFrames = 12;
+constexpr int kWindowWidth = 1280, kWindowHeight = 720;  // [pixel]
+constexpr double kEndless = 1e7;                         // [s] a window stays open until it is closed
+
+Outcome check(const RunOptions& options) {
+  if (options.field == "gpu" && options.frames == 0)
+    return wrong_arguments({"--field gpu", "computes the surface for pictures; leave out --frames 0"});
+  if (!options.replay.empty() && options.realtime)
+    return wrong_arguments({"--replay", "runs in lockstep; leave out --realtime"});
+  if (!options.replay.empty() && !options.probes.empty())
+    return wrong_arguments({"--replay", "moves every probe itself; leave out --probe"});
+  if (!options.replay.empty() && options.window)
+    return wrong_arguments({"--replay", "runs in lockstep, which a window does not; leave out --window"});
+  return {};
+}
+
+// A window and what is to be shown in it.
+struct Shown {
+  std::unique_ptr<Window> window;
+  InputScript script;
+};
+
+// As long as the longest script that a probe or tool follows.
+double default_seconds(const World& world) {
+  double longest = 0.0;
+  for (const Entity hand : hands(world)) {
+    const HapticDevice* device = find_device(world, hand);
+    if (!device || device->driver != Driver::kScript || !device->path.valid()) continue;
+    const Path& path = world.paths[device->path];
+    if (!path.rows.empty()) longest = std::max(longest, path.rows.back().time);
+  }
+  return longest > 0.0 ? std::min(longest, kLongestDefault) : kDefaultSeconds;
+}
+
+std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepared& run) {
+  const double rate = run.world.simulation.touch_rate;
+  if (windowed)
+    return static_cast<std::uint64_t>(std::llround((options.seconds > 0.0 ? options.seconds : kEndless) * rate));
+  const bool all = run.replay && options.seconds <= 0.0;
+  const double seconds = options.seconds > 0.0 ? options.seconds : default_seconds(run.world);
+  const auto wanted = static_cast<std::uint64_t>(std::max<long long>(1, std::llround(seconds * rate)));
+  const std::uint64_t recorded = run.replay ? run.replay->ticks.size() : wanted;
+  return all ? recorded : std::min(wanted, recorded);
+}
+
+// A window where there is a display, unless that was forbidden or what is asked for needs virtual time. Without one,
+// only an order to have one is a failure.
+Outcome open_window(const RunOptions& options, Shown& shown) {
+  const bool possible = !options.headless && !options.lockstep && options.replay.empty();
+  if (!options.window && (!possible || !Window::display_is_there())) {
+    if (!options.input.empty()) return wrong_arguments({"--input", "is for a window; leave out --headless"});
+    return {};
+  }
+  if (!options.input.empty()) {
+    auto script = InputScript::load(options.input);
+    if (!script) return failed(script.error());
+    shown.script = std::move(script).value();
+  }
+  auto window =
+      Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
+  if (!window) {
+    if (options.window) return failed(window.error());
+    note(window.error().what + " (going on without a window)");
+    return {};
+  }
+  if (options.frames > 0 && options.seconds <= 0.0)
+    return wrong_arguments({"--frames", "spreads pictures over a duration; give --seconds, or use --fps"});
+  shown.window = std::move(window).value();
+  return {};
+}
+
+// Without a working graphics library, pictures that nobody asked for are left out with a note.
+Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Frames>& frames) {
+  const bool asked = options.frames >= 0 || options.fps > 0.0;
+  if (options.frames == 0) return {};
+  auto made = Frames::create(run.world, options.width, options.height);
+  if (made) {
+    frames = std::move(made).value();
+  } else if (asked) {
+    return failed(made.error());
+  } else {
+    say(run, made.error().message() + " (going on without pictures)");
+  }
+  return {};
+}
+
+// Nothing silent: what kept a hand from what the law says, who touched nothing at all, and what soft steps left
+// imperfect.
+std::vector<std::string> explain_run(RunFigures& figures) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < figures.journal.probes().size(); ++i) {
+    const Entity hand = figures.journal.probes()[i];
+    const ProbeSummary& summary = figures.keeper.summaries()[i];
+    figures.misses.emplace_back();
+    if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
+      figures.misses.back() = find_miss(figures.world, summary.approach, probe->radius);
+      sentences.push_back(explain_miss(summary.name, figures.misses.back()));
+    } else if (summary.contact_ticks == 0) {
+      sentences.push_back("tool `" + summary.name + "` never touched anything; lead its device to what it shall touch");
+    }
+    for (std::string& sentence : explain_limits(figures.world, hand, summary.name))
+      sentences.push_back(std::move(sentence));
+    for (std::string& sentence : explain_tool(figures.world, summary)) sentences.push_back(std::move(sentence));
+  }
+  if (figures.soft)
+    for (std::string& sentence : explain_soft_steps(figures.world, figures.soft->figures()))
+      sentences.push_back(std::move(sentence));
+  return sentences;
+}
+
+Outcome write_reports(const RunFigures& figures, OutputFolder& out) {
+  std::vector<PlotRow> rows;
+  for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
+    rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source,
+                    &figures.keeper.traces()[i], figures.keeper.summaries()[i].tool});
+  const double dt = 1.0 / figures.rate;
+  const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
+  if (const Status plotted = plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds); !plotted)
+    return failed(plotted.error());
+  const std::string json = report_json(figures);
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(json.data());
+  if (const Status written = write_file(out.stage("report.json"), std::span(bytes, json.size())); !written)
+    return failed(written.error());
+  if (const Status done = out.commit(); !done) return failed(done.error());
+  return {};
+}
+
+// Options for a file that was dropped: what was said of the first level's nodes and files is not meant for it.
+RunOptions another_level(const RunOptions& options, const std::string& file) {
+  RunOptions other = options;
+  other.level = file;
+  other.probes.clear();
+  other.sets.clear();
+  other.record.clear();
+  other.tool_force.clear();
+  other.unit = 1.0;
+  if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
+  return other;
+}
+
+// What a run was like, whichever clock it ran on.
+struct Ran {
+  std::string mode;
+  std::uint64_t overruns = 0;
+  std::optional<FrameFigures> drawn;
+  std::size_t pictures = 0;
+  bool opened = false;  // another level takes its place
+};
+
+Result<Ran> run_headless(const RunOptions& options, TouchLoop& loop) {
+  Ran ran{options.realtime ? "realtime" : "lockstep"};
+  const Status status = options.realtime ? run_realtime(loop, ran.overruns) : run_lockstep(loop);
+  if (!status) return status.error();
+  if (loop.frames) {
+    ran.drawn = loop.frames->figures();
+    ran.pictures = loop.frames->count();
+  }
+  return ran;
+}
+
+Result<Ran> run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
+  WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
+                        loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
+  session.soft = loop.soft;
+  session.level = options.level;
+  session.rate = loop.rate;
+  session.ticks = loop.ticks;
+  session.frame_width = options.width;
+  session.frame_height = options.height;
+  if (options.fps > 0.0) session.frame_ticks = regular_frames(loop.ticks, loop.rate, options.fps);
+  if (options.frames > 0) session.frame_ticks = spread_frames(loop.ticks, options.frames);
+  // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
+  const std::string field = loop.world.field_place == FieldPlace::kCard ? "gpu" : "cpu";
+  session.open = [&options, &next, field](const std::string& file) -> std::optional<Error> {
+    next = Prepared();
+    RunOptions other = options;
+    if (file != options.level) other = another_level(options, file);
+    other.field = field;
+    if (Outcome wrong = prepare(other, true, next)) return wrong->error;
+    next.options = other;
+    return {};
+  };
+  auto figures = run_window(session);
+  if (!figures) return figures.error();
+  return Ran{"window", figures->overruns, figures->frames, figures->pictures, figures->opened};
+}
+
+// `shown`: the window, or null. `next`: what is to be run after this, if a window asked for it.
+Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std::optional<Prepared>& next) {
+  World& world = run.world;
+  const double rate = world.simulation.touch_rate;
+  const std::uint64_t ticks = count_ticks(options, shown, run);
+
+  const Interrupt interrupt;  // until all is in place: what is staged must not stay behind
+  auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out);
+  if (!out) return failed(out.error());
+  const double waiting = options.realtime || shown ? kJournalSeconds : 2.0 / rate;  // [s] of rows
+  std::optional<BodyJournal> bodies;
+  if (world.soft) bodies.emplace(world, static_cast<std::size_t>(waiting / world.simulation.soft_step) + 3);
+  Journal journal(world, waiting, bodies ? &*bodies : nullptr);
+  std::vector<std::string> sources;
+  for (Entity probe : journal.probes())
+    sources.push_back(run.replay ? "replay:" + options.replay : describe_source(world, probe));
+  auto keeper = Keeper::create(world, journal.probes(), sources, out->stage("forces.csv"));
+  if (!keeper) return failed(keeper.error());
+  if (bodies) {
+    auto kept = BodyKeeper::create(world, *bodies, out->stage("bodies.csv"));
+    if (!kept) return failed(kept.error());
+    keeper->keep_bodies(std::move(kept).value());
+  }
+  if (journal.probes().empty())
+    say(run, "the level has no probe and no tool, so nothing is touched; give one with --probe NAME=orbit");
+  if (!options.record.empty()) {
+    RecordingHeader header{world.name, rate, {}};
+    for (const ProbeSummary& probe : keeper->summaries()) header.probes.push_back(probe.name);
+    auto writer = RecordingWriter::create(options.record, header);
+    if (!writer) return failed(writer.error());
+    keeper->record_to(std::move(writer).value());
+  }
+  std::unique_ptr<Frames> frames;
+  if (!shown)
+    if (Outcome wrong = make_frames(options, run, frames)) return wrong;
+
+  Schedule<World> schedule(touch_schedule());
+  TouchLoop loop{world, schedule, journal, *keeper, *out, interrupt, rate, ticks, frames.get(), {}, nullptr};
+  loop.replay = run.replay ? &*run.replay : nullptr;
+  if (options.realtime || shown) limit_tool_ticks(world);
+  SoftClock soft(world);
+  if (soft.any()) {
+    loop.soft = &soft;
+    soft.note_in(*bodies);
+  }
+  if (frames)
+    loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps)
+                                         : spread_frames(ticks, options.frames < 0 ? kDefaultFrames : options.frames);
+  Prepared other;
+  auto ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
+  if (!ran) return failed(ran.error());
+  if (ran->opened) next = std::move(other);
+  if (soft.any()) world.dropped |= world.soft->dropped;
+  Hash hash = journal.hash();
+  hash_state(world, hash);
+  release_devices(world);
+  if (const Status kept = keeper->finish(); !kept) return failed(kept.error());
+
+  RunFigures figures{world,
+                     schedule,
+                     journal,
+                     *keeper,
+                     ran->drawn ? &*ran->drawn : nullptr,
+                     ran->pictures,
+                     ran->mode,
+                     world.field_place == FieldPlace::kCard ? "gpu" : "cpu",
+                     rate,
+                     ran->overruns,
+                     explain_dropped(world.dropped),
+                     fmt::format("{:016x}", hash.value()),
+                     loop.soft,
+                     {}};
+  std::vector<std::string> sentences = explain_run(figures);
+  for (const auto& [lost, file] :
+       {std::pair(journal.lost(), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
+    if (lost > 0)
+      sentences.push_back(fmt::format(
+          "{} rows of {} were lost because writing fell behind; take fewer or smaller pictures", lost, file));
+  for (const std::string& sentence : sentences) {
+    note(sentence);
+    figures.dropped.push_back(sentence);
+  }
+  figures.dropped.insert(figures.dropped.end(), run.notes.begin(), run.notes.end());
+  if (Outcome wrong = write_reports(figures, *out)) return wrong;
+  print_summary(figures, options.out.empty() ? "out/" + world.name : options.out);
+  return {};
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  set_thread_count(options.threads);
+  if (Outcome wrong = check(options)) return fail(wrong->status, wrong->error);
+  Shown shown;
+  if (Outcome wrong = open_window(options, shown)) return fail(wrong->status, wrong->error);
+  const bool windowed = shown.window != nullptr;
+  std::optional<Prepared> next(std::in_place);
+  next->options = options;
+  Outcome wrong = prepare(options, windowed, *next);
+  while (!wrong && next) {
+    Prepared now = std::move(*next);
+    next.reset();
+    wrong = run_prepared(now.options, now, windowed ? &shown : nullptr, next);
+  }
+  return wrong ? fail(wrong->status, wrong->error) : kDone;
+}
+
+}  // namespace pliant

@@ -1,0 +1,44 @@
+// From arguments and files to a world that is ready to be touched.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "engine/recording.h"
+#include "player/exit.h"
+#include "player/verbs/verbs.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// What could not be done, and whether the arguments or the input are to blame.
+struct Failure {
+  ExitStatus status;
+  Error error;
+};
+using Outcome = std::optional<Failure>;  // empty: it was done
+
+inline Outcome wrong_arguments(Error error) {
+  return Failure{kUsage, std::move(error)};
+}
+inline Outcome failed(Error error) {
+  return Failure{kFailed, std::move(error)};
+}
+
+// Everything a run needs before its first tick.
+struct Prepared {
+  RunOptions options;
+  World world;
+  std::optional<Recording> replay;
+  std::vector<std::string> notes;
+};
+
+// On stderr and in the report.
+void say(Prepared& run, const std::string& sentence);
+
+// File -> Level -> World. `windowed`: it will be shown in a window.
+Outcome prepare(const RunOptions& options, bool windowed, Prepared& run);
+
+}  // namespace pliant

@@ -1,0 +1,75 @@
+#include "player/verbs/unit.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace pliant {
+namespace {
+
+constexpr float kLargest = 10.0f, kSmallest = 1e-3f;        // [m] diagonal beyond which the unit is probably wrong
+constexpr double kSmallestUnit = 1e-9, kLargestUnit = 1e6;  // [m]
+constexpr std::pair<const char*, double> kUnits[] = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"in", 0.0254}};
+
+}  // namespace
+
+Result<double> parse_unit(const std::string& text) {
+  for (const auto& [name, metres] : kUnits)
+    if (text == name) return metres;
+  double metres = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
+  if (error == std::errc() && end == text.data() + text.size() && metres >= kSmallestUnit && metres <= kLargestUnit)
+    return metres;
+  return Error{"--unit", "must be m, cm, mm, in, or metres for one unit such as 0.0254; got '" + text + "'"};
+}
+
+void scale_roots(Level& level, double metres) {
+  if (metres == 1.0) return;
+  const auto factor = static_cast<float>(metres);
+  for (LevelNode& node : level.nodes) {
+    if (node.parent >= 0) continue;
+    node.local.translation *= factor;
+    node.local.scale *= factor;
+  }
+}
+
+// Parents stand before children, so one pass places every node.
+std::vector<mat4> world_matrices(const Level& level) {
+  std::vector<mat4> world;
+  for (const LevelNode& node : level.nodes) {
+    const mat4 local = glm::translate(mat4(1), node.local.translation) * glm::mat4_cast(node.local.rotation) *
+                       glm::scale(mat4(1), node.local.scale);
+    world.push_back(node.parent < 0 ? local : world[static_cast<std::size_t>(node.parent)] * local);
+  }
+  return world;
+}
+
+Box bounds(const Level& level) {
+  Box box;
+  const std::vector<mat4> world = world_matrices(level);
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (node.mesh < 0 || !node.in_scene) continue;
+    for (const Primitive& primitive : level.meshes[static_cast<std::size_t>(node.mesh)].primitives)
+      for (const vec3& position : primitive.position) box.add(vec3(world[i] * vec4(position, 1)));
+  }
+  return box;
+}
+
+std::string unit_hint(const Box& box) {
+  const float diagonal = box.diagonal();
+  if (box.empty() || (diagonal <= kLargest && diagonal >= kSmallest)) return {};
+  if (diagonal > kLargest)
+    return fmt::format(
+        "the diagonal is {:.4g} m: is the file in millimetres or centimetres? `pliant run FILE --unit mm` touches it "
+        "so, `pliant convert IN OUT --unit mm` mends it",
+        diagonal);
+  return fmt::format(
+      "the diagonal is {:.4g} m: is the file in another unit than metres? `pliant run FILE --unit METRES` touches it "
+      "so, `pliant convert IN OUT --unit METRES` mends it",
+      diagonal);
+}
+
+}  // namespace pliant

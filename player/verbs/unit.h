@@ -1,0 +1,26 @@
+// What one unit of a file is: --unit of `run` and `convert`, and the hint of `run` and `inspect` that it looks wrong.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "content/level/level.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// m, cm, mm, in, or a number: metres for one unit of the input.
+Result<double> parse_unit(const std::string& text);
+
+// Scales the whole scene about the world's origin: what the roots say, their children inherit.
+void scale_roots(Level& level, double metres);
+
+// Of every node, node -> world.
+std::vector<mat4> world_matrices(const Level& level);
+// [m] around all meshes of the scene that is shown.
+Box bounds(const Level& level);
+
+// A sentence where a scene of this size is probably not in metres; else empty.
+std::string unit_hint(const Box& box);
+
+}  // namespace pliant

@@ -1,0 +1,347 @@
+#include "player/window/overlay.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "systems/safety/safety.h"
+
+namespace pliant {
+namespace {
+
+constexpr ImU32 kForceColor = IM_COL32(255, 158, 87, 255), kDepthColor = IM_COL32(104, 190, 255, 255);
+constexpr ImU32 kGridColor = IM_COL32(255, 255, 255, 22), kPlotColor = IM_COL32(0, 0, 0, 90);
+const ImVec4 kDim(0.62f, 0.66f, 0.71f, 1.0f), kGood(0.55f, 0.86f, 0.62f, 1.0f), kBad(1.0f, 0.52f, 0.45f, 1.0f);
+
+constexpr const char* kKeys[][2] = {
+    {"Left button on a surface", "press; hold it down, drag to slide"},
+    {"Wheel while pressing", "deeper or shallower"},
+    {"Ctrl + wheel", "stay pressed at a depth"},
+    {"Left button on a tool", "carry it; wheel: away or near"},
+    {"Left on nothing, right, Alt + left", "turn the view"},
+    {"Middle, Shift + left", "shift the view"},
+    {"Wheel", "nearer or farther"},
+    {"F, Home", "see everything; the first view"},
+    {"1, 3, 7", "from the front, the right, above"},
+    {"Space, R", "pause; start anew"},
+    {"W, Z, H", "wireframe, zones, height as colour"},
+    {"C, A, S", "contact frames, force arrows, shadows"},
+    {"T, K, G", "tetrahedra, contacts of soft bodies, handles of tools"},
+    {"F12", "screenshot into the run's folder"},
+    {"Tab, F1", "hide or show figures; this page"},
+    {"Drop a file", "open it"},
+    {"Esc", "close"},
+};
+
+void style(float scale) {
+  ImGui::StyleColorsDark();
+  ImGuiStyle& s = ImGui::GetStyle();
+  s.WindowRounding = 8;
+  s.FrameRounding = 4;
+  s.WindowBorderSize = 0;
+  s.WindowPadding = {14, 12};
+  s.ItemSpacing = {8, 5};
+  s.Colors[ImGuiCol_WindowBg] = {0.055f, 0.065f, 0.08f, 0.82f};
+  s.Colors[ImGuiCol_Text] = {0.93f, 0.94f, 0.95f, 1.0f};
+  s.Colors[ImGuiCol_FrameBg] = {1, 1, 1, 0.09f};
+  s.Colors[ImGuiCol_FrameBgHovered] = {1, 1, 1, 0.18f};
+  s.Colors[ImGuiCol_CheckMark] = {1.0f, 0.62f, 0.34f, 1.0f};
+  s.Colors[ImGuiCol_Separator] = {1, 1, 1, 0.10f};
+  s.ScaleAllSizes(scale);
+}
+
+// A row: what at the left, its figure at the right.
+void figure(const char* what, const std::string& value, const ImVec4& color = ImGui::GetStyle().Colors[ImGuiCol_Text]) {
+  ImGui::TextColored(kDim, "%s", what);
+  const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(value.c_str()).x;
+  ImGui::SameLine(right);
+  ImGui::TextColored(color, "%s", value.c_str());
+}
+
+std::string bytes(std::uint64_t count) {
+  return count < 10000 ? fmt::format("{} B", count) : fmt::format("{:.1f} KiB", static_cast<double>(count) / 1024);
+}
+
+// The next round number, 1 2 5 10 ..., so that a plot's scale changes seldom.
+float round_up(float value) {
+  const float decade = std::pow(10.0f, std::floor(std::log10(std::max(value, 1e-6f))));
+  for (const float step : {1.0f, 2.0f, 5.0f})
+    if (value <= step * decade) return step * decade;
+  return 10 * decade;
+}
+
+void curve(const ProbeHistory& history, float ProbeHistory::Bin::*value, float top, ImVec2 at, ImVec2 size, ImU32 color,
+           float thickness) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  std::vector<ImVec2> points;
+  const auto finish = [&] {
+    if (points.size() > 1)
+      list->AddPolyline(points.data(), static_cast<int>(points.size()), color, ImDrawFlags_None, thickness);
+    points.clear();
+  };
+  for (std::size_t age = 0; age < ProbeHistory::kBins; ++age) {
+    const ProbeHistory::Bin* bin = history.bin(age);
+    if (!bin) {
+      if (age > 3) finish();  // a pause, not merely a tick that came late
+      continue;
+    }
+    const float x = at.x + size.x * (1 - static_cast<float>(age) / (ProbeHistory::kBins - 1));
+    points.push_back({x, at.y + size.y * (1 - 0.94f * std::clamp(bin->*value / top, 0.0f, 1.0f)) - 1});
+  }
+  finish();
+}
+
+void probe_line(const ProbeLine& probe, float scale) {
+  // The probe's own colour, its name, and what it feels.
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImVec2 dot = ImGui::GetCursorScreenPos();
+  const auto shown = [](float linear) { return std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f); };
+  list->AddCircleFilled(
+      {dot.x + 5 * scale, dot.y + 0.5f * ImGui::GetTextLineHeight()}, 5 * scale,
+      ImGui::ColorConvertFloat4ToU32({shown(probe.color.x), shown(probe.color.y), shown(probe.color.z), 1.0f}));
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 17 * scale);
+  ImGui::Text("%s", probe.name.c_str());
+  const ProbeHistory::Bin& now = probe.history.newest();
+  const std::string force = fmt::format("{:.2f} N", now.force), depth = fmt::format("{:.1f} mm", now.depth * 1e3f);
+  const float wide = ImGui::CalcTextSize("00.0 mm").x, right = ImGui::GetWindowContentRegionMax().x;
+  ImGui::SameLine(right - 2 * wide - 6 * scale);
+  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", force.c_str());
+  ImGui::SameLine(right - wide);
+  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDepthColor), "%s", depth.c_str());
+}
+
+// Why the force is not what the law says, while it is not.
+void limit_line(const ProbeLine& probe, float scale) {
+  const std::uint8_t limited = probe.history.limited();
+  const auto say = [&](SafetyLimit limit, const char* words) {
+    if (!(limited & bit(limit))) return;
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 17 * scale);
+    ImGui::TextColored(kBad, "%s", words);
+  };
+  say(SafetyLimit::kClipped, "clipped at max_force");
+  say(SafetyLimit::kWithheld, "damped: it gave out energy");
+  say(SafetyLimit::kGated, "no force until it is let go");
+}
+
+void plot(const ProbeLine& probe, float scale) {
+  float force = 0.1f, depth = 1e-4f;
+  for (std::size_t age = 0; age < ProbeHistory::kBins; ++age)
+    if (const ProbeHistory::Bin* bin = probe.history.bin(age)) {
+      force = std::max(force, bin->force);
+      depth = std::max(depth, bin->depth);
+    }
+  force = round_up(force);
+  depth = round_up(depth);
+
+  probe_line(probe, scale);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, 52 * scale);
+  const ImVec2 end(at.x + size.x, at.y + size.y);
+  list->AddRectFilled(at, end, kPlotColor, 4 * scale);
+  for (int second = 1; second < 5; ++second) {
+    const float x = at.x + size.x * static_cast<float>(second) / 5;
+    list->AddLine({x, at.y}, {x, end.y}, kGridColor);
+  }
+  list->AddLine({at.x, at.y + 0.53f * size.y}, {end.x, at.y + 0.53f * size.y}, kGridColor);
+  curve(probe.history, &ProbeHistory::Bin::depth, depth, at, size, kDepthColor, 1.5f * scale);
+  curve(probe.history, &ProbeHistory::Bin::force, force, at, size, kForceColor, 1.5f * scale);
+  const std::string top = fmt::format("{:g} N  {:g} mm", force, depth * 1e3f);
+  ImGui::SetWindowFontScale(0.8f);
+  list->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + 5 * scale, at.y + 2 * scale},
+                IM_COL32(160, 170, 180, 190), top.c_str());
+  ImGui::SetWindowFontScale(1.0f);
+  ImGui::Dummy(size);
+}
+
+void toggle(const char* name, bool& value, bool second_column, float scale) {
+  if (second_column) ImGui::SameLine(150 * scale);
+  ImGui::Checkbox(name, &value);
+}
+
+void draw_figures(const OverlayState& state) {
+  const TouchFigures& touch = state.touch;
+  figure("tick p50, p99, max", fmt::format("{:.0f}  {:.0f}  {:.0f} us", touch.p50, touch.p99, touch.max));
+  figure("overruns", std::to_string(touch.overruns), touch.overruns ? kBad : kGood);
+  if (state.soft) {
+    const SoftFigures& soft = *state.soft;
+    figure("soft step, contacts", fmt::format("{:.1f} ms  {}", soft.step_ms, soft.contacts));
+    figure("soft overruns", std::to_string(soft.overruns), soft.overruns ? kBad : kGood);
+  }
+  std::string pictures = fmt::format("{:.0f} Hz  {:.1f} ms", state.frames_per_second, state.draw_ms);
+  if (state.resolution < 1) pictures += fmt::format("  at {:.0f} %", 100 * state.resolution);
+  figure("pictures", pictures);
+  figure("awake vertices", std::to_string(state.awake_vertices));
+  figure("upload per picture", bytes(state.upload_bytes));
+}
+
+void draw_switches(RenderOptions& options, float tint, float scale) {
+  ImGui::Separator();
+  bool height = options.tint_height > 0;
+  toggle("wireframe", options.wireframe, false, scale);
+  toggle("zones", options.zones, true, scale);
+  toggle("height as colour", height, false, scale);
+  toggle("shadows", options.shadows, true, scale);
+  toggle("contact frames", options.contact_frames, false, scale);
+  toggle("force arrows", options.forces, true, scale);
+  toggle("probes", options.markers, false, scale);
+  toggle("bump", options.bump, true, scale);
+  toggle("reflection", options.reflection, false, scale);
+  toggle("refraction", options.refraction, true, scale);
+  toggle("tetrahedra", options.tetrahedra, false, scale);
+  toggle("contacts", options.contacts, true, scale);
+  toggle("handles", options.handles, false, scale);
+  toggle("surroundings", options.background, true, scale);
+  options.tint_height = height ? (options.tint_height > 0 ? options.tint_height : tint) : 0.0f;
+}
+
+void draw_help(float scale) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowBgAlpha(0.93f);
+  ImGui::Begin("keys", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::Text("Mouse and keys");
+  ImGui::Separator();
+  for (const auto& key : kKeys) {
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", key[0]);
+    ImGui::SameLine(250 * scale);
+    ImGui::Text("%s", key[1]);
+  }
+  ImGui::End();
+}
+
+void draw_message(const OverlayState& state, float scale) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, size.y - 16 * scale}, ImGuiCond_Always, {0.5f, 1.0f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {0.8f * size.x, 0.5f * size.y});
+  ImGui::Begin("message", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(0.75f * size.x);
+  ImGui::TextColored(state.message_is_error ? kBad : ImGui::GetStyle().Colors[ImGuiCol_Text], "%s",
+                     state.message.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
+
+// A ring that tightens and warms as the force grows: what a hand would feel, for the eyes.
+void draw_cursor(const OverlayState& state, float scale) {
+  ImDrawList* list = ImGui::GetForegroundDrawList();
+  const ImVec2 at(static_cast<float>(state.cursor_x), static_cast<float>(state.cursor_y));
+  const float share = static_cast<float>(state.cursor_force / (1.0 + state.cursor_force));
+  const float radius = (state.pressing ? 13.0f - 7.0f * share : 13.0f) * scale;
+  const int warm = static_cast<int>(255 - 150 * share);
+  list->AddCircle(at, radius, IM_COL32(0, 0, 0, 120), 32, 3.5f * scale);
+  list->AddCircle(at, radius, IM_COL32(255, warm, state.pressing ? warm - 60 : warm, 235), 32, 1.8f * scale);
+  list->AddCircleFilled(at, 1.8f * scale, IM_COL32(255, 255, 255, 235));
+  if (!state.pressing) return;
+  const std::string text = fmt::format("{:.2f} N", state.cursor_force);
+  list->AddText({at.x + 19 * scale, at.y - 8 * scale}, IM_COL32(0, 0, 0, 200), text.c_str());
+  list->AddText({at.x + 18 * scale, at.y - 9 * scale}, IM_COL32(255, 240, 230, 255), text.c_str());
+}
+
+}  // namespace
+
+void ProbeHistory::add(const TickRow& row) {
+  const auto number = static_cast<std::int64_t>(row.time / kSeconds * static_cast<double>(kBins));
+  Bin& bin = bins_[static_cast<std::size_t>(number) % kBins];
+  if (bin.number != number) bin = {number, 0, 0, 0};
+  bin.limited = static_cast<std::uint8_t>(bin.limited | row.limited);
+  newest_ = number;
+  bin.force = std::max(bin.force, static_cast<float>(length(row.reading.force)));
+  if (row.reading.in_contact) bin.depth = std::max(bin.depth, static_cast<float>(row.reading.depth));
+}
+
+std::uint8_t ProbeHistory::limited() const {
+  std::uint8_t bits = 0;
+  for (std::size_t age = 0; static_cast<double>(age) * kSeconds < kLimitSeconds * static_cast<double>(kBins); ++age)
+    if (const Bin* each = bin(age)) bits = static_cast<std::uint8_t>(bits | each->limited);
+  return bits;
+}
+
+const ProbeHistory::Bin* ProbeHistory::bin(std::size_t age) const {
+  const std::int64_t number = newest_ - static_cast<std::int64_t>(age);
+  if (number < 0) return nullptr;
+  const Bin& bin = bins_[static_cast<std::size_t>(number) % kBins];
+  return bin.number == number ? &bin : nullptr;
+}
+
+Overlay::Overlay(float scale) : scale_(scale) {
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // leaves nothing behind
+  io.LogFilename = nullptr;
+  const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
+  std::error_code missing;
+  if (!std::filesystem::exists(font, missing) || !io.Fonts->AddFontFromFileTTF(font, std::round(14 * scale)))
+    io.Fonts->AddFontDefault();
+  style(scale);
+  ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+Overlay::~Overlay() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext();
+}
+
+bool Overlay::wants_mouse() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, float tint) {
+  ImGui::SetNextWindowPos({12 * scale_, 12 * scale_}, ImGuiCond_Always);
+  ImGui::SetNextWindowSize({(large_ ? 300.0f : 232.0f) * scale_, 0}, ImGuiCond_Always);
+  ImGui::Begin("figures", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::Text("%s", state.title.c_str());
+  const std::string right = state.paused ? "paused" : fmt::format("{:.1f} s", state.touch.time);
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
+  ImGui::TextColored(state.paused ? kBad : kDim, "%s", right.c_str());
+  ImGui::Separator();
+  const TouchFigures& touch = state.touch;
+  figure("touch", fmt::format("{:.0f} of {:.0f} Hz", touch.rate, state.rate_wanted),
+         touch.rate > 0.98 * state.rate_wanted || state.paused ? kGood : kBad);
+  if (large_) {
+    draw_figures(state);
+  } else {
+    figure("pictures", fmt::format("{:.0f} Hz", state.frames_per_second));
+  }
+  for (const ProbeLine& probe : state.probes) {
+    if (large_) ImGui::Separator();
+    (large_ ? plot : probe_line)(probe, scale_);
+    limit_line(probe, scale_);
+  }
+  if (large_) draw_switches(options, tint, scale_);
+  // Small at first, so that it does not stand before what there is to touch.
+  if (ImGui::SmallButton(large_ ? "less" : "more")) large_ = !large_;
+  ImGui::SameLine();
+  ImGui::TextColored(kDim, "F1 keys   Tab hides this");
+  ImGui::End();
+}
+
+void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint, const OverlayMouse& mouse, int width,
+                   int height, double dt) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+  io.DeltaTime = static_cast<float>(std::clamp(dt, 1e-4, 1.0));
+  io.MousePos = {static_cast<float>(mouse.x), static_cast<float>(mouse.y)};
+  for (std::size_t i = 0; i < mouse.down.size(); ++i) io.MouseDown[i] = mouse.down[i];
+  io.MouseWheel = static_cast<float>(mouse.wheel);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui::NewFrame();
+  if (state.figures) draw_panel(state, options, tint);
+  if (state.help) draw_help(scale_);
+  if (!state.message.empty()) draw_message(state, scale_);
+  if (state.cursor && !io.WantCaptureMouse) draw_cursor(state, scale_);
+  ImGui::Render();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glDisable(GL_FRAMEBUFFER_SRGB);  // its colours are encoded already
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+}  // namespace pliant

@@ -1,0 +1,49 @@
+// A window with an OpenGL 4.5 core context, and what a hand does to it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "player/window/window_input.h"
+#include "runtime/result.h"
+
+struct GLFWwindow;
+
+namespace pliant {
+
+class Window {
+ public:
+  // DISPLAY or WAYLAND_DISPLAY is set.
+  static bool display_is_there();
+  // Hidden at first; its context is current on the calling thread, which must be the first one of the process and make
+  // every call but those that say otherwise. Sizes in pixels. One window at a time.
+  static Result<std::unique_ptr<Window>> create(int width, int height);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  void show(const std::string& title);
+  // Appends what happened since. Returns at the first event, when another thread calls wake(), or after `longest` [s].
+  void poll(std::vector<InputEvent>& events, double longest);
+  void wake();
+
+  // The context belongs to one thread at a time: given away by the one that has it, then taken by the other.
+  void give_context();
+  void take_context();
+  void present();  // shows what was drawn; waits for the display's next picture. From the context's thread
+  void hide_cursor(bool hidden);
+  int width() const;    // [pixel] of what is drawn into
+  int height() const;   // [pixel]
+  float scale() const;  // [1] of text, 1 on an ordinary display
+
+ private:
+  Window() = default;
+  static void connect(GLFWwindow* handle);
+  void add(InputEvent event) { events_.push_back(std::move(event)); }
+  GLFWwindow* handle_ = nullptr;
+  bool cursor_hidden_ = false;
+  std::vector<InputEvent> events_;
+};
+
+}  // namespace pliant

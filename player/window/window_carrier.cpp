@@ -1,0 +1,62 @@
+#include "player/window/window_carrier.h"
+
+#include <algorithm>
+
+#include "components/soft_body.h"
+#include "systems/device/mouse.h"
+#include "systems/visual/viewpoint.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kStepShare = 0.01;   // [1] of the scene's size: one click of the wheel
+constexpr double kLeastAlong = 0.05;  // [1] cosine: rays that graze the plane more are not followed
+
+}  // namespace
+
+std::optional<Carrier> Carrier::of(World& world) {
+  for (auto [entity, handle] : world.registry.view<Handle6>()) {
+    const Entity named = handle.device.empty() ? entity : find_by_name(world, handle.device);
+    HapticDevice* device = named == kNoEntity ? nullptr : world.registry.find<HapticDevice>(named);
+    if (!device || device->driver != Driver::kMouse) continue;
+    Carrier carrier;
+    carrier.tool_ = entity;
+    carrier.step_ = kStepShare * std::max(1e-3, static_cast<double>(drawn_box(world, true).diagonal()));
+    if (const Pose* pose = world.registry.find<Pose>(entity)) {
+      carrier.position_ = carrier.wanted_ = pose->position;
+      device->rotation = pose->rotation;
+    }
+    return carrier;
+  }
+  return std::nullopt;
+}
+
+void Carrier::follow(const Ray& ray, const Viewpoint& view) {
+  if (!held_) return;
+  const dvec3 forward = normalize(view.target - view.eye);
+  const double along = dot(ray.along, forward);
+  if (along < kLeastAlong) return;
+  const dvec3 now = ray.from + dot(*held_ - ray.from, forward) / along * ray.along;
+  wanted_ += now - *held_;
+  held_ = now;
+}
+
+void Carrier::push(double clicks, const Viewpoint& view) {
+  const dvec3 way = clicks * step_ * normalize(view.target - view.eye);
+  wanted_ += way;
+  if (held_) *held_ += way;
+}
+
+void Carrier::release() {
+  held_.reset();
+  wanted_ = position_;
+}
+
+void Carrier::update(double dt) {
+  const double most = kFastestCarry * std::min(dt, kMouseSlowestFrame);  // the touch clock takes no longer for the way
+  const dvec3 way = wanted_ - position_;
+  const double left = length(way);
+  position_ = left > most ? position_ + way * (most / left) : wanted_;
+}
+
+}  // namespace pliant

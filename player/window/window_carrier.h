@@ -1,0 +1,37 @@
+// The mouse as the hand that holds a tool: taken hold of, the tool's device follows the pointing hand in the plane that
+// faces the eye, and the wheel pushes it away or pulls it nearer. Let go, it stays where it is. A pointer may jump, a
+// hand does not: the device glides after it.
+#pragma once
+
+#include <optional>
+
+#include "components/world.h"
+#include "player/window/camera_control.h"
+
+namespace pliant {
+
+inline constexpr double kFastestCarry = 0.5;  // [m/s] faster, and a jump of the pointer is felt as a blow
+
+class Carrier {
+ public:
+  // Of the first tool (Handle6) whose device is the mouse; nothing where there is none. The device begins where the
+  // tool stands.
+  static std::optional<Carrier> of(World& world);
+
+  Entity tool() const { return tool_; }
+  void grab(const dvec3& point) { held_ = point; }  // [m] world, on the tool
+  void release();
+  bool holds() const { return held_.has_value(); }
+  void follow(const Ray& ray, const Viewpoint& view);
+  void push(double clicks, const Viewpoint& view);  // > 0: away from the eye
+  void update(double dt);                           // [s] since the last time; the device glides on
+  dvec3 position() const { return position_; }      // [m] world, of the device
+
+ private:
+  Entity tool_;
+  double step_ = 0.01;             // [m] of a click
+  dvec3 position_{0}, wanted_{0};  // [m] world, of the device: where it is, where the hand has it
+  std::optional<dvec3> held_;      // [m] world, what is under the cursor
+};
+
+}  // namespace pliant

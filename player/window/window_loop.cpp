@@ -1,0 +1,220 @@
+#include "player/window/window_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "player/exit.h"
+#include "systems/device/mouse.h"
+#include "systems/visual/viewpoint.h"
+
+namespace pliant {
+namespace {
+
+constexpr vec3 kToolColor(0.85f, 0.55f, 0.42f);  // linear: of a tool's plot
+constexpr double kMessageTime = 8.0;             // [s]
+constexpr float kTintShare = 0.2f;               // [1] of the reach: a height that is coloured fully
+constexpr double kSlowestTurn = 0.25;            // [s] beyond this, motion does not catch up
+constexpr double kSmoothing = 0.1;               // [1] of the newest picture in the shown rate
+constexpr double kHearEvery = 0.004;             // [s] at most
+constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may never come: nobody sees what the hand does
+
+// The radius of the probe that the mouse moves, if there is one. [m]
+std::optional<double> mouse_radius(const World& world) {
+  for (auto [entity, probe] : world.registry.view<Probe>()) {
+    const HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
+    if (device && device->driver == Driver::kMouse) return probe.radius;
+  }
+  return {};
+}
+
+float tint_of(const World& world) {
+  double reach = 0.0;
+  for (auto [entity, deformable] : world.registry.view<Deformable>()) reach = std::max(reach, deformable.reach);
+  return reach > 0 ? kTintShare * static_cast<float>(reach) : 0.01f;
+}
+
+}  // namespace
+
+WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
+    : s_(session),
+      camera_(default_viewpoint(session.world), drawn_box(session.world, false)),
+      radius_(mouse_radius(session.world)),
+      pointer_(session.world, radius_.value_or(0.0), camera_.viewpoint()),
+      carrier_(radius_ ? std::nullopt : Carrier::of(session.world)),
+      options_(renderer.options()),
+      tint_(tint_of(session.world)),
+      pictures_(session.window, session.world, renderer) {
+  state_.title = session.world.name;
+  state_.rate_wanted = session.rate;
+  for (std::size_t i = 0; i < session.journal.probes().size(); ++i) {
+    const ProbeSummary& summary = session.keeper.summaries()[i];
+    const Probe* probe = session.world.registry.find<Probe>(session.journal.probes()[i]);
+    state_.probes.push_back({summary.name, summary.source, probe ? probe->color : kToolColor, {}});
+    if (summary.source == "mouse") mouse_probe_ = i;
+  }
+  mouse_.x = 0.5 * session.window.width();
+  mouse_.y = 0.5 * session.window.height();
+  probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
+  if (radius_ || carrier_) add_mouse(session.world, probe_at_);
+}
+
+Ray WindowLoop::ray() const {
+  return ray_through(camera_.viewpoint(), cursor_.x(), cursor_.y(), s_.window.width(), s_.window.height());
+}
+
+// Where the probe should be goes to the touch clock every turn, moved or not: silence means that nobody is there. A
+// hand that sees nothing any more is nobody either.
+void WindowLoop::point(double dt) {
+  const double force = mouse_probe_ ? state_.probes[*mouse_probe_].history.newest().force : 0.0;
+  cursor_.update(drag_ == Drag::kPress, force, dt);
+  if (!radius_ && !carrier_) return;
+  if (carrier_) {
+    if (drag_ == Drag::kCarry) carrier_->follow(ray(), camera_.viewpoint());
+    carrier_->update(dt);
+    probe_at_ = carrier_->position();
+  } else if (pointed_ && !looks_around()) {
+    probe_at_ = pointer_.update(dt);
+  }
+  if (pictures_.seconds() < kHungPicture) {
+    s_.world.mouse->samples.write() = {probe_at_, radius_ && pointer_.free()};
+    s_.world.mouse->samples.publish();
+  }
+  state_.cursor = radius_ && pointed_ && !looks_around();
+  state_.cursor_x = cursor_.x();
+  state_.cursor_y = cursor_.y();
+  state_.cursor_force = force;
+  state_.pressing = pointer_.pressing();
+  s_.window.hide_cursor(state_.cursor && !wants_mouse_);
+}
+
+void WindowLoop::keep() {
+  s_.keeper.keep(s_.journal);
+  for (const TickRow& row : s_.keeper.latest()) state_.probes[row.probe].history.add(row);
+}
+
+// Pictures that were asked for; a slow card takes fewer.
+std::filesystem::path WindowLoop::next_frame() {
+  const std::uint64_t reached = touch_ ? touch_->now() : 0;
+  if (!touch_ || next_frame_ >= s_.frame_ticks.size() || s_.frame_ticks[next_frame_] > reached) return {};
+  while (next_frame_ < s_.frame_ticks.size() && s_.frame_ticks[next_frame_] <= reached) ++next_frame_;
+  return s_.out.stage(fmt::format("frame-{:04d}.png", figures_.pictures++));
+}
+
+// At once, and beside what is already there: a hand asked for it.
+std::filesystem::path WindowLoop::next_screenshot() const {
+  std::filesystem::path file;
+  std::error_code ignored;
+  for (int i = 1; file.empty() || std::filesystem::exists(file, ignored); ++i)
+    file = s_.out.path() / fmt::format("screenshot-{:03d}.png", i);
+  return file;
+}
+
+PictureOrder WindowLoop::order(bool shown) {
+  if (touch_) {
+    state_.touch = touch_->figures();
+    state_.paused = touch_->paused();
+    if (s_.soft) state_.soft = s_.soft->latest();
+  }
+  if (seconds_ - said_at_ > kMessageTime) state_.message.clear();
+  PictureOrder next;
+  next.view = camera_.viewpoint();
+  next.width = s_.window.width();
+  next.height = s_.window.height();
+  next.dt = seconds_ - ordered_at_;
+  next.options = options_;
+  next.overlay = state_;
+  next.mouse = mouse_;
+  next.tint = tint_;
+  const bool asked = drag_ == Drag::kAsked;
+  const double x = asked ? pressed_x_ : cursor_.x(), y = asked ? pressed_y_ : cursor_.y();
+  next.question = {x, y, next.width, next.height, ++questions_};
+  asked_ray_ = ray_through(next.view, x, y, next.width, next.height);
+  next.frame = next_frame();
+  next.frame_width = s_.frame_width;
+  next.frame_height = s_.frame_height;
+  if (screenshots_ > 0) {  // one a picture, so that each has a number of its own
+    --screenshots_;
+    shooting_ = next_screenshot();
+  }
+  next.screenshot = shooting_;
+  next.shown = shown;
+  ordered_options_ = options_;
+  ordered_at_ = seconds_;
+  mouse_.wheel = 0;
+  mouse_.down = down_;
+  return next;
+}
+
+// What a picture brings back: figures, what the overlay's switches say, and what stands under the cursor.
+Status WindowLoop::learn(const PictureDone& done) {
+  if (!done.frame) return done.frame;
+  figures_.frames.add(done.stats);
+  state_.upload_bytes = done.stats.upload_bytes;
+  state_.draw_ms = done.stats.draw_ms;
+  state_.awake_vertices = done.awake_vertices;
+  state_.resolution = done.resolution;
+  const double dt = seconds_ - ordered_at_;
+  frame_time_ = frame_time_ > 0 ? frame_time_ + kSmoothing * (dt - frame_time_) : dt;
+  state_.frames_per_second = frame_time_ > 0 ? 1 / frame_time_ : 0;
+  if (done.options != ordered_options_) options_ = done.options;
+  wants_mouse_ = done.wants_mouse;
+  if (!shooting_.empty())
+    say(done.screenshot ? shooting_.string() : done.screenshot.error().message(), !done.screenshot);
+  shooting_.clear();
+  if (!done.answer) return Done{};
+  answer_ = done.answer;
+  pointer_.see(done.answer->seen, asked_ray_);
+  if (drag_ == Drag::kAsked && done.answer->question.number >= decides_) decide(done.answer->seen);
+  return Done{};
+}
+
+Result<WindowFigures> WindowLoop::run() {
+  std::vector<InputEvent> events;
+  // Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
+  for (int i = 0; i < 3; ++i) {
+    pictures_.begin(order(false));
+    pictures_.done();
+  }
+  s_.window.show(s_.world.name + " - Pliant");
+  touch_.emplace(s_.world, s_.schedule, s_.journal, s_.soft, s_.rate, s_.ticks);
+  const std::uint64_t start = now_ns();
+  Status status = Done{};
+  bool begun = false;
+  while (!close_ && !figures_.opened && !touch_->done() && !s_.interrupt.requested() && status) {
+    events.clear();
+    s_.window.poll(events, kHearEvery);
+    s_.script.take(static_cast<double>(now_ns()) * 1e-9, events);
+    const double now = static_cast<double>(now_ns() - start) * 1e-9, dt = std::min(now - seconds_, kSlowestTurn);
+    seconds_ = now;
+    for (const InputEvent& event : events) handle(event);
+    camera_.update(dt);
+    keep();
+    point(dt);
+    look_for_opened();
+    if (pictures_.busy()) continue;
+    if (begun) status = learn(pictures_.done());
+    pictures_.begin(order(true));
+    begun = true;
+  }
+  touch_->stop();
+  keep();
+  if (begun && status) status = learn(pictures_.done());
+  if (opening_.valid()) opening_.wait();
+  s_.window.hide_cursor(false);
+  if (!touch_->has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
+  figures_.overruns = touch_->overruns();
+  if (!status) return status.error();
+  return figures_;
+}
+
+Result<WindowFigures> run_window(WindowSession& session) {
+  auto renderer = Renderer::create(session.world);
+  if (!renderer) return renderer.error();
+  WindowLoop loop(session, **renderer);
+  return loop.run();
+}
+
+}  // namespace pliant

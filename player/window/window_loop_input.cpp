@@ -1,0 +1,206 @@
+#include "player/window/window_loop.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+constexpr double kSamePlace = 2.0;  // [pixel]
+
+std::size_t imgui_button(MouseButton button) {
+  return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
+}
+
+}  // namespace
+
+void WindowLoop::say(std::string sentence, bool error) {
+  state_.message = std::move(sentence);
+  state_.message_is_error = error;
+  said_at_ = seconds_;
+}
+
+void WindowLoop::open(const std::string& file) {
+  if (opening_.valid()) return;
+  say("opening " + file, false);
+  opening_ = std::async(std::launch::async, s_.open, file);
+}
+
+void WindowLoop::look_for_opened() {
+  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (const std::optional<Error> wrong = opening_.get()) {
+    say(wrong->message(), true);
+  } else {
+    figures_.opened = true;
+  }
+}
+
+void WindowLoop::press(const InputEvent& event) {
+  if (drag_ != Drag::kNone) return;
+  dragging_ = event.button;
+  if (event.button == MouseButton::kMiddle || (event.button == MouseButton::kLeft && (event.modifiers & kShift))) {
+    drag_ = wants_mouse_ ? Drag::kNone : Drag::kPan;
+  } else if (event.button == MouseButton::kRight || (event.modifiers & kAlt)) {
+    drag_ = wants_mouse_ ? Drag::kNone : Drag::kOrbit;
+  } else {
+    drag_ = Drag::kAsked;
+    decides_ = questions_ + 1;
+    pressed_x_ = cursor_.x();
+    pressed_y_ = cursor_.y();
+    // A hand that has rested here has been told already.
+    const auto here = [&](const PickQuestion& q) {
+      return std::hypot(q.x - pressed_x_, q.y - pressed_y_) < kSamePlace;
+    };
+    if (answer_ && here(answer_->question)) decide(answer_->seen);
+  }
+}
+
+// What was pressed: a panel, something to touch, the tool, or nothing, which turns the view.
+void WindowLoop::decide(const std::optional<Picked>& seen) {
+  if (wants_mouse_) {
+    drag_ = Drag::kNone;
+  } else if (radius_ && pointer_.over_touchable()) {
+    drag_ = Drag::kPress;
+    pointer_.hold(true);
+  } else if (carrier_ && seen && seen->object == carrier_->tool()) {
+    drag_ = Drag::kCarry;
+    carrier_->grab(seen->point);
+  } else {
+    drag_ = Drag::kOrbit;
+  }
+}
+
+void WindowLoop::release() {
+  drag_ = Drag::kNone;
+  pointer_.hold(false);
+  if (carrier_) carrier_->release();
+}
+
+void WindowLoop::move(const InputEvent& event) {
+  const double dx = event.x - mouse_.x, dy = event.y - mouse_.y;
+  if (drag_ == Drag::kOrbit) camera_.orbit(dx, dy, s_.window.height());
+  if (drag_ == Drag::kPan) camera_.pan(dx, dy, s_.window.height());
+  mouse_.x = event.x;
+  mouse_.y = event.y;
+  cursor_.move_to(event.x, event.y);
+  pointed_ = true;
+}
+
+void WindowLoop::wheel(const InputEvent& event) {
+  mouse_.wheel += event.y;
+  if (wants_mouse_) return;
+  const int steps = event.y > 0 ? 1 : -1;
+  if (drag_ == Drag::kPress) {
+    pointer_.deepen(steps);
+  } else if (drag_ == Drag::kCarry) {
+    carrier_->push(event.y, camera_.viewpoint());
+  } else if ((event.modifiers & kControl) && radius_) {
+    pointer_.stand(steps);
+  } else {
+    camera_.zoom(event.y);
+  }
+}
+
+void WindowLoop::key(int key) {
+  RenderOptions& options = options_;
+  switch (key) {
+    case GLFW_KEY_ESCAPE:
+      if (!state_.help) close_ = true;
+      state_.help = false;
+      break;
+    case GLFW_KEY_F1:
+      state_.help = !state_.help;
+      break;
+    case GLFW_KEY_TAB:
+      state_.figures = !state_.figures;
+      break;
+    case GLFW_KEY_F12:
+      ++screenshots_;
+      break;
+    case GLFW_KEY_F:
+      camera_.frame();
+      break;
+    case GLFW_KEY_HOME:
+      camera_.home();
+      break;
+    case GLFW_KEY_1:
+    case GLFW_KEY_KP_1:
+      camera_.look_from(0, 0);
+      break;
+    case GLFW_KEY_3:
+    case GLFW_KEY_KP_3:
+      camera_.look_from(glm::half_pi<double>(), 0);
+      break;
+    case GLFW_KEY_7:
+    case GLFW_KEY_KP_7:
+      camera_.look_from(0, glm::half_pi<double>());
+      break;
+    case GLFW_KEY_SPACE:
+      touch_->pause(!touch_->paused());
+      break;
+    case GLFW_KEY_R:
+      open(s_.level);
+      break;
+    case GLFW_KEY_W:
+      options.wireframe = !options.wireframe;
+      break;
+    case GLFW_KEY_Z:
+      options.zones = !options.zones;
+      break;
+    case GLFW_KEY_H:
+      options.tint_height = options.tint_height > 0 ? 0.0f : tint_;
+      break;
+    case GLFW_KEY_C:
+      options.contact_frames = !options.contact_frames;
+      break;
+    case GLFW_KEY_A:
+      options.forces = !options.forces;
+      break;
+    case GLFW_KEY_S:
+      options.shadows = !options.shadows;
+      break;
+    case GLFW_KEY_T:
+      options.tetrahedra = !options.tetrahedra;
+      break;
+    case GLFW_KEY_K:
+      options.contacts = !options.contacts;
+      break;
+    case GLFW_KEY_G:
+      options.handles = !options.handles;
+      break;
+    default:
+      break;
+  }
+}
+
+void WindowLoop::handle(const InputEvent& event) {
+  switch (event.kind) {
+    case InputKind::kMove:
+      move(event);
+      break;
+    case InputKind::kPress:
+      mouse_.down[imgui_button(event.button)] = down_[imgui_button(event.button)] = true;
+      press(event);
+      break;
+    case InputKind::kRelease:
+      down_[imgui_button(event.button)] = false;  // mouse_.down: once a picture has seen that it was down
+      if (event.button == dragging_) release();
+      break;
+    case InputKind::kWheel:
+      wheel(event);
+      break;
+    case InputKind::kKey:
+      key(event.key);
+      break;
+    case InputKind::kDrop:
+      open(event.file);
+      break;
+    case InputKind::kClose:
+      close_ = true;
+      break;
+  }
+}
+
+}  // namespace pliant

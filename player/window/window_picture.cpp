@@ -1,0 +1,163 @@
+#include "player/window/window_picture.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/files/file_io.h"
+#include "content/files/image.h"
+#include "runtime/clock.h"
+#include "systems/visual/png.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kSlowDraw = 70.0;      // [ms] a card (or a processor in its stead) that needs longer draws coarser,
+constexpr double kFastDraw = 20.0;      // [ms] and one that needs less draws finer, up to every pixel
+constexpr double kWantedDraw = 40.0;    // [ms]
+constexpr double kLongestDraw = 500.0;  // [ms] for a screenshot
+constexpr double kCoarsest = 0.25;      // [1]
+
+// What stands in the window, with everything over it.
+Image read_back(int width, int height) {
+  Image image;
+  image.name = "screenshot";
+  image.width = static_cast<std::uint32_t>(width);
+  image.height = static_cast<std::uint32_t>(height);
+  const std::size_t row = std::size_t{4} * image.width;
+  std::vector<std::uint8_t> bottom_up(row * image.height);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
+  for (std::size_t y = image.height; y-- > 0;)
+    image.rgba.insert(image.rgba.end(), bottom_up.begin() + static_cast<std::ptrdiff_t>(y * row),
+                      bottom_up.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;  // a window has nothing behind it
+  return image;
+}
+
+}  // namespace
+
+WindowPictures::WindowPictures(Window& window, World& world, Renderer& renderer)
+    : window_(window), world_(world), renderer_(renderer), scale_(window.scale()) {
+  window_.give_context();
+  thread_ = std::thread([this] { run(); });
+}
+
+WindowPictures::~WindowPictures() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+  window_.take_context();
+}
+
+void WindowPictures::begin(PictureOrder order) {
+  const std::lock_guard lock(mutex_);
+  ASSERT(!busy_);
+  order_ = std::move(order);
+  busy_ = true;
+  began_ns_ = now_ns();
+  changed_.notify_all();
+}
+
+bool WindowPictures::busy() const {
+  const std::lock_guard lock(mutex_);
+  return busy_;
+}
+
+double WindowPictures::seconds() const {
+  const std::lock_guard lock(mutex_);
+  return busy_ ? static_cast<double>(now_ns() - began_ns_) * 1e-9 : 0.0;
+}
+
+const PictureDone& WindowPictures::done() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !busy_; });
+  return done_;
+}
+
+void WindowPictures::run() {
+  window_.take_context();
+  overlay_.emplace(scale_);
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return busy_ || stop_; });
+      if (!busy_) break;
+    }
+    draw();
+    {
+      const std::lock_guard lock(mutex_);
+      busy_ = false;
+    }
+    changed_.notify_all();
+    window_.wake();
+  }
+  overlay_.reset();
+  coarse_ = gpu::Framebuffer();
+  window_.give_context();
+}
+
+void WindowPictures::take_snapshots() {
+  while (world_.snapshots->acquire()) {
+    const Snapshot& snapshot = world_.snapshots->read();
+    renderer_.update(snapshot);
+    awake_ = 0;
+    for (const ObjectSnapshot& object : snapshot.objects) awake_ += object.awake_vertices;
+  }
+  if (world_.soft_snapshots && world_.soft_snapshots->acquire()) renderer_.update(world_.soft_snapshots->read());
+}
+
+// A picture that comes late is worse than a coarse one.
+void WindowPictures::choose_share(double draw_ms) {
+  if (draw_ms < kSlowDraw && (draw_ms > kFastDraw || share_ == 1.0)) return;
+  share_ = std::clamp(share_ * std::sqrt(kWantedDraw / std::max(draw_ms, 1.0)), kCoarsest, 1.0);
+  if (share_ > 0.9) share_ = 1.0;
+}
+
+FrameStats WindowPictures::draw_scene(double share) {
+  const int width = order_.width, height = order_.height;
+  renderer_.pick(order_.question);
+  if (share == 1.0) return renderer_.draw(order_.view, 0, width, height);
+  const int w = std::max(1, static_cast<int>(width * share)), h = std::max(1, static_cast<int>(height * share));
+  if (!coarse_.has_size(w, h)) coarse_ = gpu::Framebuffer(w, h, 0);
+  const FrameStats stats = renderer_.draw(order_.view, coarse_.id(), w, h);
+  glDisable(GL_FRAMEBUFFER_SRGB);  // encoded bytes to encoded bytes
+  glBlitNamedFramebuffer(coarse_.id(), 0, 0, 0, w, h, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  return stats;
+}
+
+void WindowPictures::draw() {
+  done_ = PictureDone();
+  renderer_.options() = order_.options;
+  take_snapshots();
+  if (!order_.frame.empty()) {
+    const Image image = renderer_.picture(order_.view, order_.frame_width, order_.frame_height);
+    done_.frame = write_file(order_.frame, encode_png(image.width, image.height, image.rgba.data()));
+  }
+  // A picture that stays is worth some time.
+  const bool stays = !order_.screenshot.empty();
+  const double finer = share_ * std::sqrt(kLongestDraw / std::max(draw_ms_, 1.0));
+  done_.stats = draw_scene(stays ? std::clamp(finer, share_, 1.0) : share_);
+  if (!stays) {
+    draw_ms_ = done_.stats.draw_ms;
+    choose_share(draw_ms_);
+  }
+  done_.answer = renderer_.picked();
+  done_.awake_vertices = awake_;
+  done_.resolution = share_;
+  if (order_.shown) {
+    overlay_->draw(order_.overlay, renderer_.options(), order_.tint, order_.mouse, order_.width, order_.height,
+                   order_.dt);
+    done_.wants_mouse = overlay_->wants_mouse();
+    if (stays) done_.screenshot = write_png(read_back(order_.width, order_.height), order_.screenshot);
+    window_.present();
+  }
+  done_.options = renderer_.options();
+}
+
+}  // namespace pliant

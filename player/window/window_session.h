@@ -1,0 +1,50 @@
+// A level in a window, until it is closed or another level takes its place: the loop of the visual clock.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "engine/journal.h"
+#include "player/interrupt.h"
+#include "player/record/keeper.h"
+#include "player/record/output_folder.h"
+#include "player/run/frames.h"
+#include "player/window/window.h"
+#include "player/window/window_touch.h"
+
+namespace pliant {
+
+struct WindowSession {
+  Window& window;
+  InputScript& script;  // what a file says beside the hand; may be empty
+  World& world;         // prepared
+  Schedule<World>& schedule;
+  Journal& journal;
+  Keeper& keeper;
+  OutputFolder& out;
+  const Interrupt& interrupt;
+  SoftClock* soft = nullptr;                  // none: nothing soft
+  std::string level;                          // what `R` opens again
+  double rate = 1000.0;                       // [Hz]
+  std::uint64_t ticks = 0;                    // at most
+  std::vector<std::uint64_t> frame_ticks;     // after which pictures are staged, ascending
+  int frame_width = 960, frame_height = 540;  // [pixel] of those
+  // Prepares another level on a thread of its own; nothing: it is ready, else why not.
+  std::function<std::optional<Error>(const std::string& file)> open;
+};
+
+struct WindowFigures {
+  FrameFigures frames;
+  std::uint64_t overruns = 0;
+  std::size_t pictures = 0;  // staged
+  bool opened = false;       // another level is ready and takes this one's place
+};
+
+// Returns when the window is closed, on Ctrl-C, after `ticks`, or when another level is ready. Devices have been let go
+// with zero force by then. The error says what kept it from drawing.
+Result<WindowFigures> run_window(WindowSession& session);
+
+}  // namespace pliant

@@ -1,0 +1,158 @@
+#include "systems/safety/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+bool finite(dvec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// The norm, never each axis: the direction must stay.
+dvec3 clamp_norm(dvec3 v, double most) {
+  const double size = length(v);
+  return size > most ? v * (most / size) : v;
+}
+
+// Only what senses a person can be stale; scripted motion has no age.
+bool stale(const HapticDevice& device, double now) {
+  return (device.driver == Driver::kExternal || device.driver == Driver::kMouse) &&
+         now - device.sensed_at > kStaleAfter;
+}
+
+// How large the component along the motion may be, if it is to come down to zero inside the slew limit without giving
+// more than `budget` [J]; the hand goes on by `step` [m] a tick, the force falls by at most `fall` [N] a tick. From p
+// the trapezoids sum to p * step where one tick suffices, else to at most (p/2 + p^2/(2 fall) + fall/8) * step.
+double stoppable(double budget, double step, double fall) {
+  const double mean = budget / step;
+  const double over_ticks = fall > 0 ? fall * (std::sqrt(2 * mean / fall) - 0.5) : 0.0;
+  return std::max(std::min(mean, fall), over_ticks);
+}
+
+// Reduces the component of the force along the motion where the hand would get more energy than it gave. Beyond zero
+// only to take out what was given too much, in proportion to the speed of a slow hand, and never by more than the
+// wanted force: in free space nothing drags. Components across the motion stay.
+dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wanted, dvec3 weight, dvec3 dx,
+                  double dt) {
+  const double way = length(dx);
+  if (!(way > 0.0)) return wanted;
+  const dvec3 along = dx / way;
+  const double step = kPassivityReserve * way;
+  const double given = state.work + 0.5 * dot(state.force - state.weight, dx);
+  // The trapezoid of a spring that the hand leaves in the middle of a step is off by up to |df| step / 8, and by as
+  // much where the hand came in: what sampling does is not taken for the law's.
+  const double sampling = 0.25 * length(wanted - weight - state.wanted) * way;
+  const double budget = kPassivityShare * state.stored + kPassivityFloor + sampling - given;
+  const double beside = dot(wanted - weight, along), total = dot(wanted, along), size = length(wanted);
+  double most = 0.0;
+  if (budget > 0) {
+    most = stoppable(budget, step, limits.slew * dt);
+  } else {
+    most = -std::min(-budget / step, size * std::min(1.0, way / (limits.slow * dt)));
+  }
+  // What is added against the motion may not make the whole larger than the device's limit.
+  const double across = std::max(0.0, size * size - total * total);
+  const double room = total + std::sqrt(std::max(0.0, limits.force * limits.force - across));
+  const double reduction = std::min({beside - most, size, room});
+  return reduction > 0 ? wanted - reduction * along : wanted;
+}
+
+void book(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx) {
+  state.work += 0.5 * dot(state.force - state.weight + force - weight, dx);
+  state.stored = std::max(state.stored, -state.work);
+}
+
+// Counts a difference of `missing` [N] from what was wanted, `size` [N].
+void count(SafetyTally& tally, SafetyLimit limit, double missing, double size) {
+  if (missing > kCountedForce && missing > kCountedShare * size) tally.add(limit, std::min(1.0, missing / size));
+}
+
+}  // namespace
+
+bool jumps(const SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 position,
+           double dt) {
+  const double elapsed = std::max(dt, device.sensed_at - state.sensed_at);
+  return state.placed && length(position - state.position) > limits.fastest * elapsed * (1 + 1e-9);
+}
+
+bool plausible_position(dvec3 position) {
+  return finite(position) && length(position) < kFarthest;
+}
+
+bool plausible_rotation(dquat rotation) {
+  const double size = length(rotation);
+  return std::isfinite(size) && size > 0.5 && size < 2.0;
+}
+
+void SafetyTally::add(SafetyLimit limit, double share) {
+  LimitCount& count = counts[static_cast<std::size_t>(limit)];
+  ++count.ticks;
+  count.largest_share = std::max(count.largest_share, share);
+  now = static_cast<std::uint8_t>(now | bit(limit));
+}
+
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now,
+                       double dt) {
+  return make_safe(state, device, {device.max_force, device.max_stiffness, device.max_slew}, wanted, position, now, dt);
+}
+
+SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 wanted,
+                       dvec3 position, double now, double dt) {
+  SafetyResult result;
+  state.tally.now = 0;
+  if (!finite(wanted) || !finite(limits.weight) || !finite(limits.carried) || !plausible_position(position)) {
+    result.event = SafetyEvent::kNonFinite;
+  } else if (device.status != DeviceStatus::kReady || stale(device, now)) {
+    result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;
+  } else {
+    const bool jumped = limits.jumped || jumps(state, device, limits, position, dt);
+    const dvec3 dx = state.placed && !jumped ? position - state.position - limits.carried : dvec3(0);
+    if (jumped) {
+      result.event = SafetyEvent::kJumped;
+      state.engaged = false;
+    } else if (!state.engaged) {
+      state.hidden = length(wanted - limits.weight) < length(wanted) ? 1.0 : 0.0;
+      state.engaged = length(wanted - state.hidden * limits.weight) < kEngageForce;
+    }
+    const dvec3 felt = wanted - state.hidden * limits.weight;
+    dvec3 force(0), weight(0);
+    if (state.engaged) {
+      force = clamp_norm(felt, limits.force);
+      weight = clamp_norm((1.0 - state.hidden) * limits.weight, limits.force);
+      state.hidden = std::max(0.0, state.hidden - dt / kWeightTime);
+      if (length(felt) > limits.force * (1 + 1e-9))
+        state.tally.add(SafetyLimit::kClipped, 1.0 - limits.force / length(felt));
+    } else {
+      count(state.tally, SafetyLimit::kGated, length(felt), length(felt));
+    }
+    const dvec3 passive = damp_excess(state, limits, force, weight, dx, dt);
+    state.wanted = force - weight;
+    count(state.tally, SafetyLimit::kWithheld, length(force - passive), length(force));
+    double most = limits.slew * dt;
+    if (limits.stiffness > 0) {
+      // The force may grow no faster with displacement than the device can render stably; it may always fall. What
+      // comes in of a weight is no answer to displacement.
+      const double rise = limits.stiffness * length(dx) + length(weight - state.weight);
+      if (length(passive) > length(state.force)) most = std::min(most, rise);
+    }
+    force = state.force + clamp_norm(passive - state.force, most);
+    count(state.tally, SafetyLimit::kSlewed, length(passive - force), std::max(length(passive), length(force)));
+    book(state, force, weight, dx);
+    result.force = force;
+    state.position = position;
+    state.sensed_at = device.sensed_at;
+    state.placed = true;
+    state.force = result.force;
+    state.weight = weight;
+    return result;
+  }
+  // Unknown: nothing leaves, at once, and the gate must be passed again. Work stays counted.
+  state.engaged = false;
+  state.placed = false;
+  state.force = state.weight = state.wanted = dvec3(0);
+  return result;
+}
+
+}  // namespace pliant

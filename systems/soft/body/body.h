@@ -1,0 +1,108 @@
+// Whatever contacts can push, as the soft step sees it: a linear system A v = b over its own degrees of freedom, solved
+// by a black box, and a skin whose points move with those degrees of freedom (J).
+// Kinds: rigid (rigid_state.h), soft, with a handle (a tool) or without (soft_body_state.h), fixed (no degrees of
+// freedom), yielding (a P1 surface: none either, but compliance).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "components/mesh.h"
+#include "components/soft_snapshot.h"
+#include "runtime/entity.h"
+#include "systems/soft/fem/modal.h"
+#include "systems/soft/linear/block_matrix.h"
+
+namespace pliant {
+
+struct SurfacePoint {
+  std::uint32_t triangle = 0;  // of the skin
+  dvec3 barycentric{1, 0, 0};  // [1]
+  dvec3 position{0};           // [m] world, at the beginning of the step
+};
+
+// A side of a contact, pushed by unit impulses along its axes.
+struct PushedSide {
+  Eigen::Index contact = 0;  // which of the body's contacts
+  const SurfacePoint* point = nullptr;
+  const dmat3* axes = nullptr;
+  double sign = 1.0;
+};
+
+// J A^-1 J^T = held + lever lever^T [1/kg].
+struct Compliance {
+  Eigen::MatrixXd held;  // symmetric; of a body with a handle: with the handle held still
+  Rows lever;            // rows x 6: what the handle's following adds; without a handle no columns
+};
+
+// Which bodies meet: all but what a probe presses by another law or passes through (probe_tool.h).
+enum class BodyKind : std::uint8_t { kBody, kSurface, kProbe };
+
+class Body {
+ public:
+  virtual ~Body() = default;
+
+  bool meets(const Body& other) const {
+    if (absent || other.absent || (size() == 0 && other.size() == 0)) return false;
+    if (kind == BodyKind::kProbe) return other.kind == BodyKind::kBody;
+    return other.kind != BodyKind::kProbe || kind == BodyKind::kBody;
+  }
+
+  Entity entity;
+  const Mesh* skin = nullptr;        // topology and rest shape (object frame)
+  std::vector<dvec3> skin_position;  // [m] world, per skin vertex, now
+  std::vector<dvec3> skin_velocity;  // [m/s] world, of the free motion after free_step(); for predicting contacts
+  double friction_static = 0.4, friction_sliding = 0.3;  // [1]
+  BodyKind kind = BodyKind::kBody;
+  bool absent = false;         // meets nothing: nobody knows yet where it is
+  bool self_collides = false;  // its skin can touch itself
+
+  // Degrees of freedom; 0: contacts cannot move it.
+  virtual int size() const = 0;
+  // Assembles and factorises A for a step of T [s], and finds v* without contacts. Updates skin_velocity.
+  virtual void free_step(double T, dvec3 gravity) = 0;
+  // False: the step's A could not be factorised; solve() must not be called.
+  virtual bool solvable() const { return true; }
+  // Stands still from here on: what its velocities were meant nothing.
+  virtual void halt() {}
+  // v: after free_step v*, after correct() the step's final velocity.
+  virtual const Vector& velocity() const = 0;
+  // columns.col(column) += J^T(point) impulse.
+  virtual void push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const = 0;
+  // columns.middleCols(first, 3) += sign * J^T(point) [a0 a1 a2], J^T of unit impulses along the axes' columns.
+  void spread(const SurfacePoint& point, const dmat3& axes, double sign, Rows& columns, Eigen::Index first) const {
+    for (int k = 0; k < 3; ++k) push(point, sign * axes[k], columns, first + k);
+  }
+  // out (3 x columns of x) += sign * axes^T J(point) x.
+  virtual void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
+                      Eigen::Ref<Rows> out) const = 0;
+  // columns = A^-1 columns.
+  virtual void solve(Rows& columns) const = 0;
+  // J A^-1 J^T of `contacts` contacts, three rows each. `sides`: theirs on this body, by ascending contact (both sides
+  // of one that the body has with itself).
+  virtual void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const;
+  // v = v* + dv, dv = A^-1 J^T lambda (already solved).
+  virtual void correct(const Vector& dv) = 0;
+  // [m/s] Per skin vertex, by velocity() as it is now.
+  virtual void move_skin(std::vector<dvec3>& out) const { out.assign(skin_position.size(), dvec3(0)); }
+  // x += T v; refreshes skin_position.
+  virtual void advance(double T) = 0;
+  // Its contacts have a compliance of their own, though nothing of it moves.
+  virtual bool yields() const { return false; }
+  // Yielding surfaces: w += compliance [m/(N s)... per T] between contacts on this body; rows 3 * contact.
+  struct Side {
+    int contact;  // which contact: rows 3 * contact ...
+    const SurfacePoint* point;
+  };
+  virtual void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
+    (void)sides, (void)T, (void)w;
+  }
+  // --- For the touch clock's reduced copy (modal.h): of A, what is inertia, and how the step began. After free_step.
+  virtual void weigh(const Rows& x, Rows& out) const { out.setZero(x.rows(), x.cols()); }  // out = M x
+  virtual RayleighDamping damping() const { return {}; }
+  virtual Vector starting_velocity() const { return Vector::Zero(size()); }
+  // Fills the object's part of a snapshot; sizes were set by the first call, before the clocks start.
+  virtual void show(SoftObjectSnapshot& out) const = 0;
+};
+
+}  // namespace pliant

@@ -1,0 +1,183 @@
+#include "systems/soft/body/rigid_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/assert.h"
+#include "systems/soft/body/rotation_vector.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kTurnPerPart = 0.1;  // [rad] a free turn is followed in parts no larger than this
+constexpr int kMostParts = 256;
+
+void place_skin(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& skin_position) {
+  const dmat3 r = glm::mat3_cast(pose.rotation);
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) skin_position[v] = pose.position + r * dvec3(mesh.position(v));
+}
+
+// Velocities of points that turn with `angular` about `centre`, which moves with `linear`.
+void move_points(const std::vector<dvec3>& points, dvec3 centre, dvec3 linear, dvec3 angular, std::vector<dvec3>& out) {
+  out.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = linear + cross(angular, points[i] - centre);
+}
+
+}  // namespace
+
+RigidState::RigidState(const Mesh& mesh, const Pose& pose, const RigidMass& mass)
+    : mass_(mass), centre_(pose.to_world(mass.centre)), rotation_(normalize(pose.rotation)) {
+  ASSERT(mass.mass > 0.0 && glm::determinant(mass.inertia) > 0.0);
+  skin = &mesh;
+  skin_position.resize(mesh.vertex_count);
+  skin_velocity.resize(mesh.vertex_count, dvec3(0));
+  inverse_inertia_ = inverse_inertia(rotation_);
+  refresh_skin();
+}
+
+dmat3 RigidState::inertia(const dquat& rotation) const {
+  const dmat3 r = glm::mat3_cast(rotation);
+  return r * mass_.inertia * glm::transpose(r);
+}
+dmat3 RigidState::inverse_inertia(const dquat& rotation) const {
+  return glm::inverse(inertia(rotation));
+}
+
+void RigidState::set_velocity(dvec3 linear, dvec3 angular) {
+  linear_ = linear;
+  angular_momentum_ = inertia(rotation_) * angular;
+}
+
+double RigidState::kinetic_energy() const {
+  return 0.5 * mass_.mass * dot(linear_, linear_) +
+         0.5 * dot(angular_momentum_, inverse_inertia(rotation_) * angular_momentum_);
+}
+
+dvec3 RigidState::free_turn(double T) const {
+  const double spin = length(inverse_inertia_ * angular_momentum_);
+  const int parts = std::clamp(static_cast<int>(std::ceil(spin * T / kTurnPerPart)), 1, kMostParts);
+  const double h = T / parts;
+  dquat q = rotation_;
+  for (int i = 0; i < parts; ++i) {
+    dvec3 w = inverse_inertia(q) * angular_momentum_;
+    // A contraction by about h |w| < 0.1: eight times leave rounding.
+    for (int k = 0; k < 8; ++k) w = inverse_inertia(rotation_of(0.5 * h * w) * q) * angular_momentum_;
+    q = rotation_of(h * w) * q;
+  }
+  return vector_of(q * glm::conjugate(rotation_)) / T;
+}
+
+void RigidState::free_step(double T, dvec3 gravity) {
+  inverse_inertia_ = inverse_inertia(rotation_);
+  const dvec3 spin = inverse_inertia_ * angular_momentum_;
+  start_ << linear_.x, linear_.y, linear_.z, spin.x, spin.y, spin.z;
+  const dvec3 v = linear_ + T * gravity, w = free_turn(T);
+  velocity_ << v.x, v.y, v.z, w.x, w.y, w.z;
+  move_skin(skin_velocity);
+}
+
+void RigidState::move_skin(std::vector<dvec3>& out) const {
+  const double* const v = velocity_.data();
+  move_points(skin_position, centre_, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, out);
+}
+
+void RigidState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
+  const dvec3 turn = cross(point.position - centre_, impulse);
+  for (int k = 0; k < 3; ++k) {
+    columns(k, column) += impulse[k];
+    columns(3 + k, column) += turn[k];
+  }
+}
+
+void RigidState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
+                        Eigen::Ref<Rows> out) const {
+  const dvec3 r = point.position - centre_;
+  for (int c = 0; c < 3; ++c) {
+    const dvec3 f = sign * axes[c], m = cross(r, f);
+    for (int k = 0; k < 3; ++k) out.row(c) += f[k] * x.row(k) + m[k] * x.row(3 + k);
+  }
+}
+
+void RigidState::solve(Rows& columns) const {
+  columns.topRows(3) /= mass_.mass;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    const dvec3 w = inverse_inertia_ * dvec3(columns(3, c), columns(4, c), columns(5, c));
+    for (int k = 0; k < 3; ++k) columns(3 + k, c) = w[k];
+  }
+}
+
+void RigidState::weigh(const Rows& x, Rows& out) const {
+  out.resize(6, x.cols());
+  out.topRows(3) = mass_.mass * x.topRows(3);
+  const dmat3 turning = inertia(rotation_);
+  for (int row = 0; row < 3; ++row)
+    out.row(3 + row) = turning[0][row] * x.row(3) + turning[1][row] * x.row(4) + turning[2][row] * x.row(5);
+}
+
+void RigidState::correct(const Vector& dv) {
+  velocity_ += dv;
+  angular_momentum_ += inertia(rotation_) * dvec3(dv[3], dv[4], dv[5]);
+}
+
+void RigidState::advance(double T) {
+  linear_ = {velocity_[0], velocity_[1], velocity_[2]};
+  centre_ += T * linear_;
+  rotation_ = normalize(rotation_of(T * dvec3(velocity_[3], velocity_[4], velocity_[5])) * rotation_);
+  refresh_skin();
+}
+
+void RigidState::halt() {
+  linear_ = angular_momentum_ = dvec3(0);
+  velocity_.setZero();
+  std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
+}
+
+void RigidState::refresh_skin() {
+  place_skin(*skin, pose(), skin_position);
+}
+
+void RigidState::show(SoftObjectSnapshot& out) const {
+  out.object = entity;
+  out.pose = pose();
+}
+
+FixedBody::FixedBody(const Mesh& mesh, const Pose& pose) : pose_{pose.position, normalize(pose.rotation)} {
+  skin = &mesh;
+  skin_position.resize(mesh.vertex_count);
+  skin_velocity.resize(mesh.vertex_count, dvec3(0));
+  refresh_skin();
+}
+
+void FixedBody::set_velocity(dvec3 linear, dvec3 angular) {
+  linear_ = linear;
+  angular_ = angular;
+}
+
+void FixedBody::free_step(double, dvec3) {
+  move_points(skin_position, pose_.position, linear_, angular_, skin_velocity);
+}
+
+void FixedBody::advance(double T) {
+  if (linear_ == dvec3(0) && angular_ == dvec3(0)) return;
+  pose_.position += T * linear_;
+  pose_.rotation = normalize(rotation_of(T * angular_) * pose_.rotation);
+  refresh_skin();
+}
+
+// A spring under each contact: gap = g0 + T u + compliance lambda / T. Along the normal only: sideways it would need a
+// memory of where it was stretched from, and without one it creeps.
+void FixedBody::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
+  if (compliance <= 0.0) return;
+  for (const Side& side : sides) w(3 * side.contact, 3 * side.contact) += compliance / (T * T);
+}
+
+void FixedBody::refresh_skin() {
+  place_skin(*skin, pose_, skin_position);
+}
+
+void FixedBody::show(SoftObjectSnapshot& out) const {
+  out.object = entity;
+  out.pose = pose_;
+}
+
+}  // namespace pliant

@@ -1,0 +1,87 @@
+// Bodies without an inside: RigidState has six degrees of freedom, FixedBody none (it may move as it is told).
+#pragma once
+
+#include "components/transform.h"
+#include "systems/soft/body/immovable_body.h"
+
+namespace pliant {
+
+// What a rigid body is made of, in its object frame.
+struct RigidMass {
+  double mass = 1.0;  // [kg] > 0
+  dvec3 centre{0};    // [m] centre of mass
+  dmat3 inertia{1};   // [kg m2] about the centre of mass, along the object's axes; positive definite
+};
+
+// Newton and Euler. Degrees of freedom: velocity of the centre of mass [m/s], angular velocity [rad/s], world frame.
+// What is kept is the angular momentum L, which only contacts change: a free body turns with q' = exp(h w) q,
+// w = I(exp(h w/2) q)^-1 L (midpoint, so that nothing damps and nothing drives), in as many parts of a step as its spin
+// asks for. The step then has the mean angular velocity of that turn as its v*.
+class RigidState : public Body {
+ public:
+  RigidState(const Mesh& skin, const Pose& pose, const RigidMass& mass);
+
+  int size() const override { return 6; }
+  void free_step(double T, dvec3 gravity) override;
+  const Vector& velocity() const override { return velocity_; }
+  void push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const override;
+  void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
+              Eigen::Ref<Rows> out) const override;
+  void solve(Rows& columns) const override;
+  void correct(const Vector& dv) override;
+  void move_skin(std::vector<dvec3>& out) const override;
+  void advance(double T) override;
+  void weigh(const Rows& x, Rows& out) const override;
+  Vector starting_velocity() const override { return start_; }
+  void halt() override;
+  void show(SoftObjectSnapshot& out) const override;
+
+  const RigidMass& mass() const { return mass_; }
+  const dvec3& centre() const { return centre_; }                      // [m] world
+  const dquat& rotation() const { return rotation_; }                  // object to world
+  const dvec3& angular_momentum() const { return angular_momentum_; }  // [kg m2/s] world, about the centre
+  Pose pose() const { return {centre_ - rotation_ * mass_.centre, rotation_}; }
+  // linear [m/s] of the centre of mass, angular [rad/s], world.
+  void set_velocity(dvec3 linear, dvec3 angular);
+  double kinetic_energy() const;  // [J] at the current attitude
+
+ private:
+  dmat3 inertia(const dquat& rotation) const;          // [kg m2] world
+  dmat3 inverse_inertia(const dquat& rotation) const;  // world
+  dvec3 free_turn(double T) const;                     // [rad/s] mean angular velocity of the step without contacts
+  void refresh_skin();
+
+  RigidMass mass_;
+  dvec3 centre_{0};
+  dquat rotation_{1, 0, 0, 0};
+  dvec3 linear_{0};            // [m/s]
+  dvec3 angular_momentum_{0};  // [kg m2/s]
+  dmat3 inverse_inertia_{1};   // of the step's beginning
+  Vector velocity_ = Vector::Zero(6), start_ = Vector::Zero(6);
+};
+
+// Ground, walls, and fingers that follow a script: contacts cannot move it.
+class FixedBody : public ImmovableBody {
+ public:
+  FixedBody(const Mesh& skin, const Pose& pose);
+
+  // From now on it moves so: of its origin [m/s], and turning about it [rad/s], world.
+  void set_velocity(dvec3 linear, dvec3 angular);
+  // [m/N] > 0: contacts give way along their normals by so much per newton (pads of a gripper); 0: rigid.
+  double compliance = 0.0;
+
+  void free_step(double T, dvec3 gravity) override;
+  void advance(double T) override;
+  bool yields() const override { return compliance > 0.0; }
+  void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
+  void show(SoftObjectSnapshot& out) const override;
+  const Pose& pose() const { return pose_; }
+
+ private:
+  void refresh_skin();
+
+  Pose pose_;
+  dvec3 linear_{0}, angular_{0};
+};
+
+}  // namespace pliant

@@ -1,0 +1,90 @@
+#include "systems/soft/body/rigid_tool.h"
+
+#include <algorithm>
+
+#include "runtime/assert.h"
+
+namespace pliant {
+
+RigidTool::RigidTool(const Mesh& mesh, const RigidMass& mass, const Handle6& handle, const Pose& placement) {
+  ASSERT(mass.mass > 0.0 && glm::determinant(mass.inertia) > 0.0);
+  skin = &mesh;
+  settings_ = handle;
+  handle_.emplace(mass.mass, mass.centre, mass.inertia, Pose{placement.position, normalize(placement.rotation)});
+  mass_ = mass.mass;
+  velocity_ = Vector::Zero(6);
+  skin_position.resize(mesh.vertex_count);
+  skin_velocity.assign(mesh.vertex_count, dvec3(0));
+  refresh_skin();
+}
+
+void RigidTool::free_step(double T, dvec3 gravity) {
+  T_ = T;
+  couple(T, gravity);
+  Matrix6 A = handle_mass_;
+  A.diagonal() += coupling_step_.matrix;
+  factor_.compute(A);
+  solvable_ = factor_.info() == Eigen::Success && A.allFinite();
+  if (solvable_)
+    velocity_ = factor_.solve(handle_mass_ * start_ + T * handle_load_ + coupling_step_.right);
+  else
+    velocity_.setZero();
+  move_skin(skin_velocity);
+}
+
+void RigidTool::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
+  columns.col(column) += join(impulse, cross(point.position - handle_->motion().pose.position, impulse));
+}
+
+void RigidTool::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
+                       Eigen::Ref<Rows> out) const {
+  const dvec3 arm = point.position - handle_->motion().pose.position;
+  for (int k = 0; k < 3; ++k) out.row(k) += sign * join(axes[k], cross(arm, axes[k])).transpose() * x;
+}
+
+void RigidTool::solve(Rows& columns) const {
+  columns = factor_.solve(columns).eval();
+}
+
+void RigidTool::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
+  out.held.setZero(3 * contacts, 3 * contacts);
+  Rows moved = Rows::Zero(3 * contacts, 6);
+  for (const PushedSide& side : sides)
+    handle_rows(*side.point, *side.axes, side.sign, moved.middleRows<3>(3 * side.contact));
+  // J A^-1 J^T = (J L^-T) (J L^-T)^T.
+  const Eigen::MatrixXd levered = factor_.matrixL().solve(moved.transpose());
+  out.lever = levered.transpose();
+}
+
+void RigidTool::move_skin(std::vector<dvec3>& out) const {
+  out.resize(skin_position.size());
+  const dvec3 centre = handle_->motion().pose.position, v = linear(velocity_), w = angular(velocity_);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = v + cross(w, skin_position[i] - centre);
+}
+
+void RigidTool::advance(double T) {
+  handle_->set_velocity(velocity_);
+  handle_->advance(T);
+  velocity_ = handle_->motion().velocity;
+  refresh_skin();
+}
+
+void RigidTool::halt() {
+  velocity_.setZero();
+  std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
+  handle_->set_velocity(Vector6::Zero());
+}
+
+void RigidTool::refresh_skin() {
+  const Pose pose = handle_->object_pose();
+  const dmat3 r = glm::mat3_cast(pose.rotation);
+  for (std::uint32_t v = 0; v < skin->vertex_count; ++v)
+    skin_position[v] = pose.position + r * dvec3(skin->position(v));
+}
+
+void RigidTool::show(SoftObjectSnapshot& out) const {
+  out.object = entity;
+  out.pose = handle_->object_pose();
+}
+
+}  // namespace pliant

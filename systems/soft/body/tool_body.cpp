@@ -1,0 +1,81 @@
+#include "systems/soft/body/tool_body.h"
+
+#include <cmath>
+
+#include "systems/soft/body/rotation_vector.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kLeadMass = 1e4;     // [kg] of what moves a handle that is told where to go: far above any tool's
+constexpr double kLeadInertia = 1e2;  // [kg m2]
+
+bool finite(const RigidMotion& motion) {
+  const dvec3 x = motion.pose.position;
+  const dquat q = motion.pose.rotation;
+  return std::isfinite(dot(x, x)) && std::isfinite(1.0 / glm::dot(q, q)) && motion.velocity.allFinite();
+}
+
+// [m], [rad]
+Vector6 way_between(const RigidMotion& from, const RigidMotion& to) {
+  return join(to.pose.position - from.pose.position, vector_of(to.pose.rotation * glm::conjugate(from.pose.rotation)));
+}
+
+}  // namespace
+
+void ToolBody::set_device(const Pose& pose, const Vector6& velocity) {
+  RigidMotion device{pose, velocity};
+  if (!finite(device)) return release_device();
+  device.pose.rotation = glm::normalize(pose.rotation);
+  device_ = device;
+}
+
+// What holds up the whole tool in its rest shape. A hand that lifts the weight and lowers it elsewhere would be given
+// work that no surface ever took from it, which no passive device may do.
+Vector6 ToolBody::support(dvec3 gravity) const {
+  if (!(device_ || led_) || !settings_.carried) return Vector6::Zero();
+  const dvec3 force = -mass_ * gravity;
+  return join(force, cross(handle_->motion().pose.rotation * balance_, force));
+}
+
+void ToolBody::set_back() {
+  if (!device_) return;
+  handle_->place(device_->pose);
+  unsettle();
+  halt();
+}
+
+void ToolBody::couple(double T, dvec3 gravity) {
+  const RigidMotion now = handle_->motion();
+  start_ = now.velocity;
+  handle_mass_ = handle_->mass_matrix();
+  carry_ = support(gravity);
+  handle_load_ = handle_mass_ * join(gravity, dvec3(0)) + carry_;
+  coupling_ = device_ && !led_ ? coupling_force(settings_, now, device_target()) : CouplingForce{};
+  coupling_step_ = device_ && !led_ ? coupling_step(coupling_, now, device_target(), T) : CouplingStep{};
+  if (!led_) return;
+  const Vector6 there = way_between(now, led_->end) / T;
+  if (led_->told || !device_) {
+    coupling_step_.matrix = join(dvec3(kLeadMass), dvec3(kLeadInertia));
+    coupling_step_.right = coupling_step_.matrix.cwiseProduct(there);
+    return;
+  }
+  coupling_step_.matrix =
+      coupling_step(coupling_force(settings_, led_->end, device_target()), led_->end, device_target(), T).matrix;
+  coupling_step_.right =
+      coupling_step_.matrix.cwiseProduct(there) + handle_mass_ * (there - start_) - T * (handle_load_ + led_->expected);
+}
+
+Vector6 ToolBody::short_of_lead(const RigidMotion& handle) const {
+  return led_ ? way_between(handle, led_->end) : Vector6(Vector6::Zero());
+}
+
+Vector6 ToolBody::coupling_wrench() const {
+  return (coupling_step_.right - coupling_step_.matrix.cwiseProduct(velocity_.tail<6>())) / T_;
+}
+
+Vector6 ToolBody::handle_wrench() const {
+  return handle_mass_ * (velocity_.tail<6>() - start_) / T_ - coupling_wrench() - handle_load_;
+}
+
+}  // namespace pliant

@@ -1,0 +1,213 @@
+#include "systems/soft/collide/meeting_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+
+namespace pliant {
+namespace {
+
+constexpr double kSameSide = 0.5;   // [1] cosine: a normal that is still the one of the last step
+constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a further contact (in a corner)
+constexpr std::uint32_t kMostOfVertex = 3;
+constexpr double kAtOnce = 4.0;   // [margins] what sinks in farther in one step,
+constexpr double kDeepens = 2.0;  // [1] beyond so many times how deep it was, did not
+constexpr double kComing = 1e-3;  // [margins] in a step: slower, and it does not go into a sheet but lies in it
+constexpr double kGraze = 0.3;    // [margins] what crosses by less is left to the next step
+
+struct MeetingFilter {
+  const PairView& pair;
+  std::vector<Found>& out;
+  Crossings crossings{};  // of what was missed
+
+  void take_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
+    const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
+    const ContactPoint* last = pair.memory.find(key);
+    const bool met = came_from(pair.sides.find(key), m);
+    // Edges deep below each other that never met: others hold those bodies.
+    if (m.gap < -pair.margin && !met && !(began_inside() && leads_out(a, b, m))) return;
+    if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, met)) return;
+    if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, met)) return;
+    out.push_back({a.index, b.index, true, edge_a, edge_b, m, last, key});
+  }
+
+  // Whether the last step saw it on this side. Nothing sinks in deep at once: where it would have, it has gone round a
+  // corner, and is deep behind a face that it left.
+  bool came_from(const KnownSide* side, const Meeting& m) const {
+    if (!side || dot(side->normal, m.normal) <= kSameSide) return false;
+    return -m.gap <= kAtOnce * pair.margin + kDeepens * std::max(0.0, -side->gap);
+  }
+
+  bool began_inside() const { return pair.way != dvec3(0.0); }
+  bool leads_out(const Side& a, const Side& b, const Meeting& m) const {
+    return dot(a.index < b.index ? pair.way : -pair.way, m.normal) > kSameSide;
+  }
+
+  // Whether what meets an edge of a sheet, pushed along `push` by it, is in front of it.
+  bool meets_front(dvec3 front, dvec3 push, const Meeting& m, bool met) const {
+    const double along = dot(front, push);
+    return along >= 0.0 && (m.gap >= 0.0 || met || (along > kFacing && enters(m)));
+  }
+  // A sheet has no inside. What shows behind it without a past and goes in was put there, or slipped in beside others;
+  // what goes out came from behind.
+  bool enters(const Meeting& m) const { return m.gap >= -pair.margin && m.end_gap < m.gap - kComing * pair.margin; }
+
+  // Meetings of every vertex of body a with body b. In front, a vertex touches what it meets; behind, it touches what
+  // it came from: the side of the last step, or, where there is none, the nearest if it really is inside.
+  void take_vertices(const Side& a, const Side& b, std::vector<VertexMeeting>& met) {
+    std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
+      return x.vertex != y.vertex ? x.vertex < y.vertex : x.triangle < y.triangle;
+    });
+    for (auto first = met.begin(); first != met.end();) {
+      const auto last = std::find_if(first, met.end(), [&](const auto& m) { return m.vertex != first->vertex; });
+      take_vertex(a, b, {first, last});
+      first = last;
+    }
+  }
+
+  void take_vertex(const Side& a, const Side& b, std::span<VertexMeeting> met) {
+    const std::uint32_t vertex = met.front().vertex;
+    std::array<const ContactPoint*, kMostOfVertex> past;
+    for (std::uint32_t k = 0; k < kMostOfVertex; ++k)
+      past[k] = pair.memory.find(vertex_key(a.index, b.index, vertex, k));
+    const std::optional<VertexMeeting> behind = side_to_return_to(a, b, met);
+
+    std::array<const VertexMeeting*, kMostOfVertex> kept{};
+    std::uint32_t count = 0;
+    if (behind) kept[count++] = &*behind;
+    std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
+      return x.meeting.end_gap != y.meeting.end_gap ? x.meeting.end_gap < y.meeting.end_gap : x.triangle < y.triangle;
+    });
+    for (const VertexMeeting& m : met) {
+      if (m.meeting.gap < 0.0 || count == kMostOfVertex) continue;
+      if (behind && dot(behind->meeting.normal, m.meeting.normal) < 0.0) continue;  // a thin body's far side
+      const bool alike = std::any_of(kept.begin(), kept.begin() + count, [&](const VertexMeeting* k) {
+        return dot(k->meeting.normal, m.meeting.normal) > kOtherFace;
+      });
+      if (!alike) kept[count++] = &m;
+    }
+
+    // Each takes on the past contact whose normal is the most alike; the others take the ordinals that are left.
+    std::array<bool, kMostOfVertex> used{};
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::uint32_t best = kMostOfVertex;
+      double alike = kSameSide;
+      for (std::uint32_t k = 0; k < kMostOfVertex; ++k) {
+        if (!past[k] || used[k] || dot(past[k]->normal, kept[i]->meeting.normal) <= alike) continue;
+        alike = dot(past[k]->normal, kept[i]->meeting.normal);
+        best = k;
+      }
+      const ContactPoint* last = best < kMostOfVertex ? past[best] : nullptr;
+      if (!last) best = static_cast<std::uint32_t>(std::find(used.begin(), used.end(), false) - used.begin());
+      used[best] = true;
+      out.push_back({a.index, b.index, false, vertex, kept[i]->triangle, kept[i]->meeting, last,
+                     vertex_key(a.index, b.index, vertex, best)});
+    }
+  }
+
+  // Of the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
+  std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b,
+                                                 std::span<const VertexMeeting> met) const {
+    std::array<const KnownSide*, kMostOfVertex> past;
+    for (std::uint32_t k = 0; k < kMostOfVertex; ++k)
+      past[k] = pair.sides.find(vertex_key(a.index, b.index, met.front().vertex, k));
+    const VertexMeeting* behind = nullptr;
+    bool known = false;
+    double in_front = 1e300;
+    for (const VertexMeeting& m : met) {
+      if (m.meeting.gap >= 0.0) {
+        in_front = std::min(in_front, m.meeting.gap);
+        continue;
+      }
+      const bool came =
+          std::any_of(past.begin(), past.end(), [&](const KnownSide* side) { return came_from(side, m.meeting); });
+      if (!came && began_inside() && !leads_out(a, b, m.meeting)) continue;
+      if (!behind || (came && !known) || (came == known && m.meeting.gap > behind->meeting.gap)) behind = &m;
+      known |= came;
+    }
+    if (!behind) return {};
+    if (!known && !began_inside() && (in_front < -behind->meeting.gap || !inside(a, b, *behind))) return {};
+    return *behind;
+  }
+
+  bool inside(const Side& a, const Side& b, const VertexMeeting& m) const {
+    const double depth = -m.meeting.gap;
+    if (a.index == b.index) return depth <= pair.margin && in_front_at_rest(b.skin.mesh(), m);
+    if ((a.sheet() || b.sheet()) && !enters(m.meeting)) return false;
+    if (!b.skin.mesh().closed) return depth <= pair.margin;  // far behind it is the open
+    return b.skin.contains(a.skin.vertex(m.vertex).x, pair.reach.behind);
+  }
+  // Through a thin part of a body its own far side looks like something that was entered.
+  static bool in_front_at_rest(const Mesh& mesh, const VertexMeeting& m) {
+    const uvec3 c = mesh.triangles[m.triangle];
+    const vec3 n = cross(mesh.position(c.y) - mesh.position(c.x), mesh.position(c.z) - mesh.position(c.x));
+    return dot(n, mesh.position(m.vertex) - mesh.position(c.x)) >= 0.0f;
+  }
+
+  // --- What was missed
+  bool crosses(const Meeting& m) const { return m.crosses && m.end_gap < -kGraze * pair.margin; }
+  // What is a contact already has a law that is straight: it may be kept, and the surface bends away under it.
+  bool slips(const Meeting& m) const { return m.crosses && m.end_gap < -pair.margin; }
+  void count(const Meeting& m) { crossings.add({1, m.when}); }
+
+  void take_missed_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
+    const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
+    if (!crosses(m)) return;
+    if (pair.sides.find(key)) {
+      if (slips(m)) count(m);
+      return;
+    }
+    if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, false)) return;
+    if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, false)) return;
+    count(m);
+    out.push_back({a.index, b.index, true, edge_a, edge_b, m, pair.memory.find(key), key});
+  }
+
+  // The first triangle that a vertex crosses, under a key that is still free, unless find() saw it on that side.
+  void take_missed_vertices(const Side& a, const Side& b, std::vector<VertexMeeting>& met) {
+    std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
+      if (x.vertex != y.vertex) return x.vertex < y.vertex;
+      return x.meeting.gap != y.meeting.gap ? x.meeting.gap < y.meeting.gap : x.triangle < y.triangle;
+    });
+    std::uint32_t done = kBorder;
+    for (const VertexMeeting& m : met) {
+      if (m.vertex == done || !crosses(m.meeting)) continue;
+      const std::optional<std::uint64_t> key = free_key(a, b, m);
+      if (!key && slips(m.meeting)) count(m.meeting);
+      if (!key) continue;
+      done = m.vertex;
+      count(m.meeting);
+      out.push_back({a.index, b.index, false, m.vertex, m.triangle, m.meeting, pair.memory.find(*key), *key});
+    }
+  }
+  std::optional<std::uint64_t> free_key(const Side& a, const Side& b, const VertexMeeting& m) const {
+    std::optional<std::uint64_t> free;
+    for (std::uint32_t k = kMostOfVertex; k-- > 0;) {
+      const std::uint64_t key = vertex_key(a.index, b.index, m.vertex, k);
+      const KnownSide* side = pair.sides.find(key);
+      if (side && dot(side->normal, m.meeting.normal) > kSameSide) return {};
+      if (!side) free = key;
+    }
+    return free;
+  }
+};
+
+}  // namespace
+
+void take_contacts(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out) {
+  MeetingFilter filter{pair, out};
+  for (const EdgeMeeting& m : meetings.edges) filter.take_edges(a, m.edge_a, b, m.edge_b, m.meeting);
+  filter.take_vertices(a, b, meetings.of_a);
+  filter.take_vertices(b, a, meetings.of_b);
+}
+
+Crossings take_missed(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out) {
+  MeetingFilter filter{pair, out};
+  for (const EdgeMeeting& m : meetings.edges) filter.take_missed_edges(a, m.edge_a, b, m.edge_b, m.meeting);
+  filter.take_missed_vertices(a, b, meetings.of_a);
+  filter.take_missed_vertices(b, a, meetings.of_b);
+  return filter.crossings;
+}
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+// Which features of two skins meet within a step, or of one skin with itself: vertices and triangles, edges and edges.
+// Which of these meetings are contacts is decided elsewhere (meeting_filter.h).
+#pragma once
+
+#include <vector>
+
+#include "systems/soft/collide/skin.h"
+
+namespace pliant {
+
+struct Side {
+  std::uint32_t index;  // of the body
+  const Body& body;
+  const Skin& skin;
+  // A fixed surface that encloses nothing: it stops what comes from its front and lets pass what comes from behind.
+  bool sheet() const { return body.size() == 0 && !skin.mesh().closed; }
+};
+
+// A vertex of one skin that meets a triangle of another (or of its own).
+struct VertexMeeting {
+  std::uint32_t vertex, triangle;
+  Meeting meeting;
+};
+// An edge of one skin that meets an edge of another (or of its own).
+struct EdgeMeeting {
+  std::uint32_t edge_a, edge_b;
+  Meeting meeting;
+};
+
+struct Meetings {
+  std::vector<EdgeMeeting> edges;
+  std::vector<VertexMeeting> of_a, of_b;  // vertices of the first body, of the second; a body's own are all in of_a
+};
+
+// Fills `out`; a and b may be the same body. Triangles that have strayed by no more than `strayed` [m] together are
+// left out (Skin::strayed).
+void find_meetings(const Side& a, const Side& b, const Reach& reach, float strayed, Meetings& out);
+
+}  // namespace pliant

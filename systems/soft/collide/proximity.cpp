@@ -1,0 +1,333 @@
+// From skins to contacts: the features that meet (meetings.h), which of them are contacts (meeting_filter.h), and how
+// few are enough (contact_thinning.h); pair by pair over all bodies. Their boxes are compared all with all, n^2 / 2
+// tests: for hundreds of bodies, not for thousands.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "runtime/assert.h"
+#include "systems/soft/body/yielding_body.h"
+#include "systems/soft/collide/contact_geometry.h"
+#include "systems/soft/collide/contact_thinning.h"
+#include "systems/soft/collide/meeting_filter.h"
+#include "systems/soft/collide/shortest_way.h"
+#include "systems/soft/contact/contact_point.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kSlender = 2.0;  // [1] of a mean edge to the shortest one there: beyond, the shortest one counts
+constexpr double kDeepestWithin = 10.0;  // [margins] no penetration of a body into itself is followed farther
+constexpr double kDeeper = 1.5;
+constexpr double kRises = 0.95;  // [1] of a penetration: what is left of it where it is being pushed out
+constexpr double kSunk = 0.1;    // [margins] what thinning left out joins where it is deeper and stays so
+
+// Tunables of the margin within which pairs are taken along although they are not about to touch.
+constexpr double kMarginOfEdge = 0.1;   // [1] of a mean edge: less misses what the step's end brings together
+constexpr double kMarginOfBody = 0.01;  // [1] of a body's diagonal, for meshes of few large triangles
+
+// [m] What cannot move has none of its own: a ground of two triangles says nothing of what lies on it.
+double margin_of(const Body& body) {
+  if (body.size() == 0) return std::numeric_limits<double>::infinity();
+  const Mesh& mesh = *body.skin;
+  return std::min(kMarginOfEdge * static_cast<double>(mesh.mean_edge),
+                  kMarginOfBody * static_cast<double>(mesh.box.diagonal()));
+}
+
+// [m] By how much one of two boxes must move along an axis to leave the other; negative: how far they are apart. No
+// penetration of what they hold is deeper, if it is left by the shortest way.
+double overlap(const Box& a, const Box& b) {
+  const vec3 by = glm::min(a.max - b.min, b.max - a.min);
+  return static_cast<double>(std::min({by.x, by.y, by.z}));
+}
+
+// What a step leaves of two bodies that are inside each other.
+struct PairPast {
+  double deepest = 0.0;  // [m] >= 0
+  dvec3 way{0};          // PairView::way
+};
+
+std::uint64_t pair_key(std::uint32_t i, std::uint32_t k) {
+  return std::uint64_t{i} << 32 | k;
+}
+
+}  // namespace
+
+struct Proximity::Parts {
+  std::vector<Skin> skins;
+  std::vector<double> mean_edge, own_margin;   // [m] per body
+  std::vector<bool> yields;                    // per body
+  std::vector<bool> seen;                      // per body: an earlier step looked at it
+  std::map<std::uint64_t, PairPast> touching;  // of pairs that are inside each other
+  ContactMemory memory;
+  SideMemory sides;                    // of the last step
+  std::optional<double> margin_given;  // of this step's find()
+  bool late = false;                   // looking for what was missed
+  Crossings crossings;                 // of what was
+  Meetings meetings;                   // of the pair of bodies that is looked at
+  std::vector<Found> found;
+  std::vector<Candidate> candidates, thinned;  // those to be kept; all that there were before
+
+  // Of what find_between() appended: what there is no number for touches nothing (a body has blown up).
+  void keep(std::size_t first, PairPast& past) {
+    std::size_t kept = first;
+    for (std::size_t i = first; i < found.size(); ++i) {
+      const Found f = found[i];
+      const Meeting& m = f.meeting;
+      const dvec3 position = f.edges ? skins[f.body_a].point_on_edge(f.feature_a, m.along_a).position
+                                     : skins[f.body_a].vertex(f.feature_a).x;
+      if (!std::isfinite(m.gap + m.end_gap + dot(m.normal, position))) continue;
+      past.deepest = std::max({past.deepest, -m.gap, late ? -m.end_gap : 0.0});
+      Candidate c{std::min(f.body_a, f.body_b), std::max(f.body_a, f.body_b), position};
+      c.normal = f.body_a <= f.body_b ? -m.normal : m.normal;
+      c.gap = m.gap;
+      c.end_gap = m.end_gap;
+      c.edge = edge_there(f);
+      c.known = f.last != nullptr;
+      c.key = f.key;
+      c.source = static_cast<std::uint32_t>(kept);
+      candidates.push_back(c);
+      found[kept++] = f;
+    }
+    found.resize(kept);
+  }
+
+  // [m] The mean edges tell how finely a skin is meshed; those of a slender bar are longer than it is wide.
+  double edge_there(const Found& f) const {
+    const Skin &a = skins[f.body_a], &b = skins[f.body_b];
+    const double shortest = f.edges ? std::min(a.shortest_at_edge(f.feature_a), b.shortest_at_edge(f.feature_b))
+                                    : std::min(a.shortest_at_vertex(f.feature_a), b.shortest_of_triangle(f.feature_b));
+    return std::min({mean_edge[f.body_a], mean_edge[f.body_b], kSlender * shortest});
+  }
+
+  std::pair<SurfacePoint, SurfacePoint> points_of(const Found& f) const {
+    const Skin &a = skins[f.body_a], &b = skins[f.body_b];
+    if (f.edges)
+      return {a.point_on_edge(f.feature_a, f.meeting.along_a), b.point_on_edge(f.feature_b, f.meeting.along_b)};
+    return {a.point_at_vertex(f.feature_a), b.point_on_triangle(f.feature_b, f.meeting.barycentric)};
+  }
+
+  FeaturePair pair_of(const Found& f) const {
+    return {skins[f.body_a], skins[f.body_b], f.edges, f.feature_a, f.feature_b, f.meeting.normal};
+  }
+
+  ContactPoint contact_of(const std::vector<std::unique_ptr<Body>>& bodies, const Candidate& candidate) const {
+    const Found& f = found[candidate.source];
+    const Body &a = *bodies[f.body_a], &b = *bodies[f.body_b];
+    ContactPoint c;
+    c.body_a = f.body_a;
+    c.body_b = f.body_b;
+    std::tie(c.a, c.b) = points_of(f);
+    c.normal = f.meeting.normal;
+    c.gap = f.meeting.gap;
+    c.depth = std::max(0.0, -f.meeting.gap);
+    const FeaturePair pair = pair_of(f);
+    c.foretold = look_ahead(pair, c);
+    c.source = candidate.source;
+    c.key = candidate.key;
+    // A probe has no friction of its own: as on a yielding surface, what it touches says how it grips.
+    const Body &first = a.kind == BodyKind::kProbe ? b : a, &second = b.kind == BodyKind::kProbe ? a : b;
+    c.mu_static = std::sqrt(first.friction_static * second.friction_static);
+    c.mu_sliding = std::sqrt(first.friction_sliding * second.friction_sliding);
+    carry_over(f.last, c);
+    c.joined = late || (f.last && f.last->joined && f.last->impulse.x > 0.0);
+    if (c.foretold) find_turning(pair, c);
+    return c;
+  }
+
+  // --- Bodies
+  // How pair i, k (i <= k) is looked at in this step, by what the last one left.
+  PairView view_of(std::uint32_t i, std::uint32_t k, const PairPast& past) const {
+    PairView pair{margin_between(i, k), {0.0, 0.0}, past.way, memory, sides};
+    if (late) return pair;
+    const double margin = pair.margin;
+    double most = i == k ? kDeepestWithin * margin : overlap(skins[i].whole(), skins[k].whole()) + margin;
+    if (i != k && std::isinf(past.deepest) && most > margin) {
+      pair.way = shortest_way(skins[i], skins[k]).value_or(dvec3(0.0));
+      if (pair.way == dvec3(0.0)) most = std::min(most, kDeepestWithin * margin);
+    }
+    if (past.deepest <= margin) pair.way = dvec3(0.0);
+    pair.reach = {margin, std::max(margin, std::min(kDeeper * past.deepest, most))};
+    return pair;
+  }
+
+  void find_between(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t i, std::uint32_t k) {
+    const auto known = touching.find(pair_key(i, k));
+    PairPast past = known != touching.end() ? known->second : PairPast{};
+    if (!late && !(seen[i] && seen[k])) past.deepest = std::numeric_limits<double>::infinity();
+    const PairView pair = view_of(i, k, past);
+    const Side a{i, *bodies[i], skins[i]}, b{k, *bodies[k], skins[k]};
+    const std::size_t first = found.size();
+    // What find() saw moving within a margin of where it does now it has not missed.
+    find_meetings(a, b, pair.reach, late ? static_cast<float>(pair.margin) : -1.0f, meetings);
+    if (late)
+      crossings.add(take_missed(pair, a, b, meetings, found));
+    else
+      take_contacts(pair, a, b, meetings, found);
+    if (!late) past = {0.0, pair.way};
+    keep(first, past);
+    if (past.deepest > 0.0 || past.way != dvec3(0.0))
+      touching[pair_key(i, k)] = past;
+    else if (known != touching.end())
+      touching.erase(known);
+  }
+
+  void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::optional<double> given,
+            std::vector<ContactPoint>& out) {
+    ASSERT(bodies.size() == skins.size());
+    late = false;
+    margin_given = given;
+    memory.take(out);
+    found.clear();
+    candidates.clear();
+    for (std::size_t i = 0; i < bodies.size(); ++i) skins[i].refit(*bodies[i], T, 0.0);
+    const auto count = static_cast<std::uint32_t>(bodies.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (bodies[i]->self_collides) find_between(bodies, i, i);
+      for (std::uint32_t k = i + 1; k < count; ++k)
+        if (bodies[i]->meets(*bodies[k])) find_between(bodies, i, k);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) seen[i] = seen[i] || !bodies[i]->absent;
+    sides.clear();
+    remember_sides();
+    out.clear();
+    thinned = candidates;
+    thin_contacts(candidates, {});
+    keep_joined();
+    for (const Candidate& c : candidates) out.push_back(contact_of(bodies, c));
+  }
+
+  // What joined in an earlier step stays for as long as it pushes: the same contacts, warm, step after step.
+  void keep_joined() {
+    std::vector<std::uint64_t> kept;
+    for (const Candidate& c : candidates) kept.push_back(c.key);
+    std::sort(kept.begin(), kept.end());
+    for (const Candidate& c : thinned) {
+      const ContactPoint* last = found[c.source].last;
+      if (!last || !last->joined || !(last->impulse.x > 0.0)) continue;
+      if (!std::binary_search(kept.begin(), kept.end(), c.key)) candidates.push_back(c);
+    }
+  }
+
+  double margin_between(std::uint32_t i, std::uint32_t k) const {
+    return margin_given ? *margin_given : std::min(own_margin[i], own_margin[k]);
+  }
+
+  void remember_sides() {
+    for (const Candidate& c : candidates)
+      sides.add({c.key, found[c.source].meeting.normal, found[c.source].meeting.gap});
+    sides.sort();
+  }
+
+  // [m] Where the contact will be at the step's end, by its normal and the motion that the skins were swept with.
+  double end_gap(const Found& f) const {
+    const auto displacement = [](const Skin& skin, const SurfacePoint& point) {
+      const std::array<Moving, 3> corner = skin.triangle(point.triangle);
+      return point.barycentric.x * corner[0].d + point.barycentric.y * corner[1].d + point.barycentric.z * corner[2].d;
+    };
+    const auto [a, b] = points_of(f);
+    return f.meeting.gap + dot(f.meeting.normal, displacement(skins[f.body_a], a) - displacement(skins[f.body_b], b));
+  }
+
+  // Candidates that thinning left out although those that it kept do not hold them: they sink in.
+  void take_sinking(const std::vector<ContactPoint>& contacts) {
+    std::vector<std::uint64_t> kept;
+    for (const ContactPoint& c : contacts) kept.push_back(c.key);
+    std::sort(kept.begin(), kept.end());
+    for (const Candidate& c : thinned) {
+      if (std::binary_search(kept.begin(), kept.end(), c.key) || yields[c.body_low] || yields[c.body_high]) continue;
+      const double end = end_gap(found[c.source]), sunk = kSunk * margin_between(c.body_low, c.body_high);
+      if (!(end < std::min(-sunk, kRises * c.gap))) continue;
+      candidates.push_back(c);
+      candidates.back().end_gap = end;
+    }
+  }
+
+  // Whether what the bodies do now may bring together what find() saw apart: not where they move as they did then, or
+  // hardly relative to each other.
+  bool may_miss(std::uint32_t i, std::uint32_t k) const {
+    const double changed = i == k ? 2.0 * skins[i].strayed_apart() : skins[i].strayed() + skins[k].strayed();
+    const double moved = length(skins[i].drift() - skins[k].drift()) + skins[i].spread() + skins[k].spread();
+    return std::min(changed, moved) > margin_between(i, k);
+  }
+
+  Crossings find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                        std::vector<ContactPoint>& contacts) {
+    late = true;
+    crossings = {};
+    candidates.clear();
+    std::vector<dvec3> velocity;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (bodies[i]->size() == 0) continue;
+      bodies[i]->move_skin(velocity);
+      skins[i].sweep(*bodies[i], velocity, T);
+    }
+    const auto count = static_cast<std::uint32_t>(bodies.size());
+    const auto takes_part = [&](std::uint32_t i) { return bodies[i]->solvable() && !yields[i]; };
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!takes_part(i)) continue;
+      if (bodies[i]->self_collides && may_miss(i, i)) skins[i].fit_swept(), find_between(bodies, i, i);
+      for (std::uint32_t k = i + 1; k < count; ++k) {
+        if (!bodies[i]->meets(*bodies[k]) || !takes_part(k) || !may_miss(i, k)) continue;
+        skins[i].fit_swept(), skins[k].fit_swept();
+        find_between(bodies, i, k);
+      }
+    }
+    remember_sides();
+    const std::vector<Candidate> crossing = candidates;
+    take_sinking(contacts);
+    thinned.insert(thinned.end(), crossing.begin(), crossing.end());
+    thin_contacts(candidates, {});
+    for (const Candidate& c : candidates) contacts.push_back(contact_of(bodies, c));
+    return crossings;
+  }
+};
+
+Proximity::Proximity(const std::vector<std::unique_ptr<Body>>& bodies) : parts_(std::make_unique<Parts>()) {
+  for (const auto& body : bodies) {
+    parts_->skins.emplace_back(*body);
+    parts_->mean_edge.push_back(static_cast<double>(body->skin->mean_edge));
+    parts_->own_margin.push_back(margin_of(*body));
+    parts_->yields.push_back(dynamic_cast<const YieldingBody*>(body.get()) != nullptr);
+  }
+  parts_->seen.assign(bodies.size(), false);
+}
+Proximity::~Proximity() = default;
+
+void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& out) {
+  parts_->find(bodies, T, {}, out);
+}
+
+void Proximity::find(const std::vector<std::unique_ptr<Body>>& bodies, double T, double margin,
+                     std::vector<ContactPoint>& out) {
+  ASSERT(margin > 0.0);
+  parts_->find(bodies, T, margin, out);
+}
+
+Crossings Proximity::find_missed(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                                 std::vector<ContactPoint>& contacts) {
+  return parts_->find_missed(bodies, T, contacts);
+}
+
+bool Proximity::look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                           std::vector<ContactPoint>& contacts) {
+  if (contacts.empty()) return false;
+  Parts& p = *parts_;
+  std::vector<dvec3> velocity;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i]->size() == 0) continue;
+    bodies[i]->move_skin(velocity);
+    p.skins[i].foretell(velocity, T);
+  }
+  bool any = false;
+  for (ContactPoint& contact : contacts) {
+    contact.again = contact.foretold && pliant::look_again(p.pair_of(p.found[contact.source]), contact);
+    any |= contact.again;
+  }
+  return any;
+}
+
+}  // namespace pliant

@@ -1,0 +1,119 @@
+// Pairs of triangles whose swept boxes meet and that do not all look the same way: both trees descended together
+// (Gottschalk, Lin & Manocha 1996), the larger level first, in an order that depends on nothing but the boxes. The look
+// at normals keeps a smooth skin from being compared with its own neighbourhood.
+#pragma once
+
+#include "systems/soft/collide/skin.h"
+
+namespace pliant {
+
+// Box a, swept by what the one body drifts relative to the other, against box b.
+struct RelativeSweep {
+  vec3 low{0}, high{0};  // [m]
+  RelativeSweep() = default;
+  explicit RelativeSweep(float reach) : low(-reach), high(reach) {}
+  // `reach` [m]: boxes that come so near to each other meet.
+  RelativeSweep(const Skin& a, const Skin& b, float reach = 0.0f) {
+    const vec3 d(a.drift() - b.drift());
+    low = glm::min(d, vec3(0.0f)) - reach;
+    high = glm::max(d, vec3(0.0f)) + reach;
+  }
+  RelativeSweep reversed() const {
+    RelativeSweep r;
+    r.low = -high;
+    r.high = -low;
+    return r;
+  }
+  bool meet(const Box& a, const Box& b) const {
+    return a.min.x + low.x <= b.max.x && a.max.x + high.x >= b.min.x &&  //
+           a.min.y + low.y <= b.max.y && a.max.y + high.y >= b.min.y &&  //
+           a.min.z + low.z <= b.max.z && a.max.z + high.z >= b.min.z;
+  }
+};
+
+namespace detail {
+
+// The smallest dot product of a vector in box a with one in box b.
+inline float least_dot(const Box& a, const Box& b) {
+  const vec3 p = a.min * b.min, q = a.min * b.max, r = a.max * b.min, s = a.max * b.max;
+  const vec3 least = glm::min(glm::min(p, q), glm::min(r, s));
+  return least.x + least.y + least.z;
+}
+
+template <class Use>
+struct PairWalk {
+  const Skin& a;
+  const Skin& b;
+  const RelativeSweep sweep;
+  const float strayed;  // [m] two runs must have strayed by more than this together (Skin::strayed)
+  Use& use;
+
+  static std::uint32_t width(std::size_t level) { return level == 0 ? kLeafSize : kTreeWidth; }
+  static std::uint32_t size(const Skin& skin, std::size_t level) {  // of what stands below `level`
+    return static_cast<std::uint32_t>(level == 0 ? skin.mesh().triangles.size() : skin.boxes()[level - 1].size());
+  }
+  static std::uint32_t end(const Skin& skin, std::size_t level, std::uint32_t i) {
+    return std::min((i + 1) * width(level), size(skin, level));
+  }
+  const Box& box(const Skin& skin, std::size_t level, std::uint32_t i) const { return skin.boxes()[level][i]; }
+  bool facing(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
+    return least_dot(a.normal_boxes()[la][ia], b.normal_boxes()[lb][ib]) <= static_cast<float>(kFacing) + 1e-5f;
+  }
+
+  void across(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
+    if (a.strayed(la, ia) + b.strayed(lb, ib) <= strayed) return;
+    if (!sweep.meet(box(a, la, ia), box(b, lb, ib)) || !facing(la, ia, lb, ib)) return;
+    if (la == 0 && lb == 0) return &a == &b ? own_leaves(ia, ib) : leaves(ia, ib);
+    if (la >= lb) {
+      for (std::uint32_t k = ia * kTreeWidth; k < end(a, la, ia); ++k) across(la - 1, k, lb, ib);
+    } else {
+      for (std::uint32_t k = ib * kTreeWidth; k < end(b, lb, ib); ++k) across(la, ia, lb - 1, k);
+    }
+  }
+  void leaves(std::uint32_t ia, std::uint32_t ib) const {
+    for (std::uint32_t s = ia * kLeafSize; s < end(a, 0, ia); ++s)
+      for (std::uint32_t t = ib * kLeafSize; t < end(b, 0, ib); ++t)
+        if (a.strayed(s) + b.strayed(t) > strayed && sweep.meet(a.box(s), b.box(t))) use(s, t);
+  }
+  // Of one skin with itself, without what its neighbours settle.
+  void own_leaves(std::uint32_t ia, std::uint32_t ib) const {
+    const unsigned settled = a.neighbours().settled(ia, ib);
+    if (settled == (1u << kLeafSize * kLeafSize) - 1u) return;
+    for (std::uint32_t s = ia * kLeafSize; s < end(a, 0, ia); ++s)
+      for (std::uint32_t t = ia == ib ? s + 1 : ib * kLeafSize; t < end(a, 0, ib); ++t) {
+        if (settled >> (kLeafSize * (s % kLeafSize) + t % kLeafSize) & 1u) continue;
+        if (a.strayed(s) + a.strayed(t) > strayed && sweep.meet(a.box(s), a.box(t))) use(s, t);
+      }
+  }
+  // Every unordered pair of different triangles once.
+  void within(std::size_t level, std::uint32_t i) const {
+    if (2.0f * a.strayed(level, i) <= strayed || !facing(level, i, level, i)) return;
+    if (level == 0) {
+      return own_leaves(i, i);
+    }
+    for (std::uint32_t k = i * kTreeWidth; k < end(a, level, i); ++k) {
+      within(level - 1, k);
+      for (std::uint32_t m = k + 1; m < end(a, level, i); ++m) across(level - 1, k, level - 1, m);
+    }
+  }
+};
+
+}  // namespace detail
+
+// use(triangle of a, triangle of b). Boxes meet from `reach` [m] on, besides what they were grown by;
+// triangles that have strayed by no more than `strayed` [m] together are left out.
+template <class Use>
+void for_each_pair(const Skin& a, const Skin& b, Use use, float reach = 0.0f, float strayed = -1.0f) {
+  if (a.boxes().empty() || b.boxes().empty()) return;
+  const detail::PairWalk<Use> walk{a, b, RelativeSweep(a, b, reach), strayed, use};
+  walk.across(a.boxes().size() - 1, 0, b.boxes().size() - 1, 0);
+}
+// use(triangle, other triangle), each unordered pair once
+template <class Use>
+void for_each_pair_within(const Skin& skin, Use use, float reach = 0.0f, float strayed = -1.0f) {
+  if (skin.boxes().empty()) return;
+  const detail::PairWalk<Use> walk{skin, skin, RelativeSweep(reach), strayed, use};
+  walk.within(skin.boxes().size() - 1, 0);
+}
+
+}  // namespace pliant

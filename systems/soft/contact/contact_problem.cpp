@@ -1,0 +1,158 @@
+#include "systems/soft/contact/contact_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/assert.h"
+#include "runtime/clock.h"
+#include "systems/soft/contact/contact_admm.h"
+#include "systems/soft/contact/contact_newton.h"
+#include "systems/soft/contact/contact_sweeps.h"
+
+namespace pliant {
+namespace {
+
+// ADMM: where half of the sweeps did not settle it, or, of many contacts, after a few sweeps. Newton steps on so many
+// cost more than it does.
+constexpr int kLarge = 140, kLargeSweeps = 10;
+constexpr AdmmLimits kMuch{.iterations = 100, .work = 1e7};    // about 10 ms,
+constexpr AdmmLimits kLittle{.iterations = 100, .work = 2e6};  // and 2 ms: a tool's contacts all know each other
+
+SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
+  SweepReport report;
+  if (problem.count == 0) return report;
+  const std::uint64_t begin = limits.budget_ns ? now_ns() : 0;
+  ContactSweeps sweeps(problem);
+  ContactNewton newton(sweeps, limits.newtons);
+  const double enough = limits.tolerance * sweeps.fastest();
+  sweeps.start();
+  report.residual = sweeps.residual();
+  const int half = (limits.sweeps + 1) / 2;
+  int since = 0;  // sweeps since the last Newton step
+  const int alternate_at = limits.newtons == 0 ? -1 : problem.count > kLarge ? std::min(kLargeSweeps, half) : half;
+  while (true) {
+    report.settled = report.residual <= enough;
+    const int begun = report.settled || report.sweeps == half ? sweeps.begin_slips(10.0 * report.residual + enough) : 0;
+    if (report.settled && begun == 0) break;
+    if (begun > 0) report.residual = sweeps.residual(), since = 0;
+    if (report.sweeps >= limits.sweeps) break;
+    if (limits.budget_ns && now_ns() - begin >= limits.budget_ns) {
+      report.in_time = false;
+      break;
+    }
+    if (report.sweeps == alternate_at && report.alternations == 0) {
+      report.residual = improve_by_admm(sweeps, report.residual, enough, problem.count > kLarge ? kMuch : kLittle,
+                                        report.alternations);
+      if (report.residual <= enough) continue;
+    }
+    if (newton.due(since)) {
+      report.residual = newton.step(report.residual, enough);
+      since = 0;
+      if (report.residual <= enough) continue;
+    }
+    sweeps.sweep();
+    ++report.sweeps, ++since;
+    report.residual = sweeps.residual();
+  }
+  report.settled = report.residual <= enough;
+  report.newtons = newton.solves();
+  sweeps.begin_slips(10.0 * report.residual + enough);
+  sweeps.end_slips();
+  return report;
+}
+
+// Between the whole and one of its parts.
+void hand_out(const ContactProblem& whole, ContactProblem& part) {
+  part.own.resize(whole.own.empty() ? 0 : part.members.size());
+  for (std::size_t k = 0; k < part.members.size(); ++k) {
+    const auto i = static_cast<std::size_t>(part.members[k]);
+    const auto to = static_cast<Eigen::Index>(3 * k), from = static_cast<Eigen::Index>(3 * i);
+    part.bias.segment<3>(to) = whole.bias.segment<3>(from);
+    part.impulse.segment<3>(to) = whole.impulse.segment<3>(from);
+    part.mu_static[k] = whole.mu_static[i];
+    part.mu_sliding[k] = whole.mu_sliding[i];
+    part.sliding[k] = whole.sliding[i];
+    if (!whole.own.empty()) part.own[k] = whole.own[i];
+  }
+}
+void take_back(const ContactProblem& part, ContactProblem& whole) {
+  for (std::size_t k = 0; k < part.members.size(); ++k) {
+    const auto i = static_cast<std::size_t>(part.members[k]);
+    const auto from = static_cast<Eigen::Index>(3 * k), to = static_cast<Eigen::Index>(3 * i);
+    whole.impulse.segment<3>(to) = part.impulse.segment<3>(from);
+    whole.velocity.segment<3>(to) = part.velocity.segment<3>(from);
+    whole.sliding[i] = part.sliding[k];
+  }
+}
+
+SweepReport solve_parts(ContactProblem& problem, const SweepLimits& limits) {
+  SweepReport report;
+  for (int k = 0; k < problem.part_count; ++k) {
+    ContactProblem& part = problem.parts[static_cast<std::size_t>(k)];
+    hand_out(problem, part);
+    const SweepReport of_part = solve_one(part, limits);
+    take_back(part, problem);
+    report.sweeps = std::max(report.sweeps, of_part.sweeps);
+    report.newtons = std::max(report.newtons, of_part.newtons);
+    report.alternations = std::max(report.alternations, of_part.alternations);
+    report.residual = std::max(report.residual, of_part.residual);
+    report.settled &= of_part.settled;
+    report.in_time &= of_part.in_time;
+  }
+  return report;
+}
+
+}  // namespace
+
+dmat3 leaning_axes(dvec2 lean) {
+  const dvec3 n = normalize(dvec3(1.0, lean));
+  const dvec3 t = normalize(dvec3(0.0, 1.0, 0.0) - n.y * n);
+  return dmat3(n, t, cross(n, t));
+}
+
+void ContactProblem::resize_vectors(int contacts) {
+  count = contacts;
+  const Eigen::Index rows = 3 * contacts;
+  for (Vector* v : {&bias, &impulse, &velocity})
+    if (v->size() < rows) v->resize(rows);
+  const std::size_t size = static_cast<std::size_t>(contacts);
+  if (mu_static.size() < size) mu_static.resize(size);
+  if (mu_sliding.size() < size) mu_sliding.resize(size);
+  if (sliding.size() < size) sliding.resize(size);
+  if (blocks.size() < size) blocks.resize(size);
+}
+
+void ContactProblem::resize(int contacts) {
+  resize_vectors(contacts);
+  const Eigen::Index rows = 3 * contacts;
+  if (W.rows() < rows) W.resize(rows, rows);
+}
+
+double ContactProblem::diagonal(Eigen::Index row) const {
+  if (part_count > 0) {
+    const auto [part, contact] = place[static_cast<std::size_t>(row / 3)];
+    return parts[static_cast<std::size_t>(part)].diagonal(3 * contact + row % 3);
+  }
+  if (sparse.first.empty()) return W(row, row);
+  const auto i = static_cast<std::size_t>(row / 3);
+  for (int r = sparse.first[i]; r < sparse.first[i + 1]; ++r) {
+    const ContactColumns::Run& run = sparse.runs[static_cast<std::size_t>(r)];
+    if (row < run.row || row >= run.row + run.rows) continue;
+    return sparse.values[run.at + static_cast<std::size_t>(row % 3 * run.rows + row - run.row)];
+  }
+  return 0.0;
+}
+
+SweepReport solve(ContactProblem& problem, const SweepLimits& limits) {
+  const Eigen::Index rows = 3 * problem.count;
+  const std::size_t count = static_cast<std::size_t>(problem.count);
+  ASSERT(problem.part_count > 0 || !problem.sparse.first.empty() ||
+         (problem.W.rows() >= rows && problem.W.cols() >= rows));
+  ASSERT(problem.bias.size() >= rows && problem.impulse.size() >= rows && problem.sliding.size() >= count &&
+         problem.mu_static.size() >= count && problem.mu_sliding.size() >= count);
+  if (problem.velocity.size() < rows) problem.velocity.resize(rows);
+  if (problem.blocks.size() < count) problem.blocks.resize(count);
+  return problem.part_count > 0 ? solve_parts(problem, limits) : solve_one(problem, limits);
+}
+
+}  // namespace pliant

@@ -1,0 +1,193 @@
+#include "systems/soft/contact/contact_sweeps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/soft/linear/add_three.h"
+
+namespace pliant {
+namespace {
+
+// A diagonal smaller than this share of the largest one cannot be pushed: such contacts are left alone.
+constexpr double kImmovable = 1e-14;
+
+double length2(double x, double y) {
+  return std::sqrt(x * x + y * y);
+}
+
+// The largest point of the segment from 0 to (x, y) inside the disc.
+void clamp_to_disc(double& x, double& y, double radius) {
+  const double l = length2(x, y);
+  if (l <= radius) return;
+  const double s = l > 0.0 ? radius / l : 0.0;
+  x *= s, y *= s;
+}
+
+// One contact with all others held: u = w lambda + c.
+struct Local {
+  dmat3 w;       // symmetric
+  dvec3 c;       // [m/s]
+  double mu;     // [1]
+  dvec3 lambda;  // [N s] guess in, answer out
+
+  bool stick() {
+    const double det = glm::determinant(w);
+    if (!(det > 1e-12 * w[0][0] * w[1][1] * w[2][2])) return false;
+    const dvec3 held = -(glm::inverse(w) * c);
+    if (!(held.x > 0.0) || length2(held.y, held.z) > mu * held.x) return false;
+    lambda = held;
+    return true;
+  }
+  // methods.md 2.5, a few times over: the normal impulse that stops the approach, then a step of friction against the
+  // slip, scaled back to the cone. It ends where Coulomb holds; what is left is left to the next sweep.
+  void slide() {
+    const double trace = w[1][1] + w[2][2];
+    const double step = trace > 0.0 ? 2.0 / trace : 0.0;
+    for (int k = 0; k < 4; ++k) {
+      lambda.x = std::max(0.0, -(c.x + w[0][1] * lambda.y + w[0][2] * lambda.z) / w[0][0]);
+      const dvec3 u = w * lambda + c;
+      lambda.y -= step * u.y;
+      lambda.z -= step * u.z;
+      clamp_to_disc(lambda.y, lambda.z, mu * lambda.x);
+    }
+  }
+};
+
+}  // namespace
+
+ContactSweeps::ContactSweeps(ContactProblem& problem)
+    : p_(problem), stride_(problem.W.outerStride()), turned_(!problem.own.empty()) {
+  double largest = 0.0;
+  for (int i = 0; i < p_.count; ++i) {
+    p_.blocks[i] = read_block(i);
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, p_.blocks[i][k][k]);
+  }
+  for (int i = 0; i < p_.count; ++i)
+    if (!(p_.blocks[i][0][0] > kImmovable * largest)) p_.blocks[i] = dmat3(0.0);
+}
+
+dmat3 ContactSweeps::read_block(int i) const {
+  const double* w = nullptr;
+  std::ptrdiff_t stride = stride_;
+  if (p_.sparse.first.empty()) {
+    w = p_.W.data() + 3 * i * stride_ + 3 * i;
+  } else {
+    const auto end = p_.sparse.runs.begin() + p_.sparse.first[i + 1];
+    const auto run = std::find_if(p_.sparse.runs.begin() + p_.sparse.first[i], end,
+                                  [&](const auto& r) { return r.row <= 3 * i && 3 * i < r.row + r.rows; });
+    if (run == end) return dmat3(0.0);
+    w = p_.sparse.values.data() + run->at + static_cast<std::size_t>(3 * i - run->row);
+    stride = run->rows;
+  }
+  dmat3 block;
+  for (int k = 0; k < 3; ++k) block[k] = dvec3(w[k * stride], w[k * stride + 1], w[k * stride + 2]);
+  return turned_ ? glm::transpose(p_.own[i]) * block * p_.own[i] : block;
+}
+
+// Keeping u whole costs the same as forming each contact's three rows anew (W is symmetric), vectorises without
+// reordering a sum, and contacts that do not change cost nothing.
+void ContactSweeps::add_columns(int i, dvec3 d, double* out) const {
+  if (p_.sparse.first.empty()) {
+    add_three(out, p_.W.data() + 3 * i * stride_, stride_, 3 * p_.count, d.x, d.y, d.z);
+    return;
+  }
+  for (int r = p_.sparse.first[i]; r < p_.sparse.first[i + 1]; ++r) {
+    const ContactColumns::Run& run = p_.sparse.runs[r];
+    add_three(out + run.row, p_.sparse.values.data() + run.at, run.rows, run.rows, d.x, d.y, d.z);
+  }
+}
+
+void ContactSweeps::refresh_velocity() {
+  double* const u = p_.velocity.data();
+  std::copy_n(p_.bias.data(), 3 * p_.count, u);
+  for (int i = 0; i < p_.count; ++i) {
+    const double* const l = &p_.impulse[3 * i];
+    if (l[0] != 0.0 || l[1] != 0.0 || l[2] != 0.0) add_columns(i, {l[0], l[1], l[2]}, u);
+  }
+}
+
+void ContactSweeps::start() {
+  for (int i = 0; i < p_.count; ++i) {
+    double* const l = &p_.impulse[3 * i];
+    const bool good = impulse(i).x > 0.0 && std::isfinite(l[0] + l[1] + l[2]) && movable(i);
+    if (!good) l[0] = l[1] = l[2] = 0.0;
+  }
+  refresh_velocity();
+}
+
+void ContactSweeps::project() {
+  for (int i = 0; i < p_.count; ++i) {
+    dvec3 l = impulse(i);
+    if (l.x > 0.0)
+      clamp_to_disc(l.y, l.z, mu(i) * l.x);
+    else
+      l = dvec3(0.0);
+    set_impulse(i, l);
+  }
+}
+
+double ContactSweeps::fastest() const {
+  double speed = 1e-9;
+  for (int i = 0; i < p_.count; ++i) {
+    const dvec3 u = to_own(i, &p_.bias[3 * i]);
+    if (u.x < 0.0) speed = std::max({speed, -u.x, std::abs(u.y), std::abs(u.z)});
+  }
+  return speed;
+}
+
+int ContactSweeps::begin_slips(double slowest) {
+  int begun = 0;
+  for (int i = 0; i < p_.count; ++i) {
+    const dvec3 u = velocity(i), l = impulse(i);
+    if (p_.sliding[i] || l.x <= 0.0 || length2(u.y, u.z) <= slowest) continue;
+    if (length2(l.y, l.z) < (1.0 - 1e-9) * p_.mu_static[i] * l.x) continue;
+    p_.sliding[i] = 1;
+    begun += p_.mu_sliding[i] < p_.mu_static[i];
+  }
+  return begun;
+}
+
+void ContactSweeps::end_slips() {
+  for (int i = 0; i < p_.count; ++i) {
+    const dvec3 l = impulse(i);
+    if (l.x <= 0.0 || length2(l.y, l.z) < (1.0 - 1e-6) * mu(i) * l.x) p_.sliding[i] = 0;
+  }
+}
+
+void ContactSweeps::relax(int i) {
+  double* const l = &p_.impulse[3 * i];
+  const dvec3 u = velocity(i), before(l[0], l[1], l[2]);
+  Local local;
+  local.lambda = impulse(i);
+  if (local.lambda.x == 0.0 && u.x >= 0.0) return;
+  if (!movable(i)) return;
+  local.w = block(i);
+  local.c = u - local.w * local.lambda;
+  local.mu = mu(i);
+  if (local.c.x >= 0.0)
+    local.lambda = dvec3(0.0);
+  else if (!local.stick())
+    local.slide();
+  const dvec3 after = from_own(i, local.lambda), d = after - before;
+  if (d == dvec3(0.0)) return;
+  for (int k = 0; k < 3; ++k) l[k] = after[k];
+  add_columns(i, d, p_.velocity.data());
+}
+
+double ContactSweeps::residual_of(int i) const {
+  const dvec3 u = velocity(i), l = impulse(i);
+  const dmat3& w = block(i);
+  const double wn = w[0][0], wt = 0.5 * (w[1][1] + w[2][2]);
+  double y = wt * l.y - u.y, z = wt * l.z - u.z;
+  clamp_to_disc(y, z, mu(i) * wt * l.x);
+  return std::max(std::abs(std::min(wn * l.x, u.x)), length2(wt * l.y - y, wt * l.z - z));
+}
+
+double ContactSweeps::residual() const {
+  double worst = 0.0;
+  for (int i = 0; i < p_.count; ++i)
+    if (movable(i)) worst = std::max(worst, residual_of(i));
+  return worst;
+}
+
+}  // namespace pliant

@@ -1,0 +1,337 @@
+#include "systems/soft/contact/delassus.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "systems/soft/contact/contact_budget.h"
+#include "systems/soft/contact/contact_islands.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kRoundsUnsettled = 2;  // rounds after which a solution that did not settle is not built upon
+constexpr int kMostRounds = 8;  // in which contacts that a solution brings about join; a round reaches one body further
+
+// The contacts of each body.
+void sort_by_body(const std::vector<ContactPoint>& contacts, std::vector<BodyResponse>& of) {
+  for (BodyResponse& response : of) response.contacts.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactPoint& c = contacts[i];
+    of[c.body_a].contacts.push_back(static_cast<int>(i));
+    if (c.body_b != c.body_a) of[c.body_b].contacts.push_back(static_cast<int>(i));
+  }
+}
+
+// Its sides of its contacts. Side a feels +lambda, side b -lambda; of a self-contact both are this body's.
+void list_sides(std::uint32_t index, const std::vector<ContactPoint>& contacts, const BodyResponse& response,
+                std::vector<PushedSide>& sides) {
+  sides.clear();
+  Eigen::Index own = 0;
+  for (const int i : response.contacts) {
+    const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
+    if (c.body_a == index) sides.push_back({own, &c.a, &c.axes, 1.0});
+    if (c.body_b == index) sides.push_back({own, &c.b, &c.axes, -1.0});
+    ++own;
+  }
+}
+
+// How the k-th of a body's contacts moves by what pushes the m-th, k >= m.
+Eigen::Matrix3d answer(const BodyResponse& response, Eigen::Index k, Eigen::Index m) {
+  const Rows& lever = response.compliance.lever;
+  Eigen::Matrix3d block = response.compliance.held.block<3, 3>(3 * k, 3 * m);
+  if (lever.cols() > 0)
+    block += lever.middleRows<3>(3 * k).leftCols<6>() * lever.middleRows<3>(3 * m).leftCols<6>().transpose();
+  return block;
+}
+
+void find_compliances(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
+                      double T, Delassus& delassus) {
+  const auto yields = [](const std::unique_ptr<Body>& body) { return body->yields(); };
+  if (std::none_of(bodies.begin(), bodies.end(), yields)) {
+    delassus.compliance.resize(0, 0);
+    return;
+  }
+  delassus.compliance.setZero(3 * static_cast<Eigen::Index>(contacts.size()),
+                              3 * static_cast<Eigen::Index>(contacts.size()));
+  std::vector<Body::Side> sides;
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+    sides.clear();
+    for (const int i : delassus.of[b].contacts) {
+      const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
+      sides.push_back({i, c.body_a == b ? &c.a : &c.b});
+    }
+    if (!sides.empty()) bodies[b]->add_compliance(sides, T, delassus.compliance);
+  }
+}
+
+// W of all islands from what the bodies answer. [1/kg]
+class OperatorFiller {
+ public:
+  OperatorFiller(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
+                 const Delassus& delassus, ContactProblem& problem)
+      : bodies_(bodies), contacts_(contacts), delassus_(delassus), problem_(problem) {
+    everyone_.resize(contacts.size());
+    std::iota(everyone_.begin(), everyone_.end(), 0);
+  }
+
+  void fill() {
+    for (int k = 0; k < std::max(problem_.part_count, 1); ++k) {
+      ContactProblem& part = problem_.part_count > 0 ? problem_.parts[static_cast<std::size_t>(k)] : problem_;
+      const std::vector<int>& members = problem_.part_count > 0 ? part.members : everyone_;
+      part.sparse.clear();
+      if (is_sparse(members))
+        fill_columns(members, part.sparse);
+      else
+        clear_dense(members.size(), part.W);
+    }
+    fill_dense();
+  }
+
+ private:
+  bool moves(std::uint32_t body) const { return bodies_[body]->size() > 0; }
+  bool couples(std::uint32_t body) const { return moves(body) || bodies_[body]->yields(); }
+  int local(int contact) const { return problem_.place[static_cast<std::size_t>(contact)].second; }
+  ContactProblem& part_of(int contact) {
+    if (problem_.part_count == 0) return problem_;
+    return problem_.parts[static_cast<std::size_t>(problem_.place[static_cast<std::size_t>(contact)].first)];
+  }
+  const ContactPoint& at(int contact) const { return contacts_[static_cast<std::size_t>(contact)]; }
+
+  // Where most blocks are zero and there are many: a pile, not a hand.
+  bool is_sparse(const std::vector<int>& members) const {
+    if (members.size() <= kAlwaysDense) return false;
+    std::size_t blocks = 0;
+    for (const int i : members)
+      for (const std::uint32_t b : {at(i).body_a, at(i).body_b})
+        if (couples(b)) blocks += delassus_.of[b].contacts.size();
+    return static_cast<double>(blocks) < kSparse * static_cast<double>(members.size() * members.size());
+  }
+
+  static void clear_dense(std::size_t contacts, Eigen::MatrixXd& w) {
+    const auto rows = static_cast<Eigen::Index>(3 * contacts);
+    if (w.rows() < rows) w.resize(rows, rows);
+    w.topLeftCorner(rows, rows).setZero();
+  }
+
+  // Body by body the lower triangles: contacts are in ascending order, and the mirror image is the same.
+  void fill_dense() {
+    for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
+      const BodyResponse& response = delassus_.of[b];
+      if (!couples(b) || response.contacts.empty()) continue;
+      ContactProblem& part = part_of(response.contacts.front());
+      if (!part.sparse.first.empty() || !moves(b)) continue;
+      const auto count = static_cast<Eigen::Index>(response.contacts.size());
+      for (Eigen::Index k = 0; k < count; ++k)
+        for (Eigen::Index m = 0; m <= k; ++m)
+          part.W.block<3, 3>(3 * local(response.contacts[static_cast<std::size_t>(k)]),
+                             3 * local(response.contacts[static_cast<std::size_t>(m)])) += answer(response, k, m);
+    }
+    for (int k = 0; k < std::max(problem_.part_count, 1); ++k) {
+      ContactProblem& part = problem_.part_count > 0 ? problem_.parts[static_cast<std::size_t>(k)] : problem_;
+      if (part.sparse.first.empty()) complete(problem_.part_count > 0 ? part.members : everyone_, part.W);
+    }
+  }
+  void complete(const std::vector<int>& members, Eigen::MatrixXd& whole) const {
+    const auto rows = static_cast<Eigen::Index>(3 * members.size());
+    auto w = whole.topLeftCorner(rows, rows);
+    if (delassus_.compliance.size() > 0)
+      for (std::size_t k = 0; k < members.size(); ++k)
+        for (std::size_t m = 0; m <= k; ++m)
+          w.block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * static_cast<Eigen::Index>(m)) +=
+              delassus_.compliance.block<3, 3>(3 * members[k], 3 * members[m]);
+    w.triangularView<Eigen::StrictlyUpper>() = w.transpose();
+  }
+
+  // Column by column: the contacts of a contact's bodies, in ascending order.
+  void fill_columns(const std::vector<int>& members, ContactColumns& out) {
+    std::vector<int> near;
+    for (const int i : members) {
+      near.clear();
+      const ContactPoint& c = at(i);
+      for (const std::uint32_t b : {c.body_a, c.body_b})
+        if (couples(b)) near.insert(near.end(), delassus_.of[b].contacts.begin(), delassus_.of[b].contacts.end());
+      std::sort(near.begin(), near.end());
+      near.erase(std::unique(near.begin(), near.end()), near.end());
+      const int first_run = static_cast<int>(out.runs.size());
+      out.first.push_back(first_run);
+      for (const int j : near) add_row(local(j), first_run, out);
+      for (int r = first_run; r < static_cast<int>(out.runs.size()); ++r) {
+        ContactColumns::Run& run = out.runs[static_cast<std::size_t>(r)];
+        run.at = out.values.size();
+        out.values.resize(run.at + 3 * static_cast<std::size_t>(run.rows), 0.0);
+      }
+      add_answers(i, c.body_a, first_run, out);
+      if (c.body_b != c.body_a) add_answers(i, c.body_b, first_run, out);
+      if (delassus_.compliance.size() > 0)
+        for (const int j : near)
+          add_block(local(j), delassus_.compliance.block<3, 3>(3 * std::max(i, j), 3 * std::min(i, j)), j < i,
+                    first_run, out);
+    }
+    out.first.push_back(static_cast<int>(out.runs.size()));
+  }
+  static void add_row(int contact, int first_run, ContactColumns& out) {
+    const int row = 3 * contact;
+    const bool goes_on =
+        static_cast<int>(out.runs.size()) > first_run && out.runs.back().row + out.runs.back().rows == row;
+    if (goes_on)
+      out.runs.back().rows += 3;
+    else
+      out.runs.push_back({row, 3, 0});
+  }
+  void add_answers(int contact, std::uint32_t body, int first_run, ContactColumns& out) const {
+    if (!moves(body)) return;
+    const BodyResponse& response = delassus_.of[body];
+    const auto begin = response.contacts.begin();
+    const Eigen::Index m = std::lower_bound(begin, response.contacts.end(), contact) - begin;
+    for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(response.contacts.size()); ++k)
+      add_block(local(response.contacts[static_cast<std::size_t>(k)]), answer(response, std::max(k, m), std::min(k, m)),
+                k < m, first_run, out);
+  }
+  static void add_block(int contact, const Eigen::Matrix3d& block, bool mirrored, int first_run, ContactColumns& out) {
+    auto run = out.runs.begin() + first_run;
+    while (3 * contact >= run->row + run->rows) ++run;
+    double* const to = out.values.data() + run->at + static_cast<std::size_t>(3 * contact - run->row);
+    for (int column = 0; column < 3; ++column)
+      for (int row = 0; row < 3; ++row)
+        to[column * run->rows + row] += mirrored ? block(column, row) : block(row, column);
+  }
+
+  static constexpr std::size_t kAlwaysDense = 96;  // contacts: their W fits into a processor's cache
+  static constexpr double kSparse = 0.5;           // [1] of the blocks: fewer are not zero
+
+  const std::vector<std::unique_ptr<Body>>& bodies_;
+  const std::vector<ContactPoint>& contacts_;
+  const Delassus& delassus_;
+  ContactProblem& problem_;
+  std::vector<int> everyone_;
+};
+
+// [m/s] J v* of one side: the skin is interpolated linearly by every body.
+dvec3 free_velocity(const Body& body, const SurfacePoint& point) {
+  const uvec3 t = body.skin->triangles[point.triangle];
+  return point.barycentric.x * body.skin_velocity[t.x] + point.barycentric.y * body.skin_velocity[t.y] +
+         point.barycentric.z * body.skin_velocity[t.z];
+}
+
+// [m] How much less than its gap a contact is to close: what of a penetration this step does not undo, if nothing
+// yields.
+double still_inside(const ContactPoint& c, std::size_t i, double beta, const Delassus& delassus) {
+  const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+  const bool yields = delassus.compliance.size() > 0 && delassus.compliance(row, row) > 0.0;
+  return yields ? 0.0 : (1.0 - beta) * c.depth;
+}
+
+// The contacts' laws become those of the normals and gaps that they will have. An end gap was foretold with the
+// velocities of the solution that there is, and changes with what a new one does to them.
+void look_again(const std::vector<ContactPoint>& contacts, double T, double beta, const Delassus& delassus,
+                ContactProblem& problem) {
+  problem.own.assign(contacts.size(), dmat3(1.0));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactPoint& c = contacts[i];
+    if (!c.again) continue;
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    const double inside = still_inside(c, i, beta, delassus);
+    problem.own[i] = leaning_axes(c.lean);
+    const dvec3 normal = problem.own[i][0];
+    // Of the velocities alone, those of the solution and those without impulses.
+    problem.velocity[row] -= (c.gap + inside) / T, problem.bias[row] -= (c.gap + inside) / T;
+    const double closing =
+        dot(normal, dvec3(problem.velocity[row], problem.velocity[row + 1], problem.velocity[row + 2]));
+    const double left = (c.end_gap + inside) / T - closing;
+    for (int k = 0; k < 3; ++k) problem.bias[row + k] += left * normal[k];
+  }
+}
+
+}  // namespace
+
+void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
+                   double T, double beta, Delassus& delassus, ContactProblem& problem) {
+  problem.resize_vectors(static_cast<int>(contacts.size()));
+  delassus.of.resize(bodies.size());
+  sort_by_body(contacts, delassus.of);
+  split_contacts(bodies, contacts, problem);
+
+  std::vector<PushedSide> sides;
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+    BodyResponse& response = delassus.of[b];
+    if (bodies[b]->size() == 0 || response.contacts.empty()) continue;
+    list_sides(b, contacts, response, sides);
+    bodies[b]->respond(sides, static_cast<Eigen::Index>(response.contacts.size()), response.compliance);
+  }
+  find_compliances(bodies, contacts, T, delassus);
+  OperatorFiller(bodies, contacts, delassus, problem).fill();
+
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactPoint& c = contacts[i];
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    const dvec3 u = free_velocity(*bodies[c.body_a], c.a) - free_velocity(*bodies[c.body_b], c.b);
+    for (int k = 0; k < 3; ++k) {
+      problem.bias[row + k] = dot(c.axes[k], u);
+      problem.impulse[row + k] = c.impulse[k];
+    }
+    problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus)) / T;
+    problem.mu_static[i] = c.mu_static;
+    problem.mu_sliding[i] = c.mu_sliding;
+    problem.sliding[i] = c.sliding;
+  }
+}
+
+void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
+                    const std::vector<ContactPoint>& contacts, const Vector& impulses) {
+  Rows dv;
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b]->size() == 0) continue;
+    dv.setZero(bodies[b]->size(), 1);
+    for (const int i : delassus.of[b].contacts) {
+      const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
+      const double* const l = &impulses[3 * static_cast<Eigen::Index>(i)];
+      const dvec3 impulse = c.axes * dvec3(l[0], l[1], l[2]);
+      if (c.body_a == b) bodies[b]->push(c.a, impulse, dv, 0);
+      if (c.body_b == b) bodies[b]->push(c.b, -impulse, dv, 0);
+    }
+    if (!delassus.of[b].contacts.empty()) bodies[b]->solve(dv);
+    bodies[b]->correct(dv);
+  }
+}
+
+void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& contacts) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    for (int k = 0; k < 3; ++k) contacts[i].impulse[k] = problem.impulse[3 * static_cast<Eigen::Index>(i) + k];
+    contacts[i].sliding = problem.sliding[i] != 0;
+  }
+}
+
+SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
+                            double beta, const SweepLimits& limits, Delassus& delassus,
+                            std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left) {
+  problem.own.clear();
+  SweepReport report = solve(problem, limits);
+  apply_impulses(bodies, delassus, contacts, problem.impulse);
+  for (int round = 0;; ++round) {
+    keep_impulses(problem, contacts);
+    const std::vector<ContactPoint>::size_type known = contacts.size();
+    const Crossings missed = proximity.find_missed(bodies, T, contacts);
+    const bool last = round == kMostRounds || (round >= kRoundsUnsettled && !report.settled);
+    if (last) contacts.resize(known);
+    cut_late_contacts(bodies, kMostOfBody, known, contacts);
+    if (contacts.size() == known) {
+      if (left) *left = missed;
+      break;
+    }
+    Vector applied = Vector::Zero(3 * static_cast<Eigen::Index>(contacts.size()));
+    applied.head(3 * static_cast<Eigen::Index>(known)) = problem.impulse.head(3 * static_cast<Eigen::Index>(known));
+    build_problem(bodies, contacts, T, beta, delassus, problem);
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, contacts, problem.impulse.head(applied.size()) - applied);
+  }
+  if (proximity.look_again(bodies, T, contacts)) {
+    const Vector first = problem.impulse;
+    look_again(contacts, T, beta, delassus, problem);
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, contacts, problem.impulse - first);
+  }
+  keep_impulses(problem, contacts);
+  return report;
+}
+
+}  // namespace pliant

@@ -1,0 +1,237 @@
+#include "systems/soft/fem/flesh.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "runtime/assert.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr double kFeather = 1e-6;  // [1] of the mean: mass of a node that only flat elements hold, so that A is regular
+
+// `to` (row major) += p_i c_j^T + q_j c_i^T + d I, with p = V lambda c, q = V mu c, d = V mu b_i . b_j: one K'_ij.
+inline void add_block(double* __restrict to, dvec3 pi, dvec3 cj, dvec3 qj, dvec3 ci, double d) {
+  to[0] += pi.x * cj.x + qj.x * ci.x + d;
+  to[1] += pi.x * cj.y + qj.x * ci.y;
+  to[2] += pi.x * cj.z + qj.x * ci.z;
+  to[3] += pi.y * cj.x + qj.y * ci.x;
+  to[4] += pi.y * cj.y + qj.y * ci.y + d;
+  to[5] += pi.y * cj.z + qj.y * ci.z;
+  to[6] += pi.z * cj.x + qj.z * ci.x;
+  to[7] += pi.z * cj.y + qj.z * ci.y;
+  to[8] += pi.z * cj.z + qj.z * ci.z + d;
+}
+
+dvec3 lane_of(const ElementLanes (&v)[3], std::size_t lane) {
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
+
+void add(Vector& to, std::uint32_t node, dvec3 f) {
+  to[3 * node] += f.x, to[3 * node + 1] += f.y, to[3 * node + 2] += f.z;
+}
+
+}  // namespace
+
+// K' enters A with T^2 + T beta, f_el the right-hand side with T.
+struct Flesh::Scale {
+  double T, stiffness;
+};
+
+Flesh::Flesh(const TetMesh& mesh, const FleshMaterial& material, std::uint32_t moving)
+    : mesh_(mesh), material_(material), moving_(moving), x_(mesh.nodes), v_(mesh.nodes.size(), dvec3(0)) {
+  ASSERT(moving >= mesh.free_count && moving <= mesh.pinned_begin());
+  ASSERT(mesh.pinned_begin() <= mesh.node_count());
+  ASSERT(material.young > 0 && material.density > 0 && material.poisson > -1 && material.poisson < 0.5);
+  mu_ = material.young / (2 * (1 + material.poisson));
+  lambda_ = material.young * material.poisson / ((1 + material.poisson) * (1 - 2 * material.poisson));
+  take_elements();
+  lay_out();
+  right_.setZero(3 * mesh.pinned_begin());
+  force_.setZero(3 * mesh.node_count());
+}
+
+void Flesh::take_elements() {
+  mass_.assign(mesh_.nodes.size(), 0.0);
+  std::vector<Tet> tets = mesh_.tets;
+  for (Tet& tet : tets) std::sort(tet.begin(), tet.end());  // a pair then always stands in the upper triangle
+  std::sort(tets.begin(), tets.end());
+  double total = 0.0;
+  for (const Tet& tet : tets) {
+    ASSERT(tet[3] < mesh_.node_count());
+    std::array<dvec3, 3> b;
+    const double volume = rest_shape(mesh_.nodes, tet, b);
+    if (volume == 0.0) continue;
+    if (packs_.empty() || packs_.back().count == kElementLanes) packs_.emplace_back();
+    ElementPack& pack = packs_.back();
+    const std::size_t lane = pack.count++;
+    pack.node[lane] = tet;
+    pack.volume[lane] = volume;
+    for (int k = 0; k < 3; ++k)
+      for (int d = 0; d < 3; ++d) pack.gradient[k][d][lane] = b[k][d];
+    pack.q[0][lane] = 1.0;
+    for (const std::uint32_t node : tet) mass_[node] += material_.density * volume / 4;
+    total += material_.density * volume;
+  }
+  const double feather =
+      total > 0 ? kFeather * total / static_cast<double>(mass_.size()) : material_.density * kFeather;
+  for (double& m : mass_)
+    if (m == 0.0) m = feather;
+}
+
+void Flesh::lay_out() {
+  std::vector<Tet> stiff;
+  for (const ElementPack& pack : packs_)
+    stiff.insert(stiff.end(), pack.node.begin(), pack.node.begin() + static_cast<std::ptrdiff_t>(pack.count));
+  inner_ = make_pattern(moving_, stiff);
+  for (std::uint32_t row = 0; row < moving_; ++row)
+    for (std::uint32_t k = inner_.diagonal[row] + 1; k < inner_.first[row + 1]; ++k)
+      inner_mirror_.push_back({k, inner_.find(inner_.column[k], row)});
+
+  // Pairs with a handle node that has no row of its own, sorted, each once; corner has its diagonal and both triangles.
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+  const std::uint32_t end = mesh_.pinned_begin();
+  std::vector<Pair> outer, corner;
+  for (std::uint32_t node = moving_; node < end; ++node) corner.emplace_back(node, node);
+  for (const Tet& tet : stiff)
+    for (const std::uint32_t i : tet)
+      for (const std::uint32_t j : tet) {
+        if (j < moving_ || j >= end || i >= end) continue;
+        (i < moving_ ? outer : corner).emplace_back(i, j);
+      }
+  const auto list = [](std::vector<Pair>& pairs, std::vector<Entry>& entries) {
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    for (const Pair& pair : pairs) entries.push_back({pair.first, pair.second, Block::Zero()});
+  };
+  list(outer, outer_);
+  list(corner, corner_);
+  const auto place = [](const std::vector<Pair>& pairs, std::uint32_t i, std::uint32_t j) {
+    return static_cast<std::uint32_t>(std::lower_bound(pairs.begin(), pairs.end(), Pair(i, j)) - pairs.begin());
+  };
+  for (const Pair& pair : corner)
+    if (pair.first < pair.second)
+      corner_mirror_.push_back({place(corner, pair.first, pair.second), place(corner, pair.second, pair.first)});
+  for (const Tet& tet : stiff) {
+    Slots slots;
+    std::size_t k = 0;
+    for (int a = 0; a < 4; ++a)
+      for (int b = a; b < 4; ++b) {
+        const std::uint32_t i = tet[a], j = tet[b];
+        slots[k++] = j >= end      ? kNone
+                     : j < moving_ ? inner_.find(i, j)
+                     : i < moving_ ? place(outer, i, j)
+                                   : place(corner, i, j);
+      }
+    slots_.push_back(slots);
+  }
+}
+
+double* Flesh::block(std::uint32_t row, std::uint32_t column, std::uint32_t slot) {
+  if (slot == kNone) return nullptr;
+  return column < moving_ ? inner_.value[slot].data()
+         : row < moving_  ? outer_[slot].value.data()
+                          : corner_[slot].value.data();
+}
+
+void Flesh::visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const {
+  take_edges(pack, x, out);
+  if (material_.strain == Strain::kCorotational)
+    take_rotations(pack, out);
+  else
+    std::memcpy(out.q, pack.q, sizeof out.q);
+  turn_gradients(pack, out);
+  take_forces(pack, lambda_, mu_, out);
+}
+
+void Flesh::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) {
+  for (Block& value : inner_.value) value.setZero();
+  for (Entry& entry : outer_) entry.value.setZero();
+  for (Entry& entry : corner_) entry.value.setZero();
+  right_.setZero();
+  force_.setZero();
+  const Scale scale{T, T * T + T * material_.beta};
+  const std::uint32_t end = mesh_.pinned_begin();
+  const auto add_forces = [](const Tet& tet, std::size_t lane, const ElementVisit& from, double factor,
+                             std::uint32_t below, Vector& to) {
+    for (int i = 0; i < 4; ++i)
+      if (tet[i] < below) add(to, tet[i], factor * lane_of(from.f[i], lane));
+  };
+  ElementVisit now;
+  const Slots* slots = slots_.data();
+  for (ElementPack& pack : packs_) {
+    visit(pack, x_, now);
+    std::memcpy(pack.q, now.q, sizeof now.q);
+    for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
+      add_forces(pack.node[lane], lane, now, 1.0, mesh_.node_count(), force_);
+      add_blocks(pack, lane, *slots, scale, now);
+      if (pack.node[lane][3] >= end) add_told(pack, lane, scale, now);
+    }
+    // f_el + K' (x - begin): the stress of where the step began, turned as the guess is.
+    if (begin) take_edges(pack, *begin, now), take_forces(pack, lambda_, mu_, now);
+    for (std::size_t lane = 0; lane < pack.count; ++lane) add_forces(pack.node[lane], lane, now, T, end, right_);
+  }
+  mirror();
+  add_masses(T, gravity);
+}
+
+void Flesh::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
+                       const ElementVisit& visit) {
+  const double l = scale.stiffness * pack.volume[lane] * lambda_, m = scale.stiffness * pack.volume[lane] * mu_;
+  const Tet& tet = pack.node[lane];
+  std::array<dvec3, 4> c;
+  for (int i = 0; i < 4; ++i) c[i] = lane_of(visit.c[i], lane);
+  std::size_t k = 0;
+  for (int i = 0; i < 4; ++i) {
+    const dvec3 p = l * c[i];
+    for (int j = i; j < 4; ++j, ++k) {
+      double* const to = block(tet[i], tet[j], slots[k]);
+      if (to) add_block(to, p, c[j], m * c[j], c[i], m * dot(c[i], c[j]));
+    }
+  }
+}
+
+// Pinned nodes have no rows: what A says of their velocities v goes to the right. sum_p K'_ip v_p is V sigma c_i of the
+// strain sym(sum_p v_p c_p^T).
+void Flesh::add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit) {
+  const Tet& tet = pack.node[lane];
+  dmat3 L(0);
+  for (int i = 0; i < 4; ++i)
+    if (tet[i] >= mesh_.pinned_begin()) L += outerProduct(v_[tet[i]], lane_of(visit.c[i], lane));
+  const double factor = scale.stiffness * pack.volume[lane], trace = L[0][0] + L[1][1] + L[2][2];
+  const dmat3 sigma = factor * (mu_ * (L + transpose(L)) + dmat3(lambda_ * trace));
+  for (int i = 0; i < 4; ++i)
+    if (tet[i] < mesh_.pinned_begin()) add(right_, tet[i], -(sigma * lane_of(visit.c[i], lane)));
+}
+
+// Only upper blocks were added to. Diagonal ones are symmetric but for rounding; a solver may read either half.
+void Flesh::mirror() {
+  const auto even = [](Block& b) { b(1, 0) = b(0, 1), b(2, 0) = b(0, 2), b(2, 1) = b(1, 2); };
+  for (const std::uint32_t k : inner_.diagonal) even(inner_.value[k]);
+  for (Entry& entry : corner_)
+    if (entry.row == entry.column) even(entry.value);
+  for (const auto& [upper, lower] : inner_mirror_) inner_.value[lower] = inner_.value[upper].transpose();
+  for (const auto& [upper, lower] : corner_mirror_) corner_[lower].value = corner_[upper].value.transpose();
+}
+
+void Flesh::add_masses(double T, dvec3 gravity) {
+  const double damped = 1 + T * material_.alpha;
+  for (std::uint32_t i = 0; i < mesh_.pinned_begin(); ++i) add(right_, i, mass_[i] * (v_[i] + T * gravity));
+  for (std::uint32_t i = 0; i < moving_; ++i) inner_.value[inner_.diagonal[i]].diagonal().array() += mass_[i] * damped;
+  for (Entry& entry : corner_)
+    if (entry.row == entry.column) entry.value.diagonal().array() += mass_[entry.row] * damped;
+}
+
+double Flesh::elastic_energy() const {
+  double energy = 0.0;
+  ElementVisit now;
+  for (const ElementPack& pack : packs_) {
+    visit(pack, x_, now);
+    for (std::size_t lane = 0; lane < pack.count; ++lane) energy += now.energy[lane];
+  }
+  return energy;
+}
+
+}  // namespace pliant

@@ -1,0 +1,105 @@
+// Co-rotational linear tetrahedra (methods.md 2.1): f_e = -R K_e (R^T x - x0), K' = R K_e R^T, implicit Euler
+//   (M + T D + T^2 K') v = M v0 + T (f_el + f_ext),   D = alpha M + beta K'.
+// Nodes in world frame. Node order as in TetMesh: free, handle, pinned.
+//
+// No 12x12 matrix is ever formed. With b_i = grad N_i at rest [1/m] and c_i = R b_i, a linear tetrahedron of volume V
+// gives, in the world frame,
+//   eps = sym(sum x_i c_i^T) - I,  sigma = 2 mu eps + lambda tr(eps) I,  f_i = -V sigma c_i,
+//   K'_ij = V (lambda c_i c_j^T + mu (c_j c_i^T + (b_i . b_j) I)).
+// With R the exact polar factor f is minus the gradient of the energy V (mu |eps|^2 + lambda/2 tr(eps)^2) at any
+// deformation; K' leaves out how R turns, which keeps it positive semidefinite.
+#pragma once
+
+#include <vector>
+
+#include "components/math.h"
+#include "components/tet_mesh.h"
+#include "systems/soft/fem/element.h"
+#include "systems/soft/linear/block_matrix.h"
+
+namespace pliant {
+
+enum class Strain : std::uint8_t {
+  kCorotational,
+  kLinear,  // R = I: for studies; right only while nothing turns
+};
+
+struct FleshMaterial {
+  double young = 5e3;       // [Pa]
+  double poisson = 0.45;    // [1] < 0.5
+  double density = 1000.0;  // [kg/m3]
+  double alpha = 0.0;       // [1/s] Rayleigh damping, mass part
+  double beta = 0.0;        // [s] stiffness part
+  Strain strain = Strain::kCorotational;
+};
+
+class Flesh {
+ public:
+  // `moving`: leading nodes that have their own rows in the step (free ones; with spring attachment also the handle's).
+  // Nodes from there on move as they are told (position() and velocity() are written by their owner).
+  // A tetrahedron that is flat at rest (volume < 1e-9 of its longest edge cubed) has no stiffness: it would be
+  // infinite.
+  Flesh(const TetMesh& mesh, const FleshMaterial& material, std::uint32_t moving);
+
+  // [m], [m/s], world, per node. Writer: whoever steps this flesh.
+  std::vector<dvec3>& position() { return x_; }
+  std::vector<dvec3>& velocity() { return v_; }
+  const std::vector<dvec3>& position() const { return x_; }
+  const std::vector<dvec3>& velocity() const { return v_; }
+  const std::vector<double>& mass() const { return mass_; }  // [kg] lumped, per node
+  std::uint32_t moving() const { return moving_; }
+
+  // Rotations, forces and matrices at the current positions, for a step T [s] under gravity [m/s2].
+  // inner: rows and columns of moving nodes; outer: A_ij for moving i and handle nodes j (those between moving and the
+  // pinned), as a list; corner: A_ij among handle nodes; right: M v0 + T (f_el + f_ext) for all non-pinned nodes (3
+  // each), where terms of K' and D on handle nodes outside `moving` stay on the left (they are unknowns of the handle)
+  // and those on pinned nodes, which have a velocity when somebody moves them, are in it.
+  // `begin`: positions at the beginning of the step, when position() already is a guess of its end (iterations of the
+  // non-linear step): f_el is then linearised about the guess, and velocity() still is v0.
+  void assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin = nullptr);
+  const BlockMatrix& inner() const { return inner_; }
+  BlockMatrix& inner() {
+    return inner_;
+  }  // its owner adds what ties nodes to a handle; the next assemble() starts anew
+  struct Entry {
+    std::uint32_t row, column;  // nodes
+    Block value;
+  };
+  const std::vector<Entry>& outer() const { return outer_; }    // row < moving <= column < pinned_begin
+  const std::vector<Entry>& corner() const { return corner_; }  // moving <= row, column < pinned_begin
+  const Vector& right() const { return right_; }
+
+  double elastic_energy() const;  // [J] at the current positions
+  // [N] of the last assemble(), 3 per node, all nodes; on pinned nodes: minus what holds them needs to give.
+  const Vector& elastic_force() const { return force_; }
+
+ private:
+  // Where the blocks of a pair of an element's nodes go: of inner, outer or corner, as the nodes say.
+  using Slots = std::array<std::uint32_t, 10>;  // pairs (0,0) (0,1) (0,2) (0,3) (1,1) (1,2) (1,3) (2,2) (2,3) (3,3)
+  struct Scale;                                 // what one assemble() multiplies with
+
+  void take_elements();
+  void lay_out();
+  void visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const;
+  void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
+                  const ElementVisit& visit);
+  void add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit);
+  void mirror();
+  void add_masses(double T, dvec3 gravity);
+  double* block(std::uint32_t row, std::uint32_t column, std::uint32_t slot);
+
+  const TetMesh& mesh_;
+  FleshMaterial material_;
+  double lambda_ = 0.0, mu_ = 0.0;  // [Pa] Lame's
+  std::uint32_t moving_ = 0;
+  std::vector<dvec3> x_, v_;
+  std::vector<double> mass_;
+  std::vector<ElementPack> packs_;  // stiff elements by their nodes, ascending: what lies together is added together
+  std::vector<Slots> slots_;        // of each element
+  std::vector<std::array<std::uint32_t, 2>> inner_mirror_, corner_mirror_;  // an upper block and its lower twin
+  BlockMatrix inner_;
+  std::vector<Entry> outer_, corner_;
+  Vector right_, force_;
+};
+
+}  // namespace pliant

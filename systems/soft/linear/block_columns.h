@@ -1,0 +1,31 @@
+// Right-hand sides that are zero but for a few block rows, three at a time: what contacts do along their three axes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "systems/soft/linear/block_matrix.h"
+
+namespace pliant {
+
+struct BlockColumns {
+  // Adds up with others of the same row.
+  struct Entry {
+    std::uint32_t row = 0;  // block row
+    Block value;            // in the three columns
+  };
+  std::uint32_t size = 0;  // block rows
+  std::vector<Entry> entries;
+  std::vector<std::uint32_t> first{0};  // count() + 1: run of each three columns in `entries`
+
+  Eigen::Index count() const { return static_cast<Eigen::Index>(first.size()) - 1; }  // of threes
+  void clear(std::uint32_t block_rows) { size = block_rows, entries.clear(), first.assign(1, 0); }
+  std::span<const Entry> of(Eigen::Index three) const {
+    const auto at = static_cast<std::size_t>(three);
+    return std::span(entries).subspan(first[at], first[at + 1] - first[at]);
+  }
+  void close() { first.push_back(static_cast<std::uint32_t>(entries.size())); }  // the next entries are of others
+};
+
+}  // namespace pliant

@@ -1,0 +1,10 @@
+#include "systems/soft/linear/dense_solver.h"
+
+namespace pliant {
+
+bool DenseSolver::factorise(const BlockMatrix& a) {
+  factor_.compute(a.dense());
+  return factor_.info() == Eigen::Success && factor_.matrixLLT().diagonal().allFinite();
+}
+
+}  // namespace pliant

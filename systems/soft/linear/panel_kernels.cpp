@@ -1,0 +1,256 @@
+#include "systems/soft/linear/panel_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+// Every kernel is compiled for plain x86-64 and for AVX2, and picks when it is called: GCC's own picking among versions
+// of one name works only for callers that see them all, and gives everybody else the plain one. AVX-512 was no faster
+// where both were measured (19 Gflop/s each: without fused multiply-add AVX2 keeps three ports busy, AVX-512 two).
+// Sanitizers get the plain version.
+#if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
+#define PLIANT_KERNEL(returns, name, parameters, arguments, body)                          \
+  returns plain::name parameters {                                                         \
+    return body(16);                                                                       \
+  }                                                                                        \
+  __attribute__((target("avx2"))) static returns wide_##name parameters {                  \
+    return body(32);                                                                       \
+  }                                                                                        \
+  returns name parameters {                                                                \
+    return __builtin_cpu_supports("avx2") ? wide_##name arguments : plain::name arguments; \
+  }
+#else
+#define PLIANT_KERNEL(returns, name, parameters, arguments, body) \
+  returns plain::name parameters {                                \
+    return body(16);                                              \
+  }                                                               \
+  returns name parameters {                                       \
+    return plain::name arguments;                                 \
+  }
+#endif
+#define PLIANT_INLINE inline __attribute__((always_inline))
+
+namespace pliant {
+namespace {
+
+template <int kBytes>
+struct Machine {
+  typedef double Pack __attribute__((vector_size(kBytes), may_alias));
+  typedef double Loose __attribute__((vector_size(kBytes), may_alias, aligned(8)));  // the same where none is aligned
+  static constexpr int kLanes = kBytes / 8;
+  static constexpr int kPacks = kStrip / kLanes;  // packs in a strip
+  static constexpr int kGroup = kBytes / 8;  // columns of a tile summed at a time: as many as sixteen registers allow
+};
+
+// tile[j] += sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length: strips of 8, `step`
+// apart, times numbers of the panel, which stand
+//   kRow:    at b[8 p + j], one strip of the panel: its rows j, columns p;
+//   kColumn: at b[(p / 8) * stride + 8 j + p % 8], strip after strip: rows p, columns j.
+enum class Read { kRow, kColumn };
+template <int kBytes, Read kRead>
+PLIANT_INLINE void add_products(const double* a, const double* b, int length, int stride, double* tile,
+                                int width = kStrip, int step = kStrip) {
+  using M = Machine<kBytes>;
+  using Pack = typename M::Pack;
+  using Loose = typename M::Loose;
+  constexpr int kRun = kRead == Read::kRow ? 1 : kStrip, kNext = kRead == Read::kRow ? 1 : kStrip;
+  for (int group = 0; group < width; group += M::kGroup) {
+    Pack sum[M::kGroup][M::kPacks];
+    for (int j = 0; j < M::kGroup; ++j)
+      for (int l = 0; l < M::kPacks; ++l)
+        sum[j][l] = *reinterpret_cast<const Pack*>(tile + (group + j) * kStrip + l * M::kLanes);
+    const double* scalar = b + group * kNext;
+    for (int p = 0; p < length; p += kRun, scalar += stride)
+      for (int run = 0; run < kRun; ++run)
+        for (int l = 0; l < M::kPacks; ++l) {
+          const Pack strip = *reinterpret_cast<const Loose*>(a + (p + run) * step + l * M::kLanes);
+          for (int j = 0; j < M::kGroup; ++j) sum[j][l] += strip * scalar[j * kNext + run];
+        }
+    for (int j = 0; j < M::kGroup; ++j)
+      for (int l = 0; l < M::kPacks; ++l)
+        *reinterpret_cast<Pack*>(tile + (group + j) * kStrip + l * M::kLanes) = sum[j][l];
+  }
+}
+
+// y[lane] += s * x[lane] over a strip.
+template <int kBytes>
+PLIANT_INLINE void add_scaled(double* y, const double* x, double s) {
+  using M = Machine<kBytes>;
+  using Pack = typename M::Pack;
+  for (int l = 0; l < kStrip; l += M::kLanes)
+    *reinterpret_cast<Pack*>(y + l) += *reinterpret_cast<const Pack*>(x + l) * s;
+}
+
+PLIANT_INLINE void scale(double* x, double s) {
+  for (int l = 0; l < kStrip; ++l) x[l] *= s;
+}
+
+// Column by column, to the right: the triangle of a diagonal tile and the rows that share its strip.
+template <int kBytes>
+PLIANT_INLINE bool factorise_tile(double* tile, int width, double* reciprocal) {
+  for (int j = 0; j < width; ++j) {
+    double* column = tile + j * kStrip;
+    const double pivot = column[j];
+    if (!(pivot > 0 && pivot < HUGE_VAL)) return false;
+    reciprocal[j] = 1 / std::sqrt(pivot);
+    std::fill(column, column + j, 0.0);
+    scale(column, reciprocal[j]);
+    for (int q = j + 1; q < width; ++q) add_scaled<kBytes>(tile + q * kStrip, column, -column[q]);
+  }
+  return true;
+}
+
+template <int kBytes>
+PLIANT_INLINE bool factorise_panel_for(double* data, Panel panel, double* reciprocal) {
+  alignas(64) double tile[kStrip * kStrip];
+  const int stride = kStrip * panel.columns;
+  for (int begin = 0; begin < panel.columns; begin += kStrip) {
+    const int width = std::min(kStrip, panel.columns - begin);
+    double* const pivots = data + static_cast<std::ptrdiff_t>(begin / kStrip) * stride;
+    for (int i = begin / kStrip; i < panel.strips; ++i) {
+      double* const strip = data + static_cast<std::ptrdiff_t>(i) * stride;
+      double* const out = strip + begin * kStrip;
+      // tile = A - (columns already factorised)
+      std::fill(tile, tile + kStrip * kStrip, 0.0);
+      add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
+      for (int c = 0; c < width * kStrip; ++c) tile[c] = out[c] - tile[c];
+      if (strip == pivots) {
+        if (!factorise_tile<kBytes>(tile, width, reciprocal + begin)) return false;
+      } else {
+        const double* const L = pivots + begin * kStrip;
+        for (int j = 0; j < width; ++j) {
+          for (int q = 0; q < j; ++q) add_scaled<kBytes>(tile + j * kStrip, tile + q * kStrip, -L[q * kStrip + j]);
+          scale(tile + j * kStrip, reciprocal[begin + j]);
+        }
+      }
+      std::copy(tile, tile + width * kStrip, out);
+    }
+  }
+  return true;
+}
+
+template <int kBytes>
+PLIANT_INLINE void update_triangle_for(Panel panel, double* triangle) {
+  alignas(64) double tile[kStrip * kStrip];
+  const int stride = kStrip * panel.columns, above = panel.columns / kStrip;
+  for (int i = above; i < panel.strips; ++i)
+    for (int j = above; j <= i; ++j) {
+      std::fill(tile, tile + kStrip * kStrip, 0.0);
+      add_products<kBytes, Read::kRow>(panel.data + static_cast<std::ptrdiff_t>(i) * stride,
+                                       panel.data + static_cast<std::ptrdiff_t>(j) * stride, panel.columns, kStrip,
+                                       tile);
+      double* const out = triangle + triangle_size(i - above) + static_cast<std::ptrdiff_t>(j - above) * 64;
+      for (int c = 0; c < kStrip * kStrip; ++c) out[c] -= tile[c];
+    }
+}
+
+template <int kBytes>
+PLIANT_INLINE void forward_for(Panel panel, const double* reciprocal, double* x) {
+  const int stride = kStrip * panel.columns;
+  for (int i = 0; i < panel.strips; ++i) {
+    const double* const strip = panel.data + static_cast<std::ptrdiff_t>(i) * stride;
+    alignas(64) double sum[kStrip] = {};
+    const int begin = std::min(i * kStrip, panel.columns);
+    for (int p = 0; p < begin; ++p) add_scaled<kBytes>(sum, strip + p * kStrip, x[p]);
+    for (int l = 0; l < kStrip; ++l) x[i * kStrip + l] -= sum[l];
+    for (int p = begin; p < std::min(begin + kStrip, panel.columns); ++p) {
+      x[p] *= reciprocal[p];
+      for (int r = p + 1; r < (i + 1) * kStrip; ++r) x[r] -= strip[p * kStrip + r % kStrip] * x[p];
+    }
+  }
+}
+
+template <int kBytes>
+PLIANT_INLINE void backward_for(Panel panel, const double* reciprocal, double* x, double* sums) {
+  const int stride = kStrip * panel.columns;
+  std::fill(sums, sums + stride, 0.0);
+  for (int i = panel.strips - 1; i >= 0; --i) {
+    const double* const strip = panel.data + static_cast<std::ptrdiff_t>(i) * stride;
+    const int begin = std::min(i * kStrip, panel.columns), end = std::min(begin + kStrip, panel.columns);
+    for (int p = end - 1; p >= begin; --p) {
+      const double* const s = sums + p * kStrip;
+      double sum = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+      for (int r = p + 1; r < (i + 1) * kStrip; ++r) sum += strip[p * kStrip + r % kStrip] * x[r];
+      x[p] = (x[p] - sum) * reciprocal[p];
+    }
+    using M = Machine<kBytes>;
+    using Pack = typename M::Pack;
+    Pack y[M::kPacks];
+    for (int l = 0; l < M::kPacks; ++l) y[l] = *reinterpret_cast<const Pack*>(x + i * kStrip + l * M::kLanes);
+    for (int p = 0; p < begin; ++p)
+      for (int l = 0; l < M::kPacks; ++l)
+        *reinterpret_cast<Pack*>(sums + p * kStrip + l * M::kLanes) +=
+            *reinterpret_cast<const Pack*>(strip + p * kStrip + l * M::kLanes) * y[l];
+  }
+}
+
+template <int kBytes>
+PLIANT_INLINE void forward_many_for(Panel panel, const double* reciprocal, double* x) {
+  alignas(64) double tile[kStrip * kStrip];
+  const int stride = kStrip * panel.columns;
+  for (int i = 0; i < panel.strips; ++i) {
+    const double* const strip = panel.data + static_cast<std::ptrdiff_t>(i) * stride;
+    double* const rows = x + i * kStrip * kStrip;
+    const int begin = std::min(i * kStrip, panel.columns);
+    std::fill(tile, tile + kStrip * kStrip, 0.0);
+    add_products<kBytes, Read::kRow>(x, strip, begin, kStrip, tile);
+    for (int c = 0; c < kStrip * kStrip; ++c) rows[c] -= tile[c];
+    for (int p = begin; p < std::min(begin + kStrip, panel.columns); ++p) {
+      scale(x + p * kStrip, reciprocal[p]);
+      for (int r = p + 1; r < (i + 1) * kStrip; ++r)
+        add_scaled<kBytes>(x + r * kStrip, x + p * kStrip, -strip[p * kStrip + r % kStrip]);
+    }
+  }
+}
+
+template <int kBytes>
+PLIANT_INLINE void backward_many_for(Panel panel, const double* reciprocal, double* x) {
+  alignas(64) double tile[kStrip * kStrip];
+  const int stride = kStrip * panel.columns;
+  for (int begin = (panel.columns - 1) / kStrip * kStrip; begin >= 0; begin -= kStrip) {
+    const int end = std::min(begin + kStrip, panel.columns), own = begin / kStrip;
+    std::fill(tile, tile + kStrip * kStrip, 0.0);
+    add_products<kBytes, Read::kColumn>(x + (own + 1) * kStrip * kStrip,
+                                        panel.data + static_cast<std::ptrdiff_t>(own + 1) * stride + begin * kStrip,
+                                        (panel.strips - own - 1) * kStrip, stride, tile, end - begin);
+    const double* const strip = panel.data + static_cast<std::ptrdiff_t>(own) * stride;
+    for (int p = end - 1; p >= begin; --p) {
+      double* const sum = tile + (p - begin) * kStrip;
+      for (int r = p + 1; r < begin + kStrip; ++r)
+        add_scaled<kBytes>(sum, x + r * kStrip, strip[p * kStrip + r % kStrip]);
+      for (int l = 0; l < kStrip; ++l) x[p * kStrip + l] = (x[p * kStrip + l] - sum[l]) * reciprocal[p];
+    }
+  }
+}
+
+template <int kBytes>
+PLIANT_INLINE void add_gram_for(const double* x, int x_step, const double* y, int y_step, int rows, double* tile) {
+  add_products<kBytes, Read::kRow>(x, y, rows, y_step, tile, kStrip, x_step);
+}
+
+}  // namespace
+
+#define FACTORISE(bytes) factorise_panel_for<bytes>(data, panel, reciprocal)
+#define UPDATE(bytes) update_triangle_for<bytes>(panel, triangle)
+#define FORWARD(bytes) forward_for<bytes>(panel, reciprocal, x)
+#define BACKWARD(bytes) backward_for<bytes>(panel, reciprocal, x, sums)
+#define FORWARD_MANY(bytes) forward_many_for<bytes>(panel, reciprocal, x)
+#define BACKWARD_MANY(bytes) backward_many_for<bytes>(panel, reciprocal, x)
+#define GRAM(bytes) add_gram_for<bytes>(x, x_step, y, y_step, rows, tile)
+#define BYTES(bytes) bytes
+
+PLIANT_KERNEL(bool, factorise_panel, (double* data, Panel panel, double* reciprocal), (data, panel, reciprocal),
+              FACTORISE)
+PLIANT_KERNEL(void, update_triangle, (Panel panel, double* triangle), (panel, triangle), UPDATE)
+PLIANT_KERNEL(void, forward, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x), FORWARD)
+PLIANT_KERNEL(void, backward, (Panel panel, const double* reciprocal, double* x, double* sums),
+              (panel, reciprocal, x, sums), BACKWARD)
+PLIANT_KERNEL(void, forward_many, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
+              FORWARD_MANY)
+PLIANT_KERNEL(void, backward_many, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
+              BACKWARD_MANY)
+PLIANT_KERNEL(void, add_gram, (const double* x, int x_step, const double* y, int y_step, int rows, double* tile),
+              (x, x_step, y, y_step, rows, tile), GRAM)
+PLIANT_KERNEL(int, panel_register_bytes, (), (), BYTES)
+
+}  // namespace pliant

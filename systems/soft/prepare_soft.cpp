@@ -1,0 +1,164 @@
+#include "systems/soft/prepare_soft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/mass_properties.h"
+#include "components/soft_body.h"
+#include "systems/soft/body/probe_tool.h"
+#include "systems/soft/body/rigid_state.h"
+#include "systems/soft/body/rigid_tool.h"
+#include "systems/soft/body/soft_body_state.h"
+#include "systems/soft/soft_state.h"
+#include "systems/touch/surface_query.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+std::string name_of(const World& world, Entity entity) {
+  const Name* name = world.registry.find<Name>(entity);
+  return "body `" + (name ? name->value : fmt::format("entity {}", entity.index)) + "`";
+}
+
+Pose pose_of(const World& world, Entity entity) {
+  const Pose* pose = world.registry.find<Pose>(entity);
+  return pose ? *pose : Pose{};
+}
+
+void add(SoftState& soft, Entity entity, std::unique_ptr<Body> body) {
+  body->entity = entity;
+  if (body->size() > 0) soft.moving.push_back(static_cast<std::uint32_t>(soft.bodies.size()));
+  soft.bodies.push_back(std::move(body));
+}
+
+void add_soft(const World& world, SoftState& soft) {
+  for (auto [entity, body] : world.registry.view<SoftBody>()) {
+    const Handle6* handle = world.registry.find<Handle6>(entity);
+    auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.skin], body, handle,
+                                                 pose_of(world, entity));
+    state->friction_static = body.friction_static;
+    state->friction_sliding = body.friction_sliding;
+    state->self_collides = true;  // fingers pinch, a strip folds
+    add(soft, entity, std::move(state));
+  }
+}
+
+// A rigid body that moves. An error where it encloses nothing.
+Result<RigidMass> mass_of(const World& world, Entity entity, const RigidBody& body) {
+  const MassProperties shape = mass_properties(world.meshes[body.skin]);
+  const double mass = body.mass > 0.0 ? body.mass : body.density * shape.volume;
+  const double density = mass / shape.volume;
+  const dmat3 inertia = density * shape.inertia;
+  if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
+    return Error{name_of(world, entity),
+                 "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
+  return RigidMass{mass, shape.centre, inertia};
+}
+
+Status add_rigid(const World& world, SoftState& soft) {
+  for (auto [entity, body] : world.registry.view<RigidBody>()) {
+    const Mesh& mesh = world.meshes[body.skin];
+    const Pose pose = pose_of(world, entity);
+    std::unique_ptr<Body> state;
+    if (body.fixed) {
+      state = std::make_unique<FixedBody>(mesh, pose);
+    } else {
+      const Result<RigidMass> mass = mass_of(world, entity, body);
+      if (!mass) return mass.error();
+      if (const Handle6* handle = world.registry.find<Handle6>(entity))
+        state = std::make_unique<RigidTool>(mesh, *mass, *handle, pose);
+      else
+        state = std::make_unique<RigidState>(mesh, pose, *mass);
+    }
+    state->friction_static = body.friction_static;
+    state->friction_sliding = body.friction_sliding;
+    add(soft, entity, std::move(state));
+  }
+  return Done{};
+}
+
+void add_probes(const World& world, SoftState& soft) {
+  for (const Entity entity : probe_tools(world)) {
+    const Probe& probe = world.registry.get<Probe>(entity);
+    const HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
+    auto tool = std::make_unique<RigidTool>(world.meshes[probe.shell], probe_mass(), probe_handle(probe, device),
+                                            Pose{probe.position, probe.rotation});
+    tool->kind = BodyKind::kProbe;
+    tool->absent = true;  // until its device is sensed
+    add(soft, entity, std::move(tool));
+  }
+}
+
+void add_yielding(const World& world, SoftState& soft) {
+  for (std::size_t slot = 0; slot < world.touch->objects.size(); ++slot) {
+    const Entity entity = world.touch->objects[slot].entity;
+    const Deformable& deformable = world.registry.get<Deformable>(entity);
+    soft.yielding.push_back(static_cast<std::uint32_t>(soft.bodies.size()));
+    add(soft, entity,
+        std::make_unique<YieldingBody>(world.meshes[deformable.mesh], deformable, pose_of(world, entity), slot));
+    soft.bodies.back()->kind = BodyKind::kSurface;
+  }
+}
+
+// Everything of the size that it will have.
+SoftSnapshot first_snapshot(const SoftState& soft) {
+  SoftSnapshot snapshot;
+  snapshot.contacts.reserve(kMaxShownContacts);
+  for (const std::uint32_t i : soft.moving) {
+    if (soft.bodies[i]->kind == BodyKind::kProbe) continue;  // a marker shows it
+    snapshot.objects.emplace_back();
+    soft.bodies[i]->show(snapshot.objects.back());
+    const auto* body = dynamic_cast<const ToolBody*>(soft.bodies[i].get());
+    if (body && body->has_handle()) snapshot.handles.push_back({body->entity, body->handle().object_pose(), {}, {}});
+  }
+  return snapshot;
+}
+
+// Whether one of these points has come through the body's skin, all of which is still at rest.
+bool come_through(const World& world, const Body& body, const std::vector<dvec3>& from, const std::vector<dvec3>& to) {
+  const Pose pose = pose_of(world, body.entity);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (first_entry(*body.skin, pose.to_local(from[i]), pose.to_local(to[i])).valid()) return true;
+  return false;
+}
+
+// Tools' flesh begins as it rests. It settles without contacts: where it came through something, it begins in its rest
+// shape and falls on it instead.
+void settle_tools(const World& world, SoftState& soft) {
+  for (const std::unique_ptr<Body>& body : soft.bodies) {
+    auto* tool = dynamic_cast<ToolBody*>(body.get());
+    if (!tool || !tool->has_handle()) continue;
+    const std::vector<dvec3> rest = tool->skin_position;
+    tool->settle(world.simulation.gravity);
+    const auto is_in_the_way = [&](const std::unique_ptr<Body>& other) {
+      return other != body && come_through(world, *other, rest, tool->skin_position);
+    };
+    if (std::any_of(soft.bodies.begin(), soft.bodies.end(), is_in_the_way)) tool->unsettle();
+  }
+}
+
+}  // namespace
+
+Status prepare_soft(World& world) {
+  world.soft = nullptr;
+  world.soft_snapshots = nullptr;
+  auto soft = std::make_shared<SoftState>();
+  add_soft(world, *soft);
+  if (Status status = add_rigid(world, *soft); !status) return status;
+  add_probes(world, *soft);
+  if (soft->moving.empty()) return Done{};
+  const double T = world.simulation.soft_step;
+  if (!(T > 0.0 && T <= 1.0))
+    return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s; give more than 0 and at most 1 s", T)};
+  if (world.touch->presses) add_yielding(world, *soft);  // probes press them by themselves
+  settle_tools(world, *soft);
+  soft->proximity = std::make_unique<Proximity>(soft->bodies);
+  world.soft_snapshots = std::make_unique<TripleBuffer<SoftSnapshot>>(first_snapshot(*soft));
+  world.soft = std::move(soft);
+  return Done{};
+}
+
+}  // namespace pliant

@@ -1,0 +1,116 @@
+// One step of everything soft and rigid (P2; methods.md 2.1-2.6). What fails stands still and says so: a factorisation
+// that does not exist, or a motion that is no number, must not spread through the contacts.
+#include "systems/soft/soft_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/soft/contact/contact_budget.h"
+#include "systems/soft/soft_state.h"
+
+namespace pliant {
+namespace {
+
+// Looser, and stacks and grips creep: 1e-6 of what a step's gravity gives is 0.2 um/s.
+constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
+
+constexpr double kShortOf = 0.9;     // [1] of the way to a crossing
+constexpr double kLeastPart = 0.02;  // [1] of a step: what is left of it and shorter is not worth a part
+
+constexpr double kSunken = 0.01;  // [1] of a body's diagonal: what lies so deep in another when a level begins is said
+
+// Contacts with a body that has no solution in this step.
+void leave_out_failed(SoftState& soft) {
+  const auto failed = [&](const ContactPoint& contact) {
+    return !soft.bodies[contact.body_a]->solvable() || !soft.bodies[contact.body_b]->solvable();
+  };
+  soft.contacts.erase(std::remove_if(soft.contacts.begin(), soft.contacts.end(), failed), soft.contacts.end());
+}
+
+// Bodies that a level puts into each other.
+void tally_beginning(SoftState& soft) {
+  const auto size = [&](std::uint32_t body) { return static_cast<double>(soft.bodies[body]->skin->box.diagonal()); };
+  for (const ContactPoint& c : soft.contacts) {
+    const double least = kSunken * std::min(size(c.body_a), size(c.body_b));
+    if (c.depth <= std::max(soft.tally.began_inside, least)) continue;
+    soft.tally.began_inside = c.depth;
+    soft.tally.inside_a = c.body_a, soft.tally.inside_b = c.body_b;
+  }
+}
+
+// A body whose velocity is no number is stopped.
+void stop_non_finite(SoftState& soft) {
+  for (const std::uint32_t i : soft.moving) {
+    if (soft.bodies[i]->velocity().allFinite()) continue;
+    soft.dropped |= kDroppedMotion;
+    soft.bodies[i]->halt();
+  }
+}
+
+// Nothing goes through anything: what no contact prevents, bodies stop before, and what is left of the step becomes
+// one more part of it, in which they are contacts from its beginning.
+void stop_before(SoftState& soft, const Crossings& left, double T) {
+  soft.share = 1.0;
+  if (left.count == 0) return;
+  soft.share = kShortOf * left.first;
+  ++soft.tally.halted;
+  if (soft.more > 0 && (1.0 - soft.share) * T > kLeastPart * soft.step) --soft.more, ++soft.parts;
+}
+
+}  // namespace
+
+void free_motion(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  const std::uint64_t begin = now_ns();
+  for (const std::unique_ptr<Body>& body : soft.bodies) {
+    body->free_step(tick.dt, world.simulation.gravity);
+    if (body->solvable()) continue;
+    soft.dropped |= kDroppedFactor;
+    body->halt();
+  }
+  stop_non_finite(soft);
+  soft.times.free_motion = ms_since(begin);
+}
+
+void find_contacts(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  const std::uint64_t begin = now_ns();
+  soft.proximity->find(soft.bodies, tick.dt, soft.contacts);
+  leave_out_failed(soft);
+  soft.tally.contacts_cut += cut_contacts(soft.bodies, kMostOfBody, soft.contacts);
+  for (const std::uint32_t i : soft.yielding) soft.surface(i).place(soft.contacts, i, tick.dt);
+  for (const ContactPoint& contact : soft.contacts) soft.tally.deepest = std::max(soft.tally.deepest, contact.depth);
+  if (soft.steps == 0) tally_beginning(soft);
+  soft.times.proximity = ms_since(begin);
+}
+
+void solve_contacts(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  const std::uint64_t begin = now_ns();
+  const double undone = soft.undone_in(tick.dt);
+  build_problem(soft.bodies, soft.contacts, tick.dt, undone, soft.delassus, soft.problem);
+  soft.times.delassus = ms_since(begin);
+  const std::uint64_t built = now_ns();
+  Crossings left;
+  soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, undone, kSweeps, soft.delassus, soft.contacts,
+                                soft.problem, &left);
+  stop_before(soft, left, tick.dt);
+  soft.times.sweeps = ms_since(built);
+  soft.tally.unconverged += soft.settled && !soft.report.settled;
+  soft.settled = soft.settled && soft.report.settled;
+  soft.tally.residual = std::max(soft.tally.residual, soft.report.residual);
+  stop_non_finite(soft);
+}
+
+void advance_bodies(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  const double dt = soft.share * tick.dt;
+  for (const std::unique_ptr<Body>& body : soft.bodies) body->advance(dt);
+  for (const std::uint32_t i : soft.yielding) soft.surface(i).yield(soft.contacts, dt);
+}
+
+}  // namespace pliant

@@ -1,0 +1,15 @@
+// The systems of the soft schedule (systems/schedule.cpp) that are about bodies, in order. Each does nothing in a world
+// without soft or rigid bodies. Tick::dt is the step T [s]; each notes what it cost in SoftTimes.
+#pragma once
+
+#include "components/world.h"
+#include "runtime/clock.h"
+
+namespace pliant {
+
+void free_motion(World& world, Tick tick);     // v* of every body, without contacts; skin velocities
+void find_contacts(World& world, Tick tick);   // pairs of skin points that may touch within the step
+void solve_contacts(World& world, Tick tick);  // impulses, and v = v* + A^-1 J^T lambda
+void advance_bodies(World& world, Tick tick);  // x += T v; surfaces give way
+
+}  // namespace pliant

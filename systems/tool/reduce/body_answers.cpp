@@ -1,0 +1,125 @@
+#include "systems/tool/reduce/body_answers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+// What the flesh does by its own inertia when the handle shakes it: A^-1 M Phi, A^-1 M A^-1 M Phi, ... Scaled to count
+// as much as the softest contact.
+void shake(const ToolContacts& contacts, BodyAnswers& out) {
+  const ToolBody& tool = contacts.tool();
+  const ContactProblem& problem = contacts.step().problem;
+  const Eigen::Index flesh = tool.size() - 6;
+  double softest = 0.0;
+  for (const int i : out.local) {
+    const int row = 3 * contacts.in_step(i);
+    softest = std::max(softest, problem.diagonal(row));
+  }
+  out.shaken.setZero(tool.size(), 6 * kShakes);
+  out.shaken_answers.setZero(tool.size(), 6 * kShakes);
+  Rows shape = tool.follow(), pull;
+  for (int round = 0; round < kShakes; ++round) {
+    tool.weigh(shape, pull);
+    pull.bottomRows<6>().setZero();
+    Rows answer = pull.topRows(flesh);
+    tool.solve_held(answer);
+    for (int k = 0; k < 6; ++k) {
+      const double size = pull.col(k).head(flesh).dot(answer.col(k));
+      const double scale = size > 0.0 ? std::sqrt((softest > 0.0 ? softest : 1.0) / size) : 0.0;
+      const Eigen::Index at = 6 * round + k;
+      out.shaken.col(at) = scale * pull.col(k);
+      out.shaken_answers.col(at).head(flesh) = scale * answer.col(k);
+    }
+    shape.topRows(flesh) = answer;
+    shape.bottomRows<6>().setZero();
+  }
+}
+
+void gather_contacts(const ToolContacts& contacts, const BodyAnswers& of, const Rows& x,
+                     Eigen::Ref<Eigen::MatrixXd> out) {
+  Rows three(3, x.cols());
+  for (std::size_t k = 0; k < of.local.size(); ++k) {
+    three.setZero();
+    contacts.gather(of.index, of.local[k], x, three);
+    out.middleRows(3 * static_cast<Eigen::Index>(k), 3) = three;
+  }
+}
+
+// G, symmetric as A is: shaken^T of the contacts' answers is J of the shaken ones'. Of the contacts' own the step knows
+// it already.
+void fill_gram(const ToolContacts& contacts, BodyAnswers& out) {
+  const BodyResponse& response = contacts.step().delassus.of[out.index];
+  const Eigen::MatrixXd& held = response.compliance.held;
+  const Rows& lever = response.compliance.lever;
+  const Eigen::Index rows = out.contact_rows(), shaken = out.shaken.cols();
+  const bool follows = lever.cols() > 0 && out.index != contacts.tool_index();  // another tool: its handle moves
+  std::vector<Eigen::Index> from;
+  for (const int i : out.local) {
+    const auto at = std::lower_bound(response.contacts.begin(), response.contacts.end(), contacts.in_step(i));
+    from.push_back(3 * (at - response.contacts.begin()));
+  }
+  out.gram.resize(rows + shaken, rows + shaken);
+  for (Eigen::Index j = 0; j < rows; ++j)
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const Eigen::Index r = from[static_cast<std::size_t>(i / 3)] + i % 3,
+                         c = from[static_cast<std::size_t>(j / 3)] + j % 3;
+      out.gram(i, j) = held(r, c) + (follows ? lever.row(r).dot(lever.row(c)) : 0.0);
+    }
+  if (shaken == 0) return;
+  gather_contacts(contacts, out, out.shaken_answers, out.gram.topRightCorner(rows, shaken));
+  out.gram.bottomLeftCorner(shaken, rows) = out.gram.topRightCorner(rows, shaken).transpose();
+  const Eigen::MatrixXd square = out.shaken.transpose() * out.shaken_answers;
+  out.gram.bottomRightCorner(shaken, shaken) = 0.5 * (square + square.transpose());
+}
+
+}  // namespace
+
+BodyAnswers answers_of(const ToolContacts& contacts, std::uint32_t body) {
+  BodyAnswers out;
+  out.body = contacts.step().bodies[body].get();
+  out.index = body;
+  for (int i = 0; i < contacts.count(); ++i)
+    if (contacts[i].body_a == body || contacts[i].body_b == body) out.local.push_back(i);
+  if (body == contacts.tool_index() && contacts.tool().size() > 6) shake(contacts, out);
+  fill_gram(contacts, out);
+  return out;
+}
+
+Rows answers_to(const ToolContacts& contacts, const BodyAnswers& of, const std::vector<int>& picks) {
+  const auto is_contact = [&](int pick) { return pick < of.contact_rows(); };
+  Rows solved = Rows::Zero(of.body->size(), std::count_if(picks.begin(), picks.end(), is_contact));
+  Eigen::Index column = 0;
+  for (const int pick : picks) {
+    if (!is_contact(pick)) continue;
+    const ContactPoint& c = contacts[of.local[static_cast<std::size_t>(pick / 3)]];
+    const dvec3 axis = c.axes[pick % 3];
+    if (c.body_a == of.index) of.body->push(c.a, axis, solved, column);
+    if (c.body_b == of.index) of.body->push(c.b, -axis, solved, column);
+    ++column;
+  }
+  if (of.index == contacts.tool_index()) {
+    contacts.tool().solve_held(solved.topRows(solved.rows() - 6));
+    solved.bottomRows<6>().setZero();
+  } else {
+    of.body->solve(solved);
+  }
+  Rows out(solved.rows(), static_cast<Eigen::Index>(picks.size()));
+  for (Eigen::Index row = 0; row < out.rows(); ++row) {  // as they are stored
+    const double *from = solved.data() + row * solved.cols(),
+                 *shaken = of.shaken_answers.data() + row * of.shaken_answers.cols();
+    for (Eigen::Index k = 0; k < out.cols(); ++k) {
+      const int pick = picks[static_cast<std::size_t>(k)];
+      out(row, k) = is_contact(pick) ? *from++ : shaken[pick - of.contact_rows()];
+    }
+  }
+  return out;
+}
+
+void gather_rows(const ToolContacts& contacts, const BodyAnswers& of, const Rows& x, Eigen::Ref<Eigen::MatrixXd> out) {
+  gather_contacts(contacts, of, x, out.topRows(of.contact_rows()));
+  if (of.shaken.cols() > 0) out.bottomRows(of.shaken.cols()) = of.shaken.transpose() * x;
+}
+
+}  // namespace pliant

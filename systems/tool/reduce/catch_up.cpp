@@ -1,0 +1,88 @@
+#include "systems/tool/reduce/catch_up.h"
+
+#include "systems/soft/body/rotation_vector.h"
+
+namespace pliant {
+namespace {
+
+constexpr SweepLimits kAgain{100, 1e-4, 0};
+
+// The contacts that give way, solved with the handle going `extra` [m/s], [rad/s] faster over the step. Impulses and
+// velocities of all contacts go in and out.
+void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const Vector6& extra, Vector& impulse,
+                 Vector& velocity, std::vector<std::uint8_t>& sliding) {
+  std::vector<int> soft;
+  for (int i = 0; i < model.count; ++i)
+    if (!model.stiff[static_cast<std::size_t>(i)]) soft.push_back(i);
+  const Vector moved = model.from_handle.topRows(velocity.size()) * extra;
+  velocity += moved;
+  if (soft.empty()) return;
+
+  ContactProblem problem;
+  problem.resize(static_cast<int>(soft.size()));
+  for (std::size_t a = 0; a < soft.size(); ++a) {
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(a), from = 3 * soft[a];
+    const auto at = static_cast<std::size_t>(soft[a]);
+    for (std::size_t b = 0; b < soft.size(); ++b)
+      problem.W.block<3, 3>(row, 3 * static_cast<Eigen::Index>(b)) = W.block<3, 3>(from, 3 * soft[b]);
+    problem.impulse.segment<3>(row) = impulse.segment<3>(from);
+    problem.mu_static[a] = model.mu_static[at];
+    problem.mu_sliding[a] = model.mu_sliding[at];
+    problem.sliding[a] = sliding[at];
+    problem.own.push_back(leaning_axes(model.lean[at]));
+  }
+  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(soft.size());
+  const Vector before = problem.impulse.head(rows);
+  for (std::size_t a = 0; a < soft.size(); ++a)
+    problem.bias.segment<3>(3 * static_cast<Eigen::Index>(a)) = velocity.segment<3>(3 * soft[a]);
+  problem.bias.head(rows).noalias() -= problem.W.topLeftCorner(rows, rows) * before;
+  solve(problem, kAgain);
+
+  const Vector change = problem.impulse.head(rows) - before;
+  for (std::size_t a = 0; a < soft.size(); ++a) {
+    impulse.segment<3>(3 * soft[a]) += change.segment<3>(3 * static_cast<Eigen::Index>(a));
+    velocity += W.middleCols<3>(3 * soft[a]) * change.segment<3>(3 * static_cast<Eigen::Index>(a));
+    sliding[static_cast<std::size_t>(soft[a])] = problem.sliding[a];
+  }
+}
+
+// Modes and flesh go along with the handle's way and with what the contacts do otherwise; the model's displacements
+// stay zero where it now stands.
+void move_along(const Vector6& left, const Vector& change, double T, HandleModel& model) {
+  CondensedContacts& c = model.contacts;
+  const Eigen::Index modes = c.modes, rows = 3 * c.count;
+  const auto share = (1.0 + T * c.damping.head(modes).array() + T * T * c.frequency2.head(modes).array()).inverse();
+  const Vector rate = share.matrix().cwiseProduct(c.from_modes.topLeftCorner(rows, modes).transpose() * change);
+  const Vector q = T * rate;
+  c.rate.head(modes) += rate;
+  c.flesh_force -= c.flesh_stiffness * left + c.modal_stiffness.topRows(modes).transpose() * q;
+  c.load.head(modes) -= c.frequency2.head(modes).cwiseProduct(q) + c.modal_stiffness.topRows(modes) * left;
+}
+
+}  // namespace
+
+void catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::MatrixXd& W, HandleModel& model) {
+  if (left.isZero(0.0)) return;
+  CondensedContacts& c = model.contacts;
+  const FinishedStep& step = contacts.step();
+  const double T = step.T;
+  const Eigen::Index rows = contacts.rows();
+  Vector impulse = T * c.force.head(rows), velocity(rows);
+  for (int i = 0; i < c.count; ++i)
+    velocity.segment<3>(3 * i) = step.problem.velocity.segment<3>(3 * static_cast<Eigen::Index>(contacts.in_step(i)));
+  const Vector before = impulse;
+  solve_again(c, W, left / T, impulse, velocity, c.sliding);
+  const Vector change = impulse - before;
+  move_along(left, change, T, model);
+  for (int i = 0; i < c.count; ++i) {
+    if (c.stiff[static_cast<std::size_t>(i)]) continue;
+    const double *l = &impulse[3 * i], *u = &velocity[3 * i];
+    set_solution(contacts, i, dvec3(l[0], l[1], l[2]), dvec3(u[0], u[1], u[2]), c);
+  }
+  model.force += (c.from_handle.topRows(rows).transpose() * change - contacts.tool().flesh_matrix() * left / T) / T;
+  model.handle.velocity += left / T;
+  model.handle.pose.position += linear(left);
+  model.handle.pose.rotation = glm::normalize(rotation_of(angular(left)) * model.handle.pose.rotation);
+}
+
+}  // namespace pliant

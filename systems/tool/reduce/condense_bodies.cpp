@@ -1,0 +1,119 @@
+#include "systems/tool/reduce/condense_bodies.h"
+
+#include "systems/soft/linear/symmetric_product.h"
+#include "systems/tool/reduce/body_answers.h"
+
+namespace pliant {
+namespace {
+
+// A body's modes, and what describes its motion in them.
+struct BodyModes {
+  Modes modes;
+  std::vector<int> picks;       // the rows of G that they are made of
+  Rows weighed;                 // M V(:, picks)
+  std::array<Rows, 2> by_slip;  // of modes.at_contacts: contact rows x modes, per slip along either tangent
+  StepSplit split;
+};
+
+BodyModes modes_of(const ToolContacts& contacts, const BodyAnswers& of, int most, double highest) {
+  BodyModes out;
+  out.split = {contacts.step().T, of.body->damping()};
+  const PivotedFactor factor = factor_pivoted(of.gram, kMostBodyModes, kExplained);
+  out.picks = factor.picks;
+  const Rows picked = answers_to(contacts, of, out.picks);
+  of.body->weigh(picked, out.weighed);
+  out.modes = find_modes(factor, symmetric_product(picked, out.weighed), out.split, most, highest);
+  for (int k = 0; k < 2; ++k) {
+    Rows of_picks = Rows::Zero(of.contact_rows(), picked.cols());
+    for (std::size_t i = 0; i < of.local.size(); ++i)
+      contacts.gather_slip(of.index, of.local[i], k, picked, of_picks.middleRows(3 * static_cast<Eigen::Index>(i), 3));
+    out.by_slip[static_cast<std::size_t>(k)] = of_picks * out.modes.transform;
+  }
+  return out;
+}
+
+// The body's rows of `from_modes` and of its changes, and its share of `flexibility` and of `W`. Returns flexibility
+// times damping [s m/N].
+double scatter(const BodyAnswers& of, const BodyModes& body, CondensedContacts& out, Eigen::Ref<Eigen::MatrixXd> W) {
+  const Eigen::MatrixXd left = left_flexibility(of.gram, body.modes, body.split);
+  const Eigen::Index modes = body.modes.count();
+  out.from_modes.block(0, out.modes, W.rows(), modes).setZero();
+  for (Rows& m : out.from_modes_by_slip) m.block(0, out.modes, W.rows(), modes).setZero();
+  for (std::size_t i = 0; i < of.local.size(); ++i) {
+    const Eigen::Index from = 3 * static_cast<Eigen::Index>(i), to = 3 * of.local[i];
+    out.from_modes.block(to, out.modes, 3, modes) = body.modes.at_contacts.middleRows(from, 3);
+    for (std::size_t k = 0; k < 2; ++k)
+      out.from_modes_by_slip[k].block(to, out.modes, 3, modes) = body.by_slip[k].middleRows(from, 3);
+    for (std::size_t j = 0; j < of.local.size(); ++j) {
+      const Eigen::Index from_j = 3 * static_cast<Eigen::Index>(j), to_j = 3 * of.local[j];
+      out.flexibility.block<3, 3>(to, to_j) += left.block<3, 3>(from, from_j);
+      W.block<3, 3>(to, to_j) += of.gram.block<3, 3>(from, from_j);
+    }
+  }
+  return body.split.damping.beta * left.topLeftCorner(of.contact_rows(), of.contact_rows()).trace();
+}
+
+// [m/s] of the body's own share of the contacts' velocities at the rows of G; of a tool, beyond what follows its
+// handle.
+Vector own_velocity(const ToolContacts& contacts, const BodyAnswers& of) {
+  const ToolBody& tool = contacts.tool();
+  Rows v = of.body->velocity();
+  if (of.index == contacts.tool_index()) v -= tool.follow() * tool.velocity().tail<6>();
+  Vector out(of.gram.rows());
+  gather_rows(contacts, of, v, out);
+  return out;
+}
+
+// How the modes move and what drives them. After scatter.
+void describe_modes(const ToolContacts& contacts, const BodyAnswers& of, const BodyModes& body,
+                    CondensedContacts& out) {
+  const Modes& modes = body.modes;
+  const Eigen::Index first = out.modes, count = modes.count(), rows = contacts.rows();
+  const auto [alpha, beta] = body.split.damping;
+  const double T = body.split.T, inertia = body.split.inertia(), elastic = body.split.elastic();
+  out.frequency2.segment(first, count) = modes.frequency2;
+  out.damping.segment(first, count) = alpha + beta * modes.frequency2.array();
+
+  // phi^T A v = the contacts' velocities at the picked rows; with it phi^T K v.
+  const Vector u = own_velocity(contacts, of);
+  Vector picked(static_cast<Eigen::Index>(body.picks.size()));
+  for (Eigen::Index k = 0; k < picked.size(); ++k) picked[k] = u[body.picks[static_cast<std::size_t>(k)]];
+  const Vector a_v = modes.transform.transpose() * picked;
+  const Vector m_v = modes.transform.transpose() * (body.weighed.transpose() * of.body->velocity());
+  const Vector m_v0 = modes.transform.transpose() * (body.weighed.transpose() * of.body->starting_velocity());
+  const Vector k_v = (a_v - inertia * m_v) / elastic;
+  out.rate.segment(first, count) = modes.step_share.cwiseProduct(a_v);
+  out.load.segment(first, count) = (m_v - m_v0) / T + alpha * m_v + beta * k_v -
+                                   out.from_modes.block(0, first, rows, count).transpose() * out.force.head(rows);
+
+  // Between handle and modes; phi^T A Phi = 0 splits it.
+  auto mass = out.modal_mass.middleRows(first, count);
+  mass.setZero();
+  if (of.index == contacts.tool_index())
+    mass = modes.transform.transpose() * (body.weighed.transpose() * contacts.tool().follow());
+  out.modal_stiffness.middleRows(first, count) = -inertia / elastic * mass;
+  out.modal_damping.middleRows(first, count) = alpha * mass + beta * out.modal_stiffness.middleRows(first, count);
+}
+
+}  // namespace
+
+Eigen::MatrixXd condense_bodies(const ToolContacts& contacts, double tick, CondensedContacts& out) {
+  const FinishedStep& step = contacts.step();
+  const Eigen::Index rows = contacts.rows();
+  Eigen::MatrixXd W = out.flexibility.topLeftCorner(rows, rows) / (step.T * step.T);
+  double lag = 0.0;  // [s m/N] sum of damping times flexibility: one lag for all, by how much each gives way
+  out.modes = 0;
+  for (std::uint32_t b = 0; b < step.bodies.size(); ++b) {
+    if (step.bodies[b]->size() == 0 || !contacts.takes_part(b)) continue;
+    const BodyAnswers answers = answers_of(contacts, b);
+    const BodyModes body = modes_of(contacts, answers, kMaxModes - out.modes, kHighestPerTick / tick);
+    lag += scatter(answers, body, out, W);
+    describe_modes(contacts, answers, body, out);
+    out.modes += body.modes.count();
+  }
+  const double trace = out.flexibility.topLeftCorner(rows, rows).trace();
+  out.flexibility_lag = trace > 0.0 ? lag / trace : 0.0;
+  return W;
+}
+
+}  // namespace pliant

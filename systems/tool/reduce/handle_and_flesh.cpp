@@ -1,0 +1,74 @@
+#include "systems/tool/reduce/handle_and_flesh.h"
+
+#include "systems/tool/reduce/passive.h"
+
+namespace pliant {
+namespace {
+
+void describe_handle(const ToolBody& tool, double T, HandleModel& out) {
+  const Vector6 w = tool.velocity().tail<6>();
+  RigidHandle end = tool.handle();
+  end.set_velocity(w);
+  end.advance(T);
+  out.handle = end.motion();
+  out.handle.velocity = w;
+  out.centre = end.centre();
+  out.soft_step = T;
+  out.handle_mass = tool.handle_mass();
+  out.handle_load = tool.handle_load();
+}
+
+// Of the tool's contacts that were not chosen; their forces stay what they are.
+Vector6 wrench_of_others(const ToolContacts& contacts) {
+  const FinishedStep& step = contacts.step();
+  const ToolBody& tool = contacts.tool();
+  const std::uint32_t index = contacts.tool_index();
+  Vector6 out = Vector6::Zero();
+  Rows three(3, 6);
+  for (std::size_t i = 0; i < step.contacts.size(); ++i) {
+    const ContactPoint& p = step.contacts[i];
+    if ((p.body_a != index && p.body_b != index) || contacts.chosen(i)) continue;
+    three.setZero();
+    if (p.body_a == index) tool.handle_rows(p.a, p.axes, 1.0, three);
+    if (p.body_b == index) tool.handle_rows(p.b, p.axes, -1.0, three);
+    const Eigen::Vector3d impulse(p.impulse.x, p.impulse.y, p.impulse.z);
+    out += three.transpose() * impulse / step.T;
+  }
+  return out;
+}
+
+// The flesh moves as Phi w. `wrench`: on the handle, of all that is not inertia, damping or a chosen contact.
+void describe_flesh(const ToolBody& tool, double T, const Vector6& wrench, CondensedContacts& out) {
+  const StepSplit split{T, tool.damping()};
+  const auto [alpha, beta] = split.damping;
+  const Eigen::Index flesh = tool.size() - 6;
+  Rows weighed;
+  tool.weigh(tool.follow(), weighed);
+  const auto moved = weighed.topRows(flesh);
+  out.flesh_mass = passive(tool.follow().topRows(flesh).transpose() * moved);
+  out.flesh_stiffness = passive((tool.flesh_matrix() - split.inertia() * out.flesh_mass) / split.elastic());
+  out.flesh_damping = alpha * out.flesh_mass + beta * out.flesh_stiffness;
+
+  const Vector6 w = tool.velocity().tail<6>();
+  const Vector6 m_v = moved.transpose() * tool.velocity().head(flesh);
+  const Vector6 m_v0 = moved.transpose() * tool.starting_velocity().head(flesh);
+  const Vector6 k_v = (tool.flesh_matrix() * w - split.inertia() * m_v) / split.elastic();
+  out.flesh_force = wrench + (m_v - m_v0) / T + alpha * m_v + beta * k_v;
+}
+
+}  // namespace
+
+void describe_handle_and_flesh(const ToolContacts& contacts, HandleModel& out) {
+  const ToolBody& tool = contacts.tool();
+  const double T = contacts.step().T;
+  const Eigen::Index rows = contacts.rows();
+  describe_handle(tool, T, out);
+  const Vector6 start = tool.starting_velocity().tail<6>();
+  const Vector6 flesh = tool.flesh_wrench() - tool.flesh_matrix() * (out.handle.velocity - start) / T;
+  const Vector6 from_contacts = out.contacts.from_handle.topRows(rows).transpose() * out.contacts.force.head(rows);
+  const Vector6 elsewhere = wrench_of_others(contacts);
+  out.force = flesh + from_contacts + elsewhere;
+  describe_flesh(tool, T, flesh + elsewhere, out.contacts);
+}
+
+}  // namespace pliant

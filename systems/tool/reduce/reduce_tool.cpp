@@ -1,0 +1,26 @@
+#include "systems/tool/reduce/reduce_tool.h"
+
+#include "systems/tool/reduce/catch_up.h"
+#include "systems/tool/reduce/condense_bodies.h"
+#include "systems/tool/reduce/handle_and_flesh.h"
+#include "systems/tool/reduce/linear_model.h"
+#include "systems/tool/reduce/stiff_contacts.h"
+
+namespace pliant {
+
+void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out) {
+  const ToolContacts contacts(step, tool);
+  describe_contacts(contacts, out.contacts);
+  describe_handle_and_flesh(contacts, out);
+  const Eigen::MatrixXd W = condense_bodies(contacts, tick, out.contacts);
+  mark_stiff(W, out.contacts);
+  const Vector6 left = contacts.tool().short_of_lead(out.handle);
+  catch_up(contacts, left, W, out);
+  out.contacts.prepare_tick(tick);
+  out.linear = linear_model(contacts.tool(), out, W);
+  const Vector6 dropped = drop_stiff(step.T, step.beta, left, out.contacts);
+  out.force -= dropped;
+  out.linear.force -= dropped;
+}
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+#include "systems/tool/reduce/stiff_contacts.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace pliant {
+namespace {
+
+// [1] of a unit push of the handle: what several contacts share, each has a part of.
+constexpr double kStiffShare = 0.1;
+
+}  // namespace
+
+// A handle that nothing but an inertia of 1 / kRigidCompliance at every contact would lead pushes with
+//   (W + kRigidCompliance)^-1 J v;
+// the inertia's share of it, kRigidCompliance (W + kRigidCompliance)^-1 J, is 1 where nothing gives way, and next to
+// nothing where flesh does.
+void mark_stiff(const Eigen::MatrixXd& W, CondensedContacts& out) {
+  const Eigen::Index rows = 3 * out.count;
+  Eigen::MatrixXd sum = W;
+  sum.diagonal().array() += kRigidCompliance;
+  const Rows share = kRigidCompliance * sum.llt().solve(out.from_handle.topLeftCorner(rows, 3));
+  for (int i = 0; i < out.count; ++i) out.stiff[static_cast<std::size_t>(i)] = share.row(3 * i).norm() > kStiffShare;
+}
+
+Vector6 drop_stiff(double T, double beta, const Vector6& left, CondensedContacts& contacts) {
+  const Eigen::Index rows = 3 * contacts.count;
+  Vector dropped = Vector::Zero(rows);
+  for (int i = 0; i < contacts.count; ++i)
+    if (contacts.stiff[static_cast<std::size_t>(i)]) dropped.segment<3>(3 * i) = contacts.force.segment<3>(3 * i);
+  contacts.force.head(rows) -= dropped;
+  const Vector held_back = contacts.flexibility.topLeftCorner(rows, rows) * dropped;
+  for (int i = 0; i < contacts.count; ++i) {
+    if (!contacts.stiff[static_cast<std::size_t>(i)]) continue;
+    contacts.gap[i] += contacts.from_handle.row(3 * i).dot(left) - held_back[3 * i];
+    contacts.push[i] = std::min(0.0, beta * contacts.gap[i] / T);
+  }
+  return contacts.from_handle.topRows(rows).transpose() * dropped;
+}
+
+}  // namespace pliant

@@ -1,0 +1,61 @@
+#include "systems/tool/tool_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/soft/soft_state.h"
+#include "systems/tool/linearise.h"
+
+namespace pliant {
+namespace {
+
+// [m] The way that a handle goes in one soft step; a faster one goes it in up to kMostParts shorter steps. A finger's
+// width must not be passed in one.
+constexpr double kMostWay = 0.01;
+constexpr int kMostParts = 8;
+constexpr int kMoreParts = 4;  // that a step may have for the sake of crossings
+
+}  // namespace
+
+void run_soft_step(Schedule<World>& schedule, World& world, Tick tick) {
+  if (!world.soft) return schedule.run(world, tick);
+  SoftState& soft = *world.soft;
+  const double way = farthest_way(world);
+  soft.parts = std::clamp(static_cast<int>(std::ceil(way / kMostWay)), 1, kMostParts);
+  soft.more = kMoreParts;
+  double done = 0.0;
+  for (soft.part = 0; soft.part < soft.parts; ++soft.part) {
+    const double dt = (tick.dt - done) / (soft.parts - soft.part);
+    schedule.run(world, {tick.index, dt, tick.time + done});
+    done += soft.share * dt;
+  }
+  if (soft.share < 1.0) soft.tally.halted_for += tick.dt - done;
+  soft.parts = 1, soft.part = 0, soft.more = 0;
+}
+
+void read_tool_input(World& world, Tick tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  if (soft.part == 0) {
+    soft.began = now_ns();
+    soft.step = tick.dt * soft.parts;
+    soft.settled = true;
+  }
+  take_inputs(world, tick.dt);
+}
+
+void linearise_tools(World& world, Tick tick) {
+  if (!world.soft || world.soft->part + 1 < world.soft->parts) return;
+  const std::uint64_t begin = now_ns();
+  linearise(world, tick.dt);
+  world.soft->times.linearise = ms_since(begin);
+}
+
+void publish_tools(World& world, Tick) {
+  if (!world.soft || world.soft->part + 1 < world.soft->parts) return;
+  publish_models(world);
+  ++world.soft->steps;
+  world.soft->times.total = ms_since(world.soft->began);
+}
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+// Tetrahedral meshes that others made, as they are, slivers included: each stands on its lowest nodes and settles under
+// its own weight.
+#include "tests/scenes/tet_corpus.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "systems/soft/fem/flesh_step.h"
+#include "tests/scenes/tet_shapes.h"
+
+namespace pliant {
+namespace {
+
+const FleshMaterial kGel{
+    .young = 1e5, .poisson = 0.45, .density = 1000, .beta = 1e-3};  // a stiff gel: thin legs sag by a few percent
+
+TEST(TetCorpus, EveryMeshSettlesUnderItsWeight) {
+  const std::vector<std::filesystem::path> paths = scenes::corpus_tets(PLIANT_CORPUS_DIR);
+  if (paths.empty()) GTEST_SKIP() << "the tetrahedral meshes of the corpus are not here";
+  for (const std::filesystem::path& path : paths) {
+    Result<TetFile> file = load_tets(path);
+    ASSERT_TRUE(file) << path;
+    const TetMesh mesh = scenes::stand(std::move(*file));
+    Flesh flesh(mesh, kGel, mesh.free_count);
+    auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
+    solver->analyse(flesh.inner());
+    double fastest = 0;
+    const int steps = std::clamp(static_cast<int>(40000 / mesh.tets.size()), 4, 60);
+    for (int i = 0; i < steps; ++i) {
+      ASSERT_TRUE(step_flesh(flesh, *solver, 0.6 / steps, {0, -9.81, 0}).solved) << path << " step " << i;
+      const double kinetic = kinetic_energy(flesh);
+      ASSERT_TRUE(std::isfinite(kinetic)) << path;
+      fastest = std::max(fastest, kinetic);
+    }
+    const double volume = tets::volume(mesh, flesh.position()) / tets::volume(mesh, mesh.nodes);
+    EXPECT_LT(kinetic_energy(flesh), 1e-2 * fastest) << path;
+    EXPECT_NEAR(volume, 1, 0.05) << path;
+    // At rest elasticity carries the weight.
+    flesh.assemble(1.0, dvec3(0));
+    double carried = 0, weight = 0;
+    for (std::uint32_t n = 0; n < mesh.free_count; ++n) {
+      carried += flesh.elastic_force()[3 * n + 1];
+      weight += 9.81 * flesh.mass()[n];
+    }
+    EXPECT_NEAR(carried, weight, 1e-2 * weight) << path;
+  }
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,137 @@
+// The stored energy on what people bring: one to eight probes wander about on every mesh of the corpus, and no hand
+// gets more work out of it than went in (methods.md 1.10: the force is minus the gradient of one energy; what a
+// vanishing minimum loses may be lost).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <random>
+
+#include "content/level_file.h"
+#include "systems/touch/surface_query.h"
+#include "tests/touch/touch_raw.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> meshes() {
+  std::vector<std::string> found;
+  const fs::path corpus(PLIANT_CORPUS_DIR);
+  for (const char* folder : {"meshes-valid", "meshes-draco"}) {
+    if (!fs::exists(corpus / folder)) continue;
+    for (const fs::directory_entry& each : fs::recursive_directory_iterator(corpus / folder)) {
+      const std::string kind = each.path().extension().string();
+      if (kind == ".glb" || kind == ".obj") found.push_back(fs::relative(each.path(), corpus).string());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// Under a sanitizer, the beginning.
+#ifdef PLIANT_SANITIZED
+constexpr int kTicks = 6400;
+#else
+constexpr int kTicks = 16000;
+#endif
+
+class CorpusTouch : public ::testing::TestWithParam<std::string> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(CorpusTouch);
+
+TEST_P(CorpusTouch, GivesOutNoMoreThanWentIn) {
+  Result<Level> level = load_level(fs::path(PLIANT_CORPUS_DIR) / GetParam());
+  if (!level) GTEST_SKIP() << level.error().message();
+  make_touchable(*level);
+  Result<World> world = spawn(*level);
+  ASSERT_TRUE(world.ok()) << world.error().message();
+  Stage stage(16000.0);
+  stage.world = std::move(*world);
+  stage.world.simulation.touch_rate = 16000.0;
+  std::vector<Entity> surfaces;
+  Box box;
+  for (auto [entity, deformable, pose] : stage.world.registry.view<Deformable, Pose>()) {
+    deformable.friction_static = deformable.friction_sliding = 0.0;
+    surfaces.push_back(entity);
+    const Box& own = stage.world.meshes[deformable.mesh].box;
+    for (const vec3 corner : {own.min, own.max}) box.add(vec3(pose.to_world(dvec3(corner))));
+  }
+  ASSERT_FALSE(surfaces.empty());
+  const double size = box.diagonal();
+
+  struct Hand {
+    Entity probe;
+    dvec3 x, v{0}, home, force{0};
+  };
+  std::vector<Hand> hands;
+  std::mt19937 random(11);
+  std::normal_distribution<double> g;
+  // A hand that begins inside is pushed out by nobody's work: all begin outside.
+  const auto outside = [&](dvec3 x, double radius) {
+    return std::all_of(surfaces.begin(), surfaces.end(), [&](Entity each) {
+      const Mesh& mesh = stage.mesh(each);
+      const dvec3 own = stage.world.registry.get<Pose>(each).to_local(x);
+      if (!mesh.closed || length(own - glm::clamp(own, dvec3(mesh.box.min), dvec3(mesh.box.max))) > 0.02 * size)
+        return true;
+      const SurfaceFoot foot = nearest(mesh, own, 4 * size);
+      return !foot.valid() || foot.height > radius + 1e-3 * size;
+    });
+  };
+  dvec3 place(0), normal(0);
+  for (int i = 0, tries = 0; i < 8 && tries < 1000; ++tries) {
+    const bool beside = i % 2 == 1;  // of the one before
+    if (!beside) {
+      const Entity surface = surfaces[random() % surfaces.size()];
+      const Mesh& mesh = stage.mesh(surface);
+      const std::uint32_t v = static_cast<std::uint32_t>(random()) % mesh.vertex_count;
+      const Pose& pose = stage.world.registry.get<Pose>(surface);
+      place = pose.to_world(dvec3(mesh.position(v)));
+      normal = pose.rotation * dvec3(mesh.normal(v));
+    }
+    const dvec3 off = (beside ? 0.01 : 0.0) * size * dvec3(g(random), g(random), g(random));
+    const double radius = i % 3 == 2 ? 0.005 * size : 0.0;
+    Hand hand;
+    hand.x = place + (0.005 * size + radius) * normal + off;
+    hand.home = place - (0.008 * size - radius) * normal + off;
+    if (!outside(hand.x, radius)) continue;
+    hand.probe = stage.add_probe(hand.x, radius);
+    hands.push_back(hand);
+    ++i;
+  }
+  ASSERT_EQ(hands.size(), 8u);
+  stage.prepare();
+  double work = 0.0, most = 0.0, gained = 0.0;
+  for (int n = 0; n < kTicks; ++n) {
+    const std::size_t moving = std::min<std::size_t>(hands.size(), 1 + static_cast<std::size_t>(10 * n / kTicks));
+    for (std::size_t i = 0; i < moving; ++i) {
+      Hand& hand = hands[i];
+      hand.v += size * 0.0005 * dvec3(g(random), g(random), g(random)) + 0.025 * (hand.home - hand.x) - 0.005 * hand.v;
+      hand.x += hand.v * stage.dt();
+      stage.place(hand.probe, hand.x);
+    }
+    stage.tick();
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+      Hand& hand = hands[i];
+      const dvec3 now = raw_force(stage, hand.probe);
+      if (i < moving) work += 0.5 * dot(now + hand.force, hand.v * stage.dt());
+      hand.force = now;
+    }
+    most = std::max(most, stored(stage));
+    gained = std::max(gained, work + stored(stage));
+  }
+  EXPECT_GT(most, 0.0);
+  EXPECT_LT(gained, 2e-3 * most);
+}
+
+std::string name_of(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = fs::path(info.param).stem().string();
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Corpus, CorpusTouch, ::testing::ValuesIn(meshes()), name_of);
+
+}  // namespace
+}  // namespace pliant

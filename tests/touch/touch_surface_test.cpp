@@ -1,0 +1,346 @@
+// Touch on faces, edges, ridges, grooves, seams and cracks, against closed forms (methods.md 1.5).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "systems/touch/publish.h"
+#include "tests/touch/touch_laws.h"
+#include "tests/touch/touch_raw.h"
+
+namespace pliant {
+namespace {
+
+TEST(TouchSurface, AFlatFaceGivesTheLawUpToItsEdge) {
+  for (const int cells : {1, 4, 10}) {
+    Stage stage;
+    const Deformable d = frictionless();
+    stage.add(scenes::slab(cells, 0.08, 0.08), d);
+    const Entity probe = stage.add_probe({0, 0.001, 0});
+    stage.prepare();
+    stage.move(probe, {0, -0.003, 0}, 0.1);
+    stage.move(probe, {0.035, -0.003, 0.01}, 0.7, [&](const ProbeReading&) {
+      const dvec3 f = raw_force(stage, probe);
+      ASSERT_NEAR(f.y, law(d, 0.003), 0.01 * law(d, 0.003));
+      ASSERT_LT(std::hypot(f.x, f.z), 0.01 * law(d, 0.003));
+    });
+  }
+}
+
+TEST(TouchSurface, ACoarseSphereFeelsRoundAlongAnyGreatCircle) {
+  Stage stage;
+  const Deformable d = frictionless();
+  stage.add(scenes::sphere(20, 0.1), d);  // 4,800 triangles
+  const Entity probe = stage.add_probe({0, 0.11, 0});
+  stage.prepare();
+  for (const dvec3 axis : {dvec3(0, 0, 1), dvec3(1, 0, 0.3), dvec3(0.5, 0.1, -1)}) {
+    const dvec3 u = normalize(cross(axis, dvec3(0.3, -1, 0.2))), v = cross(normalize(axis), u);
+    stage.place(probe, 0.12 * u);
+    stage.wait(0.2);
+    double low = 1e9, high = 0, turned = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const double a = 2 * M_PI * i / 4000, r = i < 100 ? 0.1 - 3e-5 * i : 0.097;
+      const dvec3 out = std::cos(a) * u + std::sin(a) * v;
+      stage.place(probe, (i == 0 ? 0.1001 : r) * out);
+      stage.tick();
+      if (i < 120) continue;
+      const dvec3 f = raw_force(stage, probe);
+      low = std::min(low, length(f));
+      high = std::max(high, length(f));
+      turned = std::max(turned, std::acos(std::min(1.0, dot(normalize(f), out))) * 180 / M_PI);
+    }
+    EXPECT_LT((high - low) / (300 * 0.003), 1e-3);
+    EXPECT_LT(turned, 0.2);
+    stage.place(probe, 0.12 * u);
+    stage.tick();
+  }
+}
+
+TEST(TouchSurface, ASharpRidgeIsCrossedWithoutAStep) {
+  for (const double degrees : {30.0, 42.0, 60.0}) {  // normals turn by twice as much
+    Stage stage;
+    stage.add(scenes::valley(20, 0.2, -degrees * M_PI / 180), frictionless());
+    const double slope = std::tan(degrees * M_PI / 180);
+    const Entity probe = stage.add_probe({-0.02, 0.03, 0.003});
+    stage.prepare();
+    stage.move(probe, {-0.02, -0.02 * slope - 0.006 / std::cos(degrees * M_PI / 180), 0.003}, 1.0);
+    dvec3 before = raw_force(stage, probe);
+    EXPECT_NEAR(length(before), 1.8, 0.02);
+    double worst = 0;
+    // 6 mm below the ridge's line and on, at 50 mm/s.
+    for (const dvec3 to :
+         {dvec3(0, -0.006, 0.003), dvec3(0.02, -0.02 * slope - 0.006, 0.003), dvec3(-0.01, -0.015, 0.003)}) {
+      const dvec3 from = stage.read(probe).position;
+      stage.move(probe, to, length(to - from) / 0.05, [&](const ProbeReading&) {
+        worst = std::max(worst, length(raw_force(stage, probe) - before));
+        before = raw_force(stage, probe);
+      });
+    }
+    EXPECT_LT(worst, 0.3) << degrees;
+  }
+}
+
+TEST(TouchSurface, ASphereInAGrooveTouchesBothWalls) {
+  Stage stage;
+  const Deformable d = frictionless();
+  stage.add(scenes::valley(40, 0.2, M_PI / 4), d);
+  const double r = 0.02, press = 0.0031;
+  const Entity probe = stage.add_probe({0, 0.06, 0}, r);
+  stage.prepare();
+  for (const double aside : {0.0, 0.0039}) {
+    const dvec3 at(aside, r * std::sqrt(2.0) - press * std::sqrt(2.0), 0);
+    stage.move(probe, at, 1.0);
+    stage.wait(0.3);
+    // Distances to the two walls y = |x|.
+    const double left = r - (at.x + at.y) / std::sqrt(2.0), right = r - (at.y - at.x) / std::sqrt(2.0);
+    const dvec3 want =
+        d.stiffness / std::sqrt(2.0) * (std::max(0.0, left) * dvec3(1, 1, 0) + std::max(0.0, right) * dvec3(-1, 1, 0));
+    const dvec3 f = raw_force(stage, probe);
+    publish(stage.world, {});
+    ASSERT_TRUE(stage.world.snapshots->acquire());
+    const ProbeSnapshot& shown = stage.world.snapshots->read().probes[0];  // an arrow each in the picture
+    ASSERT_EQ(shown.contact_count, 2u);
+    EXPECT_LT(length(shown.contacts[0].force + shown.contacts[1].force - f), 1e-12);
+    EXPECT_LT(length(f - want), 0.02 * length(want))
+        << aside << ' ' << f.x << ' ' << f.y << " want " << want.x << ' ' << want.y;
+    stage.move(probe, {0, 0.06, 0}, 0.5);
+  }
+}
+
+// Two boxes side by side, their tops level: one surface to a probe.
+TEST(TouchSurface, SlidingOverASeamOfTwoFlushNodesChangesNothing) {
+  for (const double mu : {0.0, 0.3}) {
+    for (const double radius : {0.0, 0.008}) {
+      Stage stage;
+      Deformable d = frictionless();
+      d.friction_static = d.friction_sliding = mu;
+      stage.add(scenes::slab(8, 0.08, 0.06), d, Pose{{-0.04, 0, 0}});
+      stage.add(scenes::slab(8, 0.08, 0.06), d, Pose{{0.04, 0, 0}});
+      const double y = radius - 0.003;
+      const Entity probe = stage.add_probe({-0.03, radius + 0.002, 0.0037}, radius);
+      stage.prepare();
+      stage.move(probe, {-0.03, y, 0.0037}, 0.2);
+      stage.move(probe, {-0.025, y, 0.0037}, 0.1);  // the bristle is loaded
+      for (const double to : {0.025, -0.025}) {
+        const dvec3 before = raw_force(stage, probe);
+        stage.move(probe, {to, y, 0.0037}, 1.0, [&](const ProbeReading& r) {
+          const dvec3 f = raw_force(stage, probe);
+          ASSERT_NEAR(f.y, law(d, 0.003), 0.01 * law(d, 0.003)) << mu << ' ' << radius << " at " << r.position.x;
+          if (mu == 0.0) ASSERT_LT(std::hypot(f.x, f.z), 0.01 * law(d, 0.003)) << radius << " at " << r.position.x;
+          if (mu > 0 && r.position.x * to > 0) ASSERT_NEAR(std::abs(f.x), mu * f.y, 0.01 * f.y) << radius;
+        });
+        if (mu == 0.0) EXPECT_LT(length(raw_force(stage, probe) - before), 0.01 * law(d, 0.003));
+      }
+    }
+  }
+}
+
+// Heights of a surface by where its vertices are in the world; seams have two at one place.
+void add_heights(Stage& stage, Entity surface, std::map<std::pair<int, int>, std::vector<float>>& heights) {
+  const Mesh& mesh = stage.mesh(surface);
+  const Pose& pose = stage.world.registry.get<Pose>(surface);
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const dvec3 x = pose.to_world(dvec3(mesh.position(v)));
+    heights[{static_cast<int>(std::lround(x.x * 1e5)), static_cast<int>(std::lround(x.z * 1e5))}].push_back(
+        stage.field(surface).stream[v].w);
+  }
+}
+
+// Two nodes side by side, a crack in one mesh, or nothing between them: pressed, slid over and left, all look the same.
+TEST(TouchSurface, ADentGoesOnOverASeamAsIfThereWereNone) {
+  constexpr int kCells = 24;
+  constexpr double kSize = 0.12;
+  const Primitive half = scenes::sheet(kCells, kSize);
+  Primitive both = half;
+  for (const vec3& x : half.position) both.position.push_back(x + vec3(kSize, 0, 0));
+  for (const std::uint32_t i : half.index) both.index.push_back(i + static_cast<std::uint32_t>(half.position.size()));
+  Primitive cracked = both;
+  for (std::size_t v = half.position.size(); v < cracked.position.size(); ++v)
+    cracked.position[v].x += static_cast<float>(0.01 * kSize / kCells);
+  for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kStandardLinearSolid}) {
+    Deformable d = frictionless(law);
+    d.shape = law == SpringLaw::kCubic ? Shape::kVolume : Shape::kWendland;
+    d.reach = 0.025;
+    Stage one, two, crack;
+    std::vector<std::pair<Stage*, std::vector<Entity>>> scenes;
+    scenes.push_back({&one, {one.add(both, d)}});
+    scenes.push_back({&two, {two.add(half, d), two.add(half, d, Pose{{kSize, 0, 0}})}});
+    scenes.push_back({&crack, {crack.add(cracked, d)}});
+    std::vector<Entity> hands;
+    for (auto& [stage, surfaces] : scenes) {
+      hands.push_back(stage->add_probe({0.03, 0.002, 0.0037}));
+      stage->prepare();
+    }
+    const auto go = [&](dvec3 to, double seconds) {
+      for (std::size_t i = 0; i < scenes.size(); ++i) {
+        scenes[i].first->move(hands[i], to, seconds);
+        scenes[i].first->wait(0.003);  // what is beyond a seam is known a tick later
+      }
+    };
+    const auto compare = [&](const char* when) {
+      std::map<std::pair<int, int>, std::vector<float>> want, got;
+      add_heights(one, scenes[0].second[0], want);
+      for (const Entity surface : scenes[1].second) add_heights(two, surface, got);
+      double largest = 0;
+      for (const auto& [at, heights] : want) {
+        largest = std::max<double>(largest, std::abs(heights[0]));
+        for (const float h : got.at(at)) EXPECT_NEAR(h, heights[0], 2e-6) << int(law) << ' ' << when << ' ' << at.first;
+      }
+      const HeightField& torn = crack.field(scenes[2].second[0]);
+      float deepest = 0;
+      for (const vec4& s : torn.stream) deepest = std::min(deepest, s.w);
+      EXPECT_NEAR(-deepest, largest, 0.02 * largest) << when;
+      return largest;
+    };
+    go({0.03, -0.004, 0.0037}, 0.05);
+    EXPECT_GT(compare("pressed"), 0.003);
+    for (const double x : {0.05, 0.055, 0.059, 0.061, 0.07, 0.058}) {
+      go({x, -0.004, 0.0037}, 0.04);
+      EXPECT_GT(compare("slid"), 0.003) << x;
+    }
+    go({0.058, 0.02, 0.0037}, 0.01);
+    EXPECT_GT(compare("left"), 0.0005);
+    go({0.058, 0.02, 0.0037}, 0.02);
+    compare("recovering");
+    // Beyond the crack it is dented too.
+    go({0.057, 0.001, 0.0037}, 0.5);
+    go({0.057, -0.004, 0.0037}, 0.05);
+    const Mesh& mesh = crack.mesh(scenes[2].second[0]);
+    float beyond = 0;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+      if (mesh.px[v] > 0.0600001f) beyond = std::min(beyond, crack.field(scenes[2].second[0]).stream[v].w);
+    EXPECT_LT(beyond, -0.003);
+  }
+}
+
+// Where four nodes meet, and for two probes on different ones.
+TEST(TouchSurface, FourNodesLookAsOneUnderTwoProbes) {
+  constexpr int kCells = 20;
+  constexpr double kSize = 0.1;
+  const Primitive part = scenes::sheet(kCells, kSize);
+  Primitive all;
+  Stage one, four;
+  Deformable d = frictionless();
+  d.shape = Shape::kWendland;
+  d.reach = 0.03;
+  std::vector<Entity> parts;
+  for (const double x : {0.0, kSize})
+    for (const double z : {0.0, kSize}) {
+      const auto first = static_cast<std::uint32_t>(all.position.size());
+      for (const vec3& p : part.position) all.position.push_back(p + vec3(x, 0, z));
+      for (const std::uint32_t i : part.index) all.index.push_back(i + first);
+      parts.push_back(four.add(part, d, Pose{{x, 0, z}}));
+    }
+  const Entity whole = one.add(all, d);
+  std::vector<Entity> a, b;
+  for (Stage* stage : {&one, &four}) {
+    a.push_back(stage->add_probe({0.044, 0.002, 0.043}));
+    b.push_back(stage->add_probe({0.057, 0.002, 0.046}));
+    stage->prepare();
+    stage->move(a.back(), {0.044, -0.004, 0.043}, 0.05);
+    stage->move(b.back(), {0.057, -0.005, 0.046}, 0.05);
+    stage->wait(0.05);
+  }
+  std::map<std::pair<int, int>, std::vector<float>> want, got;
+  add_heights(one, whole, want);
+  for (const Entity surface : parts) add_heights(four, surface, got);
+  double corner = 0;
+  for (const auto& [at, heights] : want)
+    for (const float h : got.at(at)) {
+      ASSERT_NEAR(h, heights[0], 5e-6) << at.first << ' ' << at.second;
+      if (at.first > 5000 && at.second > 5000) corner = std::min<double>(corner, h);
+    }
+  EXPECT_LT(corner, -0.001) << "in the node that no probe is on";
+}
+
+// Off the end of a seam there is nothing to wait between.
+TEST(TouchSurface, AContactThatRunsOffTheEndOfASeamEnds) {
+  Stage stage;
+  const Primitive half = scenes::sheet(10, 0.1);
+  for (const double x : {-0.05, 0.05}) stage.add(half, frictionless(), Pose{{x, 0, 0}});
+  const Entity probe = stage.add_probe({0, 0.002, 0});
+  stage.prepare();
+  stage.move(probe, {-0.001, -0.003, 0}, 0.05);
+  stage.move(probe, {0, -0.003, 0}, 0.05);
+  stage.move(probe, {0, -0.003, 0.049}, 0.2);
+  EXPECT_GT(raw_force(stage, probe).y, 0.8);
+  stage.move(probe, {0, -0.003, 0.08}, 0.2);
+  EXPECT_EQ(raw_force(stage, probe), dvec3(0));
+}
+
+// A crack in one mesh: two sheets in one primitive, a gap of a hundredth of an edge between them.
+TEST(TouchSurface, ACrackNarrowerThanTheMeshResolvesDoesNotExist) {
+  Primitive p = scenes::sheet(10, 0.1);
+  const std::size_t count = p.position.size();
+  for (std::size_t i = 0; i < count; ++i) p.position.push_back(p.position[i] + vec3(0.10005f, 0, 0));
+  const std::size_t indices = p.index.size();
+  for (std::size_t i = 0; i < indices; ++i) p.index.push_back(p.index[i] + static_cast<std::uint32_t>(count));
+  Stage stage;
+  const Deformable d = frictionless();
+  stage.add(p, d);
+  const Entity probe = stage.add_probe({0.02, 0.002, 0.0037});
+  stage.prepare();
+  stage.move(probe, {0.02, -0.003, 0.0037}, 0.1);
+  for (const double x : {0.08, 0.02})
+    stage.move(probe, {x, -0.003, 0.0037}, 1.0, [&](const ProbeReading&) {
+      ASSERT_LT(length(raw_force(stage, probe) - dvec3(0, law(d, 0.003), 0)), 0.01 * law(d, 0.003));
+    });
+}
+
+// One that the mesh does resolve is an edge: the probe falls into it.
+TEST(TouchSurface, AGapOfATenthOfAnEdgeIsAGap) {
+  Primitive p = scenes::sheet(10, 0.1);
+  const std::size_t count = p.position.size(), indices = p.index.size();
+  for (std::size_t i = 0; i < count; ++i) p.position.push_back(p.position[i] + vec3(0.101f, 0, 0));
+  for (std::size_t i = 0; i < indices; ++i) p.index.push_back(p.index[i] + static_cast<std::uint32_t>(count));
+  Stage stage;
+  stage.add(p, frictionless());
+  const Entity probe = stage.add_probe({0.04, 0.002, 0.0037});
+  stage.prepare();
+  stage.move(probe, {0.04, -0.003, 0.0037}, 0.1);
+  EXPECT_GT(raw_force(stage, probe).y, 0.8);
+  stage.move(probe, {0.0505, -0.003, 0.0037}, 0.2);
+  EXPECT_EQ(raw_force(stage, probe), dvec3(0));
+}
+
+TEST(TouchSurface, ACapsuleLyingOnASurfaceIsHeldUpAlongItsLengthAndOneOnAnEdgeIsNot) {
+  Stage stage;
+  Deformable d = frictionless();
+  d.reach = 0.01;
+  stage.add(scenes::sheet(40, 0.2), d);
+  const Entity lying = stage.add_probe({-0.02, 0.02, 0.001}, 0.003);
+  stage.world.registry.get<Probe>(lying).length = 0.04;
+  stage.device(lying).rotation = glm::angleAxis(-M_PI / 2, dvec3(0, 0, 1));  // +Y of its frame along +X
+  stage.prepare();
+  stage.move(lying, {-0.02, 0.002, 0.001}, 1.0);
+  const dvec3 f = raw_force(stage, lying);
+  EXPECT_GT(f.y, 2.5 * law(d, 0.001));  // several dents' worth
+  EXPECT_LT(std::hypot(f.x, f.z), 1e-3 * f.y);
+  // Held up evenly: the torque about its middle is none.
+  const dvec3 torque = stage.world.registry.get<Probe>(lying).torque - cross(dvec3(0.02, 0, 0), f);
+  EXPECT_LT(length(torque), 1e-3 * 0.02 * f.y);
+
+  // Across the edge of a box it touches in one place, wherever along its length that is.
+  Stage box;
+  box.add(scenes::slab(4, 0.08, 0.06), frictionless());
+  const Entity shaft = box.add_probe({0.03, 0.03, 0}, 0.004);
+  box.world.registry.get<Probe>(shaft).length = 0.06;
+  box.device(shaft).rotation = glm::angleAxis(-3 * M_PI / 4, dvec3(0, 0, 1));  // down and outwards, over the edge
+  box.prepare();
+  double low = 1e9, high = 0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double s = 0.02 * i / 1000;  // along its own axis; 2 mm of the shaft behind the edge
+    const dvec3 axis = normalize(dvec3(1, -1, 0)), out = normalize(dvec3(1, 1, 0));
+    box.place(shaft, dvec3(0.04, 0, 0) + 0.002 * out * (i < 100 ? 3 - 2 * i / 100.0 : 1.0) - axis * (0.02 + s));
+    box.tick();
+    if (i < 150) continue;
+    low = std::min(low, length(raw_force(box, shaft)));
+    high = std::max(high, length(raw_force(box, shaft)));
+  }
+  EXPECT_GT(low, 0.4);
+  EXPECT_LT(high - low, 0.2 * high);  // the row of spheres is felt by 3 % of a radius
+}
+
+}  // namespace
+}  // namespace pliant
