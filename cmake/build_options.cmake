@@ -11,7 +11,8 @@ target_compile_options(pliant_options INTERFACE "$<BUILD_INTERFACE:-fno-math-err
 # GCC 12 sees overlaps in std::string that cannot be (its bug 105651).
 target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>)
 target_include_directories(pliant_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                    $<INSTALL_INTERFACE:include/pliant>)
+                                                    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                    $<INSTALL_INTERFACE:include>)
 if(PLIANT_VALIDATE)
   target_compile_definitions(pliant_options INTERFACE PLIANT_VALIDATE)
 endif()

@@ -1,18 +1,24 @@
-# `cmake --install` puts libraries, headers, the command and what ships; `find_package(pliant)` then finds them.
+# `cmake --install` puts libraries, public headers, the command and what ships. find_package(pliant COMPONENTS engine
+# content visual) then finds them: `engine` needs neither OpenGL nor a reader of files, `content` reads and writes level
+# files, `visual` draws.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-install(TARGETS pliant_options pliant_runtime pliant_components pliant_systems pliant_visual pliant_level pliant_content pliant_engine EXPORT pliant-targets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
+function(pliant_component name)
+  install(TARGETS ${ARGN} EXPORT pliant-${name}-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT pliant-${name}-targets NAMESPACE pliant:: DESTINATION ${package})
+endfunction()
+pliant_component(engine pliant_options pliant_runtime pliant_components pliant_systems pliant_level pliant_engine)
+pliant_component(content pliant_content)
+pliant_component(visual pliant_visual)
+
+install(DIRECTORY include/pliant DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY runtime components systems content engine DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pliant
-        FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY shaders/shared DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pliant/shaders)  # headers include this arithmetic
 install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
 install(DIRECTORY shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant)
-install(EXPORT pliant-targets NAMESPACE pliant:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
 configure_package_config_file(cmake/pliant-config.cmake.in ${CMAKE_BINARY_DIR}/pliant-config.cmake
-                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
+                              INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/pliant-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/pliant-config.cmake ${CMAKE_BINARY_DIR}/pliant-config-version.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
+        DESTINATION ${package})

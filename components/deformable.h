@@ -3,39 +3,13 @@
 #pragma once
 
 #include "components/mesh.h"
+#include "pliant/parameters.h"
 
 namespace pliant {
 
 struct HeightField;
 
-enum class SpringLaw : std::uint8_t { kLinear, kCubic, kExponential, kStandardLinearSolid };
-enum class Shape : std::uint8_t { kPunch, kHertz, kGaussian, kWendland, kVolume, kKelvinlet };
-enum class Response : std::uint8_t { kFollow, kLag };     // methods.md 1.8
-enum class Distance : std::uint8_t { kChord, kSurface };  // methods.md 1.3
-
-struct Deformable {
-  SpringLaw spring = SpringLaw::kLinear;
-  double stiffness = 300.0;               // [N/m] slope of the normal force against depth at depth 0
-  double cubic = 3e6;                     // [N/m3] k3 of the cubic law
-  double stiffening = 100.0;              // [1/m] alpha of the exponential law
-  double relaxation_stiffness = 300.0;    // [N/m] the arm of the standard linear solid
-  double relaxation_time = 0.5;           // [s] tau of that arm
-  double damping_ratio = 1.0;             // [1] zeta of the free surface
-  double settling_time = 0.05;            // [s] 2 % settling time of the free surface
-  double contact_damping = 0.0;           // [N s/m] rate term of the probe's force
-  bool contact_damping_material = false;  // take b of the local model instead, as P1 does
-  Response response = Response::kFollow;
-  Shape shape = Shape::kVolume;
-  Distance distance = Distance::kChord;
-  double reach = 0.0;             // [m] radius R of the field; 0: 0.08 of the object's diagonal, set at spawn
-  double volume = 1.0;            // [1] chi: share of the volume that the shape `volume` conserves
-  double friction_static = 0.4;   // [1] mu_s
-  double friction_sliding = 0.3;  // [1] mu_d <= mu_s
-  double crease_angle = 0.0;      // [rad] edges that turn by more are creases; 0: the file's normals, else 0.7
-  double young = 0.0;             // [Pa] with thickness: calibrates stiffness instead of `stiffness`; 0: not given
-  double poisson = 0.45;          // [1]
-  double thickness = 0.0;         // [m] 0: deep
-
+struct Deformable : DeformableParameters {
   Handle<Mesh> mesh;          // set at spawn
   Handle<HeightField> field;  // set at spawn
 };

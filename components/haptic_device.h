@@ -7,36 +7,21 @@
 #include <vector>
 
 #include "components/math.h"
+#include "pliant/parameters.h"
 #include "runtime/store.h"
 
 namespace pliant {
 
-enum class Driver : std::uint8_t { kNull, kScript, kOrbit, kMouse, kExternal };
+enum class DriverKind : std::uint8_t { kNull, kScript, kOrbit, kMouse, kExternal };
 
 // Unknown state means zero force.
 enum class DeviceStatus : std::uint8_t { kLost, kReady };
 
-// A path in time: script files, orbits, replays. Linear between rows, slerp for rotation; holds the last row.
-struct PathRow {
-  double time = 0.0;  // [s] ascending
-  dvec3 position{0};  // [m] world
-  dquat rotation{1, 0, 0, 0};
-};
-struct Path {
-  std::vector<PathRow> rows;
-  bool turns = false;    // the rows say rotations too; else every rotation is the identity
-  bool repeats = false;  // starts over after the last row (whose position equals the first's)
-};
-
 // Rate: touch. Writer: read_devices (what was sensed), write_devices (what was sent). Keys of PLIANT_haptic_device.
-struct HapticDevice {
-  Driver driver = Driver::kNull;
-  std::string file;            // of the script, relative to the level
-  double scale = 1.0;          // [1] workspace -> world
-  double max_force = 3.3;      // [N] norm of the force sent
-  double max_stiffness = 0.0;  // [N/m] 0: no limit; else the force may not rise faster with displacement than this
-  double max_slew = 1000.0;    // [N/s] of the norm of the change
-  std::string id;              // external drivers: which one
+struct HapticDevice : DeviceParameters {
+  DriverKind driver = DriverKind::kNull;
+  std::string file;  // of the script, relative to the level
+  std::string id;    // external drivers: which one
 
   Handle<Path> path;  // script, orbit, replay
   DeviceStatus status = DeviceStatus::kReady;

@@ -76,6 +76,10 @@ struct Mesh {
   std::vector<float> damping_factor;     // [1] _DAMPING: of damping_ratio and contact_damping
   std::vector<float> relaxation_factor;  // [1] _RELAXATION: of relaxation.stiffness (standard linear solid)
 
+  // Touch vertex of each vertex of the mesh as its author has it, primitives end to end; kBorder: no triangle that is
+  // touched uses it.
+  std::vector<std::uint32_t> of_source;
+
   Box box;                 // [m] of the rest vertices
   float mean_edge = 0.0f;  // [m]
   bool closed = false;     // every edge has exactly two triangles

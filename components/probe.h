@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "components/math.h"
+#include "pliant/parameters.h"
 #include "runtime/entity.h"
 #include "runtime/store.h"
 
@@ -15,20 +16,10 @@ namespace pliant {
 
 struct Mesh;
 
-// What a probe meets. Yielding surfaces (Deformable) it meets where it is, by their own law. Among soft and rigid
-// bodies it is a small rigid tool on a coupling (systems/soft/body/probe_tool.h).
-enum class ProbeMeets : std::uint8_t { kAll, kSurfaces, kBodies };
-
 // Rate: touch. Writer: read_devices (pose, velocity), friction_feedback (force).
-struct Probe {
-  double radius = 0.0;       // [m] of every tip; 0: a point
-  double length = 0.0;       // [m] of a capsule's axis, from the origin along +Y of the probe's frame; 0: none
-  std::vector<vec3> points;  // [m] places of the tips, probe frame; empty: one at the origin, or the capsule's
-  ProbeMeets meets = ProbeMeets::kAll;
-  std::array<double, 2> coupling{1000.0, 5.0};  // [N/m, N s/m] between device and what meets bodies
-  Handle<Mesh> shell;             // set at spawn where there are bodies that it meets: its surface, probe frame
-  vec3 color{0.9f, 0.35f, 0.1f};  // linear RGB
-  Entity device = kNoEntity;      // has a HapticDevice; kNoEntity: nobody moves it
+struct Probe : ProbeParameters {
+  Handle<Mesh> shell;         // set at spawn where there are bodies that it meets: its surface, probe frame
+  Entity device = kNoEntity;  // has a HapticDevice; kNoEntity: nobody moves it
 
   dvec3 position{0};           // [m] world
   dquat rotation{1, 0, 0, 0};  // world

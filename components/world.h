@@ -18,6 +18,7 @@
 #include "components/soft_snapshot.h"
 #include "components/tet_mesh.h"
 #include "components/transform.h"
+#include "pliant/parameters.h"
 #include "runtime/clock.h"
 #include "runtime/exchange.h"
 #include "runtime/hierarchy.h"
@@ -45,13 +46,6 @@ struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
 struct SoftState;   // systems/soft/soft_state.h: working memory of the soft step, made by prepare_soft
 struct ToolTouch;   // systems/tool/tool_touch_state.h: tools on the touch clock, made by prepare_tools
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
-
-// Keys of PLIANT_simulation.
-struct Simulation {
-  double touch_rate = 1000.0;     // [Hz]
-  double soft_step = 1.0 / 60.0;  // [s]
-  dvec3 gravity{0, -9.81, 0};     // [m/s2]
-};
 
 // Where height fields live (systems/touch/field.h).
 enum class FieldPlace : std::uint8_t { kProcessor, kCard };

@@ -120,7 +120,7 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
     if (!fs::is_regular_file(file))
       findings.push_back(
           {Severity::kError, pointer, "names the script " + node.device->file + ", which does not exist"});
-    else if (node.device->driver == Driver::kScript)
+    else if (node.device->driver == DriverKind::kScript)
       if (const Result<Path> script = load_script(file); !script)
         findings.push_back({Severity::kError, pointer, script.error().message()});
   }

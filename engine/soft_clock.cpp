@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 
 #include "components/soft_body.h"
 #include "systems/schedule.h"
@@ -60,6 +61,17 @@ const SoftFigures& SoftClock::latest() {
 }
 
 void SoftClock::run() {
+  try {
+    loop();
+  } catch (const std::exception& thrown) {
+    error_ = Error{"soft clock", std::string("stopped by an exception: ") + thrown.what()};
+  } catch (...) {
+    error_ = Error{"soft clock", "stopped by an exception of an unknown kind"};
+  }
+  failed_ = error_.has_value();
+}
+
+void SoftClock::loop() {
   using clock = std::chrono::steady_clock;
   const auto period =
       std::chrono::duration_cast<clock::duration>(std::chrono::duration<double>(world_.simulation.soft_step));

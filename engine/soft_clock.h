@@ -8,11 +8,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <thread>
 
 #include "components/world.h"
 #include "engine/body_journal.h"
 #include "runtime/exchange.h"
+#include "runtime/result.h"
 #include "runtime/schedule.h"
 
 namespace pliant {
@@ -53,16 +55,20 @@ class SoftClock {
   void pause(bool paused) { paused_ = paused; }
   void stop();
   const SoftFigures& latest();  // from one thread only
+  // A step threw, and there will be no more of them. From any thread.
+  bool failed() const { return failed_; }
 
   // Valid while no thread runs.
   bool any() const { return world_.soft != nullptr; }
   const SoftFigures& figures() const { return figures_; }
+  const std::optional<Error>& error() const { return error_; }
   const Schedule<World>& schedule() const { return schedule_; }
   std::uint64_t tetrahedra() const { return tetrahedra_; }
 
  private:
   void step(double dt);
   void run();
+  void loop();
 
   World& world_;
   Schedule<World> schedule_;
@@ -71,7 +77,8 @@ class SoftClock {
   std::uint64_t tetrahedra_ = 0;
   double time_ = 0.0;  // [s] where the next step begins
   TripleBuffer<SoftFigures> told_;
-  std::atomic<bool> stop_{false}, paused_{false};
+  std::atomic<bool> stop_{false}, paused_{false}, failed_{false};
+  std::optional<Error> error_;
   std::thread thread_;
 };
 

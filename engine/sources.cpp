@@ -12,7 +12,15 @@ namespace {
 
 constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
 
-// The device that moves this probe or tool; made where nobody does.
+// The first probe or tool of this name.
+Entity find_hand(const World& world, const std::string& name) {
+  for (const Entity hand : hands(world))
+    if (const Name* its_name = world.registry.find<Name>(hand); its_name && its_name->value == name) return hand;
+  return kNoEntity;
+}
+
+}  // namespace
+
 Entity own_device(World& world, Entity hand) {
   if (find_device(world, hand)) return device_of(world, hand);
   HapticDevice device;
@@ -29,30 +37,21 @@ Entity own_device(World& world, Entity hand) {
   return made;
 }
 
-// The first probe or tool of this name.
-Entity find_hand(const World& world, const std::string& name) {
-  for (const Entity hand : hands(world))
-    if (const Name* its_name = world.registry.find<Name>(hand); its_name && its_name->value == name) return hand;
-  return kNoEntity;
-}
-
-}  // namespace
-
 Result<ProbeSource> parse_source(const std::string& argument) {
   const std::size_t equals = argument.find('=');
   const std::string where = "--probe " + argument;
   if (equals == std::string::npos || equals == 0)
     return Error{where, "is not NAME=SOURCE; write, say, --probe finger=orbit"};
-  ProbeSource source{argument.substr(0, equals), Driver::kOrbit, {}};
+  ProbeSource source{argument.substr(0, equals), DriverKind::kOrbit, {}};
   const std::string what = argument.substr(equals + 1);
   if (what == "orbit") return source;
   if (what.starts_with("script:") && what.size() > 7) {
-    source.driver = Driver::kScript;
+    source.driver = DriverKind::kScript;
     source.file = what.substr(7);
     return source;
   }
   if (what == "mouse") {
-    source.driver = Driver::kMouse;
+    source.driver = DriverKind::kMouse;
     return source;
   }
   if (what.starts_with("device:"))
@@ -78,7 +77,7 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
     LevelNode node;
     node.name = name;
     node.probe.emplace();
-    if (sources[i].driver == Driver::kMouse) node.probe->color = kMouseColor;
+    if (sources[i].driver == DriverKind::kMouse) node.probe->color = kMouseColor;
     node.device.emplace();
     node.probe_device = name;
     level.nodes.push_back(node);
@@ -92,7 +91,7 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
     if (hand == kNoEntity)
       return Error{"--probe " + source.name, "the level has no such probe or tool; check the name"};
     Handle<Path> path;
-    if (source.driver == Driver::kScript) {
+    if (source.driver == DriverKind::kScript) {
       auto script = load_script(source.file);
       if (!script) return script.error();
       path = world.paths.add(std::move(script).value());
@@ -105,14 +104,19 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
   return Done{};
 }
 
+Path orbit_of(const World& world, Entity hand, unsigned index) {
+  const Probe* probe = world.registry.find<Probe>(hand);
+  return probe ? make_orbit(world, index, probe->radius) : make_tool_orbit(world, hand);
+}
+
 std::vector<std::string> make_orbits(World& world) {
   std::vector<std::string> held;
   unsigned index = 0;
   for (const Entity hand : hands(world)) {
     const HapticDevice* device = find_device(world, hand);
-    if (!device || device->driver != Driver::kOrbit) continue;
-    const Probe* probe = world.registry.find<Probe>(hand);
-    Path path = probe ? make_orbit(world, index++, probe->radius) : make_tool_orbit(world, hand);
+    if (!device || device->driver != DriverKind::kOrbit) continue;
+    Path path = orbit_of(world, hand, index);
+    index += world.registry.has<Probe>(hand);
     if (path.rows.empty()) {
       const Name* name = world.registry.find<Name>(hand);
       held.push_back("the path `orbit` of `" + (name ? name->value : std::string()) +
@@ -129,15 +133,15 @@ std::string describe_source(const World& world, Entity hand) {
   const HapticDevice* device = find_device(world, hand);
   if (!device) return "null";
   switch (device->driver) {
-    case Driver::kScript:
+    case DriverKind::kScript:
       return "script:" + device->file;
-    case Driver::kOrbit:
+    case DriverKind::kOrbit:
       return "orbit";
-    case Driver::kMouse:
+    case DriverKind::kMouse:
       return "mouse";
-    case Driver::kExternal:
+    case DriverKind::kExternal:
       return "device:" + device->id;
-    case Driver::kNull:
+    case DriverKind::kNull:
       break;
   }
   return "null";

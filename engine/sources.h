@@ -12,7 +12,7 @@ namespace pliant {
 
 struct ProbeSource {
   std::string name;  // of the probe or tool
-  Driver driver = Driver::kOrbit;
+  DriverKind driver = DriverKind::kOrbit;
   std::string file;  // of a script, relative to the working directory
 };
 
@@ -23,8 +23,14 @@ Result<ProbeSource> parse_source(const std::string& argument);
 // that keys reach it. Fails where a node of that name is not a probe, and where a name comes twice.
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources);
 
+// The device that moves this probe or tool; made where there is none. Before the clocks start.
+Entity own_device(World& world, Entity hand);
+
 // Gives each named probe or tool its source; scripts are read. Call after spawn.
 Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
+
+// The path `orbit` of one; empty where it finds nothing to touch. Call after prepare_touch.
+Path orbit_of(const World& world, Entity hand, unsigned index);
 
 // Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch. Says who found nothing to
 // touch and is held where it stands.

@@ -56,7 +56,7 @@ Level small_level() {
   level.nodes[1].probe_device = "hand";
   level.nodes[2].name = "hand";
   level.nodes[2].device = HapticDevice{};
-  level.nodes[2].device->driver = Driver::kOrbit;
+  level.nodes[2].device->driver = DriverKind::kOrbit;
   level.nodes[2].light = Light{};
   level.nodes[3].name = "eye";
   level.nodes[3].camera = Camera{};

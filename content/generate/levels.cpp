@@ -22,7 +22,7 @@ void add_probe(Level& level, const std::string& name, double radius, vec3 color)
   node.probe->color = color;
   node.probe_device = name;
   node.device = HapticDevice{};
-  node.device->driver = Driver::kScript;
+  node.device->driver = DriverKind::kScript;
   node.device->file = level.name + name.substr(name.rfind('_')) + ".csv";
 }
 

@@ -99,7 +99,7 @@ LevelNode& add_soft(Level& level, const std::string& name, const Solid& solid, c
 
 HapticDevice script_device(const std::string& file, double max_force) {
   HapticDevice device;
-  device.driver = Driver::kScript;
+  device.driver = DriverKind::kScript;
   device.file = file;
   device.max_force = max_force;
   return device;

@@ -8,13 +8,13 @@ namespace pliant {
 
 namespace {
 
-// A member of a component as a function from its owner.
-template <class Owner, class T, class Member>
-auto at(std::optional<T> Owner::*slot, Member T::*member) {
+// A member of a component, or of its authored part, as a function from its owner.
+template <class Owner, class T, class Part, class Member>
+auto at(std::optional<T> Owner::*slot, Member Part::*member) {
   return [slot, member](void* owner) -> Member& { return (*(static_cast<Owner*>(owner)->*slot)).*member; };
 }
-template <class Owner, class T, class Member>
-auto at(T Owner::*slot, Member T::*member) {
+template <class Owner, class T, class Part, class Member>
+auto at(T Owner::*slot, Member Part::*member) {
   return [slot, member](void* owner) -> Member& { return (static_cast<Owner*>(owner)->*slot).*member; };
 }
 
@@ -339,7 +339,7 @@ Extension extension(std::string name, std::string doc, std::optional<T> Owner::*
 
 std::string settle_device(void* owner) {
   const HapticDevice& it = *static_cast<LevelNode*>(owner)->device;
-  return it.driver == Driver::kScript && it.file.empty() ? "has the driver script without a `file`; name the CSV file"
+  return it.driver == DriverKind::kScript && it.file.empty() ? "has the driver script without a `file`; name the CSV file"
                                                          : "";
 }
 

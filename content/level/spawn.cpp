@@ -243,7 +243,7 @@ class Spawner {
   Status device(std::size_t n) {
     if (!level_.nodes[n].device) return Done{};
     HapticDevice device = *level_.nodes[n].device;
-    if (device.driver == Driver::kScript) {
+    if (device.driver == DriverKind::kScript) {
       if (device.file.empty())
         return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
       Result<Path> path = load_script(folder_ / device.file);

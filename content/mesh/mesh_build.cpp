@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "content/level/zones.h"
 #include "content/mesh/mesh_crease.h"
@@ -12,6 +13,7 @@
 #include "content/mesh/mesh_surface.h"
 #include "content/mesh/mesh_weld.h"
 #include "content/mesh/mesh_winding.h"
+#include "runtime/hash.h"
 
 namespace pliant {
 namespace {
@@ -155,6 +157,24 @@ void take_creases(const FinerMesh& finer, const Welded& welded, const Corners& c
   keep_split_normals(mesh);
 }
 
+// The coarse mesh's vertices are among the finer one's, at the same places.
+std::vector<std::uint32_t> sources_in(const Mesh& finer, const Mesh& coarse) {
+  const auto key = [](vec3 p) {
+    Hash hash;
+    for (int i = 0; i < 3; ++i) hash.add(p[i]);
+    return hash.value();
+  };
+  std::unordered_map<std::uint64_t, std::uint32_t> at;
+  for (std::uint32_t v = 0; v < finer.vertex_count; ++v) at.emplace(key(finer.position(v)), v);
+  std::vector<std::uint32_t> out = coarse.of_source;
+  for (std::uint32_t& v : out) {
+    if (v == kBorder) continue;
+    const auto found = at.find(key(coarse.position(v)));
+    v = found == at.end() ? kBorder : found->second;
+  }
+  return out;
+}
+
 Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
   const mat4 as_it_is(1.0f);
   const Result<Gathered> gathered = gather(coarse.mesh.name, finer.primitives, as_it_is);
@@ -169,6 +189,7 @@ Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
   connect_triangles(mesh, corners, of_pieces);
   measure_vertices(mesh, corners, of_pieces);
   take_creases(finer, welded, corners, mesh);
+  mesh.of_source = sources_in(mesh, coarse.mesh);
   built.report = coarse.report;
   built.report.refined_from = static_cast<std::uint32_t>(coarse.mesh.triangles.size());
   if (Status s = finish(finer.primitives, as_it_is, *gathered, welded, built); !s) return s.error();
@@ -210,9 +231,13 @@ Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive>
     const double reach =
         *options.reach > 0.0 ? *options.reach : kDefaultReach * static_cast<double>(mesh.box.diagonal());
     const FinerMesh finer = make_finer(primitives, to_object, *gathered, welded, mesh, reach);
-    if (!finer.primitives.empty()) return build_finer(finer, std::move(built));
+    if (!finer.primitives.empty()) {
+      mesh.of_source = welded.touch_vertex;
+      return build_finer(finer, std::move(built));
+    }
   }
   if (Status s = finish(primitives, to_object, *gathered, welded, built); !s) return s.error();
+  mesh.of_source = std::move(welded.touch_vertex);
   return built;
 }
 

@@ -1,9 +1,9 @@
 #include "player/run/touch_loop.h"
 
-#include <atomic>
 #include <chrono>
 #include <thread>
 
+#include "engine/touch_clock.h"
 #include "player/exit.h"
 #include "player/progress.h"
 #include "runtime/clock.h"
@@ -22,7 +22,7 @@ Tick replayed_tick(TouchLoop& loop, std::uint64_t n) {
     const RecordedPose& pose = recording.poses[n * probes.size() + i];
     if (!find_device(loop.world, probes[i])) continue;
     HapticDevice* device = &loop.world.registry.get<HapticDevice>(device_of(loop.world, probes[i]));
-    device->driver = Driver::kExternal;
+    device->driver = DriverKind::kExternal;
     device->path = {};  // nothing but the recording moves it
     device->position = pose.position;
     device->rotation = pose.rotation;
@@ -38,6 +38,7 @@ Status run_lockstep(TouchLoop& loop) {
   Progress progress("running");
   LockstepClock clock(loop.rate);
   auto frame = loop.frame_ticks.begin();
+  Tick last{0, 1.0 / loop.rate, 0.0};
   for (std::uint64_t n = 0; n < loop.ticks && !loop.interrupt.requested(); ++n) {
     const Tick tick = loop.replay ? replayed_tick(loop, n) : clock.next();
     if (loop.soft) loop.soft->reach(tick.time);
@@ -46,58 +47,45 @@ Status run_lockstep(TouchLoop& loop) {
     loop.keeper.keep(loop.journal);
     for (; loop.frames && frame != loop.frame_ticks.end() && *frame == n; ++frame) {
       loop.frames->update_all(loop.world, tick);
-      if (const Status taken = loop.frames->take(loop.out); !taken) return taken;
+      if (const Status taken = loop.frames->take(loop.out); !taken) {
+        let_go(loop.world, tick);
+        return taken;
+      }
     }
     if (n % 64 == 0) progress.update(static_cast<double>(n) / static_cast<double>(loop.ticks));
+    last = tick;
   }
+  let_go(loop.world, last);
   return Done{};
 }
 
 Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
   Progress progress("running");
-  std::atomic<bool> stop{false}, done{false}, granted{false};
-  std::atomic<std::uint64_t> now{0};  // the tick that the touch clock has reached
-  if (loop.soft) loop.soft->start();
-  std::jthread touch([&] {
-    granted = request_realtime_priority();
-    RealtimeClock clock(loop.rate);
-    for (Tick tick = clock.next(); tick.index < loop.ticks && !stop; tick = clock.next()) {
-      loop.schedule.run(loop.world, tick);
-      loop.journal.note(loop.world, tick);
-      now.store(tick.index, std::memory_order_relaxed);
-    }
-    overruns = clock.overruns();
-    done = true;
-  });
-
+  TouchHooks hooks;
+  hooks.after = [&](Tick tick) { loop.journal.note(loop.world, tick); };
+  TouchClock touch(loop.world, loop.schedule, loop.soft, loop.rate, loop.ticks, hooks);
+  touch.start();
   Status status = Done{};
   auto frame = loop.frame_ticks.begin();
-  while (!done && status) {
-    if (loop.interrupt.requested()) stop = true;
+  while (!touch.done() && status && !loop.interrupt.requested()) {
     loop.keeper.keep(loop.journal);
-    const std::uint64_t reached = now.load(std::memory_order_relaxed);
+    const std::uint64_t reached = touch.now();
     if (loop.frames && frame != loop.frame_ticks.end() && *frame <= reached) {
       loop.frames->update(loop.world);
       status = loop.frames->take(loop.out);
-      while (frame != loop.frame_ticks.end() && *frame <= reached) ++frame;  // a slow card shows fewer pictures
+      while (frame != loop.frame_ticks.end() && *frame <= reached) ++frame;  // a slow GPU shows fewer pictures
     } else {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     progress.update(static_cast<double>(reached) / static_cast<double>(loop.ticks));
   }
-  stop = true;
-  touch.join();
-  if (loop.soft) loop.soft->stop();
+  touch.stop();
+  overruns = touch.overruns();
   loop.keeper.keep(loop.journal);
-  if (!granted) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
+  if (!touch.has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
+  if (touch.error()) return *touch.error();
+  if (loop.soft && loop.soft->error()) return *loop.soft->error();
   return status;
-}
-
-void release_devices(World& world) {
-  for (auto [entity, device] : world.registry.view<HapticDevice>()) {
-    device.status = DeviceStatus::kLost;
-    device.force_sent = device.torque_sent = dvec3(0);
-  }
 }
 
 }  // namespace pliant

@@ -60,7 +60,7 @@ double default_seconds(const World& world) {
   double longest = 0.0;
   for (const Entity hand : hands(world)) {
     const HapticDevice* device = find_device(world, hand);
-    if (!device || device->driver != Driver::kScript || !device->path.valid()) continue;
+    if (!device || device->driver != DriverKind::kScript || !device->path.valid()) continue;
     const Path& path = world.paths[device->path];
     if (!path.rows.empty()) longest = std::max(longest, path.rows.back().time);
   }
@@ -275,7 +275,6 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   if (soft.any()) world.dropped |= world.soft->dropped;
   Hash hash = journal.hash();
   hash_state(world, hash);
-  release_devices(world);
   if (const Status kept = keeper->finish(); !kept) return failed(kept.error());
 
   RunFigures figures{world,

@@ -39,11 +39,11 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
 // one; not where there is a tool, which --probe TOOL=mouse gives to it.
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
-    if (node.handle || (node.device && node.device->driver == Driver::kMouse)) return {};
+    if (node.handle || (node.device && node.device->driver == DriverKind::kMouse)) return {};
   std::string name = "mouse";
   const auto taken = [&](const LevelNode& node) { return node.name == name; };
   while (std::any_of(level.nodes.begin(), level.nodes.end(), taken)) name += "'";
-  return ProbeSource{name, Driver::kMouse, {}};
+  return ProbeSource{name, DriverKind::kMouse, {}};
 }
 
 // Probes that are not the level's: from --probe, from the recording, or one on a mesh that has none.
@@ -52,7 +52,7 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
   for (const std::string& argument : options.probes) {
     auto source = parse_source(argument);
     if (!source) return wrong_arguments(source.error());
-    if (source->driver == Driver::kMouse && !windowed)
+    if (source->driver == DriverKind::kMouse && !windowed)
       return wrong_arguments({"--probe " + argument, "the mouse needs a window; leave out --headless, or use orbit"});
     sources.push_back(*source);
   }
@@ -63,12 +63,12 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
     for (const std::string& name : run.replay->header.probes) {
       const auto has_name = [&](const LevelNode& node) { return node.name == name && (node.probe || node.handle); };
       if (std::none_of(level.nodes.begin(), level.nodes.end(), has_name))
-        added.push_back({name, Driver::kExternal, {}});
+        added.push_back({name, DriverKind::kExternal, {}});
     }
   } else if (bare && sources.empty()) {
     say(run,
         "the file has no probe, so one named `probe` touches it on the path `orbit`; --probe NAME=SOURCE gives others");
-    sources = added = {{"probe", Driver::kOrbit, {}}};
+    sources = added = {{"probe", DriverKind::kOrbit, {}}};
   }
   if (const Status status = add_probes(level, added); !status) return wrong_arguments(status.error());
   return {};

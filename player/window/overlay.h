@@ -10,7 +10,7 @@
 #include "components/math.h"
 #include "engine/journal.h"
 #include "engine/soft_clock.h"
-#include "player/window/window_touch.h"
+#include "engine/touch_clock.h"
 #include "systems/visual/renderer.h"
 
 namespace pliant {

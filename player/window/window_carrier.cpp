@@ -18,7 +18,7 @@ std::optional<Carrier> Carrier::of(World& world) {
   for (auto [entity, handle] : world.registry.view<Handle6>()) {
     const Entity named = handle.device.empty() ? entity : find_by_name(world, handle.device);
     HapticDevice* device = named == kNoEntity ? nullptr : world.registry.find<HapticDevice>(named);
-    if (!device || device->driver != Driver::kMouse) continue;
+    if (!device || device->driver != DriverKind::kMouse) continue;
     Carrier carrier;
     carrier.tool_ = entity;
     carrier.step_ = kStepShare * std::max(1e-3, static_cast<double>(drawn_box(world, true).diagonal()));

@@ -25,7 +25,7 @@ constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may nev
 std::optional<double> mouse_radius(const World& world) {
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     const HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
-    if (device && device->driver == Driver::kMouse) return probe.radius;
+    if (device && device->driver == DriverKind::kMouse) return probe.radius;
   }
   return {};
 }
@@ -179,7 +179,10 @@ Result<WindowFigures> WindowLoop::run() {
     pictures_.done();
   }
   s_.window.show(s_.world.name + " - Pliant");
-  touch_.emplace(s_.world, s_.schedule, s_.journal, s_.soft, s_.rate, s_.ticks);
+  TouchHooks hooks;
+  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
+  touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
+  touch_->start();
   const std::uint64_t start = now_ns();
   Status status = Done{};
   bool begun = false;
@@ -206,6 +209,8 @@ Result<WindowFigures> WindowLoop::run() {
   s_.window.hide_cursor(false);
   if (!touch_->has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
   figures_.overruns = touch_->overruns();
+  if (touch_->error()) return *touch_->error();
+  if (s_.soft && s_.soft->error()) return *s_.soft->error();
   if (!status) return status.error();
   return figures_;
 }

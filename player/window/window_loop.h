@@ -59,7 +59,7 @@ class WindowLoop {
   float tint_;                  // [m] height that is coloured fully, where heights are
   dvec3 probe_at_{0};           // [m] where the mouse has its probe or its tool
   std::optional<std::size_t> mouse_probe_;
-  std::optional<TouchThread> touch_;
+  std::optional<TouchClock> touch_;
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
   double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed

@@ -13,7 +13,7 @@
 #include "player/record/output_folder.h"
 #include "player/run/frames.h"
 #include "player/window/window.h"
-#include "player/window/window_touch.h"
+#include "engine/touch_clock.h"
 
 namespace pliant {
 

@@ -23,20 +23,20 @@ void read_mouse(World& world, Tick tick) {
   const double share = std::min(1.0, (tick.time - mouse.heard_at + tick.dt) / mouse.lasts);
   mouse.position = mouse.from + share * (mouse.to - mouse.from);
   for (auto [entity, device] : world.registry.view<HapticDevice>()) {
-    if (device.driver != Driver::kMouse) continue;
+    if (device.driver != DriverKind::kMouse) continue;
     if (first) device.status = DeviceStatus::kReady;
     device.position = mouse.position;
     device.sensed_at = tick.time;
   }
   if (!free) return;
   for (auto [entity, probe] : world.registry.view<Probe>())  // no segment from where it was before
-    if (world.registry.get<HapticDevice>(probe.device).driver == Driver::kMouse) probe.placed = false;
+    if (world.registry.get<HapticDevice>(probe.device).driver == DriverKind::kMouse) probe.placed = false;
 }
 
 void add_mouse(World& world, dvec3 start) {
   world.mouse = std::make_shared<MouseInput>(start);
   for (auto [entity, device] : world.registry.view<HapticDevice>()) {
-    if (device.driver != Driver::kMouse) continue;
+    if (device.driver != DriverKind::kMouse) continue;
     device.status = DeviceStatus::kLost;
     device.position = start;
   }

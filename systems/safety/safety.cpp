@@ -18,7 +18,7 @@ dvec3 clamp_norm(dvec3 v, double most) {
 
 // Only what senses a person can be stale; scripted motion has no age.
 bool stale(const HapticDevice& device, double now) {
-  return (device.driver == Driver::kExternal || device.driver == Driver::kMouse) &&
+  return (device.driver == DriverKind::kExternal || device.driver == DriverKind::kMouse) &&
          now - device.sensed_at > kStaleAfter;
 }
 

@@ -123,7 +123,7 @@ Level everything() {
   hand.name = "hand";
   hand.parent = 0;
   hand.device = HapticDevice{};
-  hand.device->driver = Driver::kScript;
+  hand.device->driver = DriverKind::kScript;
   hand.device->file = "strokes/one.csv";
   hand.device->max_force = 7.9;
   hand.handle = Handle6{};

@@ -135,7 +135,7 @@ TEST(Extension, AProbeNamesItsDeviceByNameOrNumber) {
     const Result<Level> level = gltf.load();
     ASSERT_TRUE(level.ok()) << level.error().message();
     EXPECT_EQ(level->nodes[0].probe_device, "hand");
-    EXPECT_EQ(level->nodes[1].device->driver, Driver::kOrbit);
+    EXPECT_EQ(level->nodes[1].device->driver, DriverKind::kOrbit);
   }
   EXPECT_NE(with({{"PLIANT_probe", {{"device", "nobody"}}}}).refusal().find("nobody"), std::string::npos);
   EXPECT_NE(with({{"PLIANT_probe", {{"device", 9}}}}).refusal(), "");

@@ -160,8 +160,8 @@ TEST(Spawn, ADeviceThatTwoProbesOrToolsNameIsRefusedByAllThreeNames) {
   level.nodes[2].probe.reset();
 
   level.nodes[0].deformable.reset();
-  level.nodes[0].soft_body = SoftBody{.cell = 0.5};
-  level.nodes[0].handle = Handle6{.box = Box{{-2, 0, -2}, {2, 2, 2}}, .device = "hand"};
+  level.nodes[0].soft_body = SoftBody{{.cell = 0.5}};
+  level.nodes[0].handle = Handle6{{.box = Box{{-2, 0, -2}, {2, 2, 2}}}, "hand"};
   refused = spawn(level);
   ASSERT_FALSE(refused.ok());
   all_three(refused.error().message(), "`thing`");
@@ -173,7 +173,7 @@ TEST(Spawn, ADeviceThatTwoProbesOrToolsNameIsRefusedByAllThreeNames) {
 TEST(Spawn, MissingScriptAndPanoramaAreErrorsThatNameTheFile) {
   Level level = level_of(icosphere(0));
   level.nodes[0].device = HapticDevice{};
-  level.nodes[0].device->driver = Driver::kScript;
+  level.nodes[0].device->driver = DriverKind::kScript;
   level.nodes[0].device->file = "no_such_script.csv";
   EXPECT_THAT(spawn(level).error().message(), testing::HasSubstr("no_such_script.csv"));
   level.nodes[0].device.reset();

@@ -20,9 +20,9 @@ struct MouseScene {
   Schedule<World> schedule{touch_schedule()};
   std::uint64_t n = 0;
   MouseScene() {
-    stage.add(scenes::sphere(20, 0.1), {.reach = 0.03});
+    stage.add(scenes::sphere(20, 0.1), {{.reach = 0.03}});
     probe = stage.add_probe({0, 0.2, 0});
-    stage.device(probe).driver = Driver::kMouse;
+    stage.device(probe).driver = DriverKind::kMouse;
     add_mouse(stage.world, {0, 0.2, 0});
     stage.prepare();
   }

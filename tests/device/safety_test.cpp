@@ -15,7 +15,7 @@ using scenes::Stage;
 
 HapticDevice plain() {
   HapticDevice d;
-  d.driver = Driver::kExternal;
+  d.driver = DriverKind::kExternal;
   return d;
 }
 

@@ -317,9 +317,9 @@ TEST(Sources, AreANameAndWhatMovesIt) {
   const auto orbit = parse_source("finger=orbit"), script = parse_source("a=script:dir/x=1.csv");
   ASSERT_TRUE(orbit && script);
   EXPECT_EQ(orbit->name, "finger");
-  EXPECT_EQ(orbit->driver, Driver::kOrbit);
-  EXPECT_EQ(script->driver, Driver::kScript);
-  EXPECT_EQ(parse_source("m=mouse")->driver, Driver::kMouse);
+  EXPECT_EQ(orbit->driver, DriverKind::kOrbit);
+  EXPECT_EQ(script->driver, DriverKind::kScript);
+  EXPECT_EQ(parse_source("m=mouse")->driver, DriverKind::kMouse);
   EXPECT_EQ(script->file, "dir/x=1.csv");
   for (const char* wrong : {"", "orbit", "=orbit", "p=", "p=script:", "p=orbits", "p=device:1"})
     EXPECT_FALSE(parse_source(wrong)) << wrong;

@@ -28,7 +28,7 @@ struct Scene {
     draw.indices = {0, 1, 2};
     draw.parts = {{0, 3, -1}};
     world.registry.add<Drawable>(plate, {world.draw_meshes.add(std::move(draw))});
-    world.registry.add<Deformable>(plate, {.reach = kReach});
+    world.registry.add<Deformable>(plate, {{.reach = kReach}});
   }
 };
 
@@ -128,7 +128,7 @@ struct ToolScene : Scene {
     tool = world.registry.create();
     device = world.registry.create();
     world.registry.add<Name>(device, {"palm"});
-    world.registry.add<HapticDevice>(device, {.driver = Driver::kMouse});
+    world.registry.add<HapticDevice>(device, {.driver = DriverKind::kMouse});
     world.registry.add<Handle6>(tool, {.device = "palm"});
     world.registry.add<Pose>(tool, {{0.1, 0, 0}, glm::angleAxis(0.3, dvec3(0, 1, 0))});
   }

@@ -317,7 +317,7 @@ TEST_F(Run, RealTimeAccountsForEveryTickAndItsRecordingReplaysToTheSameHash) {
   const Json json = report("live");
   EXPECT_EQ(json["mode"], "realtime");
   const std::uint64_t ticks = json["ticks"], overruns = json["overruns"];
-  EXPECT_LE(ticks, 500u);
+  EXPECT_LE(ticks, 501u) << "the last one has every device lost";
   EXPECT_GE(ticks + overruns, 500u) << "a tick was neither run nor counted as an overrun";
   ASSERT_EQ(pliant({"run", "plate.obj", "--replay", "live.rec", "--out", "again", "--frames", "0"}).status, 0);
   EXPECT_EQ(report("again")["hash"], json["hash"]);

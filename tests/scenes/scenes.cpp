@@ -126,7 +126,7 @@ Entity Stage::add_probe(dvec3 position, double radius) {
   world.registry.add(entity, Name{"probe"});
   world.registry.add(entity, probe);
   HapticDevice device;
-  device.driver = Driver::kExternal;
+  device.driver = DriverKind::kExternal;
   device.position = position;
   device.max_force = 1e9;
   device.max_slew = 1e12;

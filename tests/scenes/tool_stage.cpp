@@ -40,7 +40,7 @@ std::vector<Embedding> embed(const TetMesh& tets, const Mesh& skin) {
 void hold(Registry& registry, Entity entity, const Handle6& handle, const Pose& pose) {
   registry.add(entity, handle);
   HapticDevice device;
-  device.driver = Driver::kExternal;
+  device.driver = DriverKind::kExternal;
   device.position = pose.position;
   device.rotation = pose.rotation;
   device.max_force = 1e9;

@@ -117,7 +117,7 @@ SoftParts soft_box(vec3 size, int squares) {
   LevelNode node;
   node.name = "flesh";
   node.mesh = 0;
-  node.soft_body = SoftBody{.cell = 0.0125};
+  node.soft_body = SoftBody{{.cell = 0.0125}};
   const LevelMesh mesh{"box", {primitive_of(test::block_mesh(size, squares))}};
   auto parts = make_soft_parts(node, &mesh, mat4(1), {});
   EXPECT_TRUE(parts) << parts.error().message();
@@ -131,7 +131,7 @@ struct Pressed {
 Pressed press_middle(int squares) {
   const Mesh ground = test::block_mesh(vec3(1.0f, 0.2f, 1.0f)), small = test::block_mesh(vec3(0.03f));
   const SoftParts plate = soft_box(vec3(0.12f, 0.03f, 0.12f), squares);
-  const SoftBody flesh{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}};
+  const SoftBody flesh{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
   ContactLoop loop;
   loop.add<FixedBody>(ground, Pose{dvec3(0, -0.1, 0)});
   const auto& body = loop.add<SoftBodyState>(plate.tets, plate.surface.mesh, flesh, nullptr,

@@ -33,7 +33,7 @@ struct Rest {
       auto made = make_lattice(ball, 0.008);
       EXPECT_TRUE(made);
       tets = std::move(*made);
-      const SoftBody flesh{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}};
+      const SoftBody flesh{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
       auto& state = loop.add<SoftBodyState>(tets, ball, flesh, nullptr, Pose{at}, SolverKind::kAuto);
       weight = 0.0;
       for (const double m : state.flesh().mass()) weight += m * kG;

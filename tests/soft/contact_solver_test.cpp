@@ -216,7 +216,7 @@ TEST(ContactSolver, AStackOnASlopeHoldsBelowTheFrictionAngleAndSlipsAbove) {
 
 TEST(ContactSolver, PlatesThatPinchASoftBlockPushEquallyAndOppositely) {
   const Mesh plate = test::block_mesh(vec3(0.02f, 0.08f, 0.08f), 2), skin = test::block_mesh(vec3(0.05f), 3);
-  const SoftBody material{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {1.0, 0.02}};
+  const SoftBody material{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {1.0, 0.02}}};
   auto tets = make_lattice(skin, 0.0167);
   ASSERT_TRUE(tets);
   ContactLoop loop;

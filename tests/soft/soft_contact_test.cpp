@@ -18,7 +18,7 @@ constexpr double kT = 1.0 / 60.0;  // [s]
 struct SoftBlock {
   Mesh skin;
   TetMesh tets;
-  SoftBody material{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}};
+  SoftBody material{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
   explicit SoftBlock(vec3 size, int squares, double cell) : skin(test::block_mesh(size, squares)) {
     auto made = make_lattice(skin, cell);
     EXPECT_TRUE(made);
@@ -230,7 +230,7 @@ TEST(SoftContact, FingersStruckTogetherDoNotPassThroughEachOther) {
   const Mesh plate = test::block_mesh(vec3(0.01f, 0.03f, 0.03f), 2);
   ContactLoop loop;
   loop.gravity = dvec3(0);
-  SoftBody flesh{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.01}};
+  SoftBody flesh{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.01}}};
   const auto& hand = loop.add<SoftBodyState>(*made, skin, flesh, nullptr, Pose{}, SolverKind::kAuto);
   loop.bodies[0]->self_collides = true;
   std::array<FixedBody*, 2> plates;

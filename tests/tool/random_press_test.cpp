@@ -153,16 +153,16 @@ World finger_over(const std::filesystem::path& mesh) {
   Result<TetFile> file = load_tets(mesh);
   EXPECT_TRUE(file.ok()) << mesh;
   scenes::ToolStage stage(1.0 / 60.0);
-  stage.add_soft(scenes::stand(std::move(*file)), {.young = 2e4, .poisson = 0.4, .rayleigh = {0.0, 1e-3}}, Pose{});
+  stage.add_soft(scenes::stand(std::move(*file)), {{.young = 2e4, .poisson = 0.4, .rayleigh = {0.0, 1e-3}}}, Pose{});
   TetMesh finger = tets::box(2, 6, 2, dvec3(-0.0075, 0.0, -0.0075), dvec3(0.0075, 0.06, 0.0075));
   tets::hold(
       finger, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 0.045; });
-  const Handle6 handle{.max_force = 12.0};
+  const Handle6 handle{{.max_force = 12.0}};
   const PathRow above{0.0, dvec3(0.05, 0.15, 0.05), dquat(1, 0, 0, 0)};
-  const Entity tool = stage.add_soft(std::move(finger), {.young = 1e5, .poisson = 0.4, .rayleigh = {0.0, 1e-3}},
+  const Entity tool = stage.add_soft(std::move(finger), {{.young = 1e5, .poisson = 0.4, .rayleigh = {0.0, 1e-3}}},
                                      {above.position, above.rotation}, &handle);
   HapticDevice& device = stage.device_of(tool);
-  device.driver = Driver::kScript;
+  device.driver = DriverKind::kScript;
   device.max_force = 12.0;
   device.max_slew = 1000.0;
   device.path = stage.world.paths.add(Path{{above}});

@@ -14,7 +14,7 @@ constexpr double kDt = 1e-3;  // [s]
 
 HapticDevice device_of_a_test() {
   HapticDevice device;
-  device.driver = Driver::kScript;
+  device.driver = DriverKind::kScript;
   return device;
 }
 

@@ -97,7 +97,7 @@ TEST(Touch, OpposedProbesOnAThinSlabEachFeelTheirOwnSide) {
 
 TEST(Touch, AProbeFarAwayFeelsNothingOfAnotherOnesContact) {
   Stage stage;
-  stage.add(scenes::sheet(40, 0.2), {.reach = 0.02});
+  stage.add(scenes::sheet(40, 0.2), {{.reach = 0.02}});
   const Entity a = stage.add_probe({-0.06, 0.001, 0}), b = stage.add_probe({0.06, 0.001, 0});
   stage.prepare();
   stage.move(a, {-0.06, -0.005, 0}, 0.2, [&](const ProbeReading&) {
@@ -169,7 +169,7 @@ TEST(Touch, SlidingNeverStepsTheForceByMoreThanTheSlopeTimesTheChangeOfDepth) {
 TEST(Touch, SameInputGivesTheSameBits) {
   const auto run = [] {
     Stage stage;
-    stage.add(scenes::sphere(30, 0.1), {.reach = 0.03});
+    stage.add(scenes::sphere(30, 0.1), {{.reach = 0.03}});
     const Entity a = stage.add_probe({0, 0.11, 0}), b = stage.add_probe({0.11, 0, 0}, 0.005);
     stage.prepare();
     for (int i = 0; i < 500; ++i) {

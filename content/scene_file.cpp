@@ -1,0 +1,23 @@
+// Level files as scenes (pliant/content.h).
+#include "content/level_file.h"
+#include "pliant/content.h"
+
+namespace pliant {
+
+Result<Scene> load_scene(const std::filesystem::path& file, std::vector<std::string>* notes) {
+  auto level = load_level(file);
+  if (!level) return level.error();
+  if (!level->has_pliant()) make_touchable(*level);
+  if (notes) *notes = level->notes;
+  return Scene(*level);
+}
+
+Status save_scene(const Scene& scene, const std::filesystem::path& file) {
+  return save_level(scene.level(), file);
+}
+
+Status set_key(Scene& scene, const std::string& assignment) {
+  return set_key(scene.level(), assignment);
+}
+
+}  // namespace pliant

@@ -1,0 +1,134 @@
+// What a Session shows (pliant/session.h): readings, deformed vertices, forces on them, the stream.
+#include "engine/session_parts.h"
+
+namespace pliant {
+namespace {
+
+constexpr const char* kNoSurface = "does not give way (it has no PLIANT_deformable); ask Session::vertices()";
+
+// The mesh that is touched, whatever kind of object.
+const Mesh* mesh_of(const World& world, Entity entity) {
+  const Registry& all = world.registry;
+  if (const Deformable* surface = all.find<Deformable>(entity)) return &world.meshes[surface->mesh];
+  if (const SoftBody* body = all.find<SoftBody>(entity)) return &world.meshes[body->skin];
+  if (const RigidBody* body = all.find<RigidBody>(entity)) return &world.meshes[body->skin];
+  return nullptr;
+}
+
+}  // namespace
+
+Result<Reading> Session::reading(const std::string& name) const {
+  const SessionHand* const hand = parts_->find_hand(name);
+  if (!hand) return parts_->unknown_hand(name);
+  if (parts_->clock) parts_->rows.acquire();
+  return parts_->rows.read()[static_cast<std::size_t>(hand - parts_->hands.data())].reading;
+}
+
+SessionFigures Session::figures() const {
+  const Parts& p = *parts_;
+  SessionFigures out;
+  if (p.clock) {
+    const TouchFigures& told = p.clock->figures();
+    out = {p.clock->now() + 1, told.p50, told.p99, told.max, told.overruns, p.soft->latest().steps};
+  } else {
+    const Histogram& cost = p.schedule->total();
+    out = {p.ticks,    cost.percentile_us(0.5), cost.percentile_us(0.99), cost.max_us(),
+           p.overruns, p.soft->figures().steps};
+  }
+  return out;
+}
+
+void Session::Parts::look() {
+  if (clock)
+    view.take(world);
+  else
+    view.take_all(world, {ticks, 1.0 / world.simulation.touch_rate, time});
+}
+
+Status Session::vertices(const std::string& object, std::vector<vec3>& out) {
+  Parts& p = *parts_;
+  const auto entity = p.find_object(object);
+  if (!entity) return entity.error();
+  p.look();
+  const Mesh& mesh = *mesh_of(p.world, *entity);
+  const std::vector<vec4>* const stream = p.view.stream(*entity);
+  const SoftObjectSnapshot* const soft = p.view.soft(*entity);
+  const mat4 to_world = p.view.to_world(p.world, *entity);
+  out.assign(mesh.of_source.size(), vec3(0));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::uint32_t v = mesh.of_source[i];
+    if (v == kBorder) continue;  // no triangle uses it
+    if (soft && !soft->position.empty()) {
+      out[i] = soft->position[v];
+    } else {
+      const float height = stream ? (*stream)[v].w : 0.0f;
+      out[i] = vec3(to_world * vec4(mesh.position(v) + height * mesh.normal(v), 1.0f));
+    }
+  }
+  return Done{};
+}
+
+Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out) {
+  Parts& p = *parts_;
+  const auto entity = p.find_object(object);
+  if (!entity) return entity.error();
+  if (!p.world.registry.has<Deformable>(*entity)) return Error{"`" + object + "`", kNoSurface};
+  if (p.clock) p.rows.acquire();
+  const Mesh& mesh = *mesh_of(p.world, *entity);
+  std::vector<vec3> on_vertex(mesh.vertex_count, vec3(0));
+  std::vector<float> copies(mesh.vertex_count, 0.0f);
+  for (const HandRow& row : p.rows.read())
+    for (std::uint32_t i = 0; i < row.reading.contacts; ++i) {
+      const ContactReading& contact = row.reading.contact[i];
+      if (p.object_entities[contact.object] != *entity) continue;
+      for (int k = 0; k < 3; ++k) on_vertex[row.vertices[i][k]] -= row.weights[i][k] * vec3(contact.force);
+    }
+  for (const std::uint32_t v : mesh.of_source)
+    if (v != kBorder) copies[v] += 1.0f;
+  out.assign(mesh.of_source.size(), vec3(0));
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (const std::uint32_t v = mesh.of_source[i]; v != kBorder) out[i] = on_vertex[v] / copies[v];
+  return Done{};
+}
+
+Result<Geometry> Session::geometry(const std::string& object) const {
+  const Parts& p = *parts_;
+  const auto entity = p.find_object(object);
+  if (!entity) return entity.error();
+  if (!p.world.registry.has<Deformable>(*entity)) return Error{"`" + object + "`", kNoSurface};
+  const Drawable* const drawable = p.world.registry.find<Drawable>(*entity);
+  if (!drawable) return Error{"`" + object + "`", "is not drawn; it has no mesh"};
+  const Mesh& mesh = *mesh_of(p.world, *entity);
+  const DrawMesh& draw = p.world.draw_meshes[drawable->mesh];
+  Geometry out;
+  for (const DrawVertex& vertex : draw.vertices) {
+    out.position.push_back(vertex.position);
+    out.normal.push_back(mesh.normal(vertex.touch_vertex));
+    out.shading_normal.push_back(vertex.normal);
+    out.uv.push_back(vertex.uv);
+    out.stream_vertex.push_back(vertex.touch_vertex);
+  }
+  out.index = draw.indices;
+  return out;
+}
+
+Status Session::stream(const std::string& object, std::vector<vec4>& out) {
+  Parts& p = *parts_;
+  const auto entity = p.find_object(object);
+  if (!entity) return entity.error();
+  p.look();
+  const std::vector<vec4>* const stream = p.view.stream(*entity);
+  if (!stream) return Error{"`" + object + "`", kNoSurface};
+  out = *stream;
+  return Done{};
+}
+
+Result<mat4> Session::to_world(const std::string& object) {
+  Parts& p = *parts_;
+  const auto entity = p.find_object(object);
+  if (!entity) return entity.error();
+  p.look();
+  return p.view.to_world(p.world, *entity);
+}
+
+}  // namespace pliant

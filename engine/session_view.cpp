@@ -1,0 +1,69 @@
+#include "engine/session_view.h"
+
+#include <algorithm>
+
+#include "systems/touch/publish.h"
+
+namespace pliant {
+
+void SessionView::reset(const World& world) {
+  shown_.clear();
+  soft_.clear();
+  for (auto [entity, pose] : world.registry.view<const Pose>()) {
+    Shown shown{entity, pose.matrix(), {}};
+    if (const Deformable* surface = world.registry.find<Deformable>(entity))
+      shown.stream.assign(std::size_t{world.meshes[surface->mesh].zone_count()} * kZoneSize, vec4(0));
+    shown_.push_back(std::move(shown));
+  }
+}
+
+void SessionView::add(const Snapshot& snapshot) {
+  const auto of = [&](Entity entity) {
+    return std::find_if(shown_.begin(), shown_.end(), [&](const Shown& s) { return s.object == entity; });
+  };
+  for (const ObjectSnapshot& object : snapshot.objects) {
+    const auto shown = of(object.object);
+    if (shown == shown_.end()) continue;
+    for (std::uint32_t i = 0; i < object.zone_count; ++i)
+      std::copy_n(object.stream.begin() + std::ptrdiff_t{i} * kZoneSize, kZoneSize,
+                  shown->stream.begin() + std::ptrdiff_t{object.zones[i]} * kZoneSize);
+  }
+  for (const MovedSnapshot& moved : snapshot.moved) {
+    const auto shown = of(moved.object);
+    if (shown != shown_.end()) shown->to_world = moved.to_world;
+  }
+}
+
+void SessionView::take(World& world) {
+  while (world.snapshots->acquire()) add(world.snapshots->read());
+  if (world.soft_snapshots && world.soft_snapshots->acquire()) soft_ = world.soft_snapshots->read().objects;
+}
+
+void SessionView::take_all(World& world, Tick tick) {
+  // A snapshot holds a bounded number of zones. Every turn takes as many as fit, so this ends.
+  do {
+    publish(world, tick);
+    take(world);
+  } while (!world.snapshots->read().complete);
+}
+
+const std::vector<vec4>* SessionView::stream(Entity object) const {
+  for (const Shown& shown : shown_)
+    if (shown.object == object && !shown.stream.empty()) return &shown.stream;
+  return nullptr;
+}
+
+const SoftObjectSnapshot* SessionView::soft(Entity object) const {
+  for (const SoftObjectSnapshot& shown : soft_)
+    if (shown.object == object) return &shown;
+  return nullptr;
+}
+
+mat4 SessionView::to_world(const World& world, Entity object) const {
+  if (const SoftObjectSnapshot* moving = soft(object)) return moving->pose.matrix();
+  for (const Shown& shown : shown_)
+    if (shown.object == object) return shown.to_world;
+  return world.registry.get<WorldTransform>(object).matrix;
+}
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+// The frame side of a Session: what the touch and soft clocks have shown so far, complete. Owner's thread.
+#pragma once
+
+#include <vector>
+
+#include "components/world.h"
+
+namespace pliant {
+
+class SessionView {
+ public:
+  // After the world was prepared.
+  void reset(const World& world);
+  // Lockstep: everything that changed until now. `tick`: the last one.
+  void take_all(World& world, Tick tick);
+  // Real time: what has come since.
+  void take(World& world);
+
+  const std::vector<vec4>* stream(Entity object) const;  // null: no surface that gives way
+  const SoftObjectSnapshot* soft(Entity object) const;   // null: nothing that moves, or not seen yet
+  mat4 to_world(const World& world, Entity object) const;
+
+ private:
+  void add(const Snapshot& snapshot);
+  struct Shown {
+    Entity object;
+    mat4 to_world{1};
+    std::vector<vec4> stream;
+  };
+  std::vector<Shown> shown_;
+  std::vector<SoftObjectSnapshot> soft_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,9 @@
+// All of the engine. docs/embedding.md walks through it.
+#pragma once
+
+#include "pliant/driver.h"
+#include "pliant/math.h"
+#include "pliant/parameters.h"
+#include "pliant/result.h"
+#include "pliant/scene.h"
+#include "pliant/session.h"

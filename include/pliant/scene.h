@@ -1,0 +1,72 @@
+// A level in code: surfaces that give way, soft and rigid bodies, tools, probes. A level file becomes one too
+// (pliant/content.h).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pliant/math.h"
+#include "pliant/parameters.h"
+#include "pliant/result.h"
+
+namespace pliant {
+
+struct Level;
+
+// Triangles. Arrays beside `position` and `index` are empty or as long as `position`.
+struct MeshData {
+  std::vector<vec3> position;        // [m]
+  std::vector<std::uint32_t> index;  // three a triangle, counter-clockwise seen from outside
+  std::vector<vec3> normal;          // [1] to shade with; empty: made
+  std::vector<vec2> uv;
+  // Painted factors [1], 1 where nothing is painted.
+  std::vector<float> stiffness, friction, damping, relaxation;
+  // [1] 0 to 1: vertices of a soft body that stand still, and those that belong to a tool's handle.
+  std::vector<float> pinned, handle;
+};
+
+struct Placement {
+  dvec3 position{0};  // [m] world
+  dquat rotation{1, 0, 0, 0};
+  dvec3 scale{1};  // [1]
+};
+
+// Copies are independent. Names must differ: they are how a Session is asked about its objects. What is wrong with a
+// scene (a mesh without triangles, a parameter out of its range, a name given twice) is said by Session::open.
+class Scene {
+ public:
+  explicit Scene(std::string name = "scene");
+  explicit Scene(const Level& level);
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
+  Simulation& simulation();
+
+  // A surface that gives way where it is pressed (P1).
+  void add_surface(const std::string& name, MeshData mesh, const DeformableParameters& parameters = {},
+                   const Placement& placement = {});
+  // FEM on tetrahedra made from the mesh (P2).
+  void add_soft_body(const std::string& name, MeshData mesh, const SoftBodyParameters& parameters = {},
+                     const Placement& placement = {});
+  void add_rigid_body(const std::string& name, MeshData mesh, const RigidBodyParameters& parameters = {},
+                      const Placement& placement = {});
+  // Makes a soft or rigid body that has been added a tool: a hand holds it by its handle.
+  Status add_handle(const std::string& body, const HandleParameters& parameters = {},
+                    const DeviceParameters& device = {});
+  void add_probe(const std::string& name, const ProbeParameters& parameters = {}, const DeviceParameters& device = {},
+                 const Placement& placement = {});
+
+  // The level format's own description (content/level/level.h); not part of the public interface.
+  const Level& level() const { return *level_; }
+  Level& level() { return *level_; }
+
+ private:
+  std::unique_ptr<Level> level_;
+};
+
+}  // namespace pliant

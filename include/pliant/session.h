@@ -1,0 +1,135 @@
+// A scene that is touched: its clocks, its probes' sources, and what they feel.
+//
+//   pliant::Scene scene;
+//   scene.add_surface("tissue", mesh);
+//   scene.add_probe("finger");
+//   auto session = pliant::Session::open(scene);
+//   if (!session) return fail(session.error());
+//   session->move("finger", {0, 0.01, 0});
+//   session->step();
+//   double newton = pliant::length(session->reading("finger").value().force);
+//
+// Two ways to run. Lockstep: step() runs ticks on the caller's thread in virtual time; the same input gives the same
+// bits. Real time: start() runs the touch clock (1 kHz) and, where a scene has bodies, the soft clock on threads of
+// their own until stop(). One thread owns a Session and calls all of its functions; in real time they exchange data
+// with the clocks and never make them wait. Whatever ends a run, the last force that leaves for a device is zero.
+//
+// Misuse is an Error with a sentence: an unknown name, two sources for one probe, step() while the clocks run. No
+// function throws. World frame: metres, right-handed, Y up.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pliant/driver.h"
+#include "pliant/scene.h"
+
+namespace pliant {
+
+struct ContactReading {
+  dvec3 position{0};   // [m] world, on the undeformed surface
+  dvec3 normal{0};     // [1] world, unit, outward
+  dvec3 force{0};      // [N] world, on the probe, before the safety layer
+  double depth = 0.0;  // [m] below the undeformed surface
+  bool sliding = false;
+  std::uint32_t object = 0;  // into Session::objects()
+};
+
+// One probe or tool after a tick.
+struct Reading {
+  static constexpr std::uint32_t kMostContacts = 16;
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint64_t tick = 0;
+  double time = 0.0;   // [s]
+  bool ready = false;  // its device's state is known; false: the force is zero
+  bool touching = false;
+  dvec3 position{0};             // [m] world: of a probe; of a tool's device
+  dvec3 force{0};                // [N] world, on the hand, as sent
+  dvec3 torque{0};               // [N m] world, on the hand, as sent; of tools
+  double depth = 0.0;            // [m] below the undeformed surface, of the strongest contact
+  dvec3 normal{0};               // [1] world, of the strongest contact
+  std::uint32_t object = kNone;  // into Session::objects(): of the strongest contact
+  std::uint32_t contacts = 0;    // of a probe with surfaces that give way: how many `contact` holds
+  std::array<ContactReading, kMostContacts> contact;
+};
+
+// What a run was like so far.
+struct SessionFigures {
+  std::uint64_t ticks = 0;
+  double p50_us = 0.0, p99_us = 0.0, max_us = 0.0;  // of a tick
+  std::uint64_t overruns = 0;                       // in real time: ticks that could not begin in time
+  std::uint64_t soft_steps = 0;
+};
+
+// The surface of an object as it is drawn. Vertices of the collision mesh are split where shading needs it.
+struct Geometry {
+  std::vector<vec3> position;        // [m] P0, at rest, object frame
+  std::vector<vec3> normal;          // [1] N0 of the collision mesh: the height acts along it
+  std::vector<vec3> shading_normal;  // [1]
+  std::vector<vec2> uv;
+  std::vector<std::uint32_t> stream_vertex;  // of each: its place in the stream
+  std::vector<std::uint32_t> index;          // three a triangle
+};
+
+class Session {
+ public:
+  // Prepares everything a tick will need. The scene is copied.
+  static Result<Session> open(const Scene& scene);
+  Session(Session&&) noexcept;
+  Session& operator=(Session&&) noexcept;
+  ~Session();  // stop()
+
+  // What was read or made differently than one might expect.
+  const std::vector<std::string>& notes() const;
+  std::vector<std::string> hands() const;           // probes, then tools
+  const std::vector<std::string>& objects() const;  // surfaces that give way, soft and rigid bodies
+
+  // --- What moves a probe or tool. Each has one source: a second one is an error until release().
+  // Where it is from now on. In real time it goes there in the time since it was told the last time (at most 0.1 s), so
+  // that a program may tell it once a picture; after 0.25 s of silence it counts as lost.
+  Status move(const std::string& hand, dvec3 position, dquat rotation = {1, 0, 0, 0});
+  Status follow(const std::string& hand, Path path);
+  Status orbit(const std::string& hand);  // a path over the scene's surfaces; not while the clocks run
+  // "NAME" or "NAME:ID" of a registered driver; or a driver of one's own.
+  Status connect(const std::string& hand, const std::string& driver);
+  Status connect(const std::string& hand, std::unique_ptr<Driver> driver, const std::string& id = {});
+  Status release(const std::string& hand);  // nobody moves it: no force
+
+  // --- Time
+  Status step(std::uint64_t ticks = 1);
+  Status start();
+  Status pause(bool paused);  // devices are let go; they come back through the gate
+  Status stop();              // the error says what ended a clock before it was told to
+  bool running() const;
+  Status restart();     // as it was opened, at time 0; sources and parameters stay as they are
+  double time() const;  // [s]
+
+  // --- Parameters, between ticks: friction, stiffness, damping and device limits (docs/embedding.md lists them).
+  Status set(const std::string& object, const std::string& key, double value);
+  Result<double> get(const std::string& object, const std::string& key) const;
+
+  // --- What is felt and seen
+  Result<Reading> reading(const std::string& hand) const;
+  SessionFigures figures() const;
+  // Deformed vertices, world frame [m], in the order in which the object's MeshData or file has them.
+  Status vertices(const std::string& object, std::vector<vec3>& out);
+  // The force on each of these vertices, world frame [N]: that of the contacts of probes, by their barycentric
+  // coordinates. Of surfaces that give way.
+  Status vertex_forces(const std::string& object, std::vector<vec3>& out);
+  // What a renderer of one's own draws: geometry once, the stream (nx, ny, nz, h) every frame, to_world every frame.
+  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of surfaces that give way.
+  Result<Geometry> geometry(const std::string& object) const;
+  Status stream(const std::string& object, std::vector<vec4>& out);
+  Result<mat4> to_world(const std::string& object);
+
+ private:
+  struct Parts;
+  explicit Session(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace pliant

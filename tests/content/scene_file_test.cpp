@@ -1,0 +1,43 @@
+// Level files through the public interface.
+#include <gtest/gtest.h>
+
+#include "pliant/content.h"
+#include "pliant/pliant.h"
+
+namespace pliant {
+namespace {
+
+TEST(SceneFile, IsASceneThatASessionRuns) {
+  std::vector<std::string> notes;
+  auto scene = load_scene(PLIANT_SOURCE_DIR "/content/levels/minimal.gltf", &notes);
+  ASSERT_TRUE(scene) << scene.error().message();
+  auto session = Session::open(*scene);
+  ASSERT_TRUE(session) << session.error().message();
+  ASSERT_FALSE(session->hands().empty());
+  ASSERT_TRUE(session->step(1500));
+  bool felt = false;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(session->step(20));
+    felt |= session->reading(session->hands()[0])->touching;
+  }
+  EXPECT_TRUE(felt) << "by its own script";
+  EXPECT_FALSE(load_scene("no_such.gltf"));
+}
+
+TEST(SceneFile, IsChangedByAKeySavedAndReadAgain) {
+  auto scene = load_scene(PLIANT_SOURCE_DIR "/content/levels/minimal.gltf");
+  ASSERT_TRUE(scene);
+  ASSERT_TRUE(set_key(*scene, "*.PLIANT_deformable.stiffness=123"));
+  EXPECT_FALSE(set_key(*scene, "*.PLIANT_deformable.stifness=123"));
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "scene_file_test.glb";
+  ASSERT_TRUE(save_scene(*scene, file));
+  auto again = load_scene(file);
+  ASSERT_TRUE(again) << again.error().message();
+  auto session = Session::open(*again);
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(*session->get(session->objects()[0], "stiffness"), 123.0);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace pliant

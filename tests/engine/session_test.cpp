@@ -1,0 +1,394 @@
+// The public interface, used as a program that embeds the engine does: public headers alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "pliant/pliant.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+// Flat, facing up, `half` [m] to each side, its vertices row by row.
+MeshData sheet(double half = 0.05, std::uint32_t cells = 50) {
+  MeshData mesh;
+  const auto at = [&](std::uint32_t i) { return static_cast<float>(half * (2.0 * i / cells - 1.0)); };
+  for (std::uint32_t z = 0; z <= cells; ++z)
+    for (std::uint32_t x = 0; x <= cells; ++x) mesh.position.push_back({at(x), 0, at(z)});
+  for (std::uint32_t z = 0; z < cells; ++z)
+    for (std::uint32_t x = 0; x < cells; ++x) {
+      const std::uint32_t i = z * (cells + 1) + x, j = i + cells + 1;
+      for (const std::uint32_t corner : {i, j, i + 1, i + 1, j, j + 1}) mesh.index.push_back(corner);
+    }
+  return mesh;
+}
+
+Scene press_scene() {
+  Scene scene("press");
+  scene.add_surface("tissue", sheet(), {.stiffness = 300.0});
+  scene.add_probe("finger");
+  return scene;
+}
+
+Session opened(const Scene& scene) {
+  auto session = Session::open(scene);
+  EXPECT_TRUE(session) << session.error().message();
+  return std::move(session).value();
+}
+
+// From above to `depth` [m], a tick every 10 um.
+void press(Session& session, double depth) {
+  for (double y = 0.0005; y > -depth; y -= 1e-5) {
+    ASSERT_TRUE(session.move("finger", {0, y, 0}));
+    ASSERT_TRUE(session.step());
+  }
+  ASSERT_TRUE(session.move("finger", {0, -depth, 0}));
+  ASSERT_TRUE(session.step());
+}
+
+TEST(Session, FeelsStiffnessTimesDepth) {
+  Session session = opened(press_scene());
+  EXPECT_THAT(session.hands(), testing::ElementsAre("finger"));
+  EXPECT_THAT(session.objects(), testing::ElementsAre("tissue"));
+  press(session, 0.002);
+  const Reading felt = *session.reading("finger");
+  EXPECT_TRUE(felt.ready && felt.touching);
+  EXPECT_NEAR(felt.force.y, 300.0 * 0.002, 1e-6);
+  EXPECT_NEAR(felt.depth, 0.002, 1e-9);
+  EXPECT_EQ(felt.object, 0u);
+  ASSERT_EQ(felt.contacts, 1u);
+  EXPECT_NEAR(length(felt.contact[0].normal - dvec3(0, 1, 0)), 0.0, 1e-6);
+}
+
+TEST(Session, TheSameInputGivesTheSameBitsAndRestartsGiveThemAgain) {
+  Session session = opened(press_scene()), other = opened(press_scene());
+  press(session, 0.003);
+  press(other, 0.003);
+  const dvec3 force = session.reading("finger")->force;
+  EXPECT_EQ(force, other.reading("finger")->force);
+  ASSERT_TRUE(session.restart());
+  EXPECT_EQ(session.time(), 0.0);
+  press(session, 0.003);
+  EXPECT_EQ(force, session.reading("finger")->force);
+}
+
+TEST(Session, ShowsVerticesInTheOrderOfItsMeshAndWhatPressesOnThem) {
+  const MeshData mesh = sheet();
+  Scene scene;
+  Placement placement;
+  placement.position = {0, 0, 0};
+  placement.scale = dvec3(2);
+  MeshData half = mesh;
+  for (vec3& p : half.position) p *= 0.5f;
+  scene.add_surface("tissue", half, {.stiffness = 300.0}, placement);
+  scene.add_probe("finger");
+  Session session = opened(scene);
+  std::vector<vec3> now, force;
+  ASSERT_TRUE(session.vertices("tissue", now));
+  EXPECT_EQ(now, mesh.position) << "at rest";
+  press(session, 0.004);
+  ASSERT_TRUE(session.vertices("tissue", now));
+  ASSERT_EQ(now.size(), mesh.position.size());
+  const std::size_t middle = 25 * 51 + 25;
+  EXPECT_NEAR(now[middle].y, -0.004, 1e-5);
+  EXPECT_EQ(now.front(), mesh.position.front()) << "far from the press nothing moves";
+  ASSERT_TRUE(session.vertex_forces("tissue", force));
+  vec3 sum(0);
+  for (const vec3 f : force) sum += f;
+  EXPECT_NEAR(sum.y, -session.reading("finger")->force.y, 1e-6) << "action and reaction";
+  EXPECT_LT(force[middle].y, -0.1f);
+}
+
+TEST(Session, GeometryAndStreamAreTheDeformedVertices) {
+  Session session = opened(press_scene());
+  const Geometry geometry = *session.geometry("tissue");
+  press(session, 0.004);
+  std::vector<vec4> stream;
+  ASSERT_TRUE(session.stream("tissue", stream));
+  std::vector<vec3> vertices;
+  ASSERT_TRUE(session.vertices("tissue", vertices));
+  const mat4 to_world = *session.to_world("tissue");
+  float lowest = 0.0f, lowest_vertex = 0.0f;
+  for (std::size_t i = 0; i < geometry.position.size(); ++i) {
+    const vec3 p = geometry.position[i] + stream[geometry.stream_vertex[i]].w * geometry.normal[i];
+    lowest = std::min(lowest, vec3(to_world * vec4(p, 1)).y);
+  }
+  for (const vec3 p : vertices) lowest_vertex = std::min(lowest_vertex, p.y);
+  EXPECT_EQ(lowest, lowest_vertex);
+  EXPECT_LT(lowest, -0.003f);
+}
+
+TEST(Session, ParametersChangeBetweenTicksAndStayThroughARestart) {
+  Session session = opened(press_scene());
+  ASSERT_TRUE(session.set("tissue", "stiffness", 500.0));
+  EXPECT_EQ(*session.get("tissue", "stiffness"), 500.0);
+  press(session, 0.002);
+  EXPECT_NEAR(session.reading("finger")->force.y, 1.0, 1e-5);
+  ASSERT_TRUE(session.restart());
+  press(session, 0.002);
+  EXPECT_NEAR(session.reading("finger")->force.y, 1.0, 1e-5);
+  ASSERT_TRUE(session.set("finger", "max_force", 0.4));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(session.step());
+  EXPECT_NEAR(session.reading("finger")->force.y, 0.4, 1e-9);
+  EXPECT_THAT(session.set("tissue", "stifness", 1.0).error().message(), HasSubstr("keys are: stiffness,"));
+  EXPECT_FALSE(session.set("tissue", "stiffness", -1.0));
+  EXPECT_FALSE(session.set("tissue", "stiffness", std::nan("")));
+  EXPECT_FALSE(session.set("nothing", "stiffness", 1.0));
+}
+
+TEST(Session, MisuseIsASentence) {
+  Session session = opened(press_scene());
+  EXPECT_THAT(session.move("thumb", {}).error().message(), HasSubstr("they are: finger"));
+  EXPECT_THAT(session.reading("thumb").error().message(), HasSubstr("they are: finger"));
+  std::vector<vec3> vertices;
+  EXPECT_THAT(session.vertices("liver", vertices).error().message(), HasSubstr("they are: tissue"));
+  EXPECT_FALSE(session.move("finger", {std::nan(""), 0, 0}));
+  EXPECT_FALSE(session.move("finger", {}, {0, 0, 0, 0}));
+  EXPECT_FALSE(session.follow("finger", {}));
+  EXPECT_THAT(session.pause(true).error().message(), HasSubstr("start()"));
+  EXPECT_THAT(session.connect("finger", "nobody:1").error().message(), HasSubstr("driver"));
+  EXPECT_THAT(session.connect("finger", std::unique_ptr<Driver>()).error().message(), HasSubstr("null"));
+  ASSERT_TRUE(session.move("finger", {0, 1, 0}));
+  EXPECT_THAT(session.orbit("finger").error().message(), HasSubstr("release()"));
+  ASSERT_TRUE(session.release("finger"));
+  EXPECT_TRUE(session.orbit("finger"));
+  ASSERT_TRUE(session.step());
+  EXPECT_THAT(session.start().error().message(), HasSubstr("restart()"));
+  ASSERT_TRUE(session.restart());
+  ASSERT_TRUE(session.start());
+  EXPECT_THAT(session.step().error().message(), HasSubstr("stop()"));
+  EXPECT_THAT(session.start().error().message(), HasSubstr("stop()"));
+  EXPECT_THAT(session.release("finger").error().message(), HasSubstr("stop()"));
+  EXPECT_TRUE(session.stop());
+  EXPECT_TRUE(session.stop()) << "twice is once";
+}
+
+TEST(Session, AnUnusableSceneIsASentence) {
+  Scene empty;
+  empty.add_surface("nothing", {});
+  EXPECT_FALSE(Session::open(empty));
+  Scene twice = press_scene();
+  twice.add_probe("finger");
+  EXPECT_FALSE(Session::open(twice));
+  Scene nameless;
+  nameless.add_surface("", sheet());
+  EXPECT_FALSE(Session::open(nameless));
+  Scene wild = press_scene();
+  wild.add_surface("wild", sheet(), {.stiffness = -5.0});
+  EXPECT_THAT(Session::open(wild).error().message(), HasSubstr("stiffness"));
+  MeshData torn = sheet();
+  torn.index[7] = 1000000;
+  Scene scene;
+  scene.add_surface("torn", torn);
+  EXPECT_FALSE(Session::open(scene));
+  torn = sheet();
+  torn.index.pop_back();
+  Scene odd;
+  odd.add_surface("odd", torn);
+  EXPECT_FALSE(Session::open(odd));
+  torn = sheet();
+  torn.stiffness.assign(3, 1.0f);
+  Scene painted;
+  painted.add_surface("painted", torn);
+  EXPECT_FALSE(Session::open(painted));
+}
+
+TEST(Session, AToolIsHeldByItsHandleAndLiesOnARigidFloor) {
+  const auto box = [](float half) {
+    MeshData mesh;
+    for (int i = 0; i < 8; ++i)
+      mesh.position.push_back({i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half});
+    mesh.index = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 1, 3, 0, 3, 2,
+                  4, 6, 7, 4, 7, 5, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
+    return mesh;
+  };
+  Scene scene;
+  scene.add_rigid_body("floor", box(0.1f), {.fixed = true}, {.position = {0, -0.1, 0}});
+  scene.add_rigid_body("stylus", box(0.01f), {.density = 500.0}, {.position = {0, 0.02, 0}});
+  EXPECT_FALSE(scene.add_handle("lever"));
+  ASSERT_TRUE(scene.add_handle("stylus"));
+  Session session = opened(scene);
+  EXPECT_THAT(session.hands(), testing::ElementsAre("stylus"));
+  double y = 0.02;
+  for (int i = 0; i < 2000; ++i) {
+    y = std::max(0.005, y - 5e-5);
+    ASSERT_TRUE(session.move("stylus", {0, y, 0}));
+    ASSERT_TRUE(session.step());
+  }
+  const Reading felt = *session.reading("stylus");
+  EXPECT_TRUE(felt.touching);
+  const HandleParameters handle;  // its coupling saturates at max_force
+  EXPECT_NEAR(felt.force.y, handle.max_force * std::tanh(handle.translation[0] * 0.005 / handle.max_force), 1e-3);
+  std::vector<vec3> vertices;
+  ASSERT_TRUE(session.vertices("stylus", vertices));
+  for (const vec3 p : vertices) EXPECT_GT(p.y, -2e-4f);
+}
+
+// A device that the test looks at.
+struct Log {
+  std::atomic<int> reads{0}, writes{0}, opened{0}, closed{0};
+  std::atomic<double> last{-1.0}, largest{0.0}, height{0.01};
+  std::atomic<bool> ready{true}, silent{false}, throws{false};
+};
+class LoggedDevice final : public Driver {
+ public:
+  explicit LoggedDevice(Log& log) : log_(log) {}
+  Status open(const std::string& id) override {
+    ++log_.opened;
+    if (id == "broken") return Error{"device broken", "is broken; mend it"};
+    return Done{};
+  }
+  DeviceCapabilities capabilities() const override { return {.max_force = 0.5}; }
+  bool read(DeviceSample& sample) override {
+    ++log_.reads;
+    if (log_.throws) throw std::runtime_error("cable cut");
+    sample.position = {0, log_.height.load(), 0};
+    sample.ready = log_.ready;
+    return !log_.silent;
+  }
+  void write(const DeviceWrench& wrench) override {
+    ++log_.writes;
+    log_.last = length(wrench.force);
+    log_.largest = std::max(log_.largest.load(), length(wrench.force));
+  }
+  void close() override { ++log_.closed; }
+
+ private:
+  Log& log_;
+};
+
+void lower(Session& session, Log& log, double to) {
+  for (int i = 0; i < 1000 && log.height > to; ++i) {
+    log.height = std::max(to, log.height.load() - 2e-5);
+    ASSERT_TRUE(session.step());
+  }
+}
+
+TEST(Session, ADriverIsReadAndWrittenEveryTickWithinItsLimit) {
+  Log log;
+  {
+    Session session = opened(press_scene());
+    EXPECT_THAT(session.connect("finger", std::make_unique<LoggedDevice>(log), "broken").error().message(),
+                HasSubstr("mend it"));
+    ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
+    EXPECT_FALSE(session.connect("finger", std::make_unique<LoggedDevice>(log))) << "one device a probe";
+    lower(session, log, -0.004);
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(session.step());
+    EXPECT_EQ(log.reads, static_cast<int>(session.figures().ticks));
+    EXPECT_EQ(log.writes, log.reads);
+    EXPECT_NEAR(log.last, 0.5, 1e-9) << "the law would have it 1.2 N";
+    EXPECT_LE(log.largest, 0.5 + 1e-9);
+    log.ready = false;
+    ASSERT_TRUE(session.step());
+    EXPECT_EQ(log.last, 0.0) << "its state is unknown";
+    log.ready = true;
+    ASSERT_TRUE(session.step(50));
+    EXPECT_EQ(log.last, 0.0) << "it comes back 4 mm deep: the gate is closed";
+    log.height = 0.001;
+    ASSERT_TRUE(session.step(5));
+    lower(session, log, -0.001);
+    EXPECT_GT(log.last, 0.1);
+    log.silent = true;
+    ASSERT_TRUE(session.step(15));
+    EXPECT_EQ(log.last, 0.0) << "no sample for 10 ms";
+  }
+  EXPECT_EQ(log.closed, 1) << "of the two that were opened, one was connected";
+  EXPECT_EQ(log.last, 0.0);
+}
+
+// Until `done`, at most five seconds.
+template <class Done>
+bool within_five_seconds(Done done) {
+  for (int i = 0; i < 5000; ++i) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+TEST(Session, InRealTimeAPauseLetsGoAndComesBackThroughTheGate) {
+  Log log;
+  Session session = opened(press_scene());
+  ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
+  ASSERT_TRUE(session.start());
+  for (int i = 0; i < 150; ++i) {
+    log.height = 0.005 - 5e-5 * i;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ASSERT_TRUE(within_five_seconds([&] { return log.last > 0.2; }));
+  EXPECT_GT(session.reading("finger")->force.y, 0.2);
+  ASSERT_TRUE(session.pause(true));
+  ASSERT_TRUE(within_five_seconds([&] { return log.last == 0.0; }));
+  log.largest = 0.0;
+  const int writes = log.writes;
+  ASSERT_TRUE(within_five_seconds([&] { return log.writes > writes + 20; })) << "its watchdog is fed";
+  EXPECT_EQ(log.largest, 0.0);
+  ASSERT_TRUE(session.pause(false));
+  const int resumed = log.writes;
+  ASSERT_TRUE(within_five_seconds([&] { return log.writes > resumed + 100; }));
+  EXPECT_EQ(log.largest, 0.0) << "2.5 mm deep, the gate stays closed";
+  log.height = 0.002;
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  for (int i = 0; i < 150; ++i) {
+    log.height = 0.002 - 3e-5 * i;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_TRUE(within_five_seconds([&] { return log.last > 0.2; })) << "out of contact once, it is open";
+  ASSERT_TRUE(session.stop());
+  EXPECT_EQ(log.last, 0.0) << "the last tick has every device lost";
+}
+
+TEST(Session, WhatADriverThrowsEndsTheRunWithZeroForce) {
+  Log log;
+  Session session = opened(press_scene());
+  ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
+  ASSERT_TRUE(session.start());
+  ASSERT_TRUE(within_five_seconds([&] { return log.writes > 10; }));
+  log.throws = true;
+  ASSERT_TRUE(within_five_seconds([&] { return !session.running(); }));
+  const Status stopped = session.stop();
+  ASSERT_FALSE(stopped);
+  EXPECT_THAT(stopped.error().message(), HasSubstr("cable cut"));
+  EXPECT_EQ(log.last, 0.0);
+}
+
+TEST(Session, APoseToldOncePerPictureIsReachedWithoutALoss) {
+  Session session = opened(press_scene());
+  ASSERT_TRUE(session.move("finger", {0, 0.001, 0}));
+  ASSERT_TRUE(session.start());
+  EXPECT_FALSE(session.set("finger", "nothing", 1.0));
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_TRUE(session.move("finger", {0, 0.001 - 1e-4 * i, 0}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(16));
+  }
+  ASSERT_TRUE(within_five_seconds([&] {
+    EXPECT_TRUE(session.move("finger", {0, -0.003, 0}));
+    return std::abs(session.reading("finger")->force.y - 0.9) < 1e-3;
+  }));
+  ASSERT_TRUE(within_five_seconds([&] { return session.reading("finger")->force.y == 0.0; })) << "silence is a loss";
+  ASSERT_TRUE(session.stop());
+}
+
+TEST(Driver, IsKnownByItsNameOnce) {
+  static Log log;
+  ASSERT_TRUE(register_driver("logged", [] { return std::make_unique<LoggedDevice>(log); }));
+  EXPECT_THAT(register_driver("logged", [] { return std::make_unique<LoggedDevice>(log); }).error().message(),
+              HasSubstr("twice"));
+  EXPECT_FALSE(register_driver("a:b", [] { return std::make_unique<LoggedDevice>(log); }));
+  EXPECT_FALSE(register_driver("empty", nullptr));
+  EXPECT_THAT(driver_names(), testing::Contains("logged"));
+  EXPECT_THAT(make_driver("loged").error().message(), HasSubstr("drivers are: "));
+  Session session = opened(press_scene());
+  EXPECT_THAT(session.connect("finger", "logged:broken").error().message(), HasSubstr("mend it"));
+  ASSERT_TRUE(session.connect("finger", "logged:2"));
+  ASSERT_TRUE(session.step(3));
+  EXPECT_EQ(log.writes, 3);
+}
+
+}  // namespace
+}  // namespace pliant

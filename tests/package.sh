@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# The installed package is all that the examples need: installs BUILD, builds EXAMPLES against it, runs what needs no
+# display. Usage: package.sh BUILD EXAMPLES
+set -euo pipefail
+build=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cmake --install "$build" --prefix "$work/installed" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
+
+# Nothing but public headers, and none of them needs another's include or one that is not installed.
+find "$work/installed/include" -name '*.h' | grep -v '/include/pliant/[a-z]*\.h$' && { echo "not public"; exit 1; }
+for header in "$work"/installed/include/pliant/*.h; do
+  echo "#include <pliant/$(basename "$header")>" >"$work/one.cpp"
+  c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I "$work/installed/include" "$work/one.cpp"
+  grep -nE '^#define [^P]' "$header" && { echo "$header: a macro without the prefix"; exit 1; }
+done
+
+cp -r "$2" "$work/examples"  # away from the sources
+cmake -S "$work/examples" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/installed" \
+  >"$work/configure.log" || { cat "$work/configure.log"; exit 1; }
+cmake --build "$work/build" -j 2 >"$work/build.log" || { cat "$work/build.log"; exit 1; }
+
+# Touch alone drags in neither graphics nor readers of files.
+libraries=$(ldd "$work/build/hello_touch")
+echo "$libraries" | grep -E 'libGL|libEGL|epoxy|assimp|draco|OpenEXR|hidapi|glfw' && { echo "hello_touch needs too much"; exit 1; }
+
+said=$("$work/build/hello_touch")
+echo "$said"
+echo "$said" | tail -1 | grep -q 'force 1.200 N' || { echo "300 N/m times 4 mm is 1.2 N"; exit 1; }
+said=$("$work/build/own_device")
+echo "$said"
+echo "$said" | grep -q 'closed; the last force was 0.000 N' || { echo "the last force must be zero"; exit 1; }
+said=$("$work/build/headless_sweep" "$work/installed/share/pliant/content/levels/minimal.gltf" 2>&1)
+[[ $(echo "$said" | wc -l) -gt 100 ]] || { echo "$said" | head; echo "the sweep is too short"; exit 1; }
+if [[ -x $work/build/own_renderer ]] && command -v xvfb-run >/dev/null; then
+  said=$(xvfb-run -a "$work/build/own_renderer" 40)
+  echo "$said"
+  echo "$said" | grep -qE 'largest force was (0\.[3-9]|1\.|2\.)' || { echo "it pressed by 12 mm"; exit 1; }
+fi
