@@ -339,8 +339,9 @@ Extension extension(std::string name, std::string doc, std::optional<T> Owner::*
 
 std::string settle_device(void* owner) {
   const HapticDevice& it = *static_cast<LevelNode*>(owner)->device;
-  return it.driver == DriverKind::kScript && it.file.empty() ? "has the driver script without a `file`; name the CSV file"
-                                                         : "";
+  return it.driver == DriverKind::kScript && it.file.empty()
+             ? "has the driver script without a `file`; name the CSV file"
+             : "";
 }
 
 template <class T>

@@ -15,7 +15,7 @@ namespace pliant {
 Result<Scene> load_scene(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 // .gltf (with a .bin beside it) or .glb by the extension; the file appears whole.
 Status save_scene(const Scene& scene, const std::filesystem::path& file);
-// NODE.EXTENSION.KEY=VALUE, as `pliant run --set` has it (docs/cli.md).
+// NODE.EXTENSION.KEY=VALUE, say "tissue.deformable.stiffness=500", as `pliant run --set` has it (docs/cli.md).
 Status set_key(Scene& scene, const std::string& assignment);
 
 }  // namespace pliant

@@ -8,12 +8,12 @@
 
 #include "components/world.h"
 #include "engine/journal.h"
+#include "engine/touch_clock.h"
 #include "player/interrupt.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
 #include "player/run/frames.h"
 #include "player/window/window.h"
-#include "engine/touch_clock.h"
 
 namespace pliant {
 

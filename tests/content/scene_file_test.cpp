@@ -27,8 +27,8 @@ TEST(SceneFile, IsASceneThatASessionRuns) {
 TEST(SceneFile, IsChangedByAKeySavedAndReadAgain) {
   auto scene = load_scene(PLIANT_SOURCE_DIR "/content/levels/minimal.gltf");
   ASSERT_TRUE(scene);
-  ASSERT_TRUE(set_key(*scene, "*.PLIANT_deformable.stiffness=123"));
-  EXPECT_FALSE(set_key(*scene, "*.PLIANT_deformable.stifness=123"));
+  ASSERT_TRUE(set_key(*scene, "*.deformable.stiffness=123"));
+  EXPECT_FALSE(set_key(*scene, "*.deformable.stifness=123"));
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "scene_file_test.glb";
   ASSERT_TRUE(save_scene(*scene, file));
   auto again = load_scene(file);
