@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "components/soft_body.h"
+#include "content/files/file_io.h"
+#include "player/exit.h"
+#include "player/record/plot.h"
 #include "player/run/tool_words.h"
 #include "player/standard_streams.h"
 #include "systems/soft/soft_state.h"
@@ -152,6 +156,30 @@ std::string report_json(const RunFigures& figures) {
   json["systems_us"] = systems(figures.schedule);
   // Names come from files and may not be UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out) {
+  std::optional<Error> wrong;
+  const auto note_first = [&](const Status& status) {
+    if (!status && !wrong) wrong = out.at_place(status.error());
+  };
+  out.free_reserve();
+  try {
+    const std::string json = report_json(figures);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(json.data());
+    note_first(write_file(out.stage("report.json"), std::span(bytes, json.size())));
+    std::vector<PlotRow> rows;
+    for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
+      rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source,
+                      &figures.keeper.traces()[i], figures.keeper.summaries()[i].tool});
+    const double dt = 1.0 / figures.rate;
+    const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
+    note_first(plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds));
+  } catch (const std::exception& error) {
+    note_first(explain(error));
+  }
+  note_first(out.commit());
+  return wrong;
 }
 
 void print_summary(const RunFigures& figures, const OutputFolder& out) {

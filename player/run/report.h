@@ -35,6 +35,8 @@ struct RunFigures {
 };
 
 std::string report_json(const RunFigures& figures);
+// report.json and forces.png, and all that is staged goes into place: as much as can be written. The first error.
+std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out);
 void print_summary(const RunFigures& figures, const OutputFolder& out);
 
 }  // namespace pliant

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "content/files/file_io.h"
@@ -13,7 +12,6 @@
 #include "engine/sources.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
-#include "player/record/plot.h"
 #include "player/run/frames.h"
 #include "player/run/report.h"
 #include "player/run/tool_words.h"
@@ -146,31 +144,6 @@ std::vector<std::string> explain_run(RunFigures& figures) {
   return sentences;
 }
 
-// What can be written goes into place; the first error is that of what could not.
-std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out) {
-  std::optional<Error> wrong;
-  const auto note_first = [&](const Status& status) {
-    if (!status && !wrong) wrong = out.at_place(status.error());
-  };
-  out.free_reserve();
-  try {
-    const std::string json = report_json(figures);
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(json.data());
-    note_first(write_file(out.stage("report.json"), std::span(bytes, json.size())));
-    std::vector<PlotRow> rows;
-    for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
-      rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source,
-                      &figures.keeper.traces()[i], figures.keeper.summaries()[i].tool});
-    const double dt = 1.0 / figures.rate;
-    const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
-    note_first(plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds));
-  } catch (const std::exception& error) {
-    note_first(explain(error));
-  }
-  note_first(out.commit());
-  return wrong;
-}
-
 // Options for a file that was dropped: what was said of the first level's nodes and files is not meant for it.
 RunOptions another_level(const RunOptions& options, const std::string& file) {
   RunOptions other = options;
@@ -190,8 +163,8 @@ RunOptions same_level(const RunOptions& options) {
   RunOptions other = options;
   other.force = false;
   std::error_code ignored;
-  for (int n = 2; !options.record.empty() && std::filesystem::exists(other.record, ignored); ++n)
-    other.record = numbered(options.record, n).string();
+  for (int n = 2; !options.record.empty() && (n == 2 || std::filesystem::exists(other.record, ignored)); ++n)
+    other.record = numbered(options.record, n).string();  // the one under way has its place soon
   return other;
 }
 
