@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "content/files/file_io.h"
 #include "content/level/level.h"
 
 namespace pliant {
@@ -15,6 +16,7 @@ Result<Level> load_level(const std::filesystem::path& path);
 
 struct SaveOptions {
   int draco_bits = 0;  // 0: no Draco; else position quantisation bits (8..24)
+  Existing existing = Existing::kReplace;
 };
 // Writes .gltf (with a .bin beside it) or .glb by the extension; the file appears whole (written aside, then renamed).
 Status save_level(const Level& level, const std::filesystem::path& path, const SaveOptions& options = {});

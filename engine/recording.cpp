@@ -2,8 +2,13 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+
+#include "content/files/file_io.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
@@ -129,27 +134,41 @@ Result<Recording> read_recording(const fs::path& file) {
   return parse_recording(file.string(), bytes);
 }
 
-Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const RecordingHeader& header) {
+Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const RecordingHeader& header, bool replace) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) return Error{file.string(), "is a folder; name a file in it"};
+  if (fs::exists(file, ignored)) {
+    if (!replace) return Error{file.string(), "is there already; name another, or replace it with --force"};
+    char magic[sizeof kMagic] = {};
+    std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
+    if (std::memcmp(magic, kMagic, sizeof kMagic) != 0)
+      return Error{file.string(), "is no recording, so it is not replaced; name another, or move it away"};
+  }
+  remove_abandoned(file, std::string_view(kMagic, sizeof kMagic));
   RecordingWriter writer;
   writer.file_ = file;
+  writer.replace_ = replace;
+  writer.probes_ = header.probes.size();
   writer.aside_ = file;
   writer.aside_ += ".partial-" + std::to_string(::getpid());
-  writer.out_.open(writer.aside_, std::ios::binary);
-  if (!writer.out_) return Error{file.string(), "cannot be written; check that its folder exists"};
-  writer.out_.write(kMagic, sizeof kMagic);
+  auto out = GrowingFile::create(writer.aside_);
+  if (!out) return Error{file.string(), out.error().what};
+  writer.out_.emplace(std::move(out).value());
+  writer.record_.assign(kMagic, sizeof kMagic);
   writer.put(kVersion);
   writer.put(static_cast<std::uint32_t>(header.probes.size()));
   writer.put(header.rate);
   writer.put_text(header.level.substr(0, kMaxName));
   for (const std::string& name : header.probes) writer.put_text(name.substr(0, kMaxName));
+  writer.add_record();
+  writer.out_->flush();
+  writer.hashes_ = {writer.hash_.value()};
+  if (const auto& failure = writer.failure()) return Error{file.string(), failure->what};
   return writer;
 }
 
 RecordingWriter::~RecordingWriter() {
-  if (!out_.is_open()) return;  // finished, or moved from
-  out_.close();
+  if (!out_ || !out_->is_open()) return;  // finished, or moved from
   std::error_code ignored;
   fs::remove(aside_, ignored);
 }
@@ -157,17 +176,27 @@ RecordingWriter::~RecordingWriter() {
 template <class T>
 void RecordingWriter::put(T value) {
   hash_.add(value);
-  out_.write(reinterpret_cast<const char*>(&value), sizeof value);
+  record_.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 void RecordingWriter::put_text(const std::string& text) {
   put(static_cast<std::uint32_t>(text.size()));
   hash_.add_bytes(text.data(), text.size());
-  out_.write(text.data(), static_cast<std::streamsize>(text.size()));
+  record_ += text;
+}
+
+void RecordingWriter::add_record() {
+  out_->add(record_);
+  record_.clear();
+  poses_ = 0;
+  if (failure()) return;
+  if (out_->waiting() == 0) hashes_.clear();
+  hashes_.push_back(hash_.value());
 }
 
 void RecordingWriter::tick(std::uint64_t index) {
   put(index);
+  if (probes_ == 0) add_record();
 }
 
 void RecordingWriter::pose(const RecordedPose& pose) {
@@ -175,17 +204,42 @@ void RecordingWriter::pose(const RecordedPose& pose) {
                        pose.rotation.y, pose.rotation.z})
     put(value);
   put(static_cast<std::uint8_t>(pose.ready ? 1 : 0));
+  if (++poses_ == probes_) add_record();
 }
 
 Status RecordingWriter::finish() {
-  const std::uint64_t hash = hash_.value();
-  out_.write(reinterpret_cast<const char*>(&hash), sizeof hash);
-  out_.close();
-  std::error_code error;
-  if (out_) fs::rename(aside_, file_, error);
-  if (out_ && !error) return Done{};
-  fs::remove(aside_, error);
-  return Error{file_.string(), "cannot be written; check its folder and the space left"};
+  const auto bytes_of = [](const std::uint64_t& hash) {
+    return std::string_view(reinterpret_cast<const char*>(&hash), sizeof hash);
+  };
+  if (!failure()) {
+    const std::uint64_t hash = hash_.value();
+    out_->add(bytes_of(hash));
+    out_->flush();
+  }
+  std::optional<Error> failure = out_->failure();
+  bool whole = true;
+  if (failure) {
+    // The room of one tick is the hash's.
+    const std::size_t kept = std::min(out_->kept_since_flush(), hashes_.size() - 1), dropped = kept > 0 ? 1 : 0;
+    whole = out_->end_instead(out_->kept_since_flush() - kept + dropped, bytes_of(hashes_[kept - dropped]));
+    failure = Error{file_.string(), failure->what + (whole ? " (it has what was recorded until then)" : "")};
+  }
+  if (const Status closed = out_->close(); !closed && !failure) failure = closed.error();
+  std::error_code ignored;
+  if (!whole) {
+    fs::remove(aside_, ignored);
+    return *failure;
+  }
+  fs::path place = file_;
+  int error = move_file(aside_, place, replace_);
+  for (int n = 2; error == EEXIST; ++n) error = move_file(aside_, place = numbered(file_, n), false);
+  if (error != 0) {
+    fs::remove(aside_, ignored);
+    return Error{file_.string(), "cannot be put in place: " + why_not_written(error)};
+  }
+  if (failure) return *failure;
+  if (place != file_) return Error{file_.string(), "is another's meanwhile; the recording is " + place.string()};
+  return Done{};
 }
 
 }  // namespace pliant

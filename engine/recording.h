@@ -7,11 +7,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/math.h"
+#include "content/files/growing_file.h"
 #include "runtime/hash.h"
 #include "runtime/result.h"
 
@@ -39,14 +40,18 @@ struct Recording {
 Result<Recording> parse_recording(const std::string& name, const std::string& bytes);
 Result<Recording> read_recording(const std::filesystem::path& file);
 
-// Writes aside; the file appears with finish().
+// Writes aside; the file appears with finish(). A write that fails ends it: what was recorded until then is kept.
 class RecordingWriter {
  public:
-  static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header);
+  // A file that is there is refused; with `replace`, one that is no recording.
+  static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header,
+                                        bool replace = false);
   RecordingWriter(RecordingWriter&&) = default;
   ~RecordingWriter();
   void tick(std::uint64_t index);  // then one pose for each probe, in order
   void pose(const RecordedPose& pose);
+  const std::optional<Error>& failure() const { return out_->failure(); }
+  const std::filesystem::path& aside() const { return aside_; }  // where it is until finish()
   Status finish();
 
  private:
@@ -54,9 +59,14 @@ class RecordingWriter {
   template <class T>
   void put(T value);
   void put_text(const std::string& text);
+  void add_record();
   std::filesystem::path file_, aside_;
-  std::ofstream out_;
+  bool replace_ = false;
+  std::size_t probes_ = 0, poses_ = 0;  // of a tick; in the record so far
+  std::optional<GrowingFile> out_;
+  std::string record_;
   Hash hash_;
+  std::vector<std::uint64_t> hashes_;  // of all before each record that waits to be written, and behind the last
 };
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
 #include "player/exit.h"
 
 #include <cstdio>
+#include <new>
 
 namespace pliant {
 namespace {
@@ -21,6 +22,12 @@ int fail(ExitStatus status, const Error& error) {
     sentence += status == kUsage ? "; see `pliant --help`" : "; mend the input: `pliant validate` lists every finding";
   std::fprintf(stderr, "pliant: error: %s\n", sentence.c_str());
   return status;
+}
+
+Error explain(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error))
+    return {"memory", "there is not enough for this input; use a smaller one"};
+  return {"pliant", std::string(error.what()) + "; please report this input"};
 }
 
 void note(const std::string& sentence) {

@@ -1,6 +1,8 @@
 // How the command ends: exit status 0 done, 1 the input or the run failed, 2 the arguments are wrong.
 #pragma once
 
+#include <exception>
+
 #include "runtime/result.h"
 
 namespace pliant {
@@ -9,6 +11,9 @@ enum ExitStatus : int { kDone = 0, kFailed = 1, kUsage = 2 };
 
 // Prints `pliant: error: WHERE: what is wrong; what to do`, always one line, to stderr and returns the status.
 int fail(ExitStatus status, const Error& error);
+
+// What an exception that nobody below expected (most are a library's) says to a user.
+Error explain(const std::exception& error);
 
 // Prints `pliant: note: ...` to stderr: something was done differently than a user might expect.
 void note(const std::string& sentence);

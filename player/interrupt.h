@@ -1,15 +1,38 @@
-// Ctrl-C asks a run to end cleanly; a second one ends it at once.
+// The one way to end a run early: Ctrl-C and other signals, or a reason of the run's own, such as a full disk. The loop
+// sees requested(), ends, lets the devices go, and the report of what ran is written.
 #pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "runtime/result.h"
 
 namespace pliant {
 
+// From its beginning to its end SIGINT, SIGTERM and SIGHUP only request the end of the run, however often they come.
+// Only the third Ctrl-C ends the process at once, without a report; the second one says so. Signals that arrive
+// together (from the terminal and from a program that forwards it) count as one Ctrl-C. SIGHUP stays ignored where it
+// was (nohup). One at a time.
 class Interrupt {
  public:
-  Interrupt();   // from now on SIGINT and SIGTERM only set a flag
-  ~Interrupt();  // as before
+  Interrupt();
+  ~Interrupt();  // signals do what they did before
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
+
   bool requested() const;
+  // From any thread: requests the end of the run because of an error. The first error stays.
+  void end(Error why) const;
+  // The error that ended the run; nothing where only a signal did, or nothing has.
+  std::optional<Error> reason() const;
+
+  // A staged file or folder, which the third Ctrl-C removes.
+  void remove_if_forced(std::filesystem::path staged) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace pliant

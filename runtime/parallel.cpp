@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -24,13 +26,24 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t runs = (count + grain - 1) / grain;
   std::atomic<std::size_t> next{0};
+  std::exception_ptr thrown;
+  std::mutex mutex;  // of it
   const auto work = [&] {
-    for (std::size_t run = next++; run < runs; run = next++) body(run * grain, std::min(count, (run + 1) * grain));
+    try {
+      for (std::size_t run = next++; run < runs; run = next++) body(run * grain, std::min(count, (run + 1) * grain));
+    } catch (...) {
+      next = runs;  // the others end after what they are at
+      const std::lock_guard lock(mutex);
+      if (!thrown) thrown = std::current_exception();
+    }
   };
   const std::size_t helpers = std::min<std::size_t>(thread_count(), runs) - 1;
-  std::vector<std::jthread> threads;
-  for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(work);
-  work();
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(work);
+    work();
+  }
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace pliant

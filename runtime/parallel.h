@@ -11,7 +11,8 @@ namespace pliant {
 void set_thread_count(unsigned count);
 unsigned thread_count();
 
-// Calls body(begin, end) over [0, count) in runs of `grain`, on several threads; returns when all are done.
+// Calls body(begin, end) over [0, count) in runs of `grain`, on several threads; returns when all are done. What a body
+// throws is thrown here, after the other threads have ended.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
 }  // namespace pliant

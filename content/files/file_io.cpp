@@ -1,5 +1,6 @@
 #include "content/files/file_io.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -48,11 +49,38 @@ Result<Bytes> read_file(const fs::path& path, std::uint64_t limit) {
   return bytes;
 }
 
-Status write_files(const std::vector<FileToWrite>& files) {
-  std::vector<fs::path> aside;
+std::string why_not_written(int error) {
+  const char* cure = "check the folder and its permissions";
+  if (error == ENOSPC || error == EDQUOT) cure = "free some space";
+  if (error == EFBIG) cure = "raise the limit on the size of a file (`ulimit -f`)";
+  return fmt::format("{}; {}", std::generic_category().message(error), cure);
+}
+
+fs::path numbered(const fs::path& path, int number) {
+  return fs::path(path).replace_filename(
+      fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string()));
+}
+
+int move_file(const fs::path& from, const fs::path& to, bool replace) {
+  if (!replace) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+    if (errno != EINVAL && errno != ENOSYS) return errno;
+    std::error_code error;  // a file system that cannot do both at once
+    if (fs::symlink_status(to, error).type() != fs::file_type::not_found) return EEXIST;
+  }
+  return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+}
+
+Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
   std::error_code ignored;
+  const auto taken = [](const fs::path& path) {
+    return Error{path.string(), "is there already; name another, or replace it with --force"};
+  };
+  for (const FileToWrite& each : files)
+    if (existing == Existing::kRefuse && fs::exists(fs::symlink_status(each.path, ignored))) return taken(each.path);
+  std::vector<fs::path> aside;
   const auto fail = [&](const fs::path& path, const char* what) {
-    Error error{path.string(), fmt::format("{}: {}; check the folder and its permissions", what, std::strerror(errno))};
+    Error error{path.string(), fmt::format("{}: {}", what, why_not_written(errno))};
     for (const fs::path& each : aside) fs::remove(each, ignored);
     return error;
   };
@@ -60,17 +88,20 @@ Status write_files(const std::vector<FileToWrite>& files) {
     aside.push_back(fs::path(each.path).concat(fmt::format(".{}.part", ::getpid())));
     File file(std::fopen(aside.back().c_str(), "wb"));
     if (!file) return fail(each.path, "cannot be written");
-    const bool written = std::fwrite(each.bytes.data(), 1, each.bytes.size(), file.get()) == each.bytes.size();
-    // Closing flushes: a full disk may only show here.
-    if (std::fclose(file.release()) != 0 || !written) return fail(each.path, "could not be written to its end");
+    // Flushed before it is closed: a full disk may only show here, and closing may hide why.
+    if (std::fwrite(each.bytes.data(), 1, each.bytes.size(), file.get()) != each.bytes.size() ||
+        std::fflush(file.get()) != 0 || std::fclose(file.release()) != 0)
+      return fail(each.path, "could not be written to its end");
   }
-  for (std::size_t i = 0; i < files.size(); ++i)
-    if (std::rename(aside[i].c_str(), files[i].path.c_str()) != 0) return fail(files[i].path, "cannot be put in place");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    errno = move_file(aside[i], files[i].path, existing == Existing::kReplace);
+    if (errno != 0) return fail(files[i].path, "cannot be put in place");
+  }
   return Done{};
 }
 
-Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
-  return write_files({{path, bytes}});
+Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, Existing existing) {
+  return write_files({{path, bytes}}, existing);
 }
 
 Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {

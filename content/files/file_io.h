@@ -17,13 +17,23 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{2} << 30;  // of an
 // Refuses what is not a regular file (a pipe would never end) or is larger than `limit` bytes.
 Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t limit = kMaxFileBytes);
 
+// Why a file cannot be written, and the cure, of an `errno`.
+std::string why_not_written(int error);
+
+// "a.glb" -> "a-2.glb": where something goes whose place is taken.
+std::filesystem::path numbered(const std::filesystem::path& path, int number);
+// Renames a file; without `replace` only to a name that is free. 0, or errno (EEXIST: it is taken).
+int move_file(const std::filesystem::path& from, const std::filesystem::path& to, bool replace);
+
 struct FileToWrite {
   std::filesystem::path path;
   std::span<const std::uint8_t> bytes;
 };
+enum class Existing : std::uint8_t { kReplace, kRefuse };  // a file that is there already
 // Writes every file aside and renames them, in order, once all are written; on failure nothing is left behind.
-Status write_files(const std::vector<FileToWrite>& files);
-Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+Status write_files(const std::vector<FileToWrite>& files, Existing existing = Existing::kReplace);
+Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+                  Existing existing = Existing::kReplace);
 
 // A relative URI of an untrusted file as a path below `folder`: percent-decoded, without scheme, and not outside the
 // folder, not even through a symbolic link.

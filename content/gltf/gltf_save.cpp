@@ -228,7 +228,7 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
   Bytes bin = pack_document(document, !glb && same_folder);
   if (glb) {
     const Bytes whole = as_glb(document.json.dump(), std::move(bin));
-    return write_file(path, whole);
+    return write_file(path, whole, options.existing);
   }
   std::vector<FileToWrite> files;
   const fs::path beside = fs::path(path).replace_extension(".bin");
@@ -238,7 +238,7 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
   }
   const std::string text = document.json.dump(2) + "\n";
   files.push_back({path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size())});
-  return write_files(files);
+  return write_files(files, options.existing);
 }
 
 }  // namespace pliant

@@ -10,10 +10,10 @@ namespace pliant {
 
 Result<BodyKeeper> BodyKeeper::create(const World& world, BodyJournal& journal, const std::filesystem::path& csv) {
   BodyKeeper keeper(journal);
-  keeper.path_ = csv;
-  keeper.csv_.open(csv, std::ios::binary);
-  keeper.csv_ << "step,time_s,body,x,y,z,qw,qx,qy,qz\n";
-  if (!keeper.csv_) return Error{csv.string(), "cannot be written; check the space left"};
+  auto file = GrowingFile::create(csv);
+  if (!file) return file.error();
+  keeper.csv_.emplace(std::move(file).value());
+  keeper.csv_->add("step,time_s,body,x,y,z,qw,qx,qy,qz\n");
   for (const Entity body : journal.bodies()) {
     const Name* name = world.registry.find<Name>(body);
     keeper.names_.push_back(csv_text(name ? name->value : std::string()));
@@ -30,14 +30,12 @@ void BodyKeeper::keep() {
     put(line_, row.position);
     put(line_, row.rotation);
     line_ += '\n';
-    csv_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
+    csv_->add(line_);
   }
 }
 
 Status BodyKeeper::finish() {
-  csv_.close();
-  if (!csv_) return Error{path_.string(), "cannot be written to its end; free some space"};
-  return Done{};
+  return csv_->close();
 }
 
 }  // namespace pliant

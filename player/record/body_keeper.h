@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/world.h"
+#include "content/files/growing_file.h"
 #include "engine/body_journal.h"
 #include "runtime/result.h"
 
@@ -20,12 +21,12 @@ class BodyKeeper {
 
   void keep();      // all rows that wait
   Status finish();  // closes bodies.csv
+  const std::optional<Error>& failure() const { return csv_->failure(); }
 
  private:
   explicit BodyKeeper(BodyJournal& journal) : journal_(&journal) {}
   BodyJournal* journal_;
-  std::filesystem::path path_;
-  std::ofstream csv_;
+  std::optional<GrowingFile> csv_;  // always there
   std::string line_;
   std::vector<BodyRow> rows_;
   std::vector<std::string> names_;  // of the bodies, quoted for CSV

@@ -27,12 +27,12 @@ std::string name_of(const World& world, Entity entity) {
 Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& probes,
                               const std::vector<std::string>& sources, const std::filesystem::path& csv) {
   Keeper keeper;
-  keeper.csv_path_ = csv;
-  keeper.csv_.open(csv, std::ios::binary);
+  auto file = GrowingFile::create(csv);
+  if (!file) return file.error();
+  keeper.csv_.emplace(std::move(file).value());
   keeper.torque_ =
       std::any_of(probes.begin(), probes.end(), [&](Entity hand) { return !world.registry.has<Probe>(hand); });
-  keeper.csv_ << kColumns << (keeper.torque_ ? kTorqueColumns : "") << '\n';
-  if (!keeper.csv_) return Error{csv.string(), "cannot be written; check the space left"};
+  keeper.csv_->add(std::string(kColumns) + (keeper.torque_ ? kTorqueColumns : "") + '\n');
   for (std::size_t i = 0; i < probes.size(); ++i) {
     ProbeSummary summary;
     summary.name = name_of(world, probes[i]);
@@ -56,6 +56,13 @@ void Keeper::keep(Journal& journal) {
   journal.drain(rows_);
   for (const TickRow& row : rows_) keep(row);
   if (bodies_) bodies_->keep();
+  if (const std::optional<Error>& full = failure(); full && interrupt_) interrupt_->end(*full);
+}
+
+const std::optional<Error>& Keeper::failure() const {
+  if (bodies_ && bodies_->failure()) return bodies_->failure();
+  if (recording_ && recording_->failure()) return recording_->failure();
+  return csv_->failure();
 }
 
 void Keeper::keep(const TickRow& row) {
@@ -74,7 +81,7 @@ void Keeper::keep(const TickRow& row) {
   put(line_, row.objects);
   if (torque_) put(line_, row.torque);
   line_ += '\n';
-  csv_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
+  csv_->add(line_);
 
   ProbeSummary& summary = summaries_[row.probe];
   if (r.in_contact) {
@@ -117,11 +124,12 @@ void Keeper::record(const TickRow& row) {
 }
 
 Status Keeper::finish() {
-  csv_.close();
-  if (!csv_) return Error{csv_path_.string(), "cannot be written to its end; free some space"};
-  if (bodies_)
-    if (Status status = bodies_->finish(); !status) return status;
-  return recording_ ? recording_->finish() : Status(Done{});
+  std::vector<Status> closed{csv_->close()};
+  if (bodies_) closed.push_back(bodies_->finish());
+  if (recording_) closed.push_back(recording_->finish());
+  for (Status& status : closed)
+    if (!status) return status;
+  return Done{};
 }
 
 }  // namespace pliant

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "components/world.h"
+#include "content/files/growing_file.h"
 #include "engine/journal.h"
 #include "engine/recording.h"
+#include "player/interrupt.h"
 #include "player/record/body_keeper.h"
 #include "player/record/trace.h"
 #include "player/run/approach.h"
@@ -38,9 +39,12 @@ class Keeper {
   void record_to(RecordingWriter writer) { recording_.emplace(std::move(writer)); }
   void keep_bodies(BodyKeeper bodies) { bodies_.emplace(std::move(bodies)); }
 
+  // A file that cannot be written any more, on a full disk, ends the run.
+  void end_when_full(const Interrupt& interrupt) { interrupt_ = &interrupt; }
+
   void keep(Journal& journal);                                  // all rows that wait
   const std::vector<TickRow>& latest() const { return rows_; }  // what the last keep() took
-  Status finish();                                              // closes the files and the recording
+  Status finish();  // closes the files and the recording; the first error of any
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
   const std::vector<Trace>& traces() const { return traces_; }
@@ -49,14 +53,15 @@ class Keeper {
   Keeper() = default;
   void keep(const TickRow& row);
   void record(const TickRow& row);
+  const std::optional<Error>& failure() const;
   struct Last {
     bool any = false;   // with a place that means something
     double time = 0.0;  // [s]
     dvec3 position{0}, force{0}, torque{0};
     dquat rotation{1, 0, 0, 0};
   };
-  std::filesystem::path csv_path_;
-  std::ofstream csv_;
+  std::optional<GrowingFile> csv_;  // always there
+  const Interrupt* interrupt_ = nullptr;
   std::string line_;
   bool torque_ = false;  // forces.csv has its columns
   std::vector<TickRow> rows_;

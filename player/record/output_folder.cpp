@@ -1,44 +1,112 @@
 #include "player/record/output_folder.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <utility>
+
+#include "content/files/file_io.h"
+#include "player/record/run_files.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-// What a run may leave out, and an earlier one into the same folder may have written.
-bool comes_and_goes(const std::string& name) {
-  return name == "bodies.csv" || (name.starts_with("frame-") && name.ends_with(".png"));
+constexpr const char* kReserve = ".reserve";
+constexpr off_t kReserved = 256 << 10, kLeastReserved = 32 << 10;  // [byte] for report.json and forces.png
+constexpr int kMostFolders = 100000;
+
+bool is_there(const fs::path& file) {
+  std::error_code error;
+  return fs::symlink_status(file, error).type() != fs::file_type::not_found;
+}
+
+// Of `folder`: what is there and no run wrote, and what this run would be in the way of.
+std::string foreign_result(const fs::path& folder) {
+  const std::set<std::string> listed = listed_files(folder);
+  if (listed.empty() && is_there(folder / kRunList)) return kRunList;
+  for (const std::string& name : result_files(folder))
+    if (!listed.count(name)) return name;
+  return {};
+}
+
+bool is_taken(const fs::path& folder) {
+  return clear_abandoned(folder) || is_there(folder / kRunList) || !result_files(folder).empty();
 }
 
 }  // namespace
 
-Result<OutputFolder> OutputFolder::create(const fs::path& folder) {
+Result<OutputFolder> OutputFolder::create(const fs::path& folder, bool replace) {
   OutputFolder out;
   std::error_code error;
-  out.folder_ = fs::absolute(folder, error).lexically_normal();
-  if (!out.folder_.has_filename()) out.folder_ = out.folder_.parent_path();  // "out/" is "out"
+  out.given_ = folder;
+  out.replace_ = replace;
+  out.asked_ = fs::absolute(folder, error).lexically_normal();
+  if (!out.asked_.has_filename()) out.asked_ = out.asked_.parent_path();  // "out/" is "out"
+  out.folder_ = out.asked_;
+  const bool there = fs::is_directory(out.asked_, error);
+  if (there && replace) {
+    if (clear_abandoned(out.asked_))
+      return Error{folder.string(), "is what another run is writing to; wait for it, or choose another with --out"};
+    if (const std::string name = foreign_result(out.asked_); !name.empty())
+      return Error{(folder / name).string(), "is no run's, so it is not replaced; move it away, or use another --out"};
+  }
+  const Status opened = there && !replace && is_taken(out.asked_) ? out.choose_next() : out.open(out.asked_);
+  if (!opened) return Error{folder.string(), opened.error().what};
+  return out;
+}
+
+// Makes the folder where it is missing, and the hidden one in it.
+Status OutputFolder::open(const fs::path& folder) {
+  std::error_code error;
   std::vector<fs::path> missing;
-  for (fs::path at = out.folder_; !fs::exists(at, error) && at.has_relative_path(); at = at.parent_path())
+  for (fs::path at = folder; !fs::exists(at, error) && at.has_relative_path(); at = at.parent_path())
     missing.push_back(at);
   std::reverse(missing.begin(), missing.end());
   for (const fs::path& at : missing) {
     if (!fs::create_directory(at, error))
       return Error{folder.string(), "cannot be made (" + error.message() + "); choose another with --out"};
-    out.made_.push_back(at);
+    made_.push_back(at);
   }
-  out.staging_ = out.folder_ / (".partial-" + std::to_string(::getpid()));
-  fs::remove_all(out.staging_, error);
-  if (!fs::create_directory(out.staging_, error))
-    return Error{folder.string(), "cannot be written to (" + error.message() + "); choose another with --out"};
-  return out;
+  folder_ = folder;
+  const fs::path staging = folder_ / (".partial-" + std::to_string(::getpid()));
+  if (!fs::create_directory(staging, error))
+    return Error{folder.string(), "cannot be written to (" +
+                                      (error ? error.message() : "it has another's " + staging.filename().string()) +
+                                      "); choose another with --out"};
+  staging_ = staging;
+  marker_ = begin_list(staging_);
+  if (marker_ < 0) return Error{folder.string(), "cannot be written to: " + why_not_written(errno)};
+  const int reserve = ::open((staging_ / kReserve).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (reserve >= 0) {
+    off_t bytes = kReserved;
+    while (bytes >= kLeastReserved && ::posix_fallocate(reserve, 0, bytes) != 0) bytes /= 2;
+    ::close(reserve);
+  }
+  return Done{};
+}
+
+// The first of FOLDER-2, FOLDER-3, ... that is not there, or empty.
+Status OutputFolder::choose_next() {
+  for (int n = 2; n < kMostFolders; ++n) {
+    const fs::path next = asked_.string() + "-" + std::to_string(n);
+    std::error_code error;
+    if (fs::is_directory(next, error) && !clear_abandoned(next) && fs::is_empty(next, error)) return open(next);
+    if (!is_there(next)) return open(next);
+  }
+  return Error{asked_.string(), "has results, and so have all that follow; choose another with --out"};
 }
 
 OutputFolder::OutputFolder(OutputFolder&& other) noexcept
-    : folder_(std::move(other.folder_)),
+    : given_(std::move(other.given_)),
+      asked_(std::move(other.asked_)),
+      folder_(std::move(other.folder_)),
       staging_(std::move(other.staging_)),
+      replace_(other.replace_),
+      marker_(std::exchange(other.marker_, -1)),
       made_(std::move(other.made_)),
       names_(std::move(other.names_)) {
   other.staging_.clear();
@@ -48,31 +116,63 @@ OutputFolder::OutputFolder(OutputFolder&& other) noexcept
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  if (marker_ >= 0) ::close(marker_);
   for (auto at = made_.rbegin(); at != made_.rend(); ++at) fs::remove(*at, ignored);  // only if empty
 }
 
 fs::path OutputFolder::stage(const std::string& name) {
-  names_.push_back(name);
+  if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
   return staging_ / name;
 }
 
+void OutputFolder::free_reserve() {
+  std::error_code ignored;
+  fs::remove(staging_ / kReserve, ignored);
+}
+
+fs::path OutputFolder::shown() const {
+  const std::string all = folder_.string(), asked = asked_.string();
+  fs::path shown = given_.has_filename() ? given_ : given_.parent_path();
+  return shown += all.substr(std::min(asked.size(), all.size()));
+}
+
+Error OutputFolder::at_place(Error error) const {
+  const std::string staged = staging_.string();
+  if (error.where.starts_with(staged)) error.where = shown().string() + error.where.substr(staged.size());
+  return error;
+}
+
 Status OutputFolder::commit() {
-  std::error_code error;
+  free_reserve();
+  std::erase_if(names_, [&](const std::string& name) { return !is_there(staging_ / name); });  // could not be written
+  std::set<std::string> old = replace_ ? listed_files(folder_) : std::set<std::string>();
+  const auto in_the_way = [&](const std::string& name) { return !old.count(name) && is_there(folder_ / name); };
+  if (std::any_of(names_.begin(), names_.end(), in_the_way) || (!replace_ && is_there(folder_ / kRunList))) {
+    const fs::path staged = staging_;
+    const int marker = std::exchange(marker_, -1);
+    const Status next = choose_next();
+    if (marker_ >= 0) ::close(std::exchange(marker_, marker));
+    if (!next) return next.error();
+    std::error_code error;
+    fs::remove_all(staging_, error);
+    fs::rename(staged, staging_, error);
+    if (error) return Error{folder_.string(), "cannot be written (" + error.message() + "); free that name"};
+    old.clear();
+  }
+  const std::string list = list_text(names_);
+  const bool listed = ::pwrite(marker_, list.data(), list.size(), 0) == static_cast<ssize_t>(list.size());
+  const int why = errno;  // said last: first, what was written goes into place
   for (const std::string& name : names_)
-    if (fs::is_directory(folder_ / name, error))
-      return Error{(folder_ / name).string(), "is a folder where a file must go; move it away"};
-  for (const std::string& name : names_) {
-    fs::rename(staging_ / name, folder_ / name, error);
-    if (error) return Error{(folder_ / name).string(), "cannot be written (" + error.message() + "); free that name"};
-  }
-  std::vector<fs::path> old;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
-    const std::string name = entry.path().filename().string();
-    if (comes_and_goes(name) && std::find(names_.begin(), names_.end(), name) == names_.end())
-      old.push_back(entry.path());
-  }
-  for (const fs::path& file : old) fs::remove(file, error);
+    if (const int error = move_file(staging_ / name, folder_ / name, old.count(name) != 0); error != 0)
+      return Error{(folder_ / name).string(), "cannot be written: " + why_not_written(error)};
+  if (const int error = move_file(staging_ / kRunList, folder_ / kRunList, replace_); error != 0)
+    return Error{(folder_ / kRunList).string(), "cannot be written: " + why_not_written(error)};
+  std::error_code error;
+  for (const std::string& name : old)
+    if (std::find(names_.begin(), names_.end(), name) == names_.end() && !fs::is_directory(folder_ / name, error))
+      fs::remove(folder_ / name, error);
   made_.clear();
+  if (!listed) return Error{(folder_ / kRunList).string(), "cannot be written: " + why_not_written(why)};
   return Done{};
 }
 

@@ -55,7 +55,10 @@ void Pen::upright_text(double x, double y, double size, const std::string& words
 }
 
 bool Pen::save(const std::filesystem::path& file) {
-  return cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS;
+  if (cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS) return true;
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);  // half of it
+  return false;
 }
 
 std::string number(double value, double step) {

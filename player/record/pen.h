@@ -31,7 +31,7 @@ class Pen {
   // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width.
   double text(double x, double y, double size, double align, const std::string& words, bool bold = false);
   void upright_text(double x, double y, double size, const std::string& words);
-  bool save(const std::filesystem::path& file);
+  bool save(const std::filesystem::path& file);  // whole, or not at all
 
  private:
   cairo_surface_t* surface_;

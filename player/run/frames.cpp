@@ -68,8 +68,10 @@ Status Frames::take(OutputFolder& out) {
   FrameStats stats;
   const Image image = renderer_->picture(viewpoint_, width_, height_, &stats);
   figures_.add(stats);
-  return write_file(out.stage(fmt::format("frame-{:04d}.png", count_++)),
-                    encode_png(image.width, image.height, image.rgba.data()));
+  const Status written = write_file(out.stage(fmt::format("frame-{:04d}.png", count_)),
+                                    encode_png(image.width, image.height, image.rgba.data()));
+  if (written) ++count_;
+  return written;
 }
 
 }  // namespace pliant

@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "components/soft_body.h"
+#include "content/files/file_io.h"
+#include "player/exit.h"
+#include "player/record/plot.h"
 #include "player/run/tool_words.h"
+#include "player/standard_streams.h"
 #include "systems/soft/soft_state.h"
 
 namespace pliant {
@@ -137,6 +142,7 @@ std::string report_json(const RunFigures& figures) {
   json["field"] = figures.field;
   json["rate_hz"] = figures.rate;
   json["ticks"] = figures.journal.ticks();
+  json["ended"] = figures.ended;
   json["tick_us"] = percentiles(figures.schedule.total(), 1.0, true);
   json["overruns"] = figures.overruns;
   json["frame_ms"] = percentiles(frames ? frames->cost() : none, 1e-3, false);
@@ -152,28 +158,59 @@ std::string report_json(const RunFigures& figures) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void print_summary(const RunFigures& figures, const std::filesystem::path& out) {
+std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out) {
+  std::optional<Error> wrong;
+  const auto note_first = [&](const Status& status) {
+    if (!status && !wrong) wrong = out.at_place(status.error());
+  };
+  out.free_reserve();
+  try {
+    const std::string json = report_json(figures);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(json.data());
+    note_first(write_file(out.stage("report.json"), std::span(bytes, json.size())));
+    std::vector<PlotRow> rows;
+    for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
+      rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source,
+                      &figures.keeper.traces()[i], figures.keeper.summaries()[i].tool});
+    const double dt = 1.0 / figures.rate;
+    const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
+    note_first(plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds));
+  } catch (const std::exception& error) {
+    note_first(explain(error));
+  }
+  note_first(out.commit());
+  return wrong;
+}
+
+void print_summary(const RunFigures& figures, const OutputFolder& out) {
   const Histogram& tick = figures.schedule.total();
-  fmt::print("{}: {} ticks at {} Hz in {}, tick {:.1f} us median, {:.1f} us p99, {} overruns, hash {}\n",
-             figures.world.name, figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5),
-             tick.percentile_us(0.99), figures.overruns, figures.hash);
+  print("{}: {} ticks at {} Hz in {}, tick {:.1f} us median, {:.1f} us p99, {} overruns, hash {}\n", figures.world.name,
+        figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5), tick.percentile_us(0.99),
+        figures.overruns, figures.hash);
   for (const ProbeSummary& probe : figures.keeper.summaries())
-    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm {} and {:.2f} N{}, net work {:.3g} mJ\n",
-               probe.name, probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
-               probe.tool ? "led past the handle" : "deep", probe.max_force,
-               probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
+    print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm {} and {:.2f} N{}, net work {:.3g} mJ\n", probe.name,
+          probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
+          probe.tool ? "led past the handle" : "deep", probe.max_force,
+          probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
   if (figures.soft) {
     const SoftFigures& soft = figures.soft->figures();
     const Histogram& step = figures.soft->schedule().total();
-    fmt::print(
+    print(
         "  soft: {} steps over {} tetrahedra, {:.2f} ms median, {:.2f} ms p99, {} overruns, {:.1f} contacts, at most "
         "{:.2f} mm into each other\n",
         soft.steps, figures.soft->tetrahedra(), step.percentile_us(0.5) * 1e-3, step.percentile_us(0.99) * 1e-3,
         soft.overruns, mean(soft.contacts_sum, soft.steps), figures.world.soft->tally.deepest * 1e3);
   }
-  fmt::print("{}: report.json, forces.csv, forces.png{}", out.string(), figures.soft ? ", bodies.csv" : "");
-  if (figures.pictures > 0) fmt::print(", {} picture{}", figures.pictures, figures.pictures == 1 ? "" : "s");
-  fmt::print("\n");
+  std::string files;
+  for (const std::string& name : out.written())
+    if (!name.starts_with("frame-")) files += (files.empty() ? "" : ", ") + name;
+  if (figures.pictures > 0)
+    files +=
+        fmt::format("{}{} picture{}", files.empty() ? "" : ", ", figures.pictures, figures.pictures == 1 ? "" : "s");
+  print("{}: {}{}\n", out.shown().string(), files.empty() ? "nothing could be written" : files,
+        out.moved()
+            ? fmt::format(" ({} has results already, which stay; --force replaces a run's)", out.asked().string())
+            : std::string());
 }
 
 }  // namespace pliant

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "engine/journal.h"
 #include "engine/soft_clock.h"
 #include "player/record/keeper.h"
+#include "player/record/output_folder.h"
 #include "player/run/frames.h"
 #include "runtime/schedule.h"
 
@@ -31,9 +31,12 @@ struct RunFigures {
   std::string hash;                         // hex
   const SoftClock* soft = nullptr;          // null: the level has nothing soft or rigid that moves
   std::vector<std::optional<Miss>> misses;  // of each probe of the journal: nothing where it touched, or no surface is
+  std::string ended;                        // done, interrupted, or the error that ended it
 };
 
 std::string report_json(const RunFigures& figures);
-void print_summary(const RunFigures& figures, const std::filesystem::path& out);
+// report.json and forces.png, and all that is staged goes into place: as much as can be written. The first error.
+std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out);
+void print_summary(const RunFigures& figures, const OutputFolder& out);
 
 }  // namespace pliant

@@ -38,7 +38,6 @@ Status run_lockstep(TouchLoop& loop) {
   Progress progress("running");
   LockstepClock clock(loop.rate);
   auto frame = loop.frame_ticks.begin();
-  Tick last{0, 1.0 / loop.rate, 0.0};
   for (std::uint64_t n = 0; n < loop.ticks && !loop.interrupt.requested(); ++n) {
     const Tick tick = loop.replay ? replayed_tick(loop, n) : clock.next();
     if (loop.soft) loop.soft->reach(tick.time);
@@ -47,15 +46,10 @@ Status run_lockstep(TouchLoop& loop) {
     loop.keeper.keep(loop.journal);
     for (; loop.frames && frame != loop.frame_ticks.end() && *frame == n; ++frame) {
       loop.frames->update_all(loop.world, tick);
-      if (const Status taken = loop.frames->take(loop.out); !taken) {
-        let_go(loop.world, tick);
-        return taken;
-      }
+      if (const Status taken = loop.frames->take(loop.out); !taken) return taken;
     }
     if (n % 64 == 0) progress.update(static_cast<double>(n) / static_cast<double>(loop.ticks));
-    last = tick;
   }
-  let_go(loop.world, last);
   return Done{};
 }
 

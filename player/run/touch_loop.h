@@ -31,7 +31,6 @@ struct TouchLoop {
   SoftClock* soft = nullptr;               // none: nothing soft
 };
 
-// Either ends with every device let go with zero force.
 Status run_lockstep(TouchLoop& loop);
 // `overruns`: ticks that could not begin in time and were skipped.
 Status run_realtime(TouchLoop& loop, std::uint64_t& overruns);

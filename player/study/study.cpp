@@ -1,11 +1,10 @@
 #include "player/study/study.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "player/exit.h"
 #include "player/record/output_folder.h"
+#include "player/standard_streams.h"
 #include "player/study/study_linearisation.h"
 
 namespace pliant {
@@ -22,17 +21,22 @@ constexpr Study kStudies[] = {
 };
 
 int list() {
-  for (const Study& known : kStudies) fmt::print("{:<16} {}\n", known.name, known.what);
+  for (const Study& known : kStudies) print("{:<16} {}\n", known.name, known.what);
   return kDone;
 }
 
-int run_one(const Study& known, const StudyOptions& options) {
-  const std::filesystem::path folder = options.out.empty() ? "out/study" : options.out;
+// Into one folder, which has either the results of all of them or none.
+int run_all(const std::vector<const Study*>& studies, const StudyOptions& options) {
   const Interrupt interrupt;  // until all is in place: what is staged must not stay behind
-  auto out = OutputFolder::create(folder);
+  auto out = OutputFolder::create(options.out.empty() ? "out/study" : options.out, options.force);
   if (!out) return fail(kFailed, out.error());
-  if (const Status done = known.run(*out, options.quick, interrupt); !done) return fail(kFailed, done.error());
+  interrupt.remove_if_forced(out->staging());
+  for (const Study* known : studies)
+    if (const Status done = known->run(*out, options.quick, interrupt); !done)
+      return fail(kFailed, out->at_place(done.error()));
   if (const Status done = out->commit(); !done) return fail(kFailed, done.error());
+  print("{}: {} files{}\n", out->shown().string(), out->written().size(),
+        out->moved() ? " (the folder that was meant has results already, which stay; --force replaces a study's)" : "");
   return kDone;
 }
 
@@ -42,16 +46,12 @@ int study(const StudyOptions& options) {
   if (options.list) return list();
   if (options.name.empty())
     return fail(kUsage, {"study", "say which one, or all; `pliant study --list` says which there are"});
-  int status = kDone;
-  bool found = false;
-  for (const Study& known : kStudies) {
-    if (options.name != "all" && options.name != known.name) continue;
-    found = true;
-    status = std::max(status, run_one(known, options));
-  }
-  if (!found)
+  std::vector<const Study*> chosen;
+  for (const Study& known : kStudies)
+    if (options.name == "all" || options.name == known.name) chosen.push_back(&known);
+  if (chosen.empty())
     return fail(kUsage, {"study", "unknown study '" + options.name + "'; `pliant study --list` says which there are"});
-  return status;
+  return run_all(chosen, options);
 }
 
 }  // namespace pliant

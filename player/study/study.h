@@ -13,6 +13,7 @@ struct StudyOptions {
   std::string name;  // of a study, or "all"
   std::string out;   // folder; empty: out/study
   bool quick = false;
+  bool force = false;  // replaces what an earlier study wrote
   bool list = false;
 };
 int study(const StudyOptions& options);

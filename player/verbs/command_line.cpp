@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <new>
 
 #include "player/exit.h"
+#include "player/standard_streams.h"
 #include "player/study/study.h"
 #include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"
@@ -91,7 +91,9 @@ void add_run(CLI::App& app, RunOptions& run) {
   verb->add_option("--tool-force", run.tool_force,
                    "how every tool's force is made: held, linear, contacts; default: each tool's key")
       ->check(one_of({"held", "linear", "contacts"}));
-  verb->add_option("--out", run.out, "folder for what is written; default: out/<level name>");
+  verb->add_option("--out", run.out,
+                   "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results");
+  verb->add_flag("--force", run.force, "replace the results of an earlier run in that folder, and its recording");
   CLI::Option* frames =
       verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: none")->check(within(0, 9999));
   verb->add_option("--fps", run.fps, "pictures per simulated second instead")
@@ -134,6 +136,7 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
   verb->add_option("--draco", conversion.draco_bits, "compress with this many bits per position (8 to 24)")
       ->check(within(8, 24));
   verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
+  verb->add_flag("--force", conversion.force, "replace what is there");
   add_unit(verb, conversion.unit, "what one unit of the input is (m)");
   verb->footer(
       "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
@@ -147,7 +150,9 @@ void add_study(CLI::App& app, StudyOptions& options) {
   CLI::App* verb = app.add_subcommand("study", "speed against error: figures, data and a plot");
   CLI::Option* name = verb->add_option("name", options.name, "of a study, or all");
   CLI::Option* list = verb->add_flag("--list", options.list, "which studies there are");
-  verb->add_option("--out", options.out, "folder for what is written; default: out/study");
+  verb->add_option("--out", options.out,
+                   "folder for what is written; default: out/study; FOLDER-2 and on where one has results");
+  verb->add_flag("--force", options.force, "replace the results of an earlier study in that folder");
   verb->add_flag("--quick", options.quick, "a shorter run, for a look");
   name->excludes(list);
   verb->footer("Example:\n  pliant study all --quick");
@@ -215,13 +220,14 @@ int parse_and_run(int argc, const char* const* argv) {
 }  // namespace
 
 int command_line(int argc, const char* const* argv) {
+  int status = kDone;
   try {
-    return parse_and_run(argc, argv);
-  } catch (const std::bad_alloc&) {
-    return fail(kFailed, {"memory", "there is not enough for this input; use a smaller one"});
-  } catch (const std::exception& error) {  // a library's, that nobody below expected
-    return fail(kFailed, {"pliant", std::string(error.what()) + "; please report this input"});
+    status = parse_and_run(argc, argv);
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) == 0) return fail(kFailed, explain(error));  // else said below
   }
+  const std::optional<Error> lost = close_stdout();
+  return lost && status == kDone ? fail(kFailed, *lost) : status;
 }
 
 }  // namespace pliant

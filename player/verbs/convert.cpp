@@ -1,6 +1,4 @@
 // pliant convert: any mesh format to glTF or GLB; an EXR panorama to a picture of its cube map.
-#include <fmt/format.h>
-
 #include <set>
 #include <string>
 
@@ -10,6 +8,8 @@
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "player/exit.h"
+#include "player/interrupt.h"
+#include "player/standard_streams.h"
 #include "player/verbs/panorama_preview.h"
 #include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"
@@ -75,15 +75,30 @@ Status reorder(Level& level) {
   return Done{};
 }
 
+Existing existing(const ConvertOptions& options) {
+  return options.force ? Existing::kReplace : Existing::kRefuse;
+}
+
+// Before the work: what would be refused after it.
+Status check_free(const ConvertOptions& options) {
+  std::error_code ignored;
+  if (options.force || !fs::exists(fs::symlink_status(options.out, ignored))) return Done{};
+  return Error{options.out, "is there already; name another, or replace it with --force"};
+}
+
 int convert_panorama(const ConvertOptions& options) {
   if (lower_extension(options.out) != ".png")
     return fail(kUsage, {options.out, "a panorama becomes a picture of its cube map; end the name with .png"});
+  if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   const auto panorama = load_panorama(options.in);
   if (!panorama) return fail(kFailed, panorama.error());
+  const Interrupt interrupt;  // until the file is in place: nothing half-written stays behind
   const Image image = cube_cross(*panorama, kPreviewFace);
-  if (const Status s = write_file(options.out, encode_png(image.width, image.height, image.rgba.data())); !s)
+  if (const Status s =
+          write_file(options.out, encode_png(image.width, image.height, image.rgba.data()), existing(options));
+      !s)
     return fail(kFailed, s.error());
-  fmt::print("{}: {} x {} pixels, a cross of six faces of {}\n", options.out, image.width, image.height, kPreviewFace);
+  print("{}: {} x {} pixels, a cross of six faces of {}\n", options.out, image.width, image.height, kPreviewFace);
   return kDone;
 }
 
@@ -94,21 +109,23 @@ int convert(const ConvertOptions& options) {
   const std::string extension = lower_extension(options.out);
   if (extension != ".gltf" && extension != ".glb")
     return fail(kUsage, {options.out, "meshes are written as glTF; end the name with .glb or .gltf"});
+  if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   auto level = load_level(options.in);
   if (!level) return fail(kFailed, level.error());
   for (const std::string& sentence : level->notes) note(sentence);
   scale_roots(*level, options.unit);
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
-  if (const Status s = save_level(*level, options.out, SaveOptions{options.draco_bits}); !s)
+  const Interrupt interrupt;  // until the file is in place: nothing half-written stays behind
+  if (const Status s = save_level(*level, options.out, SaveOptions{options.draco_bits, existing(options)}); !s)
     return fail(kFailed, s.error());
 
   std::size_t triangles = 0;
   for (const LevelMesh& mesh : level->meshes)
     for (const Primitive& primitive : mesh.primitives) triangles += primitive.index.size() / 3;
   std::error_code ignored;
-  fmt::print("{}: {} meshes, {} triangles, {} bytes\n", options.out, level->meshes.size(), triangles,
-             fs::file_size(options.out, ignored));
+  print("{}: {} meshes, {} triangles, {} bytes\n", options.out, level->meshes.size(), triangles,
+        fs::file_size(options.out, ignored));
   return kDone;
 }
 

@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "content/files/file_io.h"
 #include "engine/body_journal.h"
 #include "engine/journal.h"
 #include "engine/sources.h"
+#include "engine/touch_clock.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
-#include "player/record/plot.h"
 #include "player/run/frames.h"
 #include "player/run/report.h"
 #include "player/run/tool_words.h"
@@ -104,7 +103,8 @@ Outcome open_window(const RunOptions& options, Shown& shown) {
   return {};
 }
 
-// Without a working graphics library, pictures that nobody asked for are left out with a note.
+// Without a working graphics library, pictures that nobody asked for are left out with a note. A surface that is to be
+// computed on the GPU cannot be.
 Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Frames>& frames) {
   const bool asked = options.frames >= 0 || options.fps > 0.0;
   if (options.frames == 0) return {};
@@ -113,6 +113,8 @@ Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Fr
     frames = std::move(made).value();
   } else if (asked) {
     return failed(made.error());
+  } else if (run.world.field_place == FieldPlace::kCard) {
+    return failed({"--field gpu", "there is no GPU to compute on: " + made.error().message() + ", or use --field cpu"});
   } else {
     say(run, made.error().message() + " (going on without pictures)");
   }
@@ -143,23 +145,6 @@ std::vector<std::string> explain_run(RunFigures& figures) {
   return sentences;
 }
 
-Outcome write_reports(const RunFigures& figures, OutputFolder& out) {
-  std::vector<PlotRow> rows;
-  for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
-    rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source,
-                    &figures.keeper.traces()[i], figures.keeper.summaries()[i].tool});
-  const double dt = 1.0 / figures.rate;
-  const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
-  if (const Status plotted = plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds); !plotted)
-    return failed(plotted.error());
-  const std::string json = report_json(figures);
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(json.data());
-  if (const Status written = write_file(out.stage("report.json"), std::span(bytes, json.size())); !written)
-    return failed(written.error());
-  if (const Status done = out.commit(); !done) return failed(done.error());
-  return {};
-}
-
 // Options for a file that was dropped: what was said of the first level's nodes and files is not meant for it.
 RunOptions another_level(const RunOptions& options, const std::string& file) {
   RunOptions other = options;
@@ -167,25 +152,40 @@ RunOptions another_level(const RunOptions& options, const std::string& file) {
   other.probes.clear();
   other.sets.clear();
   other.record.clear();
+  other.force = false;
   other.tool_force.clear();
   other.unit = 1.0;
   if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
   return other;
 }
 
-// What a run was like, whichever clock it ran on.
+// The same level anew, beside what was written of it.
+RunOptions same_level(const RunOptions& options) {
+  RunOptions other = options;
+  other.force = false;
+  std::error_code ignored;
+  for (int n = 2; !options.record.empty() && (n == 2 || std::filesystem::exists(other.record, ignored)); ++n)
+    other.record = numbered(options.record, n).string();  // the one under way has its place soon
+  return other;
+}
+
+// What a run was like, whichever clock it ran on, and however it ended.
 struct Ran {
   std::string mode;
   std::uint64_t overruns = 0;
   std::optional<FrameFigures> drawn;
   std::size_t pictures = 0;
-  bool opened = false;  // another level takes its place
+  bool opened = false;    // another level takes its place
+  Status ended = Done{};  // what ended it early
 };
 
-Result<Ran> run_headless(const RunOptions& options, TouchLoop& loop) {
+Ran run_headless(const RunOptions& options, TouchLoop& loop) {
   Ran ran{options.realtime ? "realtime" : "lockstep"};
-  const Status status = options.realtime ? run_realtime(loop, ran.overruns) : run_lockstep(loop);
-  if (!status) return status.error();
+  try {
+    ran.ended = options.realtime ? run_realtime(loop, ran.overruns) : run_lockstep(loop);
+  } catch (const std::exception& error) {
+    ran.ended = explain(error);
+  }
   if (loop.frames) {
     ran.drawn = loop.frames->figures();
     ran.pictures = loop.frames->count();
@@ -193,7 +193,7 @@ Result<Ran> run_headless(const RunOptions& options, TouchLoop& loop) {
   return ran;
 }
 
-Result<Ran> run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
+Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
   WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
                         loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
   session.soft = loop.soft;
@@ -208,27 +208,32 @@ Result<Ran> run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, 
   const std::string field = loop.world.field_place == FieldPlace::kCard ? "gpu" : "cpu";
   session.open = [&options, &next, field](const std::string& file) -> std::optional<Error> {
     next = Prepared();
-    RunOptions other = options;
-    if (file != options.level) other = another_level(options, file);
+    RunOptions other = file == options.level ? same_level(options) : another_level(options, file);
     other.field = field;
     if (Outcome wrong = prepare(other, true, next)) return wrong->error;
     next.options = other;
     return {};
   };
-  auto figures = run_window(session);
-  if (!figures) return figures.error();
-  return Ran{"window", figures->overruns, figures->frames, figures->pictures, figures->opened};
+  try {
+    const WindowFigures figures = run_window(session);
+    return {"window", figures.overruns, figures.frames, figures.pictures, figures.opened, figures.ended};
+  } catch (const std::exception& error) {
+    Ran ran{"window"};
+    ran.ended = explain(error);
+    return ran;
+  }
 }
 
 // `shown`: the window, or null. `next`: what is to be run after this, if a window asked for it.
-Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std::optional<Prepared>& next) {
+Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, const Interrupt& interrupt,
+                     std::optional<Prepared>& next) {
   World& world = run.world;
   const double rate = world.simulation.touch_rate;
   const std::uint64_t ticks = count_ticks(options, shown, run);
 
-  const Interrupt interrupt;  // until all is in place: what is staged must not stay behind
-  auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out);
+  auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out, options.force);
   if (!out) return failed(out.error());
+  interrupt.remove_if_forced(out->staging());
   const double waiting = options.realtime || shown ? kJournalSeconds : 2.0 / rate;  // [s] of rows
   std::optional<BodyJournal> bodies;
   if (world.soft) bodies.emplace(world, static_cast<std::size_t>(waiting / world.simulation.soft_step) + 3);
@@ -237,10 +242,11 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   for (Entity probe : journal.probes())
     sources.push_back(run.replay ? "replay:" + options.replay : describe_source(world, probe));
   auto keeper = Keeper::create(world, journal.probes(), sources, out->stage("forces.csv"));
-  if (!keeper) return failed(keeper.error());
+  if (!keeper) return failed(out->at_place(keeper.error()));
+  keeper->end_when_full(interrupt);
   if (bodies) {
     auto kept = BodyKeeper::create(world, *bodies, out->stage("bodies.csv"));
-    if (!kept) return failed(kept.error());
+    if (!kept) return failed(out->at_place(kept.error()));
     keeper->keep_bodies(std::move(kept).value());
   }
   if (journal.probes().empty())
@@ -248,8 +254,9 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
   if (!options.record.empty()) {
     RecordingHeader header{world.name, rate, {}};
     for (const ProbeSummary& probe : keeper->summaries()) header.probes.push_back(probe.name);
-    auto writer = RecordingWriter::create(options.record, header);
+    auto writer = RecordingWriter::create(options.record, header, options.force);
     if (!writer) return failed(writer.error());
+    interrupt.remove_if_forced(writer->aside());
     keeper->record_to(std::move(writer).value());
   }
   std::unique_ptr<Frames> frames;
@@ -269,28 +276,37 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
     loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps)
                                          : spread_frames(ticks, options.frames < 0 ? kDefaultFrames : options.frames);
   Prepared other;
-  auto ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
-  if (!ran) return failed(ran.error());
-  if (ran->opened) next = std::move(other);
+  const Ran ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
+  soft.stop();  // where an exception left it running
+  if (ran.opened) next = std::move(other);
   if (soft.any()) world.dropped |= world.soft->dropped;
   Hash hash = journal.hash();
   hash_state(world, hash);
-  if (const Status kept = keeper->finish(); !kept) return failed(kept.error());
+  let_go(world, {journal.ticks(), 1.0 / rate, static_cast<double>(journal.ticks()) / rate});
+  // Whatever ended the run: what ran is written, and then the first error is said.
+  std::optional<Error> wrong = interrupt.reason();
+  for (const Status& status : {ran.ended, keeper->finish()})
+    if (!status && !wrong) wrong = status.error();
+  if (wrong) wrong = out->at_place(*wrong);
+  if (wrong && journal.ticks() == 0) return failed(*wrong);
 
   RunFigures figures{world,
                      schedule,
                      journal,
                      *keeper,
-                     ran->drawn ? &*ran->drawn : nullptr,
-                     ran->pictures,
-                     ran->mode,
+                     ran.drawn ? &*ran.drawn : nullptr,
+                     ran.pictures,
+                     ran.mode,
                      world.field_place == FieldPlace::kCard ? "gpu" : "cpu",
                      rate,
-                     ran->overruns,
+                     ran.overruns,
                      explain_dropped(world.dropped),
                      fmt::format("{:016x}", hash.value()),
                      loop.soft,
-                     {}};
+                     {},
+                     wrong                   ? wrong->message()
+                     : interrupt.requested() ? "interrupted"
+                                             : "done"};
   std::vector<std::string> sentences = explain_run(figures);
   for (const auto& [lost, file] :
        {std::pair(journal.lost(), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
@@ -302,9 +318,9 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, std
     figures.dropped.push_back(sentence);
   }
   figures.dropped.insert(figures.dropped.end(), run.notes.begin(), run.notes.end());
-  if (Outcome wrong = write_reports(figures, *out)) return wrong;
-  print_summary(figures, options.out.empty() ? "out/" + world.name : options.out);
-  return {};
+  if (const std::optional<Error> lost = write_reports(figures, *out); lost && !wrong) wrong = lost;
+  print_summary(figures, *out);
+  return wrong ? failed(*wrong) : Outcome();
 }
 
 }  // namespace
@@ -318,10 +334,12 @@ int run(const RunOptions& options) {
   std::optional<Prepared> next(std::in_place);
   next->options = options;
   Outcome wrong = prepare(options, windowed, *next);
+  const Interrupt interrupt;
   while (!wrong && next) {
     Prepared now = std::move(*next);
     next.reset();
-    wrong = run_prepared(now.options, now, windowed ? &shown : nullptr, next);
+    wrong = run_prepared(now.options, now, windowed ? &shown : nullptr, interrupt, next);
+    if (interrupt.requested()) next.reset();
   }
   return wrong ? fail(wrong->status, wrong->error) : kDone;
 }

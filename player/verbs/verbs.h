@@ -25,6 +25,7 @@ struct RunOptions {
   int width = 960, height = 540;  // [pixel]
   bool sized = false;             // --size was given
   std::string input;              // file of events for the window
+  bool force = false;             // replaces what an earlier run wrote
   std::string record, replay;
   unsigned threads = 0;  // 0: as many as the machine has
 };
@@ -36,7 +37,8 @@ struct ConvertOptions {
   std::string in, out;
   int draco_bits = 0;  // 0: no Draco
   bool reorder = false;
-  double unit = 1.0;  // [m] that one unit of the input is
+  double unit = 1.0;   // [m] that one unit of the input is
+  bool force = false;  // replaces what is there
 };
 int convert(const ConvertOptions& options);
 

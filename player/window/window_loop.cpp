@@ -150,7 +150,11 @@ PictureOrder WindowLoop::order(bool shown) {
 
 // What a picture brings back: figures, what the overlay's switches say, and what stands under the cursor.
 Status WindowLoop::learn(const PictureDone& done) {
-  if (!done.frame) return done.frame;
+  if (!done.failed) return done.failed;
+  if (!done.frame) {
+    --figures_.pictures;
+    return done.frame;
+  }
   figures_.frames.add(done.stats);
   state_.upload_bytes = done.stats.upload_bytes;
   state_.draw_ms = done.stats.draw_ms;
@@ -171,7 +175,7 @@ Status WindowLoop::learn(const PictureDone& done) {
   return Done{};
 }
 
-Result<WindowFigures> WindowLoop::run() {
+WindowFigures WindowLoop::run() {
   std::vector<InputEvent> events;
   // Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
   for (int i = 0; i < 3; ++i) {
@@ -209,15 +213,19 @@ Result<WindowFigures> WindowLoop::run() {
   s_.window.hide_cursor(false);
   if (!touch_->has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
   figures_.overruns = touch_->overruns();
-  if (touch_->error()) return *touch_->error();
-  if (s_.soft && s_.soft->error()) return *s_.soft->error();
-  if (!status) return status.error();
+  figures_.ended = status;
+  if (s_.soft && s_.soft->error()) figures_.ended = *s_.soft->error();
+  if (touch_->error()) figures_.ended = *touch_->error();
   return figures_;
 }
 
-Result<WindowFigures> run_window(WindowSession& session) {
+WindowFigures run_window(WindowSession& session) {
   auto renderer = Renderer::create(session.world);
-  if (!renderer) return renderer.error();
+  if (!renderer) {
+    WindowFigures none;
+    none.ended = renderer.error();
+    return none;
+  }
   WindowLoop loop(session, **renderer);
   return loop.run();
 }

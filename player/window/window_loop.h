@@ -24,7 +24,7 @@ class WindowLoop {
   WindowLoop(WindowSession& session, Renderer& renderer);
 
   // Until the window closes, the ticks are over or another level is ready.
-  Result<WindowFigures> run();
+  WindowFigures run();
 
  private:
   void handle(const InputEvent& event);

@@ -7,6 +7,7 @@
 
 #include "content/files/file_io.h"
 #include "content/files/image.h"
+#include "player/exit.h"
 #include "runtime/clock.h"
 #include "systems/visual/png.h"
 
@@ -89,7 +90,12 @@ void WindowPictures::run() {
       changed_.wait(lock, [this] { return busy_ || stop_; });
       if (!busy_) break;
     }
-    draw();
+    try {
+      draw();
+    } catch (const std::exception& error) {  // ends the run, as any failed picture does
+      done_ = PictureDone();
+      done_.failed = explain(error);
+    }
     {
       const std::lock_guard lock(mutex_);
       busy_ = false;

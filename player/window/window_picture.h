@@ -40,6 +40,7 @@ struct PictureDone {
   std::uint64_t awake_vertices = 0;
   double resolution = 1.0;  // [1] of the window's, each way
   Status screenshot = Done{}, frame = Done{};
+  Status failed = Done{};  // the renderer; nothing above holds
 };
 
 class WindowPictures {

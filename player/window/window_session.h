@@ -41,10 +41,11 @@ struct WindowFigures {
   std::uint64_t overruns = 0;
   std::size_t pictures = 0;  // staged
   bool opened = false;       // another level is ready and takes this one's place
+  Status ended = Done{};     // what kept it from drawing
 };
 
 // Returns when the window is closed, on Ctrl-C, after `ticks`, or when another level is ready. Devices have been let go
-// with zero force by then. The error says what kept it from drawing.
-Result<WindowFigures> run_window(WindowSession& session);
+// with zero force by then.
+WindowFigures run_window(WindowSession& session);
 
 }  // namespace pliant

@@ -358,10 +358,10 @@ TEST_F(Run, PicturesAreSpreadOverTheRunAndDoNotChangeIt) {
   for (const char* name : {"frame-0000.png", "frame-0001.png", "frame-0002.png"})
     EXPECT_EQ(read_text(folder / "with" / name).substr(1, 3), "PNG") << name;
   EXPECT_FALSE(fs::exists(folder / "with" / "frame-0003.png"));
-  // A shorter run into the same folder leaves no picture of the longer one behind.
+  // A shorter run that takes its place leaves no picture of the longer one behind.
   EXPECT_NE(said.out.find("forces.png, 3 pictures\n"), std::string::npos) << said.out;
-  const Said shorter = pliant(
-      {"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1", "--size", "160x90"});
+  const Said shorter = pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1",
+                               "--size", "160x90", "--force"});
   ASSERT_EQ(shorter.status, 0) << shorter.err;
   EXPECT_NE(shorter.out.find("forces.png, 1 picture\n"), std::string::npos) << shorter.out;
   EXPECT_TRUE(fs::exists(folder / "with" / "frame-0000.png"));

@@ -172,6 +172,17 @@ TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
   EXPECT_EQ(report("out/other")["level"], "other");
 }
 
+TEST_F(WindowTest, TheSameLevelAnewIsWrittenBesideWhatWasWrittenOfIt) {
+  for (const std::string close : {"9.0", "40.0"}) {  // a slow machine is still loading it when the first one closes
+    for (const char* old : {"out", "out-2", "p.rec", "p-2.rec"}) fs::remove_all(folder / old);
+    const Said said = shown({"plate.obj", "--record", "p.rec"}, "0.5,key,R\n" + close + ",close,\n");
+    ASSERT_EQ(said.status, 0) << said.err;
+    if (fs::exists(folder / "out-2")) break;
+  }
+  for (const char* file : {"out/report.json", "out-2/report.json", "p.rec", "p-2.rec"})
+    EXPECT_TRUE(fs::exists(folder / file)) << file;
+}
+
 TEST_F(WindowTest, EventsOfTheDisplayItselfMoveAndCloseIt) {
   if (!there("xdotool")) GTEST_SKIP() << "xdotool is missing; install it to try the window with real events";
   write_text(folder / "hand.sh", "cd " + quoted(folder.string()) + "\n" + quoted(PLIANT_BINARY) +

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <mutex>
 #include <set>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,17 @@ TEST(ParallelFor, CutsTheSamePartsWhateverTheThreadCount) {
   const auto alone = parts(1);
   EXPECT_EQ(alone.size(), 8u);
   EXPECT_EQ(parts(4), alone);
+  set_thread_count(0);
+}
+
+TEST(ParallelFor, ThrowsHereWhatABodyThrows) {
+  for (const unsigned threads : {1u, 4u}) {
+    set_thread_count(threads);
+    const auto body = [](std::size_t begin, std::size_t) {
+      if (begin >= 32) throw std::runtime_error("no more");
+    };
+    EXPECT_THROW(parallel_for(64, 1, body), std::runtime_error) << threads;
+  }
   set_thread_count(0);
 }
 
