@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "content/keys/extension_table.h"
 #include "player/exit.h"
 #include "player/record/output_folder.h"
 #include "player/study/study_linearisation.h"
@@ -49,8 +52,13 @@ int study(const StudyOptions& options) {
     found = true;
     status = std::max(status, run_one(known, options));
   }
-  if (!found)
-    return fail(kUsage, {"study", "unknown study '" + options.name + "'; `pliant study --list` says which there are"});
+  if (!found) {
+    std::vector<std::string> names{"all"};
+    for (const Study& known : kStudies) names.push_back(known.name);
+    const std::string near = suggestion(options.name, names);
+    return fail(kUsage, {"study", "unknown study '" + options.name + "'" +
+                                      (near.empty() ? "; `pliant study --list` says which there are" : near)});
+  }
   return status;
 }
 
