@@ -210,13 +210,14 @@ TEST_F(WindowTest, TheMouseTakesAToolFromItsScriptAndLeavesItWhereItIsLetGo) {
   EXPECT_LT(distance(let_go, left), 1e-6) << "its script leads it on";
   double fastest = 0;
   for (std::size_t i = 1; i < forces.rows.size(); ++i) {
+    if (forces.number(i, "time_s") > 2.4) break;  // the pointer itself jumps later
     const double dt = forces.number(i, "time_s") - forces.number(i - 1, "time_s");
     const auto at = [&](std::size_t k) {
       return std::array{forces.number(k, "x"), forces.number(k, "y"), forces.number(k, "z")};
     };
     fastest = std::max(fastest, distance(at(i), at(i - 1)) / dt);
   }
-  EXPECT_LT(fastest, 2.0) << "[m/s]: it jumps";
+  EXPECT_LT(fastest, 0.5) << "[m/s]: it jumps where it is taken";
   expect_no_force_at_the_end();
 }
 
