@@ -14,6 +14,9 @@ namespace pliant {
 // pointer.
 Result<Level> load_level(const std::filesystem::path& path);
 
+// The level's own sentence on what it shows (Level::about), without its meshes. Only .gltf and .glb have one.
+Result<std::string> read_about(const std::filesystem::path& path);
+
 struct SaveOptions {
   int draco_bits = 0;  // 0: no Draco; else position quantisation bits (8..24)
   Existing existing = Existing::kReplace;

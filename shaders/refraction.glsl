@@ -12,13 +12,24 @@ struct Through {
   vec3 absorption;   // [1/m] Beer's law
 };
 
-// What stands in the picture where world point `p` would, farther than depth `nearest`; a: how much of it.
+// What stands in the picture where world point `p` would, farther than depth `nearest`; a: how much of it. Each of the
+// four pixels around is tested by its own depth: filtered colour with one depth for all would draw the outlines of what
+// stands in front of the body, as dotted lines.
 vec4 standing_behind(vec3 p, float nearest) {
   if (!on(kBehind)) return vec4(0.0);
   vec4 clip = view_projection * vec4(p, 1.0);
   vec2 uv = 0.5 + 0.5 * clip.xy / max(clip.w, 1e-6);
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec4(0.0);
-  return texture(behind_depth_map, uv).r > nearest ? texture(behind_map, uv) : vec4(0.0);
+  ivec2 size = textureSize(behind_map, 0);
+  vec2 place = uv * vec2(size) - 0.5, share = fract(place);
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 corner = ivec2(i & 1, i >> 1), texel = clamp(ivec2(floor(place)) + corner, ivec2(0), size - 1);
+    vec2 weight = mix(1.0 - share, share, vec2(corner));
+    if (texelFetch(behind_depth_map, texel, 0).r > nearest)
+      sum += weight.x * weight.y * texelFetch(behind_map, texel, 0);
+  }
+  return sum;
 }
 
 vec3 seen_through(Surface s, Through t, float depth) {

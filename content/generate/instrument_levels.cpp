@@ -96,6 +96,7 @@ std::vector<Waypoint> finger_path() {
 Level stack() {
   Level level;
   level.name = "stack";
+  level.about = "A stylus presses on a tower of wooden boxes, then pushes the topmost one off.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f),
                      wood = add_material(level, "wood", kWood, 0.6f);
   add_box(level, "table", {0.16, 0.006, 0.11}, {0.01, -0.006, 0.0}, 0.0, stone).rigid_body->fixed = true;
@@ -129,6 +130,7 @@ Level stack() {
 Level instrument() {
   Level level;
   level.name = "instrument";
+  level.about = "A rigid stylus and a probe press and stroke one soft organ.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
   LevelNode& body = add_soft(level, "organ", lying_organ, {{-0.13f, -0.07f, -0.10f}, {0.14f, 0.07f, 0.11f}}, 0.006,
                              0.021, 8e3, add_material(level, "liver", kLiver, 0.3f));

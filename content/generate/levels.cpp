@@ -145,6 +145,7 @@ Level three_probes(const Detail& detail) {
   const LatticeSphere surface = cover(solid, detail.organ_coarse, detail.organ_doublings);
   Level level;
   level.name = "three_probes";
+  level.about = "The demo: three probes press and slide on a soft organ.";
   level.images = {organ_color(surface, detail.color_size), organ_normals(surface, solid, detail.normal_size)};
   Material flesh;
   flesh.name = "wet flesh";
@@ -176,6 +177,7 @@ Level inclusion(const Detail& detail) {
   const Solid solid = pad();
   Level level;
   level.name = "inclusion";
+  level.about = "Two fingers search a pad for a hard spot that cannot be seen, only felt.";
   Material skin;
   skin.name = "skin";
   skin.base_color = vec4(0.60f, 0.33f, 0.25f, 1.0f);
@@ -207,6 +209,7 @@ Level inclusion(const Detail& detail) {
 Level glass_heart(const Detail& detail) {
   Level level;
   level.name = "glass_heart";
+  level.about = "A heart of soft glass: what is seen through it bends with the dents of three probes.";
   Material glass;
   glass.name = "soft glass";
   glass.base_color = vec4(1);
@@ -230,6 +233,7 @@ Level glass_heart(const Detail& detail) {
 Level chrome_cushion(const Detail& detail) {
   Level level;
   level.name = "chrome_cushion";
+  level.about = "A chrome cushion: what it mirrors bends with the dents of two probes.";
   Material chrome;
   chrome.name = "chrome";
   chrome.base_color = vec4(0.92f, 0.93f, 0.95f, 1.0f);
@@ -248,6 +252,7 @@ Level chrome_cushion(const Detail& detail) {
 Level turning_ball(const Detail& detail) {
   Level level;
   level.name = "turning_ball";
+  level.about = "A ball with ridges on a turntable: they pass under a finger that stays where it is.";
   Material clay;
   clay.name = "soft clay";
   clay.base_color = vec4(0.62f, 0.28f, 0.20f, 1.0f);

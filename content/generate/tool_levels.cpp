@@ -62,6 +62,7 @@ Status write_level(const Level& level, const std::vector<Waypoint>& path, const 
 Level hand() {
   Level level;
   level.name = "hand";
+  level.about = "A soft hand presses and strokes a soft organ, sticks, slips and rolls on it.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
   const std::int32_t liver = add_material(level, "liver", kLiver, 0.3f);
   // The organ lies on its back: its groove looks up.
@@ -79,6 +80,7 @@ Level hand() {
 Level hand_crowd() {
   Level level;
   level.name = "hand_crowd";
+  level.about = "A soft hand among soft bodies: a cube and a ring on a tray, two balls in cups.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
   add_slab(level, "tray", {0.17, 0.006, 0.12}, {0.0, -0.006, 0.0}, stone);
   add_slab(level, "rim_back", {0.182, 0.014, 0.006}, {0.0, 0.002, -0.126}, stone);
@@ -112,6 +114,7 @@ Level hand_crowd() {
 Level hand_squeeze() {
   Level level;
   level.name = "hand_squeeze";
+  level.about = "A soft hand is pushed between two walls until its fingers touch one another.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
   add_fixed(level, "table", {0.16, 0.006, 0.15}, {0.0, -0.041, -0.01}, 0.0, stone);
   add_fixed(level, "wall_left", {0.006, 0.045, 0.060}, {-0.054, 0.010, -0.070}, -17.5, stone);

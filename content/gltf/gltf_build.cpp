@@ -26,6 +26,7 @@ class Builder {
 
   Result<SourceDocument> build() {
     json_["asset"] = {{"version", "2.0"}, {"generator", "pliant"}};
+    if (!level_.about.empty()) json_["asset"]["extras"] = {{"about", level_.about}};
     images();
     for (const Material& material : level_.materials) json_["materials"].push_back(material_json(material));
     for (const LevelMesh& mesh : level_.meshes)

@@ -49,6 +49,8 @@ T value_of(const Json& object, const char* key, T otherwise) {
 }
 // object.extensions[name], or null.
 const Json* extension_of(const Json& object, const char* name);
+// asset.extras.about, or "": what the level shows, in its maker's words.
+std::string about_of(const Json& root);
 // A token as part of a JSON pointer.
 std::string escaped(const std::string& token);
 

@@ -190,12 +190,27 @@ Status fill(SourceDocument& document, Level& level) {
   for (std::string& note : level.notes)
     if (once.size() < 100 && std::find(once.begin(), once.end(), note) == once.end()) once.push_back(std::move(note));
   level.notes = std::move(once);
+  level.about = about_of(document.json);
   document.nodes_as_read = level.nodes;
   document.mesh_count = level.meshes.size();
   return Done{};
 }
 
 }  // namespace
+
+std::string about_of(const Json& root) {
+  const Json none = Json::object();
+  const Json asset = value_of(root, "asset", none), extras = asset.is_object() ? value_of(asset, "extras", none) : none;
+  if (!extras.is_object() || !extras.contains("about") || !extras["about"].is_string()) return {};
+  return extras["about"].get<std::string>();
+}
+
+Result<std::string> read_about(const fs::path& path) {
+  Findings findings;
+  const std::optional<SourceDocument> document = open_gltf(path, findings);
+  if (!document) return Error{path.string(), "cannot be read; `pliant validate` says why"};
+  return about_of(document->json);
+}
 
 Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, const fs::path& folder) {
   Findings findings;

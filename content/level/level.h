@@ -90,7 +90,8 @@ struct LevelEnvironment {  // PLIANT_environment
 struct SourceDocument;  // the parsed glTF, kept so that saving loses nothing
 
 struct Level {
-  std::string name;  // file name without extension
+  std::string name;   // file name without extension
+  std::string about;  // what it shows, in a sentence: asset.extras.about; "": not said
   std::filesystem::path path;
   std::vector<LevelNode> nodes;  // parents stand before children
   std::vector<LevelMesh> meshes;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
 constexpr std::size_t kMostRows = 4'000'000;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, as spreadsheets write it
 constexpr std::string_view kPositions = "time_s,x,y,z", kPoses = "time_s,x,y,z,qw,qx,qy,qz";
 
 std::string_view trim(std::string_view s) {
@@ -24,6 +25,13 @@ std::string_view take_line(std::string_view& text) {
   const std::string_view line = text.substr(0, end);
   text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   return trim(line);
+}
+
+// The names of a header with nothing around them: "time_s, x" is "time_s,x".
+std::string without_blanks(std::string_view line) {
+  std::string names(line);
+  std::erase_if(names, [](char c) { return c == ' ' || c == '\t'; });
+  return names;
 }
 
 // Exactly `count` finite numbers between commas.
@@ -44,12 +52,14 @@ bool parse_row(std::string_view line, double* values, int count) {
 Result<Path> parse_script(std::string_view text, const std::string& where) {
   Path path;
   int columns = 0;
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view line = take_line(text);
     const auto error = [&](const char* what) { return Error{where + ":" + std::to_string(number), what}; };
     if (line.empty() || line.front() == '#') continue;
     if (columns == 0) {
-      columns = line == kPositions ? 4 : line == kPoses ? 8 : 0;
+      const std::string names = without_blanks(line);
+      columns = names == kPositions ? 4 : names == kPoses ? 8 : 0;
       if (columns == 0)
         return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`; begin the script with one");
       continue;

@@ -11,7 +11,8 @@ namespace pliant {
 
 // Reads `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz` (a header line with exactly these names, then rows of numbers):
 // seconds, strictly ascending; metres, world frame; rotation to world, normalised here. Lines that start with # and
-// empty lines are skipped. At most 64 MiB and 4,000,000 rows. Errors name the file and the line.
+// empty lines are skipped; a UTF-8 byte order mark, blanks around names and numbers, and CRLF are read over. At most 64
+// MiB and 4,000,000 rows. Errors name the file and the line.
 Result<Path> load_script(const std::filesystem::path& path);
 
 // The same from text; `where` stands in front of errors.

@@ -1,7 +1,10 @@
 #include "player/study/study.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "content/keys/extension_table.h"
 #include "player/exit.h"
 #include "player/record/output_folder.h"
 #include "player/standard_streams.h"
@@ -47,10 +50,16 @@ int study(const StudyOptions& options) {
   if (options.name.empty())
     return fail(kUsage, {"study", "say which one, or all; `pliant study --list` says which there are"});
   std::vector<const Study*> chosen;
-  for (const Study& known : kStudies)
+  std::vector<std::string> names{"all"};
+  for (const Study& known : kStudies) {
+    names.push_back(known.name);
     if (options.name == "all" || options.name == known.name) chosen.push_back(&known);
-  if (chosen.empty())
-    return fail(kUsage, {"study", "unknown study '" + options.name + "'; `pliant study --list` says which there are"});
+  }
+  if (chosen.empty()) {
+    const std::string near = suggestion(options.name, names);
+    return fail(kUsage, {"study", "unknown study '" + options.name + "'" +
+                                      (near.empty() ? "; `pliant study --list` says which there are" : near)});
+  }
   return run_all(chosen, options);
 }
 

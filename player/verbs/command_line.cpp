@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "content/keys/extension_table.h"
 #include "player/exit.h"
 #include "player/standard_streams.h"
 #include "player/study/study.h"
@@ -72,7 +73,9 @@ void add_unit(CLI::App* verb, double& unit, const char* what) {
 
 void add_run(CLI::App& app, RunOptions& run) {
   CLI::App* verb = app.add_subcommand("run", "run a level or touch a bare mesh; writes forces, plot, pictures, report");
-  verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)");
+  CLI::Option* level =
+      verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)");
+  verb->add_flag("--list", run.list, "which levels ship, and what they show")->excludes(level);
   verb->add_option("--probe", run.probes, "NAME=SOURCE: script:FILE.csv, orbit, mouse, device:ID; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
@@ -165,6 +168,21 @@ void add_not_yet(CLI::App& app, const char* name, const char* what, const char* 
   verb->footer(footer);
 }
 
+// The option that is not known and the one that was probably meant; "" where none is near.
+std::string nearest_option(const CLI::App& app) {
+  std::vector<std::string> known;
+  for (const CLI::App* verb : app.get_subcommands())
+    for (const CLI::Option* option : verb->get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  for (const std::string& argument : app.remaining(true)) {
+    if (!argument.starts_with("--")) continue;
+    const std::string option = argument.substr(0, argument.find('='));
+    if (const std::string near = suggestion(option, known); !near.empty())
+      return "unknown option '" + option + "'" + near;
+  }
+  return {};
+}
+
 // CLI11 says some things over several lines; ours are one sentence that says where to read more.
 Error usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string where = "arguments", help = "pliant --help";
@@ -172,10 +190,21 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error) {
     where = verb->get_name();
     help = "pliant " + where + " --help";
   }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+    const std::string near = nearest_option(app);
+    if (!near.empty()) return {where, near};
+  }
   std::string what = error.what();
   what = what.substr(0, what.find('\n'));
   while (!what.empty() && (what.back() == '.' || what.back() == ' ')) what.pop_back();
   return {where, what + "; see `" + help + "`"};
+}
+
+Error unknown_verb(const std::string& word, const std::vector<CLI::App*>& verbs) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
+  const std::string near = suggestion(word, names);
+  return {"arguments", "unknown verb '" + word + "'" + (near.empty() ? "; see `pliant --help`" : near)};
 }
 
 int parse_and_run(int argc, const char* const* argv) {
@@ -200,7 +229,7 @@ int parse_and_run(int argc, const char* const* argv) {
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const auto is_asked = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && std::none_of(verbs.begin(), verbs.end(), is_asked))
-    return fail(kUsage, {"arguments", std::string("unknown verb '") + argv[1] + "'; see `pliant --help`"});
+    return fail(kUsage, unknown_verb(argv[1], verbs));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -208,7 +237,7 @@ int parse_and_run(int argc, const char* const* argv) {
     return fail(kUsage, usage_error(app, error));
   }
   const std::string name = app.get_subcommands().front()->get_name();
-  if (name == "run") return run(run_options);
+  if (name == "run") return run_options.list ? list_levels() : run(run_options);
   if (name == "inspect") return inspect(inspected, inspect_json);
   if (name == "convert") return convert(conversion);
   if (name == "validate") return validate(validated);

@@ -1,6 +1,9 @@
 #include "player/verbs/content_folder.h"
 
+#include <algorithm>
 #include <cstdlib>
+
+#include "content/keys/extension_table.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
@@ -16,6 +19,15 @@ fs::path content_folder() {
   return fs::is_directory(installed, no) ? installed : fs::path(PLIANT_CONTENT_DIR);
 }
 
+std::vector<fs::path> shipped_levels() {
+  std::vector<fs::path> levels;
+  std::error_code no;
+  for (const fs::directory_entry& entry : fs::directory_iterator(content_folder() / "levels", no))
+    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") levels.push_back(entry.path());
+  std::sort(levels.begin(), levels.end());
+  return levels;
+}
+
 Result<fs::path> find_level(const std::string& argument) {
   std::error_code no;
   if (fs::is_regular_file(argument, no)) return fs::path(argument);
@@ -29,7 +41,11 @@ Result<fs::path> find_level(const std::string& argument) {
     if (argument.empty())
       return Error{levels.string(), "the demo level is not there; set PLIANT_CONTENT to the folder that holds levels/"};
   }
-  return Error{argument, "there is no such file and no shipped level of that name; check the path"};
+  std::vector<std::string> names;
+  for (const fs::path& level : shipped_levels()) names.push_back(level.stem().string());
+  const std::string near = name.find('/') == std::string::npos ? suggestion(fs::path(name).stem().string(), names) : "";
+  return Error{argument, "there is no such file and no shipped level of that name" +
+                             (near.empty() ? "; check the path, or see `pliant run --list`" : near)};
 }
 
 }  // namespace pliant

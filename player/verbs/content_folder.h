@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "runtime/result.h"
 
@@ -10,6 +11,9 @@ namespace pliant {
 
 // PLIANT_CONTENT from the environment, else share/pliant/content beside an installed command, else the source tree's.
 std::filesystem::path content_folder();
+
+// The levels that ship, by name.
+std::vector<std::filesystem::path> shipped_levels();
 
 // A file that exists, or the name of a shipped level; empty means the demo level `three_probes`.
 Result<std::filesystem::path> find_level(const std::string& argument);

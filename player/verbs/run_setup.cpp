@@ -12,6 +12,7 @@
 #include "player/verbs/content_folder.h"
 #include "player/verbs/unit.h"
 #include "systems/device/hands.h"
+#include "systems/device/repeat.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/touch/local_model.h"
@@ -36,7 +37,7 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
 }
 
 // In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets
-// one; not where there is a tool, which --probe TOOL=mouse gives to it.
+// one; not where there is a tool, which it takes hold of (window_carrier.h).
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
     if (node.handle || (node.device && node.device->driver == DriverKind::kMouse)) return {};
@@ -176,6 +177,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
+  if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (const Status status = prepare_system(run.world); !status) return failed(status.error());

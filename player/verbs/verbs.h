@@ -9,6 +9,7 @@ namespace pliant {
 
 struct RunOptions {
   double unit = 1.0;                // [m] that one unit of a bare mesh is
+  bool list = false;                // only say which levels ship
   std::string level;                // file, name of a shipped level, or empty: the demo level
   std::vector<std::string> probes;  // NAME=SOURCE
   std::vector<std::string> sets;    // KEY=VALUE
@@ -30,6 +31,7 @@ struct RunOptions {
   unsigned threads = 0;  // 0: as many as the machine has
 };
 int run(const RunOptions& options);
+int list_levels();
 
 int inspect(const std::string& file, bool json);
 

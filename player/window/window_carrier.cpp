@@ -15,20 +15,31 @@ constexpr double kLeastAlong = 0.05;  // [1] cosine: rays that graze the plane m
 }  // namespace
 
 std::optional<Carrier> Carrier::of(World& world) {
+  std::optional<Carrier> led;
   for (auto [entity, handle] : world.registry.view<Handle6>()) {
     const Entity named = handle.device.empty() ? entity : find_by_name(world, handle.device);
     HapticDevice* device = named == kNoEntity ? nullptr : world.registry.find<HapticDevice>(named);
-    if (!device || device->driver != DriverKind::kMouse) continue;
+    if (!device || (device->driver != DriverKind::kMouse && !device->path.valid())) continue;
     Carrier carrier;
     carrier.tool_ = entity;
+    carrier.device_ = named;
+    carrier.led_ = device->driver != DriverKind::kMouse;
+    if (carrier.led_ && led) continue;
     carrier.step_ = kStepShare * std::max(1e-3, static_cast<double>(drawn_box(world, true).diagonal()));
     if (const Pose* pose = world.registry.find<Pose>(entity)) {
       carrier.position_ = carrier.wanted_ = pose->position;
-      device->rotation = pose->rotation;
+      if (!carrier.led_) device->rotation = pose->rotation;
     }
-    return carrier;
+    if (!carrier.led_) return carrier;
+    led = carrier;
   }
-  return std::nullopt;
+  return led;
+}
+
+void Carrier::grab(const dvec3& point, const dvec3& device) {
+  held_ = point;
+  if (led_) position_ = wanted_ = device;
+  led_ = false;
 }
 
 void Carrier::follow(const Ray& ray, const Viewpoint& view) {

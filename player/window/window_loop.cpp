@@ -54,11 +54,14 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     const Probe* probe = session.world.registry.find<Probe>(session.journal.probes()[i]);
     state_.probes.push_back({summary.name, summary.source, probe ? probe->color : kToolColor, {}});
     if (summary.source == "mouse") mouse_probe_ = i;
+    if (carrier_ && session.journal.probes()[i] == carrier_->tool()) carried_ = i;
   }
   mouse_.x = 0.5 * session.window.width();
   mouse_.y = 0.5 * session.window.height();
   probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
   if (radius_ || carrier_) add_mouse(session.world, probe_at_);
+  if (carried_ && carrier_->taken() == kNoEntity)
+    say("take hold of `" + state_.probes[*carried_].name + "` with the left button to carry it yourself", false);
 }
 
 Ray WindowLoop::ray() const {
@@ -79,7 +82,7 @@ void WindowLoop::point(double dt) {
     probe_at_ = pointer_.update(dt);
   }
   if (pictures_.seconds() < kHungPicture) {
-    s_.world.mouse->samples.write() = {probe_at_, radius_ && pointer_.free()};
+    s_.world.mouse->samples.write() = {probe_at_, radius_ && pointer_.free(), carrier_ ? carrier_->taken() : kNoEntity};
     s_.world.mouse->samples.publish();
   }
   state_.cursor = radius_ && pointed_ && !looks_around();
@@ -92,7 +95,10 @@ void WindowLoop::point(double dt) {
 
 void WindowLoop::keep() {
   s_.keeper.keep(s_.journal);
-  for (const TickRow& row : s_.keeper.latest()) state_.probes[row.probe].history.add(row);
+  for (const TickRow& row : s_.keeper.latest()) {
+    state_.probes[row.probe].history.add(row);
+    if (row.probe == carried_) tool_at_ = row.device_position;
+  }
 }
 
 // Pictures that were asked for; a slow card takes fewer.

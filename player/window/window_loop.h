@@ -55,10 +55,11 @@ class WindowLoop {
   RenderOptions options_, ordered_options_;  // as wanted now, and for the picture under way
   OverlayState state_;
   OverlayMouse mouse_;
-  std::array<bool, 3> down_{};  // buttons now; a click between two pictures is in mouse_ alone
-  float tint_;                  // [m] height that is coloured fully, where heights are
-  dvec3 probe_at_{0};           // [m] where the mouse has its probe or its tool
-  std::optional<std::size_t> mouse_probe_;
+  std::array<bool, 3> down_{};                        // buttons now; a click between two pictures is in mouse_ alone
+  float tint_;                                        // [m] height that is coloured fully, where heights are
+  dvec3 probe_at_{0};                                 // [m] where the mouse has its probe or its tool
+  dvec3 tool_at_{0};                                  // [m] world, where the device of the carried tool was last
+  std::optional<std::size_t> mouse_probe_, carried_;  // numbers in the journal
   std::optional<TouchClock> touch_;
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;

@@ -66,7 +66,7 @@ void WindowLoop::decide(const std::optional<Picked>& seen) {
     pointer_.hold(true);
   } else if (carrier_ && seen && seen->object == carrier_->tool()) {
     drag_ = Drag::kCarry;
-    carrier_->grab(seen->point);
+    carrier_->grab(seen->point, tool_at_);
   } else {
     drag_ = Drag::kOrbit;
   }

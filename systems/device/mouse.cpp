@@ -4,6 +4,19 @@
 
 namespace pliant {
 
+namespace {
+
+// From where its path has led it, so that it does not jump.
+void take_over(World& world, Entity taken, MouseInput& mouse) {
+  HapticDevice* device = taken == kNoEntity ? nullptr : world.registry.find<HapticDevice>(taken);
+  if (!device || device->driver == DriverKind::kMouse) return;
+  device->driver = DriverKind::kMouse;
+  device->path = {};
+  mouse.position = device->position;
+}
+
+}  // namespace
+
 void read_mouse(World& world, Tick tick) {
   if (!world.mouse) return;
   MouseInput& mouse = *world.mouse;
@@ -13,6 +26,7 @@ void read_mouse(World& world, Tick tick) {
     mouse.lasts = mouse.heard ? std::clamp(tick.time - mouse.heard_at, tick.dt, kMouseSlowestFrame) : tick.dt;
     mouse.heard = true;
     mouse.heard_at = tick.time;
+    take_over(world, mouse.samples.read().takes, mouse);
     mouse.to = mouse.samples.read().position;
     const bool free_now = mouse.samples.read().free;
     free = free_now && mouse.free;  // the way out of a press is travelled: force acts along it

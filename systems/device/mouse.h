@@ -12,8 +12,9 @@ inline constexpr double kMouseSlowestFrame = 0.1;  // [s] a pose that came later
 
 // Where the pointing hand wants the probe. Written by the visual clock every frame, also when nothing moved.
 struct MouseSample {
-  dvec3 position{0};  // [m] world
-  bool free = true;   // it hovers: it is put there, and does not travel through whatever lies on the way
+  dvec3 position{0};         // [m] world
+  bool free = true;          // it hovers: it is put there, and does not travel through whatever lies on the way
+  Entity takes = kNoEntity;  // a device that the hand has taken hold of: script or orbit lead it no longer
 };
 
 // One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at

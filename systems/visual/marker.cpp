@@ -14,6 +14,7 @@ constexpr float kSmallestBall = 0.012f;  // radius; smaller probes would not be 
 constexpr float kRodLength = 0.16f;
 constexpr float kRodRadius = 0.42f;       // of the ball's radius
 constexpr float kLean = 0.7f;             // [rad] of the rod from the way out
+constexpr float kSteadyLean = 0.1f;       // [1] below, the rod leans less, lest it swings round
 constexpr float kCovered = 0.93f;         // [1] cosine: an arrow this near to the stylus is hidden by it
 constexpr float kArrowPerNewton = 0.10f;  // [1/N]
 constexpr float kLongestArrow = 0.30f;
@@ -152,19 +153,19 @@ void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const V
   const vec3 out = outward(probe);
   if (probe.length > 0 || !probe.points.empty()) return lay_out_tips(probe, radius);
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
-  // The stylus leans away from the arrow, clockwise as seen, so that both can be told apart; elsewhere where it would
-  // cover the arrow of one of several contacts.
+  // The stylus leans away from the arrow, clockwise as seen, and upwards the more the arrow points at the eye, so that
+  // both can be told apart; elsewhere where it would cover the arrow of one of several contacts.
   const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye)), right = cross(forward, out);
-  const auto leaning = [&](vec3 to) {
-    return normalize(std::cos(kLean) * out + std::sin(kLean) * to + 0.2f * vec3(viewpoint.up));
-  };
+  const vec3 up = normalize(vec3(viewpoint.up)), both = right + (1.0f - length(right)) * up;
+  const vec3 aside = both / std::max(length(both), kSteadyLean);
+  const auto leaning = [&](vec3 to) { return normalize(std::cos(kLean) * out + std::sin(kLean) * to + 0.2f * up); };
   const auto covers = [&](vec3 lean) {
     for (std::uint32_t i = 0; i < probe.contact_count && probe.contact_count > 1; ++i)
       if (dot(lean, vec3(probe.contacts[i].force)) > kCovered * length(vec3(probe.contacts[i].force))) return true;
     return false;
   };
-  vec3 lean = leaning(right);
-  for (const vec3 to : {-right, forward, -forward})
+  vec3 lean = leaning(aside);
+  for (const vec3 to : {-aside, forward, -forward})
     if (covers(lean)) lean = leaning(to);
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
 }

@@ -188,6 +188,18 @@ TEST(Script, ReadsPositionsAndPosesWithCommentsAndEitherLineEnd) {
   EXPECT_EQ(positions->rows[1].time, 0.5);
   EXPECT_EQ(positions->rows[1].position, dvec3(-1e-3, 0, 0));
   EXPECT_FALSE(positions->repeats);
+  // As a spreadsheet writes it, and as people type it.
+  for (const char* text :
+       {"\xEF\xBB\xBFtime_s,x,y,z\r\n0,1,2,3\r\n0.5,-0.001,0,0\r\n", "time_s, x, y, z\n0, 1, 2, 3\n0.5, -0.001, 0, 0\n",
+        "\xEF\xBB\xBF# sweep\r\n time_s ,\tx , y, z \r\n 0 ,\t1, 2 , 3 \r\n0.5,-1e-3,0,0"}) {
+    const Result<Path> same = parse_script(text, "s.csv");
+    ASSERT_TRUE(same.ok()) << text << same.error().message();
+    ASSERT_EQ(same->rows.size(), 2u) << text;
+    EXPECT_EQ(same->rows[0].position, dvec3(1, 2, 3)) << text;
+    EXPECT_EQ(same->rows[1].time, 0.5) << text;
+    EXPECT_EQ(same->rows[1].position, dvec3(-1e-3, 0, 0)) << text;
+  }
+  EXPECT_TRUE(parse_script("time_s, x, y, z, qw, qx, qy, qz\n0, 0, 0, 0, 1, 0, 0, 0", "s.csv")->turns);
   const Result<Path> poses = parse_script("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,2,0", "s.csv");
   ASSERT_TRUE(poses.ok());
   EXPECT_EQ(poses->rows[0].rotation, dquat(0, 0, 1, 0));

@@ -46,6 +46,32 @@ TEST(Mouse, HoveringToTheOtherSideOfABodyDoesNotTouchItOnTheWay) {
   EXPECT_NEAR(s.stage.read(s.probe).position.y, -0.12, 1e-12);
 }
 
+TEST(Mouse, WhatAScriptLeadsIsTakenOverWhereItIsAndNotBefore) {
+  MouseScene s;
+  HapticDevice& device = s.stage.device(s.probe);
+  device.driver = DriverKind::kScript;
+  device.status = DeviceStatus::kReady;
+  device.path = s.stage.world.paths.add({{{0, {0, 0.2, 0}}, {1, {0.1, 0.2, 0}}}, false, false});
+  for (int frame = 0; frame < 10; ++frame) {
+    s.say({0, 0.3, 0}, false);
+    s.run(16);
+  }
+  EXPECT_NEAR(device.position.x, 0.0159, 1e-9) << "the script leads it on";
+  EXPECT_EQ(device.position.y, 0.2);
+  dvec3 before = device.position;
+  for (int frame = 0; frame < 10; ++frame) {
+    s.stage.world.mouse->samples.write() = {{0.02, 0.2, 0}, false, s.stage.world.registry.get<Probe>(s.probe).device};
+    s.stage.world.mouse->samples.publish();
+    for (int i = 0; i < 16; ++i) {
+      s.run(1);
+      EXPECT_LT(length(device.position - before), 1e-3) << "it jumps";
+      before = device.position;
+    }
+  }
+  EXPECT_EQ(device.driver, DriverKind::kMouse);
+  EXPECT_LT(length(device.position - dvec3(0.02, 0.2, 0)), 1e-9) << "it does not follow the mouse";
+}
+
 TEST(Mouse, APressTravelsBetweenFramesAndIsFelt) {
   MouseScene s;
   s.say({0, 0.102, 0}, true);

@@ -64,6 +64,40 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   for (const char* verb : {"inspect", "validate"}) expect_refused({verb, ""}, 2, "empty");
 }
 
+TEST_F(Arguments, WhatIsMisspelledIsAnsweredWithWhatWasMeant) {
+  expect_refused({"run", "three_probe"}, 1, "did you mean three_probes?");
+  expect_refused({"run", "glass_hart.glb"}, 1, "did you mean glass_heart?");
+  expect_refused({"inspect", "hnd"}, 1, "did you mean hand?");
+  expect_refused({"run", "zzzzzzzzz"}, 1, "pliant run --list");
+  expect_refused({"inspct", "x"}, 2, "did you mean inspect?");
+  expect_refused({"run", "--lockstop"}, 2, "unknown option '--lockstop'; did you mean --lockstep?");
+  expect_refused({"run", "--frame=2"}, 2, "unknown option '--frame'; did you mean --frames?");
+  expect_refused({"study", "linearization"}, 2, "did you mean linearisation?");
+}
+
+TEST_F(Arguments, ListHasALineOnEveryLevelThatShips) {
+  const Said said = pliant({"run", "--list"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  std::map<std::string, std::string> about;
+  std::istringstream lines(said.out);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t gap = line.find(' ');
+    ASSERT_NE(gap, std::string::npos) << line;
+    about[line.substr(0, gap)] = line.substr(std::min(line.find_first_not_of(' ', gap), line.size()));
+  }
+  std::size_t levels = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(PLIANT_SOURCE_DIR) / "content" / "levels")) {
+    if (entry.path().extension() != ".glb" && entry.path().extension() != ".gltf") continue;
+    ++levels;
+    const std::string name = entry.path().stem().string();
+    EXPECT_GT(about[name].size(), 20u) << name << " does not say what it shows (asset.extras.about)";
+    EXPECT_LT(about[name].size(), 100u) << name << " says more than fits on a line";
+  }
+  EXPECT_GE(levels, 11u);
+  EXPECT_EQ(about.size(), levels);
+  expect_refused({"run", "hand", "--list"}, 2, "--list");
+}
+
 TEST_F(Arguments, VerbsThatAreNotThereYetSaySo) {
   expect_refused({"study", "colours"}, 2, "--list");
   expect_refused({"study"}, 2, "--list");

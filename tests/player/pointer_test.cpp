@@ -145,6 +145,27 @@ TEST(Carrier, ExistsOnlyForAToolOnTheMouseAndBeginsWhereTheToolStands) {
   EXPECT_EQ(scene.world.registry.get<HapticDevice>(scene.device).rotation, glm::angleAxis(0.3, dvec3(0, 1, 0)));
 }
 
+TEST(Carrier, AToolOnAScriptIsTheMousesFromTheFirstHoldOnAndFromWhereItsDeviceIs) {
+  ToolScene scene;
+  HapticDevice& device = scene.world.registry.get<HapticDevice>(scene.device);
+  device.driver = DriverKind::kScript;
+  EXPECT_FALSE(Carrier::of(scene.world)) << "nothing leads it";
+  device.path = scene.world.paths.add({{{0, {0.1, 0, 0}}, {1, {0.5, 0, 0}}}, false, false});
+  std::optional<Carrier> carrier = Carrier::of(scene.world);
+  ASSERT_TRUE(carrier);
+  EXPECT_EQ(carrier->tool(), scene.tool);
+  EXPECT_EQ(carrier->taken(), kNoEntity);
+  EXPECT_EQ(device.rotation, dquat(1, 0, 0, 0)) << "its script turns it";
+  carrier->grab({0.31, 0, 0}, {0.3, 0, 0});
+  EXPECT_EQ(carrier->taken(), scene.device);
+  EXPECT_EQ(carrier->position(), dvec3(0.3, 0, 0));
+  carrier->update(0.1);
+  EXPECT_EQ(carrier->position(), dvec3(0.3, 0, 0));
+  carrier->release();
+  carrier->grab({0.3, 0, 0}, {0.9, 0, 0});  // it knows where it has left it
+  EXPECT_EQ(carrier->position(), dvec3(0.3, 0, 0));
+}
+
 TEST(Carrier, WhatWasTakenHoldOfStaysUnderTheCursorAtItsDistance) {
   ToolScene scene;
   std::optional<Carrier> carrier = Carrier::of(scene.world);
@@ -154,7 +175,7 @@ TEST(Carrier, WhatWasTakenHoldOfStaysUnderTheCursorAtItsDistance) {
   const dvec3 before = carrier->position();
   carrier->follow(ray_through(view, 10, 10, 640, 480), view);
   EXPECT_EQ(carrier->position(), before) << "it moves without being held";
-  carrier->grab(grabbed);
+  carrier->grab(grabbed, before);
   const Ray ray = ray_through(view, 400, 150, 640, 480);
   const auto arrive = [&] {
     for (int i = 0; i < 100; ++i) carrier->update(0.1);
@@ -181,7 +202,7 @@ TEST(Carrier, AJumpOfThePointerBecomesAGlideThatStopsWhereItIsLetGo) {
   std::optional<Carrier> carrier = Carrier::of(scene.world);
   ASSERT_TRUE(carrier);
   const Viewpoint view{.eye = {0.1, 0, 1}, .target = {0.1, 0, 0}};
-  carrier->grab({0.1, 0, 0});
+  carrier->grab({0.1, 0, 0}, {0.1, 0, 0});
   const Ray right{view.eye, normalize(dvec3(0.25, 0, -1))};  // 0.25 m aside, in the tool's plane
   carrier->follow(right, view);
   EXPECT_EQ(carrier->position(), dvec3(0.1, 0, 0));

@@ -1,4 +1,6 @@
 // The window, on a display that nobody sees (Xvfb), touched by events from a file and by events of X itself.
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "content/files/image.h"
@@ -158,6 +160,65 @@ TEST_F(WindowTest, SlowPicturesDoNotTakeTheForceFromAMouseThatPresses) {
   }
   ASSERT_GT(felt, 500u) << "it hardly pressed";
   EXPECT_LT(without, felt / 10);
+}
+
+// The position of a probe's device in the last row before `time` [s].
+std::array<double, 3> position_at(const ForcesTable& forces, const std::string& probe, double time) {
+  std::array<double, 3> at{};
+  for (std::size_t i = 0; i < forces.rows.size(); ++i)
+    if (forces.rows[i].at("probe") == probe && forces.number(i, "time_s") <= time)
+      at = {forces.number(i, "x"), forces.number(i, "y"), forces.number(i, "z")};
+  return at;
+}
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+TEST_F(WindowTest, AScriptStartsOverInAWindowAndHoldsItsLastRowWithoutOne) {
+  write_text(folder / "dip.csv", "time_s,x,y,z\n0,0,0.03,0\n0.5,0,0.01,0\n1,0,0.03,0\n");
+  const std::vector<std::string> run{"plate.obj", "--probe", "tip=script:dip.csv", "--seconds", "2.7"};
+  const Said said = shown(run, "");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const ForcesTable again = read_forces(folder / "out" / "forces.csv");
+  EXPECT_NEAR(position_at(again, "tip", 0.5)[1], 0.01, 1e-3);
+  EXPECT_NEAR(position_at(again, "tip", 1.5)[1], 0.01, 1e-3);
+  EXPECT_NEAR(position_at(again, "tip", 2.5)[1], 0.01, 1e-3);
+  std::vector<std::string> still{"run"};
+  still.insert(still.end(), run.begin(), run.end());
+  for (const char* more : {"--headless", "--frames", "0", "--out", "still"}) still.push_back(more);
+  ASSERT_EQ(pliant(still).status, 0);
+  EXPECT_EQ(position_at(read_forces(folder / "still" / "forces.csv"), "tip", 1.5)[1], 0.03);
+}
+
+TEST_F(WindowTest, TheMouseTakesAToolFromItsScriptAndLeavesItWhereItIsLetGo) {
+#ifdef PLIANT_SANITIZED
+  GTEST_SKIP() << "flesh under a sanitizer takes minutes";
+#endif
+  // `./dev run hand`, as the README has it: taken hold of at its first finger's knuckle, moved to the right, let go.
+  const Said said =
+      shown({"hand"},
+            "0.0,key,Tab\n0.0,move,110 20\n1.0,press,\n2.5,move,120 20\n2.6,move,130 20\n2.7,move,140 20\n"
+            "4.5,release,\n6.0,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  ASSERT_FALSE(forces.rows.empty());
+  const double end = forces.number(forces.rows.size() - 1, "time_s");
+  const auto begin = position_at(forces, "hand", 0.0), led = position_at(forces, "hand", 0.8),
+             let_go = position_at(forces, "hand", end - 0.7), left = position_at(forces, "hand", end);
+  EXPECT_GT(distance(begin, led), 1e-3) << "its script leads it until it is taken hold of";
+  EXPECT_GT(std::hypot(let_go[0] - led[0], let_go[2] - led[2]), 0.01) << "it was not carried";
+  EXPECT_LT(distance(let_go, left), 1e-6) << "its script leads it on";
+  double fastest = 0;
+  for (std::size_t i = 1; i < forces.rows.size(); ++i) {
+    if (forces.number(i, "time_s") > 2.4) break;  // the pointer itself jumps later
+    const double dt = forces.number(i, "time_s") - forces.number(i - 1, "time_s");
+    const auto at = [&](std::size_t k) {
+      return std::array{forces.number(k, "x"), forces.number(k, "y"), forces.number(k, "z")};
+    };
+    fastest = std::max(fastest, distance(at(i), at(i - 1)) / dt);
+  }
+  EXPECT_LT(fastest, 0.5) << "[m/s]: it jumps where it is taken";
+  expect_no_force_at_the_end();
 }
 
 TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "systems/visual/renderer.h"
 #include "tests/visual/compare.h"
@@ -108,6 +109,33 @@ TEST(Glass, AProbeBehindAPaneIsSeenThroughItAndOneBeforeItOnlyOnce) {
     const double beside = x - 0.4 * metre;  // on the ball, off the probe
     EXPECT_LT(length(at(with, beside, y) - at(without, beside, y)), 12) << z;
   }
+}
+
+// A body of some thickness bends sight, so that places far from a probe look up the picture at its outline.
+TEST(Glass, TheOutlineOfAProbeInFrontIsNotSeenThroughTheBody) {
+  NEEDS_A_CONTEXT();
+  // With and without the probe.
+  const auto pictures = [](World world) {
+    test::add_probe(world, {0.15, 0.1, 1.6}, 0.3);
+    const std::unique_ptr<Renderer> renderer = renderer_for(world);
+    renderer->options().shadows = false;
+    const Image with = renderer->picture(kFront, kWidth, kHeight);
+    renderer->options().markers = false;
+    return std::pair(with, renderer->picture(kFront, kWidth, kHeight));
+  };
+  World world = glass_ball();
+  world.materials[0].thickness = 1.5f;
+  const auto [glass_with, glass] = pictures(std::move(world));
+  const auto [clay_with, clay] = pictures(test::sphere(48));
+  int covered = 0, ghosts = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool by_the_probe = length(at(clay, x, y) - at(clay_with, x, y)) > 0;
+      covered += by_the_probe;
+      ghosts += !by_the_probe && length(at(glass, x, y) - at(glass_with, x, y)) > 3;
+    }
+  EXPECT_GT(covered, 1000);
+  EXPECT_EQ(ghosts, 0);
 }
 
 // Two films before each other, made in this order and the other way round.

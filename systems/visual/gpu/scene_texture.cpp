@@ -3,12 +3,12 @@
 namespace pliant::gpu {
 namespace {
 
-Object<DestroyTexture> make_plane(GLenum format, GLint filter, int width, int height) {
+Object<DestroyTexture> make_plane(GLenum format, int width, int height) {
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &id);
   glTextureStorage2D(id, 1, format, width, height);
-  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, filter);
-  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter);
+  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   return Object<DestroyTexture>(id);
@@ -17,8 +17,8 @@ Object<DestroyTexture> make_plane(GLenum format, GLint filter, int width, int he
 }  // namespace
 
 SceneTexture::SceneTexture(int width, int height) : width_(width), height_(height) {
-  color_ = make_plane(GL_RGBA16F, GL_LINEAR, width, height);
-  depth_ = make_plane(GL_DEPTH_COMPONENT32F, GL_NEAREST, width, height);
+  color_ = make_plane(GL_RGBA16F, width, height);
+  depth_ = make_plane(GL_DEPTH_COMPONENT32F, width, height);
   GLuint id = 0;
   glCreateFramebuffers(1, &id);
   framebuffer_ = Object<DestroyFramebuffer>(id);
