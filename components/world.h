@@ -14,6 +14,7 @@
 #include "components/mesh.h"
 #include "components/name.h"
 #include "components/probe.h"
+#include "components/range.h"
 #include "components/snapshot.h"
 #include "components/soft_snapshot.h"
 #include "components/tet_mesh.h"
@@ -27,11 +28,10 @@
 namespace pliant {
 
 // What a step had to leave out, as bits; each says its cure.
-enum DroppedBit : std::uint32_t {
+enum DroppedBit : std::uint32_t {  // 8 was one more, and is not given again
   kDroppedContacts = 1,   // more contacts on one object than it has room for: use fewer probes, or split the object
   kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check the device
   kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
-  kDroppedFlood = 8,      // a contact reached more zones than the flood holds: reduce `reach`
   kDroppedReleases = 32,  // more dents were recovering at once than the card's list holds: the oldest vanished
   kDroppedFactor = 64,    // a body's step could not be solved and it stood still: raise `young` or `density`, or mend
                           // its mesh
@@ -48,9 +48,10 @@ struct TouchState;  // systems/touch/touch_state.h: working memory of the touch 
 
 // Keys of PLIANT_simulation.
 struct Simulation {
-  double touch_rate = 1000.0;     // [Hz]
-  double soft_step = 1.0 / 60.0;  // [s]
-  dvec3 gravity{0, -9.81, 0};     // [m/s2]
+  static constexpr Range kTouchRate{10.0, 100000.0};  // [Hz]
+  double touch_rate = 1000.0;                         // [Hz]
+  double soft_step = 1.0 / 60.0;                      // [s]
+  dvec3 gravity{0, -9.81, 0};                         // [m/s2]
 };
 
 // Where height fields live (systems/touch/field.h).

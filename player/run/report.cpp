@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "components/soft_body.h"
+#include "content/keys/enum_words.h"
+#include "player/print.h"
 #include "player/run/tool_words.h"
 #include "systems/soft/soft_state.h"
 
@@ -65,7 +67,7 @@ Json limits(const SafetyTally& tally) {
 
 // What only a tool has.
 Json tool(const World& world, Entity entity, const ProbeSummary& summary) {
-  return {{"tool_force", name_of(world.registry.get<Handle6>(entity).force)},
+  return {{"tool_force", word_of(world.registry.get<Handle6>(entity).force)},
           {"max_torque_Nm", summary.max_torque},
           {"late_ticks", summary.late_ticks},
           {"stale_ticks", summary.stale_ticks}};
@@ -154,26 +156,26 @@ std::string report_json(const RunFigures& figures) {
 
 void print_summary(const RunFigures& figures, const std::filesystem::path& out) {
   const Histogram& tick = figures.schedule.total();
-  fmt::print("{}: {} ticks at {} Hz in {}, tick {:.1f} us median, {:.1f} us p99, {} overruns, hash {}\n",
-             figures.world.name, figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5),
-             tick.percentile_us(0.99), figures.overruns, figures.hash);
+  print("{}: {} ticks at {} Hz in {}, tick {:.1f} us median, {:.1f} us p99, {} overruns, hash {}\n", figures.world.name,
+        figures.journal.ticks(), figures.rate, figures.mode, tick.percentile_us(0.5), tick.percentile_us(0.99),
+        figures.overruns, figures.hash);
   for (const ProbeSummary& probe : figures.keeper.summaries())
-    fmt::print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm {} and {:.2f} N{}, net work {:.3g} mJ\n",
-               probe.name, probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
-               probe.tool ? "led past the handle" : "deep", probe.max_force,
-               probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
+    print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm {} and {:.2f} N{}, net work {:.3g} mJ\n", probe.name,
+          probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
+          probe.tool ? "led past the handle" : "deep", probe.max_force,
+          probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
   if (figures.soft) {
     const SoftFigures& soft = figures.soft->figures();
     const Histogram& step = figures.soft->schedule().total();
-    fmt::print(
+    print(
         "  soft: {} steps over {} tetrahedra, {:.2f} ms median, {:.2f} ms p99, {} overruns, {:.1f} contacts, at most "
         "{:.2f} mm into each other\n",
         soft.steps, figures.soft->tetrahedra(), step.percentile_us(0.5) * 1e-3, step.percentile_us(0.99) * 1e-3,
         soft.overruns, mean(soft.contacts_sum, soft.steps), figures.world.soft->tally.deepest * 1e3);
   }
-  fmt::print("{}: report.json, forces.csv, forces.png{}", out.string(), figures.soft ? ", bodies.csv" : "");
-  if (figures.pictures > 0) fmt::print(", {} picture{}", figures.pictures, figures.pictures == 1 ? "" : "s");
-  fmt::print("\n");
+  print("{}: report.json, forces.csv, forces.png{}", out.string(), figures.soft ? ", bodies.csv" : "");
+  if (figures.pictures > 0) print(", {} picture{}", figures.pictures, figures.pictures == 1 ? "" : "s");
+  print("\n");
 }
 
 }  // namespace pliant

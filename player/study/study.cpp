@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "player/exit.h"
+#include "player/print.h"
 #include "player/record/output_folder.h"
 #include "player/study/study_linearisation.h"
 
@@ -22,7 +23,7 @@ constexpr Study kStudies[] = {
 };
 
 int list() {
-  for (const Study& known : kStudies) fmt::print("{:<16} {}\n", known.name, known.what);
+  for (const Study& known : kStudies) print("{:<16} {}\n", known.name, known.what);
   return kDone;
 }
 

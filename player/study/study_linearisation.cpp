@@ -9,6 +9,7 @@
 
 #include "content/files/file_io.h"
 #include "content/level_file.h"
+#include "player/print.h"
 #include "player/progress.h"
 #include "player/verbs/content_folder.h"
 #include "systems/device/path.h"
@@ -339,20 +340,19 @@ Status write_text(OutputFolder& out, const std::string& name, const std::string&
   return write_file(out.stage(name), std::span(bytes, text.size()));
 }
 
-void print(const LinearisationFigures& figures) {
-  fmt::print(
+void print_figures(const LinearisationFigures& figures) {
+  print(
       "linearisation: {} at {:g} x its pace, {} tetrahedra, up to {} contacts, models of {:.1f} ms one step late, "
       "{:.1f} s\n",
       figures.level, figures.pace, figures.tetrahedra, figures.contacts, figures.soft_step * 1e3, figures.seconds);
-  fmt::print(
-      "felt beyond the weight: RMS {:.3f} N, max {:.3f} N; the soft step at its own instants is off by {:.1f} %\n",
-      figures.rms_N, figures.max_N, 100.0 * figures.step_share);
-  fmt::print("{:>10} {:>10} {:>10} {:>8} {:>9} {:>9} {:>9}\n", "", "RMS [N]", "max [N]", "RMS [%]", "p50 [us]",
-             "p99 [us]", "max [us]");
+  print("felt beyond the weight: RMS {:.3f} N, max {:.3f} N; the soft step at its own instants is off by {:.1f} %\n",
+        figures.rms_N, figures.max_N, 100.0 * figures.step_share);
+  print("{:>10} {:>10} {:>10} {:>8} {:>9} {:>9} {:>9}\n", "", "RMS [N]", "max [N]", "RMS [%]", "p50 [us]", "p99 [us]",
+        "max [us]");
   for (const MethodFigures& m : figures.methods)
-    fmt::print("{:>10} {:>10.4f} {:>10.4f} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.1f}\n", m.name, m.rms_N, m.max_N,
-               100.0 * m.rms_share, m.p50_us, m.p99_us, m.max_us);
-  fmt::print(
+    print("{:>10} {:>10.4f} {:>10.4f} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.1f}\n", m.name, m.rms_N, m.max_N,
+          100.0 * m.rms_share, m.p50_us, m.p99_us, m.max_us);
+  print(
       "tool_feedback in the touch tick: p50 {:.1f}, p99 {:.1f}, max {:.1f} us\n"
       "change of force in an update's tick or the next five: up to {:.2f} x the slope around; above 2 x in {} of {}, "
       "in {} "
@@ -394,7 +394,7 @@ Status study_linearisation(OutputFolder& out, bool quick, const Interrupt& inter
   for (const double pace : quick ? std::vector{kBrisk} : std::vector{kBrisk, kSwift, kSlow}) {
     const auto figures = measure_linearisation(kLevel, pace, quick ? kQuickSeconds : kSeconds, interrupt);
     if (!figures) return figures.error();
-    print(*figures);
+    print_figures(*figures);
     json["runs"].push_back(to_json(*figures));
     const std::string name = fmt::format("linearisation_{:g}x", pace);
     if (const Status status = write_text(out, name + ".csv", to_csv(*figures)); !status) return status;

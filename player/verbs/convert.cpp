@@ -10,6 +10,7 @@
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "player/exit.h"
+#include "player/print.h"
 #include "player/verbs/panorama_preview.h"
 #include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"
@@ -83,7 +84,7 @@ int convert_panorama(const ConvertOptions& options) {
   const Image image = cube_cross(*panorama, kPreviewFace);
   if (const Status s = write_file(options.out, encode_png(image.width, image.height, image.rgba.data())); !s)
     return fail(kFailed, s.error());
-  fmt::print("{}: {} x {} pixels, a cross of six faces of {}\n", options.out, image.width, image.height, kPreviewFace);
+  print("{}: {} x {} pixels, a cross of six faces of {}\n", options.out, image.width, image.height, kPreviewFace);
   return kDone;
 }
 
@@ -107,8 +108,8 @@ int convert(const ConvertOptions& options) {
   for (const LevelMesh& mesh : level->meshes)
     for (const Primitive& primitive : mesh.primitives) triangles += primitive.index.size() / 3;
   std::error_code ignored;
-  fmt::print("{}: {} meshes, {} triangles, {} bytes\n", options.out, level->meshes.size(), triangles,
-             fs::file_size(options.out, ignored));
+  print("{}: {} meshes, {} triangles, {} bytes\n", options.out, level->meshes.size(), triangles,
+        fs::file_size(options.out, ignored));
   return kDone;
 }
 

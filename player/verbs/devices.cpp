@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "player/print.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {
@@ -119,17 +120,16 @@ int devices(bool json) {
                               {"product", device.product},
                               {"opens", device.opens},
                               {"use", how_to_use(device)}});
-    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    print_json(out);
     return 0;
   }
-  fmt::print("Built in:\n");
-  for (const BuiltIn& source : kBuiltIn)
-    fmt::print("  {:<8} {}\n           {}\n", source.name, source.what, source.use);
-  fmt::print("\nFound on this machine:\n");
+  print("Built in:\n");
+  for (const BuiltIn& source : kBuiltIn) print("  {:<8} {}\n           {}\n", source.name, source.what, source.use);
+  print("\nFound on this machine:\n");
   if (found.empty())
-    fmt::print("  no known haptic or pointing device (plugged in, switched on, passed through to this machine?)\n");
+    print("  no known haptic or pointing device (plugged in, switched on, passed through to this machine?)\n");
   for (const Found& device : found)
-    fmt::print("  {} {}\n           {}\n           {}\n", device.id, device.product, device.what, how_to_use(device));
+    print("  {} {}\n           {}\n           {}\n", device.id, device.product, device.what, how_to_use(device));
   return 0;
 }
 

@@ -5,11 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "content/keys/enum_words.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/tet_file.h"
 #include "player/exit.h"
-#include "player/run/tool_words.h"
+#include "player/print.h"
 #include "player/verbs/content_folder.h"
 #include "player/verbs/inspect_panorama.h"
 #include "player/verbs/inspect_tets.h"
@@ -97,7 +98,7 @@ Json describe_tools(const Level& level) {
   Json list = Json::array();
   for (const LevelNode& node : level.nodes)
     if (node.handle)
-      list.push_back({{"name", node.name}, {"device", node.handle->device}, {"force", name_of(node.handle->force)}});
+      list.push_back({{"name", node.name}, {"device", node.handle->device}, {"force", word_of(node.handle->force)}});
   return list;
 }
 
@@ -177,40 +178,38 @@ std::string join(const Json& list) {
   return text.empty() ? "none" : text;
 }
 
-void print(const Json& json, const Box& box) {
-  fmt::print("{}\n", json["file"].get<std::string>());
-  fmt::print("  {} nodes, {} meshes, {} triangles, {} vertices, {} materials, {} images\n",
-             json["nodes"].get<std::size_t>(), json["meshes"].get<std::size_t>(), json["triangles"].get<std::size_t>(),
-             json["vertices"].get<std::size_t>(), json["materials"].get<std::size_t>(),
-             json["images"].get<std::size_t>());
-  fmt::print("  extensions: {}\n  probes: {}\n  devices: {}\n", join(json["extensions"]), join(json["probes"]),
-             join(json["devices"]));
+void print_text(const Json& json, const Box& box) {
+  print("{}\n", json["file"].get<std::string>());
+  print("  {} nodes, {} meshes, {} triangles, {} vertices, {} materials, {} images\n", json["nodes"].get<std::size_t>(),
+        json["meshes"].get<std::size_t>(), json["triangles"].get<std::size_t>(), json["vertices"].get<std::size_t>(),
+        json["materials"].get<std::size_t>(), json["images"].get<std::size_t>());
+  print("  extensions: {}\n  probes: {}\n  devices: {}\n", join(json["extensions"]), join(json["probes"]),
+        join(json["devices"]));
   if (!box.empty())
-    fmt::print("  bounds: {:.4g} x {:.4g} x {:.4g} m about ({:.4g}, {:.4g}, {:.4g})\n", box.size().x, box.size().y,
-               box.size().z, box.center().x, box.center().y, box.center().z);
-  if (const std::string hint = json["unit_hint"]; !hint.empty()) fmt::print("  unit: {}\n", hint);
+    print("  bounds: {:.4g} x {:.4g} x {:.4g} m about ({:.4g}, {:.4g}, {:.4g})\n", box.size().x, box.size().y,
+          box.size().z, box.center().x, box.center().y, box.center().z);
+  if (const std::string hint = json["unit_hint"]; !hint.empty()) print("  unit: {}\n", hint);
   for (const Json& object : json["objects"]) {
-    fmt::print("  object {}: {} vertices (of {}), {} triangles (of {}), {} zones, {}{}\n",
-               object["name"].get<std::string>(), object["vertices"].get<std::size_t>(),
-               object["file_vertices"].get<std::size_t>(), object["triangles"].get<std::size_t>(),
-               object["file_triangles"].get<std::size_t>(), object["zones"].get<std::size_t>(),
-               object["closed"].get<bool>() ? "closed" : "open",
-               object["deformable"].get<bool>() ? ", deformable" : "");
-    for (const Json& problem : object["problems"]) fmt::print("    {}\n", problem.get<std::string>());
+    print("  object {}: {} vertices (of {}), {} triangles (of {}), {} zones, {}{}\n", object["name"].get<std::string>(),
+          object["vertices"].get<std::size_t>(), object["file_vertices"].get<std::size_t>(),
+          object["triangles"].get<std::size_t>(), object["file_triangles"].get<std::size_t>(),
+          object["zones"].get<std::size_t>(), object["closed"].get<bool>() ? "closed" : "open",
+          object["deformable"].get<bool>() ? ", deformable" : "");
+    for (const Json& problem : object["problems"]) print("    {}\n", problem.get<std::string>());
   }
   for (const Json& tool : json["tools"]) {
     const std::string device = tool["device"];
-    fmt::print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),
-               device.empty() ? "no device" : "device " + device, tool["force"].get<std::string>());
+    print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),
+          device.empty() ? "no device" : "device " + device, tool["force"].get<std::string>());
   }
   print_flesh(json["flesh"]);
-  for (const Json& sentence : json["notes"]) fmt::print("  note: {}\n", sentence.get<std::string>());
+  for (const Json& sentence : json["notes"]) print("  note: {}\n", sentence.get<std::string>());
   if (!json["touchable"].get<bool>())
-    fmt::print("  cannot be touched: there is no triangle in the scene that is shown\n");
+    print("  cannot be touched: there is no triangle in the scene that is shown\n");
   else if (json["bare_mesh"].get<bool>())
-    fmt::print("  can be touched as it is, with defaults sized to its bounds: `pliant run FILE`\n");
+    print("  can be touched as it is, with defaults sized to its bounds: `pliant run FILE`\n");
   else
-    fmt::print("  can be touched: `pliant run FILE`\n");
+    print("  can be touched: `pliant run FILE`\n");
 }
 
 }  // namespace
@@ -225,12 +224,12 @@ int inspect(const std::string& file, bool as_json) {
   const std::vector<ObjectReport> objects = inspect_objects(*level);
   const Json json = describe(*level, objects);
   if (as_json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_json(json);
     return kDone;
   }
   Box box;
   for (const ObjectReport& object : objects) box.add(object.box);
-  print(json, box);
+  print_text(json, box);
   return kDone;
 }
 

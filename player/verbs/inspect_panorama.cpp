@@ -10,6 +10,7 @@
 
 #include "content/files/exr.h"
 #include "player/exit.h"
+#include "player/print.h"
 
 namespace pliant {
 namespace {
@@ -46,13 +47,13 @@ int inspect_panorama(const std::filesystem::path& path, bool as_json) {
                {"height", panorama->height}, {"mean_luminance", pixels ? sum / static_cast<double>(pixels) : 0.0},
                {"largest_luminance", most},  {"notes", notes}};
   if (as_json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_json(json);
     return kDone;
   }
-  fmt::print("{}\n  panorama: {} x {} pixels, luminance {:.3g} on average, {:.3g} at most\n", path.string(),
-             panorama->width, panorama->height, json["mean_luminance"].get<double>(), most);
-  for (const std::string& sentence : notes) fmt::print("  note: {}\n", sentence);
-  fmt::print("  surrounds a level: name it in PLIANT_environment/panorama; a preview: `pliant convert FILE sky.png`\n");
+  print("{}\n  panorama: {} x {} pixels, luminance {:.3g} on average, {:.3g} at most\n", path.string(), panorama->width,
+        panorama->height, json["mean_luminance"].get<double>(), most);
+  for (const std::string& sentence : notes) print("  note: {}\n", sentence);
+  print("  surrounds a level: name it in PLIANT_environment/panorama; a preview: `pliant convert FILE sky.png`\n");
   return kDone;
 }
 

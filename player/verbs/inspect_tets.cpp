@@ -11,6 +11,7 @@
 #include "content/tets/tet_parts.h"
 #include "content/tets/tet_quality.h"
 #include "player/exit.h"
+#include "player/print.h"
 
 namespace pliant {
 namespace {
@@ -63,21 +64,20 @@ Json describe_flesh(const Level& level) {
 void print_flesh(const Json& flesh) {
   for (const Json& body : flesh) {
     if (body.contains("problem")) {
-      fmt::print("  flesh: {}\n", body["problem"].get<std::string>());
+      print("  flesh: {}\n", body["problem"].get<std::string>());
       continue;
     }
-    fmt::print(
+    print(
         "  flesh {}: {} tetrahedra, {} nodes ({} on the handle, {} pinned), {} boundary triangles, {} part{}, {:.4g} "
         "m3\n",
         body["name"].get<std::string>(), body["tetrahedra"].get<std::size_t>(), body["nodes"].get<std::size_t>(),
         body["handle_nodes"].get<std::size_t>(), body["pinned_nodes"].get<std::size_t>(),
         body["boundary_triangles"].get<std::size_t>(), body["parts"].get<std::size_t>(),
         body["parts"].get<std::size_t>() == 1 ? "" : "s", body["volume_m3"].get<double>());
-    fmt::print("    dihedral angles {:.1f} to {:.1f} degrees, 3 r/R {:.3f} at worst, {:.3f} at the median\n",
-               body["smallest_dihedral_deg"].get<double>(), body["largest_dihedral_deg"].get<double>(),
-               body["worst_ratio"].get<double>(), body["median_ratio"].get<double>());
-    for (const Json& problem : body.value("problems", Json::array()))
-      fmt::print("    {}\n", problem.get<std::string>());
+    print("    dihedral angles {:.1f} to {:.1f} degrees, 3 r/R {:.3f} at worst, {:.3f} at the median\n",
+          body["smallest_dihedral_deg"].get<double>(), body["largest_dihedral_deg"].get<double>(),
+          body["worst_ratio"].get<double>(), body["median_ratio"].get<double>());
+    for (const Json& problem : body.value("problems", Json::array())) print("    {}\n", problem.get<std::string>());
   }
 }
 
@@ -94,13 +94,13 @@ int inspect_tets(const std::filesystem::path& path, bool as_json) {
   json.update(describe(mesh));
   json["notes"] = file->notes;
   if (as_json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_json(json);
     return kDone;
   }
-  fmt::print("{}\n", path.string());
+  print("{}\n", path.string());
   print_flesh(Json::array({json}));
-  for (const std::string& sentence : file->notes) fmt::print("  note: {}\n", sentence);
-  fmt::print("  flesh for a level: name it in PLIANT_soft_body/mesh; its boundary can be touched: `pliant run FILE`\n");
+  for (const std::string& sentence : file->notes) print("  note: {}\n", sentence);
+  print("  flesh for a level: name it in PLIANT_soft_body/mesh; its boundary can be touched: `pliant run FILE`\n");
   return kDone;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "player/exit.h"
+#include "player/print.h"
 #include "player/verbs/content_folder.h"
 #include "player/verbs/verbs.h"
 
@@ -19,9 +20,9 @@ const char* word(Severity severity) {
     case Severity::kWarning:
       return "warning";
     case Severity::kNote:
-      break;
+      return "note";
   }
-  return "note";
+  UNREACHABLE();
 }
 
 }  // namespace
@@ -34,11 +35,10 @@ int validate(const std::string& argument) {
   for (const Finding& finding : findings) {
     errors += finding.severity == Severity::kError;
     warnings += finding.severity == Severity::kWarning;
-    fmt::print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity),
-               finding.message);
+    print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity), finding.message);
   }
-  fmt::print("{}: {} error{}, {} warning{}\n", file->string(), errors, errors == 1 ? "" : "s", warnings,
-             warnings == 1 ? "" : "s");
+  print("{}: {} error{}, {} warning{}\n", file->string(), errors, errors == 1 ? "" : "s", warnings,
+        warnings == 1 ? "" : "s");
   if (errors == 0) return kDone;
   return fail(kFailed, {file->string(), fmt::format("{} error{}; see the finding{} above", errors,
                                                     errors == 1 ? "" : "s", errors == 1 ? "" : "s")});
