@@ -124,12 +124,20 @@ double RestoringLaw::force(double h) const {
 }
 
 double RestoringLaw::potential(double h) const {
-  if (kind == SpringLaw::kCubic) return h * h * (0.5 + 0.25 * cubic * h * h);
-  if (kind == SpringLaw::kExponential && h < 0) {
-    const double x = -stiffening * h;
-    // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
-    const double d = x < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
-    return d / (stiffening * stiffening);
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      break;
+    case SpringLaw::kCubic:
+      return h * h * (0.5 + 0.25 * cubic * h * h);
+    case SpringLaw::kExponential:
+      if (h < 0) {
+        const double x = -stiffening * h;
+        // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
+        const double d = x < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
+        return d / (stiffening * stiffening);
+      }
+      break;
   }
   return 0.5 * h * h;
 }
@@ -148,17 +156,25 @@ double RestoringLaw::slope(double h) const {
 }
 
 double RestoringLaw::discrete_gradient(double h0, double h1) const {
-  if (kind == SpringLaw::kCubic) return 0.5 * (h0 + h1) + 0.25 * cubic * (h0 + h1) * (h0 * h0 + h1 * h1);
-  if (kind == SpringLaw::kExponential && (h0 < 0 || h1 < 0)) {
-    const double d = h1 - h0;
-    if (h0 < 0 && h1 < 0) {
-      // -(1/alpha) (e^(-alpha h0) expm1(-alpha d) / (-alpha d) - 1)
-      const double x = -stiffening * d;
-      const double ratio = std::abs(x) < 1e-5 ? 1 + x / 2 + x * x / 6 : std::expm1(x) / x;
-      return -(std::exp(-stiffening * h0) * ratio - 1) / stiffening;
-    }
-    if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
-    return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      break;
+    case SpringLaw::kCubic:
+      return 0.5 * (h0 + h1) + 0.25 * cubic * (h0 + h1) * (h0 * h0 + h1 * h1);
+    case SpringLaw::kExponential:
+      if (h0 < 0 || h1 < 0) {
+        const double d = h1 - h0;
+        if (h0 < 0 && h1 < 0) {
+          // -(1/alpha) (e^(-alpha h0) expm1(-alpha d) / (-alpha d) - 1)
+          const double x = -stiffening * d;
+          const double ratio = std::abs(x) < 1e-5 ? 1 + x / 2 + x * x / 6 : std::expm1(x) / x;
+          return -(std::exp(-stiffening * h0) * ratio - 1) / stiffening;
+        }
+        if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
+        return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
+      }
+      break;
   }
   return 0.5 * (h0 + h1);
 }

@@ -447,10 +447,8 @@ TEST(ToolFeedback, ADeviceThatMovesAProbeAlreadyIsRefused) {
   // Names come from files and are no formats.
   const std::string odd = "a{b}%s%n{}{0}";
   stage.world.registry.add<Name>(probe, {"tip" + odd});
-  if (Name* name = stage.world.registry.find<Name>(stage.device))
-    name->value = odd;
-  else
-    stage.world.registry.add<Name>(stage.device, {odd});
+  stage.world.registry.get<Name>(stage.device).value = odd;
+  for (auto [entity, handle] : stage.world.registry.view<Handle6>()) handle.device = odd;
   const Status status = prepare_tools(stage.world);
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().what.find("its device `" + odd + "` already moves `tip" + odd + "`; give each its own"),
