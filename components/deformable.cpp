@@ -7,4 +7,8 @@ bool has_closed_form(const Deformable& d, const Mesh& mesh) {
          mesh.stiffness_factor.empty() && mesh.damping_factor.empty();
 }
 
+double default_reach(const Mesh& mesh) {
+  return kDefaultReach * static_cast<double>(mesh.box.diagonal());
+}
+
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "components/mesh.h"
+#include "components/range.h"
 #include "pliant/parameters.h"
 
 namespace pliant {
@@ -13,6 +14,24 @@ struct Deformable : DeformableParameters {
   Handle<Mesh> mesh;          // set at spawn
   Handle<HeightField> field;  // set at spawn
 };
+
+// What its numbers may be: the bounds of the keys of PLIANT_deformable, and of what the touch clock takes.
+struct DeformableRange {
+  static constexpr Range kStiffness{1e-6, 1e7};           // [N/m]
+  static constexpr Range kCubic{0.0, 1e15};               // [N/m3]
+  static constexpr Range kStiffening{1e-6, 1e5};          // [1/m]
+  static constexpr Range kRelaxationStiffness{0.0, 1e7};  // [N/m]
+  static constexpr Range kRelaxationTime{1e-6, 1e6};      // [s]
+  static constexpr Range kDampingRatio{0.0, 100.0};       // [1]
+  static constexpr Range kSettlingTime{1e-4, 100.0};      // [s]
+  static constexpr Range kContactDamping{0.0, 1e6};       // [N s/m]
+  static constexpr Range kReach{0.0, 1e6};                // [m]
+  static constexpr Range kVolume{0.0, 1.0};               // [1]
+};
+
+inline constexpr double kDefaultReach = 0.08;  // [1] of the diagonal of the object's box
+// [m] The reach of a deformable that says none.
+double default_reach(const Mesh& mesh);
 
 // Whether a released dent has a closed form in time: then the GPU evaluates a list of sources (systems/touch/field.h),
 // else it takes every step (components/field_feed.h).

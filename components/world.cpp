@@ -23,7 +23,6 @@ std::vector<std::string> explain_dropped(std::uint32_t dropped) {
     sentences.push_back("a pose or force was not a number and was replaced by zero; check the device");
   if (dropped & kDroppedTravel)
     sentences.push_back("a probe moved farther in a tick than the level is large; check the device's units");
-  if (dropped & kDroppedFlood) sentences.push_back("a contact reached more zones than the flood holds; reduce `reach`");
   if (dropped & kDroppedReleases)
     sentences.push_back("more dents were recovering at once than the card's list holds; use --field cpu");
   if (dropped & kDroppedStale)

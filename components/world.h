@@ -14,6 +14,7 @@
 #include "components/mesh.h"
 #include "components/name.h"
 #include "components/probe.h"
+#include "components/range.h"
 #include "components/snapshot.h"
 #include "components/soft_snapshot.h"
 #include "components/tet_mesh.h"
@@ -28,11 +29,10 @@
 namespace pliant {
 
 // What a step had to leave out, as bits; each says its cure.
-enum DroppedBit : std::uint32_t {
+enum DroppedBit : std::uint32_t {  // 8 was one more, and is not given again
   kDroppedContacts = 1,   // more contacts on one object than it has room for: use fewer probes, or split the object
   kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check the device
   kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
-  kDroppedFlood = 8,      // a contact reached more zones than the flood holds: reduce `reach`
   kDroppedReleases = 32,  // more dents were recovering at once than the card's list holds: the oldest vanished
   kDroppedFactor = 64,    // a body's step could not be solved and it stood still: raise `young` or `density`, or mend
                           // its mesh
@@ -46,6 +46,8 @@ struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
 struct SoftState;   // systems/soft/soft_state.h: working memory of the soft step, made by prepare_soft
 struct ToolTouch;   // systems/tool/tool_touch_state.h: tools on the touch clock, made by prepare_tools
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
+
+inline constexpr Range kTouchRateRange{10.0, 100000.0};  // [Hz] of Simulation::touch_rate
 
 // Where height fields live (systems/touch/field.h).
 enum class FieldPlace : std::uint8_t { kProcessor, kCard };

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "components/range.h"
 #include "content/files/file_io.h"
 #include "content/level/level.h"
 
@@ -18,13 +19,16 @@ Result<Level> load_level(const std::filesystem::path& path);
 Result<std::string> read_about(const std::filesystem::path& path);
 
 struct SaveOptions {
-  int draco_bits = 0;  // 0: no Draco; else position quantisation bits (8..24)
+  static constexpr Range kDracoBits{8, 24};
+  int draco_bits = 0;  // position quantisation bits, in kDracoBits; 0: no Draco
   Existing existing = Existing::kReplace;
 };
 // Writes .gltf (with a .bin beside it) or .glb by the extension; the file appears whole (written aside, then renamed).
 Status save_level(const Level& level, const std::filesystem::path& path, const SaveOptions& options = {});
 
-// --set NODE.EXT.KEY=VALUE (level-format.md). NODE is a name or `*`. The error names what was not understood.
+// --set NODE.EXT.KEY=VALUE (level-format.md), in order. NODE is a name or `*`. Keys that depend on each other are
+// checked after the last one, as in a file. The error names what was not understood; then nothing has changed.
+Status set_keys(Level& level, const std::vector<std::string>& assignments);
 Status set_key(Level& level, const std::string& assignment);
 
 // spawn_level, and the panorama that the level names is decoded.

@@ -42,27 +42,23 @@ std::string pointer_of(const Level& level, std::size_t node) {
   return level.source ? fmt::format("/nodes/{}", level.source->json_node[node]) : level.nodes[node].name;
 }
 
-// Of what is only known by its name; the first, as everywhere.
-std::string pointer_of(const Level& level, const std::string& name) {
-  for (std::size_t i = 0; i < level.nodes.size(); ++i)
-    if (level.nodes[i].in_scene && level.nodes[i].name == name) return pointer_of(level, i);
-  return name;
-}
-
 // Of the scene that is shown.
 std::string scene_pointer(const Level& level) {
   const Json* json = level.source ? &level.source->json : nullptr;
   return fmt::format("/scenes/{}", json ? value_of<int>(*json, "scene", 0) : 0);
 }
 
-// spawn names the node that it could not make: FILE: node `NAME`.
+// Of an entity that spawn made: it makes one of every node in the scene, in their order.
+std::string pointer_of(const Level& level, const World& world, Entity entity) {
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i)
+    if (level.nodes[i].in_scene && world.hierarchy.order()[row++].entity == entity) return pointer_of(level, i);
+  return scene_pointer(level);
+}
+
 Finding from_spawn(const Level& level, const Error& error) {
-  constexpr std::string_view kBefore = ": node `";
-  const std::size_t at = error.where.find(kBefore);
-  if (at == std::string::npos || error.where.back() != '`')
-    return {Severity::kError, scene_pointer(level), error.message()};
-  const std::size_t first = at + kBefore.size();
-  return {Severity::kError, pointer_of(level, error.where.substr(first, error.where.size() - 1 - first)), error.what};
+  if (error.node < 0) return {Severity::kError, scene_pointer(level), error.message()};
+  return {Severity::kError, pointer_of(level, static_cast<std::size_t>(error.node)), error.what};
 }
 
 // How a deformable will feel where its mesh does not suit it.
@@ -128,8 +124,8 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
 
 // Flesh that can be simulated, but not well.
 void find_in_flesh(const Level& level, const World& world, Findings& findings) {
-  for (auto [entity, soft_body, name] : world.registry.view<const SoftBody, const Name>()) {
-    const std::string node = pointer_of(level, name.value);  // clang 14 captures no structured bindings
+  for (auto [entity, soft_body] : world.registry.view<const SoftBody>()) {
+    const std::string node = pointer_of(level, world, entity);  // clang 14 captures no structured bindings
     const TetMesh& tets = world.tet_meshes[soft_body.tets];
     const auto warn = [&](std::string what) { findings.push_back({Severity::kWarning, node, std::move(what)}); };
     const std::uint32_t parts = count_parts(tets), pieces = count_parts(world.meshes[soft_body.skin]);
@@ -162,14 +158,11 @@ Findings validate_level(const fs::path& path) {
   }
   const Result<Level> level = load_level(path);
   if (!level) {
-    // load_level puts the file before the pointer.
-    std::string where = level.error().where;
-    if (where.rfind(path.string(), 0) == 0) where.erase(0, std::min(where.size(), path.string().size() + 1));
-    findings.push_back({Severity::kError, where, level.error().what});
+    findings.push_back({Severity::kError, level.error().pointer, level.error().what});
     return findings;
   }
-  for (const std::string& note : level->notes)
-    if (note.empty() || note[0] != '/') findings.push_back({Severity::kNote, "", note});
+  for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are among the findings
+    findings.push_back({Severity::kNote, "", level->notes[i]});
   if (!level->has_pliant())
     findings.push_back(
         {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "components/soft_body.h"
+#include "runtime/assert.h"
 #include "systems/device/hands.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/touch_state.h"
@@ -43,13 +44,13 @@ std::string sentence(SafetyLimit limit, const LimitCount& count, const std::stri
           "touched",
           who, q.name, ticks, q.smaller);
     case SafetyLimit::kSlewed:
-      break;
+      return fmt::format(
+          "{}: the {} changed faster than max_slew {:g} {}/s{} let it in {} (off by at most {}); move slower, or raise "
+          "max_slew where the device can render it",
+          who, q.name, q.slew, q.unit, q.stiffness > 0 ? fmt::format(" and max_stiffness {:g} N/m", q.stiffness) : "",
+          ticks, percent);
   }
-  const std::string stiff = q.stiffness > 0 ? fmt::format(" and max_stiffness {:g} N/m", q.stiffness) : std::string();
-  return fmt::format(
-      "{}: the {} changed faster than max_slew {:g} {}/s{} let it in {} (off by at most {}); move slower, or raise "
-      "max_slew where the device can render it",
-      who, q.name, q.slew, q.unit, stiff, ticks, percent);
+  UNREACHABLE();
 }
 
 void explain(const SafetyTally& tally, const std::string& who, const Quantity& quantity,
@@ -100,9 +101,9 @@ const char* key_of(SafetyLimit limit) {
     case SafetyLimit::kGated:
       return "gated";
     case SafetyLimit::kSlewed:
-      break;
+      return "slewed";
   }
-  return "slewed";
+  UNREACHABLE();
 }
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 
 #include "components/soft_body.h"
 #include "content/level/script.h"
+#include "runtime/assert.h"
 #include "systems/device/hands.h"
 #include "systems/device/orbit.h"
 
@@ -56,7 +57,7 @@ Result<ProbeSource> parse_source(const std::string& argument) {
   }
   if (what.starts_with("device:"))
     return Error{where, "drivers for devices are not yet built; `pliant devices` lists what is found"};
-  return Error{where, "unknown source '" + what + "'; sources are script:FILE.csv, orbit, mouse, device:ID"};
+  return Error{where, "unknown source '" + what + "'; sources are: script:FILE.csv, orbit, mouse, device:ID"};
 }
 
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
@@ -142,9 +143,9 @@ std::string describe_source(const World& world, Entity hand) {
     case DriverKind::kExternal:
       return "device:" + device->id;
     case DriverKind::kNull:
-      break;
+      return "null";
   }
-  return "null";
+  UNREACHABLE();
 }
 
 }  // namespace pliant

@@ -3,15 +3,15 @@
 #include <cstdio>
 #include <new>
 
+#include "runtime/printable.h"
+
 namespace pliant {
 namespace {
 
-// Names from files may hold anything: what would break the line becomes a space.
+// Names from files may hold anything; a line end at the end says nothing.
 std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\n' || text.back() == '\r')) text.pop_back();
+  return printable(text);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "runtime/clock.h"
+#include "runtime/printable.h"
 
 namespace pliant {
 namespace {
@@ -30,8 +31,8 @@ void Progress::update(double share) {
   last_ = now;
   shown_ = true;
   const double left = share > 0.0 ? elapsed * (1.0 - share) / share : 0.0;
-  std::fprintf(stderr, terminal_ ? "\r\x1b[K%s: %3.0f %%, %.0f s left" : "%s: %3.0f %%, %.0f s left\n", what_.c_str(),
-               share * 100.0, left);
+  std::fprintf(stderr, terminal_ ? "\r\x1b[K%s: %3.0f %%, %.0f s left" : "%s: %3.0f %%, %.0f s left\n",
+               printable(what_).c_str(), share * 100.0, left);
   std::fflush(stderr);
 }
 

@@ -1,9 +1,6 @@
 // stdin, stdout and stderr as a command finds them: open, closed, or a pipe that nobody reads any more.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -15,13 +12,6 @@ namespace pliant {
 // and what is printed would land in that file. A broken pipe and a file at its size limit (`ulimit -f`) become errors
 // of a write instead of signals that kill.
 void prepare_standard_streams();
-
-// Prints to stdout and never throws.
-template <class... Values>
-void print(fmt::format_string<Values...> text, Values&&... values) {
-  const std::string line = fmt::format(text, std::forward<Values>(values)...);
-  std::fwrite(line.data(), 1, line.size(), stdout);
-}
 
 // Call last. What was printed and could not be written.
 std::optional<Error> close_stdout();

@@ -1,5 +1,6 @@
-// ASSERT: a promise the code makes to itself, checked in every build; a broken one stops the program and names the
-// place. VALIDATE: the same for checks that cost more than they guard; compiled only into debug and sanitizer builds.
+// ASSERT: an assertion that is checked in every build; where it fails, the program stops and names the place. VALIDATE:
+// the same for checks that cost more than they guard; compiled only into debug and sanitizer builds. UNREACHABLE: the
+// end of a function whose switch has a case for every enumerator; a new one without a case does not compile (-Wswitch).
 #pragma once
 
 #include <cstdio>
@@ -7,14 +8,15 @@
 
 namespace pliant {
 
-[[noreturn]] inline void broken_promise(const char* what, const char* file, int line) {
+[[noreturn]] inline void assertion_failed(const char* what, const char* file, int line) {
   std::fprintf(stderr, "pliant: internal error: %s:%d: %s\n", file, line, what);
   std::abort();
 }
 
 }  // namespace pliant
 
-#define ASSERT(condition) ((condition) ? void(0) : ::pliant::broken_promise(#condition, __FILE__, __LINE__))
+#define ASSERT(condition) ((condition) ? void(0) : ::pliant::assertion_failed(#condition, __FILE__, __LINE__))
+#define UNREACHABLE() ::pliant::assertion_failed("no case for this value", __FILE__, __LINE__)
 #ifdef PLIANT_VALIDATE
 #define VALIDATE(condition) ASSERT(condition)
 #else

@@ -17,19 +17,10 @@ class Hierarchy {
 
   // Adds an entity under `parent` (kNoEntity: a root). The parent must have been added before.
   void add(Entity entity, Entity parent = kNoEntity);
-  // Takes out an entity and everything below it; returns them, parents first.
-  std::vector<Entity> remove(Entity entity);
-  // Hangs an entity, with all that is below it, under another parent. False if that parent is below the entity itself.
-  bool move(Entity entity, Entity parent);
-
-  bool contains(Entity entity) const { return find(entity) >= 0; }
-  Entity parent(Entity entity) const;
   const std::vector<Link>& order() const { return links_; }
 
  private:
   std::int32_t find(Entity entity) const;
-  std::vector<bool> below(std::int32_t root) const;
-  void replace(std::vector<Link> links);
   std::vector<Link> links_;
   std::vector<std::int32_t> row_;  // entity index -> place in links_, -1: not there
 };

@@ -13,12 +13,10 @@ class Histogram {
   void add(std::uint64_t nanoseconds) {
     ++counts_[bucket(nanoseconds)];
     ++count_;
-    sum_ += nanoseconds;
     if (nanoseconds > max_) max_ = nanoseconds;
   }
   std::uint64_t count() const { return count_; }
   double max_us() const { return static_cast<double>(max_) * 1e-3; }
-  double mean_us() const { return count_ ? static_cast<double>(sum_) * 1e-3 / static_cast<double>(count_) : 0.0; }
 
   // The duration that a share q of all does not exceed, in microseconds.
   double percentile_us(double q) const {
@@ -50,7 +48,7 @@ class Histogram {
   }
 
   std::array<std::uint64_t, kPerOctave * kOctaves> counts_{};
-  std::uint64_t count_ = 0, sum_ = 0, max_ = 0;
+  std::uint64_t count_ = 0, max_ = 0;
 };
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 #include "content/files/image.h"
 #include "content/gltf/gltf_accessor.h"
 #include "content/gltf/gltf_save.h"
+#include "content/mesh/painted.h"
 
 namespace pliant {
 
@@ -157,12 +158,9 @@ class Builder {
       // A textured material on a primitive without coordinates is not glTF: all of it takes the texture's corner.
       else if (has_textures(primitive.material))
         attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), "VEC2");
-      if (!primitive.stiffness.empty()) attributes["_STIFFNESS"] = add_attribute(primitive.stiffness, "SCALAR");
-      if (!primitive.friction.empty()) attributes["_FRICTION"] = add_attribute(primitive.friction, "SCALAR");
-      if (!primitive.damping.empty()) attributes["_DAMPING"] = add_attribute(primitive.damping, "SCALAR");
-      if (!primitive.relaxation.empty()) attributes["_RELAXATION"] = add_attribute(primitive.relaxation, "SCALAR");
-      if (!primitive.pinned.empty()) attributes["_PINNED"] = add_attribute(primitive.pinned, "SCALAR");
-      if (!primitive.handle.empty()) attributes["_HANDLE"] = add_attribute(primitive.handle, "SCALAR");
+      for (const PaintedAttribute& painted : kPainted)
+        if (const std::vector<float>& values = primitive.*painted.values; !values.empty())
+          attributes[painted.name] = add_attribute(values, "SCALAR");
       if (count < 65535) {
         const std::vector<std::uint16_t> small(primitive.index.begin(), primitive.index.end());
         json["indices"] = add_accessor(small.data(), small.size(), 2, kUnsignedShort, "SCALAR", 34963);

@@ -10,6 +10,7 @@
 #include "content/gltf/gltf_draco.h"
 #include "content/gltf/gltf_mesh.h"
 #include "content/gltf/gltf_save.h"
+#include "content/level_file.h"
 
 namespace pliant {
 
@@ -158,7 +159,8 @@ void split_buffers(SourceDocument& document) {
 }  // namespace
 
 Status compress_document(SourceDocument& document, int bits) {
-  if (bits < 8 || bits > 24) return Error{"--draco", fmt::format("is {}; use 8 to 24 bits", bits)};
+  constexpr Range kBits = SaveOptions::kDracoBits;
+  if (!kBits.holds(bits)) return Error{"--draco", fmt::format("is {}; use {} to {} bits", bits, kBits.min, kBits.max)};
   if (!document.json.contains("meshes")) return Done{};
   bool any = false;
   for (std::size_t m = 0; m < document.json["meshes"].size(); ++m)

@@ -187,10 +187,16 @@ Status fill(SourceDocument& document, Level& level) {
   level.notes.insert(level.notes.end(), meshes.notes().begin(), meshes.notes().end());
   // The same note once, in order of first appearance.
   std::vector<std::string> once;
-  for (std::string& note : level.notes)
-    if (once.size() < 100 && std::find(once.begin(), once.end(), note) == once.end()) once.push_back(std::move(note));
+  std::size_t of_document = 0;
+  for (std::size_t i = 0; i < level.notes.size(); ++i) {
+    std::string& note = level.notes[i];
+    if (once.size() >= 100 || std::find(once.begin(), once.end(), note) != once.end()) continue;
+    of_document += i < level.document_notes;
+    once.push_back(std::move(note));
+  }
   level.notes = std::move(once);
   level.about = about_of(document.json);
+  level.document_notes = of_document;
   document.nodes_as_read = level.nodes;
   document.mesh_count = level.meshes.size();
   return Done{};
@@ -226,6 +232,7 @@ Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, co
     for (const Finding& finding : findings)
       if (finding.severity == Severity::kWarning)
         level.notes.push_back(finding.pointer.empty() ? finding.message : finding.pointer + ": " + finding.message);
+    level.document_notes = level.notes.size();
     const Status status = fill(*document, level);
     if (!status) return status.error();
   } catch (const std::bad_alloc&) {
@@ -252,8 +259,8 @@ Result<Level> load_level(const fs::path& path) {
   }
   if (!level) {
     const std::string where = level.error().where;
-    return Error{where.empty() || where == path.string() ? path.string() : path.string() + " " + where,
-                 level.error().what};
+    if (where.empty() || where == path.string()) return Error{path.string(), level.error().what};
+    return Error{path.string() + " " + where, level.error().what, -1, where};
   }
   level->name = path.stem().string();
   level->path = path;

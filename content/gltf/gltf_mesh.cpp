@@ -9,6 +9,7 @@
 
 #include "content/gltf/gltf_accessor.h"
 #include "content/gltf/gltf_draco.h"
+#include "content/mesh/painted.h"
 
 namespace pliant {
 
@@ -171,29 +172,29 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     if (index >= source.vertices)
       return Error{pointer, fmt::format("refers to vertex {} of {}; export the mesh again", index, source.vertices)};
   out.index = as_triangles(source.draco ? static_cast<int>(kTriangles) : mode, std::move(source.index));
-  for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "_STIFFNESS", "_FRICTION", "_DAMPING",
-                           "_RELAXATION", "_PINNED", "_HANDLE"}) {
+  const auto not_finite = [&](const char* name) {
+    return Error{pointer, fmt::format("has a number in {} that is not finite", name)};
+  };
+  for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0"}) {
     const std::vector<float> values = attribute(source, name);
-    if (!all_finite(values)) return Error{pointer, fmt::format("has a number in {} that is not finite", name)};
+    if (!all_finite(values)) return not_finite(name);
     const std::string_view which = name;
-    const std::size_t width = source.vertices == 0 ? 0 : values.size() / source.vertices;
-    if (which[0] == '_' && !values.empty()) {
-      if (width != 1) return Error{pointer, fmt::format("has {} with {} numbers a vertex instead of one", name, width)};
-      for (const float value : values)
-        if (value < 0.0f)
-          return Error{pointer, fmt::format("has a negative factor {} in {}; use 0 or more", value, name)};
-    }
     if (which == "POSITION") out.position = as_vectors<vec3>(values);
     // Directions of length zero are none: all of the primitive's are made anew at spawn.
     if (which == "NORMAL" && all_directions(values, 3)) out.normal = as_vectors<vec3>(values);
     if (which == "TANGENT" && all_directions(values, 4)) out.tangent = as_vectors<vec4>(values);
     if (which == "TEXCOORD_0") out.uv = as_vectors<vec2>(values);
-    if (which == "_STIFFNESS") out.stiffness = values;
-    if (which == "_FRICTION") out.friction = values;
-    if (which == "_DAMPING") out.damping = values;
-    if (which == "_RELAXATION") out.relaxation = values;
-    if (which == "_PINNED") out.pinned = values;
-    if (which == "_HANDLE") out.handle = values;
+  }
+  for (const PaintedAttribute& painted : kPainted) {
+    std::vector<float> values = attribute(source, painted.name);
+    if (!all_finite(values)) return not_finite(painted.name);
+    const std::size_t width = source.vertices == 0 ? 0 : values.size() / source.vertices;
+    if (!values.empty() && width != 1)
+      return Error{pointer, fmt::format("has {} with {} numbers a vertex instead of one", painted.name, width)};
+    for (const float value : values)
+      if (!kPaintedRange.holds(static_cast<double>(value)))
+        return Error{pointer, fmt::format("has a negative factor {} in {}; use 0 or more", value, painted.name)};
+    out.*painted.values = std::move(values);
   }
   return out;
 }

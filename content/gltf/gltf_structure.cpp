@@ -233,7 +233,7 @@ class Structure {
   void check_list(const std::string& value, const Rule& rule, const std::string& pointer) {
     for (const std::string& each : rule.list)
       if (each == value) return;
-    warn(pointer, fmt::format("must be one of {}; got {}", fmt::join(rule.list, ", "), value.substr(0, 40)));
+    warn(pointer, fmt::format("must be one of {}; got '{}'", fmt::join(rule.list, ", "), value.substr(0, 40)));
   }
 
   const Json& root_;

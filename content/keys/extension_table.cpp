@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "content/keys/enum_words.h"
+#include "content/level/spawn_soft.h"
+#include "content/mesh/mesh_crease.h"
 
 namespace pliant {
 
@@ -33,7 +35,7 @@ Key key(std::string name, std::string unit, KeyType type, std::string doc, Acces
 }
 
 template <class Access>
-Key number(std::string name, std::string unit, KeyRange range, Access access, std::string doc) {
+Key number(std::string name, std::string unit, Range range, Access access, std::string doc) {
   Key out = key(
       std::move(name), std::move(unit), KeyType::kNumber, std::move(doc), access, [](double value) { return value; },
       [](const Json& json) { return json.get<double>(); });
@@ -52,18 +54,13 @@ Key flag(std::string name, Access access, std::string doc) {
       std::move(name), "", KeyType::kFlag, std::move(doc), access, [](bool value) { return value; },
       [](const Json& json) { return json.get<bool>(); });
 }
-// An enumeration; the names stand in the order of its values.
 template <class Access>
-Key choice(std::string name, std::vector<std::string> names, Access access, std::string doc) {
+Key choice(std::string name, Access access, std::string doc) {
   using Enum = std::remove_reference_t<decltype(access(nullptr))>;
   Key out = key(
-      std::move(name), "", KeyType::kChoice, std::move(doc), access,
-      [names](Enum value) { return names[static_cast<std::size_t>(value)]; },
-      [names](const Json& json) {
-        const auto it = std::find(names.begin(), names.end(), json.get<std::string>());
-        return static_cast<Enum>(it - names.begin());
-      });
-  out.choices = std::move(names);
+      std::move(name), "", KeyType::kChoice, std::move(doc), access, [](Enum value) { return word_of(value); },
+      [](const Json& json) { return *value_of_word<Enum>(json.get<std::string>()); });
+  out.choices = words_of<Enum>();
   return out;
 }
 template <class Access>
@@ -93,28 +90,29 @@ Key box(std::string name, Access access, std::string doc) {
       });
 }
 
-constexpr KeyRange kFriction{0.0, 10.0};
-
 std::vector<Key> deformable_keys() {
   using D = Deformable;
+  using R = DeformableRange;
   const auto d = [](auto member) { return at(&LevelNode::deformable, member); };
   std::vector<Key> keys;
-  keys.push_back(choice("spring", {"linear", "cubic", "exponential", "sls"}, d(&D::spring), "law of the normal force"));
-  keys.push_back(number("stiffness", "N/m", {1e-6, 1e7}, d(&D::stiffness),
+  keys.push_back(choice("spring", d(&D::spring), "law of the normal force"));
+  keys.push_back(number("stiffness", "N/m", R::kStiffness, d(&D::stiffness),
                         "small-depth slope of normal force against depth at the probe"));
-  keys.push_back(number("cubic", "N/m3", {0.0, 1e15}, d(&D::cubic), "k3 of the cubic law"));
-  keys.push_back(number("stiffening", "1/m", {1e-6, 1e5}, d(&D::stiffening), "alpha of the exponential law"));
-  keys.push_back(number("relaxation.stiffness", "N/m", {0.0, 1e7}, d(&D::relaxation_stiffness),
+  keys.push_back(number("cubic", "N/m3", R::kCubic, d(&D::cubic), "k3 of the cubic law"));
+  keys.push_back(number("stiffening", "1/m", R::kStiffening, d(&D::stiffening), "alpha of the exponential law"));
+  keys.push_back(number("relaxation.stiffness", "N/m", R::kRelaxationStiffness, d(&D::relaxation_stiffness),
                         "arm of the standard linear solid"));
-  keys.push_back(number("relaxation.time", "s", {1e-6, 1e6}, d(&D::relaxation_time), "relaxation time of that arm"));
-  keys.push_back(number("damping_ratio", "1", {0.0, 100.0}, d(&D::damping_ratio), "damping ratio of the free surface"));
   keys.push_back(
-      number("settling_time", "s", {1e-4, 100.0}, d(&D::settling_time), "2 % settling time of the free surface"));
+      number("relaxation.time", "s", R::kRelaxationTime, d(&D::relaxation_time), "relaxation time of that arm"));
+  keys.push_back(
+      number("damping_ratio", "1", R::kDampingRatio, d(&D::damping_ratio), "damping ratio of the free surface"));
+  keys.push_back(
+      number("settling_time", "s", R::kSettlingTime, d(&D::settling_time), "2 % settling time of the free surface"));
   Key damping;
   damping.name = "contact_damping";
   damping.unit = "N s/m";
   damping.type = KeyType::kNumberOrMaterial;
-  damping.range = {0.0, 1e6};
+  damping.range = R::kContactDamping;
   damping.doc = "rate term of the probe's force; `material` takes b of the local model, as P1 does";
   damping.get = [](const void* owner) {
     const D& it = *static_cast<const LevelNode*>(owner)->deformable;
@@ -126,30 +124,32 @@ std::vector<Key> deformable_keys() {
     it.contact_damping = value.is_string() ? 0.0 : value.get<double>();
   };
   keys.push_back(damping);
-  keys.push_back(choice("response", {"follow", "lag"}, d(&D::response),
+  keys.push_back(choice("response", d(&D::response),
                         "whether the drawn surface follows a pressing probe or lags by its settling time"));
-  keys.push_back(choice("shape", {"punch", "hertz", "gaussian", "wendland", "volume", "kelvinlet"}, d(&D::shape),
-                        "shape of the dent around the probe"));
-  keys.push_back(choice("distance", {"chord", "surface"}, d(&D::distance),
-                        "distance that the shape is a function of: straight, or along the surface"));
-  keys.push_back(number("reach", "m", {0.0, 1e6}, d(&D::reach),
-                        "radius R of the field; 0: 0.08 of the diagonal of the object's box"));
+  keys.push_back(choice("shape", d(&D::shape), "shape of the dent around the probe"));
   keys.push_back(
-      number("volume", "1", {0.0, 1.0}, d(&D::volume), "share of the volume conserved by the shape `volume`"));
-  keys.push_back(number("friction_static", "1", kFriction, d(&D::friction_static),
+      choice("distance", d(&D::distance), "distance that the shape is a function of: straight, or along the surface"));
+  keys.push_back(
+      number("reach", "m", R::kReach, d(&D::reach),
+             fmt::format("radius R of the field; 0: {} of the diagonal of the object's box", kDefaultReach)));
+  keys.push_back(
+      number("volume", "1", R::kVolume, d(&D::volume), "share of the volume conserved by the shape `volume`"));
+  keys.push_back(number("friction_static", "1", kFrictionRange, d(&D::friction_static),
                         "coefficient of static friction, at least that of sliding"));
   keys.push_back(
-      number("friction_sliding", "1", kFriction, d(&D::friction_sliding), "coefficient of sliding friction"));
-  Key both = number("friction", "1", kFriction, d(&D::friction_static), "sets friction_static and friction_sliding");
+      number("friction_sliding", "1", kFrictionRange, d(&D::friction_sliding), "coefficient of sliding friction"));
+  Key both =
+      number("friction", "1", kFrictionRange, d(&D::friction_static), "sets friction_static and friction_sliding");
   both.alias = true;
   both.set = [](void* owner, const Json& value) {
     D& it = *static_cast<LevelNode*>(owner)->deformable;
     it.friction_static = it.friction_sliding = value.get<double>();
   };
   keys.push_back(both);
-  keys.push_back(
-      number("crease_angle", "rad", {0.0, 3.1416}, d(&D::crease_angle),
-             "edges whose faces turn by more are creases; 0: where the file's own normals are split, else 0.7"));
+  keys.push_back(number(
+      "crease_angle", "rad", {0.0, 3.1416}, d(&D::crease_angle),
+      fmt::format("edges whose faces turn by more are creases; 0: where the file's own normals are split, else {}",
+                  kCreaseTurn)));
   keys.push_back(
       number("young", "Pa", {0.0, 1e12}, d(&D::young), "Young's modulus, instead of `stiffness`; 0: not given"));
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
@@ -175,7 +175,9 @@ std::vector<Key> probe_keys() {
                         "length of a capsule's axis, from the node along its +Y; 0: none"));
   Key points = key(
       "points", "m", KeyType::kPoints,
-      "places of tips in the node's frame, at most 16, instead of the one at the node: a fork, a brush, a plate",
+      fmt::format(
+          "places of tips in the node's frame, at most {}, instead of the one at the node: a fork, a brush, a plate",
+          kMostPoints),
       at(&LevelNode::probe, &Probe::points),
       [](const std::vector<vec3>& places) {
         Json json = Json::array();
@@ -189,8 +191,8 @@ std::vector<Key> probe_keys() {
       });
   points.range = {-1e3, 1e3};
   keys.push_back(points);
-  keys.push_back(choice("meets", {"all", "surfaces", "bodies"}, at(&LevelNode::probe, &Probe::meets),
-                        "yielding surfaces, soft and rigid bodies, or both"));
+  keys.push_back(
+      choice("meets", at(&LevelNode::probe, &Probe::meets), "yielding surfaces, soft and rigid bodies, or both"));
   keys.push_back(pair("coupling", "N/m, N s/m", at(&LevelNode::probe, &Probe::coupling),
                       "spring and damper between the device and what meets soft and rigid bodies"));
   Key color = key(
@@ -212,8 +214,7 @@ std::vector<Key> device_keys() {
   using H = HapticDevice;
   const auto d = [](auto member) { return at(&LevelNode::device, member); };
   std::vector<Key> keys;
-  keys.push_back(
-      choice("driver", {"null", "script", "orbit", "mouse", "external"}, d(&H::driver), "what moves the probe"));
+  keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
   keys.push_back(number("scale", "1", {0.0, 1e6, true}, d(&H::scale), "workspace to world"));
@@ -230,8 +231,9 @@ std::vector<Key> soft_body_keys() {
   const auto s = [](auto member) { return at(&LevelNode::soft_body, member); };
   std::vector<Key> keys;
   keys.push_back(number("young", "Pa", {0.0, 1e12, true}, s(&S::young), "Young's modulus"));
-  keys.push_back(number("poisson", "1", {0.0, 0.499}, s(&S::poisson),
-                        "Poisson's ratio; from 0.47 on the tetrahedra lock: flesh is over 10 % too stiff"));
+  keys.push_back(number(
+      "poisson", "1", {0.0, 0.499}, s(&S::poisson),
+      fmt::format("Poisson's ratio; from {} on the tetrahedra lock: flesh is over 10 % too stiff", kLockingPoisson)));
   keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", {0.0, 1e3}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
@@ -239,9 +241,10 @@ std::vector<Key> soft_body_keys() {
       text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
   keys.push_back(
       box("pinned", s(&S::pinned), "what is held fast: a box in the object frame; left out: the attribute _PINNED"));
-  keys.push_back(number("friction_static", "1", kFriction, s(&S::friction_static), "coefficient of static friction"));
   keys.push_back(
-      number("friction_sliding", "1", kFriction, s(&S::friction_sliding), "coefficient of sliding friction"));
+      number("friction_static", "1", kFrictionRange, s(&S::friction_static), "coefficient of static friction"));
+  keys.push_back(
+      number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
   return keys;
 }
 
@@ -251,7 +254,7 @@ std::vector<Key> handle_keys() {
   std::vector<Key> keys;
   keys.push_back(box("box", h(&H::box),
                      "which part of a soft body is rigid: a box in the object frame; left out: the attribute _HANDLE"));
-  keys.push_back(choice("attachment", {"spring", "slave"}, h(&H::attachment), "how flesh is held to the handle"));
+  keys.push_back(choice("attachment", h(&H::attachment), "how flesh is held to the handle"));
   keys.push_back(
       pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
   keys.push_back(pair("coupling.rotation", "N m/rad, N m s/rad", h(&H::rotation), "the same for rotation"));
@@ -259,7 +262,7 @@ std::vector<Key> handle_keys() {
   keys.push_back(
       number("coupling.max_torque", "N m", {0.0, 1e4}, h(&H::max_torque), "saturation of the coupling's torque"));
   keys.push_back(flag("carried", h(&H::carried), "hold up the tool's weight, so that the hand does not feel it"));
-  keys.push_back(choice("force", {"held", "linear", "contacts"}, h(&H::force),
+  keys.push_back(choice("force", h(&H::force),
                         "how the touch clock makes its force: held from the last soft step, by the linear model, or "
                         "with the contacts solved again in every tick"));
   keys.push_back(text("device", KeyType::kNode, h(&H::device),
@@ -273,9 +276,10 @@ std::vector<Key> rigid_body_keys() {
   std::vector<Key> keys;
   keys.push_back(number("mass", "kg", {0.0, 1e9}, r(&R::mass), "mass; 0: from density"));
   keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, r(&R::density), "density"));
-  keys.push_back(number("friction_static", "1", kFriction, r(&R::friction_static), "coefficient of static friction"));
   keys.push_back(
-      number("friction_sliding", "1", kFriction, r(&R::friction_sliding), "coefficient of sliding friction"));
+      number("friction_static", "1", kFrictionRange, r(&R::friction_static), "coefficient of static friction"));
+  keys.push_back(
+      number("friction_sliding", "1", kFrictionRange, r(&R::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(flag("fixed", r(&R::fixed), "does not move"));
   return keys;
 }
@@ -308,7 +312,7 @@ std::vector<Key> simulation_keys() {
   using S = Simulation;
   const auto s = [](auto member) { return at(&Level::simulation, member); };
   std::vector<Key> keys;
-  keys.push_back(number("touch_rate", "Hz", {10.0, 100000.0}, s(&S::touch_rate), "rate of the touch clock"));
+  keys.push_back(number("touch_rate", "Hz", kTouchRateRange, s(&S::touch_rate), "rate of the touch clock"));
   keys.push_back(number("soft_step", "s", {1e-4, 1.0}, s(&S::soft_step), "step of the soft clock"));
   Key gravity = key(
       "gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "components/range.h"
 #include "content/keys/extensions.h"
 
 namespace pliant {
@@ -14,18 +14,12 @@ enum class KeyType { kNumber, kFlag, kText, kChoice, kColor, kPair, kVector, kPo
 
 inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
 
-struct KeyRange {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool above_min = false;  // min itself is out
-};
-
 // One key. Owners are LevelNode (node extensions) or Level (scene extensions), handed over as void*.
 struct Key {
   std::string name;  // dots are nested objects: relaxation.time
   std::string unit;
   KeyType type = KeyType::kNumber;
-  KeyRange range;
+  Range range;
   std::vector<std::string> choices;
   std::string doc;
   bool alias = false;  // sets other keys; never saved
@@ -52,8 +46,8 @@ std::string check_value(const Key& key, const Json& value);
 std::string range_text(const Key& key);
 // The closest of `names`, as "; did you mean X?", or "" if none is close.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
-// "unknown `what` 'word'; did you mean X?", or, if none is close, "...; `all` are A, B, C".
-std::string unknown(const std::string& what, const std::string& word, const std::string& all,
+// "unknown `what` 'word' in `in`; did you mean X?", or, if none is close, "...; `all` are: A, B, C".
+std::string unknown(const std::string& what, const std::string& word, const std::string& in, const std::string& all,
                     const std::vector<std::string>& names);
 std::string unknown_key(const Extension& extension, const std::string& word);
 

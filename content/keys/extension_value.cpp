@@ -5,16 +5,22 @@
 #include <cmath>
 
 #include "content/keys/extension_table.h"
+#include "runtime/assert.h"
 
 namespace pliant {
 
 namespace {
 
-bool numbers(const Json& value, std::size_t count, const KeyRange& range) {
+bool numbers(const Json& value, std::size_t count, const Range& range) {
   if (!value.is_array() || value.size() != count) return false;
   for (const Json& each : value)
-    if (!each.is_number() || !(each.get<double>() >= range.min && each.get<double>() <= range.max)) return false;
+    if (!each.is_number() || !range.holds(each.get<double>())) return false;
   return true;
+}
+
+// As much of a word as a sentence needs.
+std::string cut(const std::string& word) {
+  return word.substr(0, 100);
 }
 
 }  // namespace
@@ -28,10 +34,9 @@ std::string range_text(const Key& key) {
 std::string check_value(const Key& key, const Json& value) {
   const auto number = [&] {
     const double it = value.get<double>();
-    const bool inside = (key.range.above_min ? it > key.range.min : it >= key.range.min) && it <= key.range.max;
-    return inside ? std::string()
-                  : fmt::format("must be in the range {}{}; got {}", range_text(key),
-                                key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump());
+    return key.range.holds(it) ? std::string()
+                               : fmt::format("must be in the range {}{}; got {}", range_text(key),
+                                             key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump());
   };
   const std::string given = value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
   const auto must_be = [&](const std::string& what) { return "must be " + what + "; got " + given; };
@@ -52,7 +57,8 @@ std::string check_value(const Key& key, const Json& value) {
         if (value == each) return "";
         all += (all.empty() ? "" : ", ") + each;
       }
-      return must_be("one of " + all);
+      return "must be one of " + all + "; got " +
+             (value.is_string() ? "'" + cut(value.get<std::string>()) + "'" : given);
     }
     case KeyType::kColor:
       return numbers(value, 3, key.range) ? "" : must_be("three numbers in " + range_text(key));
@@ -68,14 +74,14 @@ std::string check_value(const Key& key, const Json& value) {
       return good ? "" : must_be(fmt::format("a list of at most {} points [x, y, z]", kMostPoints));
     }
     case KeyType::kBox: {
-      const KeyRange any{-1e6, 1e6};
+      const Range any{-1e6, 1e6};
       bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&
                   numbers(value["min"], 3, any) && numbers(value["max"], 3, any);
       for (std::size_t i = 0; good && i < 3; ++i) good = value["min"][i].get<double>() <= value["max"][i].get<double>();
       return good ? "" : must_be("a box {\"min\": [x, y, z], \"max\": [x, y, z]}");
     }
   }
-  return "";
+  UNREACHABLE();
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
@@ -102,18 +108,17 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   return best.empty() ? "" : "; did you mean " + best + "?";
 }
 
-std::string unknown(const std::string& what, const std::string& word, const std::string& all,
+std::string unknown(const std::string& what, const std::string& word, const std::string& in, const std::string& all,
                     const std::vector<std::string>& names) {
   const std::string near = suggestion(word, names);
-  return fmt::format("unknown {} '{}'", what, word.substr(0, 100)) +
-         (near.empty() ? fmt::format("; {} are {}", all, fmt::join(names, ", ")) : near);
+  return fmt::format("unknown {} '{}'{}{}", what, cut(word), in.empty() ? "" : " in ", in) +
+         (near.empty() ? fmt::format("; {} are: {}", all, fmt::join(names, ", ")) : near);
 }
 
 std::string unknown_key(const Extension& extension, const std::string& word) {
   std::vector<std::string> names;
   for (const Key& key : extension.keys) names.push_back(key.name);
-  const std::string owner = "PLIANT_" + extension.name;
-  return unknown("key", word, "keys of " + owner, names);
+  return unknown("key", word, "PLIANT_" + extension.name, "keys", names);
 }
 
 }  // namespace pliant

@@ -83,7 +83,7 @@ void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
     const std::string here = pointer + "/" + name;
     const Extension* extension = find_extension(name.substr(7));
     if (!extension || extension->on_scene != on_scene)
-      report(here, unknown("extension", name, "extensions here", names));
+      report(here, unknown("extension", name, "", on_scene ? "extensions of a scene" : "extensions of a node", names));
     else
       Reader<Report>(*extension, owner, node_names, report).read(json, here);
   }

@@ -1,6 +1,7 @@
 // --set NODE.EXT.KEY=VALUE, over the table of extensions.
-#include <fmt/format.h>
+#include <algorithm>
 
+#include "content/gltf/gltf_document.h"
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
 
@@ -40,59 +41,74 @@ bool split(const Level& level, const std::string& path, Assignment& out) {
   return true;
 }
 
-Status assign(const Extension& extension, const Key& key, const Json& value, void* owner, const std::string& where) {
+// A node is named as in a file: by name or by glTF number. A name that is a number comes first.
+Json name_of_node(const Level& level, const std::string& text) {
+  const auto is_named = [&](const LevelNode& node) { return node.name == text; };
+  if (std::any_of(level.nodes.begin(), level.nodes.end(), is_named)) return text;
+  const Json number = Json::parse(text, nullptr, false);
+  if (!number.is_number_unsigned()) return text;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i)
+    if (number == (level.source ? static_cast<std::size_t>(level.source->json_node[i]) : i)) return level.nodes[i].name;
+  return text;
+}
+
+// An extension that was set somewhere, and by what at last.
+struct Touched {
+  const Extension* extension;
+  void* owner;
+  std::string where;
+};
+
+void assign(const Extension& extension, const Key& key, const Json& value, void* owner, const std::string& where,
+            std::vector<Touched>& touched) {
   // Stiffness and Young's modulus stand for each other: the one that is set last holds.
   if (extension.name == "deformable" && key.name == "stiffness")
     static_cast<LevelNode*>(owner)->deformable->young = 0.0;
   key.set(owner, value);
-  if (const std::string clash = extension.settle(owner); !clash.empty()) return Error{where, clash};
-  return Done{};
+  for (Touched& each : touched)
+    if (each.extension == &extension && each.owner == owner) {
+      each.where = where;
+      return;
+    }
+  touched.push_back({&extension, owner, where});
 }
 
-}  // namespace
-
-Status set_key(Level& level, const std::string& assignment) {
+// One assignment; what follows from it and what clashes is left to the end, as in a file.
+Status set_one(Level& level, const std::string& assignment, std::vector<Touched>& touched) {
   const std::string where = "--set " + assignment;
   const std::size_t equals = assignment.find('=');
   Assignment it;
   if (equals == std::string::npos || !split(level, assignment.substr(0, equals), it))
     return Error{where, "is not NODE.EXTENSION.KEY=VALUE; write for example belly.deformable.stiffness=300"};
-  it.value = value_of_text(assignment.substr(equals + 1));
+  const std::string text = assignment.substr(equals + 1);
 
   std::vector<std::string> extensions, nodes;
   for (const Extension& each : extension_table()) extensions.push_back(each.name);
   const Extension* extension = find_extension(it.extension);
-  if (!extension) return Error{where, unknown("extension", it.extension, "extensions", extensions)};
+  if (!extension) return Error{where, unknown("extension", it.extension, "", "extensions", extensions)};
   const Key* key = find_key(*extension, it.key);
   if (!key) return Error{where, unknown_key(*extension, it.key)};
-  if (key->type == KeyType::kText || key->type == KeyType::kNode || key->type == KeyType::kChoice)
-    it.value = assignment.substr(equals + 1);
+  if (key->type == KeyType::kNode)
+    it.value = name_of_node(level, text);
+  else if (key->type == KeyType::kText || key->type == KeyType::kChoice)
+    it.value = text;
+  else
+    it.value = value_of_text(text);
   const std::string wrong = check_value(*key, it.value);
   if (!wrong.empty()) return Error{where, it.key + " " + wrong + " (" + key->doc + ")"};
 
-  // Nothing changes unless everything can.
-  Level changed;
-  changed.nodes = level.nodes;
-  changed.environment = level.environment;
-  changed.simulation = level.simulation;
-  const auto keep = [&] {
-    level.nodes = std::move(changed.nodes);
-    level.environment = std::move(changed.environment);
-    level.simulation = changed.simulation;
-    return Done{};
-  };
   if (extension->on_scene) {
-    if (!extension->present(&changed)) extension->add(&changed);
-    if (const Status status = assign(*extension, *key, it.value, &changed, where); !status) return status;
-    return keep();
+    if (!extension->present(&level)) extension->add(&level);
+    assign(*extension, *key, it.value, &level, where, touched);
+    return Done{};
   }
   bool node_exists = it.node == "*", done = false;
-  for (LevelNode& node : changed.nodes) {
+  for (LevelNode& node : level.nodes) {
     const bool here = it.node == "*" || node.name == it.node;
     node_exists |= here;
     if (extension->present(&node)) nodes.push_back(node.name);
     if (!here || !extension->present(&node)) continue;
-    if (const Status status = assign(*extension, *key, it.value, &node, where); !status) return status;
+    assign(*extension, *key, it.value, &node, where, touched);
     done = true;
   }
   std::string have;
@@ -103,8 +119,32 @@ Status set_key(Level& level, const std::string& assignment) {
                             (suggestion(it.node, nodes).empty() ? hint : suggestion(it.node, nodes))};
   if (!done) return Error{where, "names a node without PLIANT_" + it.extension + hint};
   if (key->type == KeyType::kNode)
-    if (const Status status = check_references(changed); !status) return Error{where, status.error().what};
-  return keep();
+    if (const Status status = check_references(level); !status) return Error{where, status.error().what};
+  return Done{};
+}
+
+}  // namespace
+
+Status set_keys(Level& level, const std::vector<std::string>& assignments) {
+  // Nothing changes unless everything can.
+  Level changed;
+  changed.nodes = level.nodes;
+  changed.environment = level.environment;
+  changed.simulation = level.simulation;
+  changed.source = level.source;
+  std::vector<Touched> touched;
+  for (const std::string& assignment : assignments)
+    if (const Status status = set_one(changed, assignment, touched); !status) return status;
+  for (const Touched& each : touched)
+    if (const std::string clash = each.extension->settle(each.owner); !clash.empty()) return Error{each.where, clash};
+  level.nodes = std::move(changed.nodes);
+  level.environment = std::move(changed.environment);
+  level.simulation = changed.simulation;
+  return Done{};
+}
+
+Status set_key(Level& level, const std::string& assignment) {
+  return set_keys(level, {assignment});
 }
 
 }  // namespace pliant

@@ -101,6 +101,7 @@ struct Level {
   std::optional<LevelEnvironment> environment;
   Simulation simulation;           // PLIANT_simulation
   std::vector<std::string> notes;  // what was read differently than a user might expect (skins, skipped points...)
+  std::size_t document_notes = 0;  // of these, the first are warnings of the document (open_gltf)
   // The glTF it came from: while it is there, save_level keeps meshes, materials, pictures and animations from it.
   // Whoever changes one of those resets it, and everything is then written from the Level alone.
   std::shared_ptr<SourceDocument> source;

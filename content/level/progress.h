@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runtime/clock.h"
+#include "runtime/printable.h"
 
 namespace pliant {
 
@@ -14,7 +15,7 @@ class Progress {
   void say(const std::string& doing) {
     if (now_ns() - last_ < 1'000'000'000) return;
     last_ = now_ns();
-    std::cerr << "pliant: still " << doing << '\n';
+    std::cerr << "pliant: still " << printable(doing) << '\n';
   }
 
  private:

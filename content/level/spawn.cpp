@@ -82,7 +82,8 @@ class Spawner {
 
  private:
   Error at(std::size_t n, std::string what) const {
-    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what)};
+    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what),
+            static_cast<std::int32_t>(n)};
   }
 
   Status node(std::size_t n) {
@@ -136,8 +137,7 @@ class Spawner {
       Deformable& deformable = world_.registry.add<Deformable>(entities_[n], *node.deformable);
       deformable.mesh = baked->touch;
       deformable.field = world_.fields.add({});
-      if (deformable.reach <= 0.0)
-        deformable.reach = kDefaultReach * static_cast<double>(world_.meshes[deformable.mesh].box.diagonal());
+      if (deformable.reach <= 0.0) deformable.reach = default_reach(world_.meshes[deformable.mesh]);
     }
     if (node.rigid_body) return rigid_body(n, baked->touch);
     return Done{};
@@ -207,8 +207,7 @@ class Spawner {
     if (built.reach == wanted.reach) return true;
     if (built.refined || !wanted.reach) return !built.refined;
     const Mesh& mesh = world_.meshes[built.touch];
-    return !is_coarse(mesh,
-                      *wanted.reach > 0.0 ? *wanted.reach : kDefaultReach * static_cast<double>(mesh.box.diagonal()));
+    return !is_coarse(mesh, *wanted.reach > 0.0 ? *wanted.reach : default_reach(mesh));
   }
 
   Result<Baked> bake(std::size_t n, const mat4& to_object) {

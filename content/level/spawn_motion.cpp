@@ -68,7 +68,8 @@ class MotionMaker {
   };
 
   Error at(std::size_t n, std::string what) const {
-    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what)};
+    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what),
+            static_cast<std::int32_t>(n)};
   }
   void note(std::size_t n, const std::string& what) {
     out_.notes.push_back("node `" + level_.nodes[n].name + "` " + what);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <unordered_map>
 
 #include "content/level/zones.h"
@@ -13,6 +14,7 @@
 #include "content/mesh/mesh_surface.h"
 #include "content/mesh/mesh_weld.h"
 #include "content/mesh/mesh_winding.h"
+#include "content/mesh/painted.h"
 #include "runtime/hash.h"
 
 namespace pliant {
@@ -39,30 +41,30 @@ void lay_out(const Welded& welded, Mesh& mesh) {
   mesh.triangles = welded.triangle;
 }
 
-// The mean of a painted factor over the painted copies of each vertex; `unpainted` where no copy is painted. Empty:
-// painted nowhere.
-Result<std::vector<float>> paint(const std::string& name, const char* attribute, std::span<const Primitive> primitives,
-                                 std::vector<float> Primitive::*factor, const Gathered& gathered, const Welded& welded,
-                                 std::size_t padded, float unpainted = 1.0f) {
+// The mean of a painted factor over the painted copies of each vertex; its value for `unpainted` where no copy is
+// painted. Empty: painted nowhere.
+Result<std::vector<float>> paint(const std::string& name, const PaintedAttribute& attribute,
+                                 std::span<const Primitive> primitives, const Gathered& gathered, const Welded& welded,
+                                 std::size_t padded) {
   std::vector<double> sum;
   std::vector<std::uint32_t> count;
   for (std::size_t n = 0; n < primitives.size(); ++n) {
-    const std::vector<float>& values = primitives[n].*factor;
+    const std::vector<float>& values = primitives[n].*attribute.values;
     if (values.empty() || values.size() != primitives[n].position.size()) continue;
     sum.resize(padded, 0.0);
     count.resize(padded, 0);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i]) || values[i] < 0.0f)
-        return Error{
-            "mesh `" + name + "`",
-            std::string(attribute) + " holds a factor that is negative or not a number; paint it again, from 0 up"};
+      if (!kPaintedRange.holds(static_cast<double>(values[i])))
+        return Error{"mesh `" + name + "`",
+                     std::string(attribute.name) +
+                         " holds a factor that is negative or not a number; paint it again, from 0 up"};
       const std::uint32_t v = welded.touch_vertex[gathered.first_vertex[n] + i];
       if (v == kNoVertex) continue;
       sum[v] += static_cast<double>(values[i]);
       ++count[v];
     }
   }
-  std::vector<float> mean(sum.size(), unpainted);
+  std::vector<float> mean(sum.size(), attribute.unpainted);
   for (std::size_t v = 0; v < sum.size(); ++v)
     if (count[v] != 0) mean[v] = static_cast<float>(sum[v] / count[v]);
   return mean;
@@ -108,22 +110,13 @@ Status finish(std::span<const Primitive> primitives, const mat4& to_object, cons
   mesh.mean_edge = static_cast<float>(mean_edge_length(mesh));
   mesh.tree = build_tree(mesh);
   build_zones(mesh);
-  const struct {
-    const char* attribute;
-    std::vector<float> Primitive::*painted;
-    std::vector<float>* factor;
-    float unpainted;
-  } factors[] = {{"_STIFFNESS", &Primitive::stiffness, &mesh.stiffness_factor, 1.0f},
-                 {"_FRICTION", &Primitive::friction, &mesh.friction_factor, 1.0f},
-                 {"_DAMPING", &Primitive::damping, &mesh.damping_factor, 1.0f},
-                 {"_RELAXATION", &Primitive::relaxation, &mesh.relaxation_factor, 1.0f},
-                 {"_PINNED", &Primitive::pinned, &built.pinned, 0.0f},
-                 {"_HANDLE", &Primitive::handle, &built.handle, 0.0f}};
-  for (const auto& each : factors) {
-    auto mean =
-        paint(mesh.name, each.attribute, primitives, each.painted, gathered, welded, mesh.px.size(), each.unpainted);
+  std::vector<float>* const factors[] = {&mesh.stiffness_factor,  &mesh.friction_factor, &mesh.damping_factor,
+                                         &mesh.relaxation_factor, &built.pinned,         &built.handle};
+  static_assert(std::size(factors) == kPainted.size());  // in its order
+  for (std::size_t i = 0; i < kPainted.size(); ++i) {
+    auto mean = paint(mesh.name, kPainted[i], primitives, gathered, welded, mesh.px.size());
     if (!mean) return mean.error();
-    *each.factor = std::move(*mean);
+    *factors[i] = std::move(*mean);
   }
   built.draw = build_draw_mesh(primitives, to_object, gathered, welded, mesh, built.report);
   return Done{};
@@ -228,8 +221,7 @@ Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive>
     split_at_creases(corners, mesh);
   }
   if (options.reach) {
-    const double reach =
-        *options.reach > 0.0 ? *options.reach : kDefaultReach * static_cast<double>(mesh.box.diagonal());
+    const double reach = *options.reach > 0.0 ? *options.reach : default_reach(mesh);
     const FinerMesh finer = make_finer(primitives, to_object, *gathered, welded, mesh, reach);
     if (!finer.primitives.empty()) {
       mesh.of_source = welded.touch_vertex;

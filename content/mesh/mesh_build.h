@@ -43,8 +43,6 @@ struct BuiltMesh {
   std::vector<float> pinned, handle;  // [1] per touch vertex, painted (_PINNED, _HANDLE); empty: 0 everywhere
 };
 
-inline constexpr double kDefaultReach = 0.08;  // [1] of the object's diagonal: Deformable::reach where it says none
-
 struct MeshOptions {
   double crease_angle = 0.0;  // [rad] edges that turn by more are creases; 0: mesh_crease.h decides
   // [m] Cut finer until dents of this radius show (mesh_finer.h), 0: of the default reach; nothing: as the file has it.

@@ -38,7 +38,7 @@ struct DeformableParameters {
   Response response = Response::kFollow;
   Shape shape = Shape::kVolume;
   Distance distance = Distance::kChord;
-  double reach = 0.0;             // [m] radius R of the field; 0: 0.08 of the object's diagonal, set at spawn
+  double reach = 0.0;             // [m] radius R of the field; 0: 0.08 of the object's diagonal
   double volume = 1.0;            // [1] chi: share of the volume that the shape `volume` conserves
   double friction_static = 0.4;   // [1] mu_s
   double friction_sliding = 0.3;  // [1] mu_d <= mu_s

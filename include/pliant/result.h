@@ -2,6 +2,7 @@
 // do. No function of the library throws.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -12,8 +13,10 @@ namespace pliant {
 
 // One actionable sentence: "WHERE: what is wrong; what to do".
 struct Error {
-  std::string where;  // file, JSON pointer, option or device
-  std::string what;   // what is wrong, and after a semicolon what to do
+  std::string where;       // file, JSON pointer, option or device
+  std::string what;        // what is wrong, and after a semicolon what to do
+  std::int32_t node = -1;  // of the level: index of the node that it is about; -1: of none
+  std::string pointer;     // JSON pointer within the file, where it has one; `where` names it too
   std::string message() const { return where.empty() ? what : where + ": " + what; }
 };
 

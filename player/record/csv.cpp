@@ -5,12 +5,15 @@
 #include <cmath>
 #include <iterator>
 
+#include "runtime/printable.h"
+
 namespace pliant {
 
 std::string csv_text(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  const std::string shown = printable(name);
+  if (shown.find_first_of(",\"") == std::string::npos) return shown;
   std::string text = "\"";
-  for (char c : name) {
+  for (const char c : shown) {
     if (c == '"') text += '"';
     text += c;
   }

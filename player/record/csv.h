@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-// RFC 4180: names come from files and may hold commas, quotes and line ends.
+// RFC 4180: names come from files and may hold commas and quotes; the rest is made printable (runtime/printable.h), so
+// that a row is one line.
 std::string csv_text(const std::string& name);
 
 // Appends a comma and the value, with nine digits: exact for a float, and 1e-9 relative for what is kept in double. -0

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/printable.h"
+
 #ifdef PLIANT_SANITIZED
 // Fontconfig keeps its configuration, on purpose, until the program ends; the leak sanitizer asks us about it.
 extern "C" const char* __lsan_default_suppressions() {
@@ -39,10 +41,11 @@ double Pen::text(double x, double y, double size, double align, const std::strin
   cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo_, size);
+  const std::string shown = printable(words);  // Cairo draws nothing more after text that is no UTF-8
   cairo_text_extents_t box;
-  cairo_text_extents(cairo_, words.c_str(), &box);
+  cairo_text_extents(cairo_, shown.c_str(), &box);
   cairo_move_to(cairo_, x - align * box.x_advance, y);
-  cairo_show_text(cairo_, words.c_str());
+  cairo_show_text(cairo_, shown.c_str());
   return box.x_advance;
 }
 

@@ -65,8 +65,8 @@ void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, con
 }
 
 // Through the smallest and the largest value of every column, so that no peak is thinned away.
-void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Range TraceColumn::*quantity, double scale,
-                Color color) {
+void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Extremes TraceColumn::*quantity,
+                double scale, Color color) {
   pen.color(color);
   cairo_set_line_width(pen.get(), 2.2);
   cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
@@ -76,7 +76,7 @@ void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Ran
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].ticks == 0) continue;
     const double x = panel.px(std::min((static_cast<double>(i) + 0.5) * column, panel.seconds));
-    const Range& range = columns[i].*quantity;
+    const Extremes& range = columns[i].*quantity;
     cairo_line_to(pen.get(), x, panel.py(static_cast<double>(range.min) * scale));
     if (range.max > range.min) cairo_line_to(pen.get(), x, panel.py(static_cast<double>(range.max) * scale));
   }
@@ -126,7 +126,7 @@ void draw_limits(Pen& pen, const Panel& panel, const Trace& trace, double dt, st
   }
 }
 
-double largest(const Trace& trace, Range TraceColumn::*quantity) {
+double largest(const Trace& trace, Extremes TraceColumn::*quantity) {
   double most = 0.0;
   for (const TraceColumn& column : trace.columns())
     if (column.ticks) most = std::max(most, static_cast<double>((column.*quantity).max));

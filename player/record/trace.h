@@ -11,22 +11,22 @@
 
 namespace pliant {
 
-struct Range {
+struct Extremes {
   float min = std::numeric_limits<float>::max(), max = std::numeric_limits<float>::lowest();
   void add(double value) {
     min = std::min(min, static_cast<float>(value));
     max = std::max(max, static_cast<float>(value));
   }
-  void add(const Range& other) {
+  void add(const Extremes& other) {
     min = std::min(min, other.min);
     max = std::max(max, other.max);
   }
 };
 
 struct TraceColumn {
-  Range depth;               // [m]
-  Range normal, tangential;  // [N]
-  std::uint32_t ticks = 0;   // 0: nothing happened here (an overrun)
+  Extremes depth;               // [m]
+  Extremes normal, tangential;  // [N]
+  std::uint32_t ticks = 0;      // 0: nothing happened here (an overrun)
   bool contact = false;
   std::uint8_t limited = 0;  // 1 << SafetyLimit: what acted in any of its ticks
 };

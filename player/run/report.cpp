@@ -8,10 +8,11 @@
 
 #include "components/soft_body.h"
 #include "content/files/file_io.h"
+#include "content/keys/enum_words.h"
 #include "player/exit.h"
+#include "player/print.h"
 #include "player/record/plot.h"
 #include "player/run/tool_words.h"
-#include "player/standard_streams.h"
 #include "systems/soft/soft_state.h"
 
 namespace pliant {
@@ -70,7 +71,7 @@ Json limits(const SafetyTally& tally) {
 
 // What only a tool has.
 Json tool(const World& world, Entity entity, const ProbeSummary& summary) {
-  return {{"tool_force", name_of(world.registry.get<Handle6>(entity).force)},
+  return {{"tool_force", word_of(world.registry.get<Handle6>(entity).force)},
           {"max_torque_Nm", summary.max_torque},
           {"late_ticks", summary.late_ticks},
           {"stale_ticks", summary.stale_ticks}};

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "systems/soft/soft_state.h"
 #include "systems/tool/tool_touch_state.h"
 
@@ -12,7 +10,6 @@ namespace {
 
 constexpr double kSaidResidual = 1e-4;  // [m/s] what creeps more slowly, nobody sees
 constexpr double kSaidLoss = 0.02;      // [1] of the run: less is lost while a first step tries which solver is fastest
-constexpr std::array<const char*, 3> kForces{"held", "linear", "contacts"};  // in the order of ToolForce
 
 std::string name_of(const World& world, std::uint32_t body) {
   const Entity entity = world.soft->bodies[body]->entity;
@@ -25,16 +22,6 @@ std::string count(std::uint64_t n, const char* what) {
 }
 
 }  // namespace
-
-const char* name_of(ToolForce force) {
-  return kForces[static_cast<std::size_t>(force)];
-}
-
-std::optional<ToolForce> tool_force_of(const std::string& name) {
-  for (std::size_t i = 0; i < kForces.size(); ++i)
-    if (name == kForces[i]) return static_cast<ToolForce>(i);
-  return std::nullopt;
-}
 
 std::vector<std::string> explain_tool(const World& world, const ProbeSummary& summary) {
   std::vector<std::string> sentences;

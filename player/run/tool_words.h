@@ -1,7 +1,6 @@
-// Tools and the soft clock in words: how a force is made, and what was left imperfect.
+// Tools and the soft clock in words: what was left imperfect.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +10,6 @@
 #include "player/record/keeper.h"
 
 namespace pliant {
-
-// "held", "linear", "contacts": values of PLIANT_handle/force and of --tool-force.
-const char* name_of(ToolForce force);
-std::optional<ToolForce> tool_force_of(const std::string& name);
 
 // A sentence for each thing that the tool's ticks had to do without, with its cure. Valid when the clocks have stopped.
 std::vector<std::string> explain_tool(const World& world, const ProbeSummary& summary);

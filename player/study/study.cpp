@@ -6,8 +6,8 @@
 
 #include "content/keys/extension_table.h"
 #include "player/exit.h"
+#include "player/print.h"
 #include "player/record/output_folder.h"
-#include "player/standard_streams.h"
 #include "player/study/study_linearisation.h"
 
 namespace pliant {

@@ -9,8 +9,8 @@
 
 #include "content/files/file_io.h"
 #include "content/level_file.h"
+#include "player/print.h"
 #include "player/progress.h"
-#include "player/standard_streams.h"
 #include "player/verbs/content_folder.h"
 #include "systems/device/path.h"
 #include "systems/schedule.h"

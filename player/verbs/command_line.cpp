@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <exception>
 
+#include "components/world.h"
+#include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
+#include "content/level_file.h"
 #include "player/exit.h"
 #include "player/standard_streams.h"
 #include "player/study/study.h"
@@ -28,16 +31,18 @@ CLI::Validator within(double low, double high) {
       "");
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
 // One of these words; the sentence lists them.
 CLI::Validator one_of(std::vector<std::string> words) {
   return CLI::Validator(
       [words](std::string& text) -> std::string {
-        std::string all;
-        for (const std::string& word : words) {
-          if (text == word) return {};
-          all += (all.empty() ? "" : ", ") + word;
-        }
-        return "must be one of " + all + "; got '" + text + "'";
+        if (std::find(words.begin(), words.end(), text) != words.end()) return {};
+        return "must be one of " + joined(words) + "; got '" + text + "'";
       },
       "");
 }
@@ -85,15 +90,16 @@ void add_run(CLI::App& app, RunOptions& run) {
   add_unit(verb, run.unit, "what one unit of a bare mesh is (m)");
   verb->add_option("--seconds", run.seconds, "how long [s]; default: the longest script, at most 60, else 4")
       ->check(within(1e-4, 86400.0));
-  verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")->check(within(10.0, 20000.0));
+  verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")
+      ->check(within(kTouchRateRange.min, kTouchRateRange.max));
   CLI::Option* lockstep =
       verb->add_flag("--lockstep", run.lockstep, "virtual time, the same bits every time (default without a window)");
   verb->add_flag("--realtime", run.realtime, "run the clocks; overruns are counted")->excludes(lockstep);
   verb->add_option("--field", run.field, "where the surface is computed: auto, cpu, gpu")
       ->check(one_of({"auto", "cpu", "gpu"}));
   verb->add_option("--tool-force", run.tool_force,
-                   "how every tool's force is made: held, linear, contacts; default: each tool's key")
-      ->check(one_of({"held", "linear", "contacts"}));
+                   "how every tool's force is made: " + joined(words_of<ToolForce>()) + "; default: each tool's key")
+      ->check(one_of(words_of<ToolForce>()));
   verb->add_option("--out", run.out,
                    "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results");
   verb->add_flag("--force", run.force, "replace the results of an earlier run in that folder, and its recording");
@@ -137,7 +143,7 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
       ->required()
       ->check(named());
   verb->add_option("--draco", conversion.draco_bits, "compress with this many bits per position (8 to 24)")
-      ->check(within(8, 24));
+      ->check(within(SaveOptions::kDracoBits.min, SaveOptions::kDracoBits.max));
   verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
   verb->add_flag("--force", conversion.force, "replace what is there");
   add_unit(verb, conversion.unit, "what one unit of the input is (m)");

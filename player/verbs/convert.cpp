@@ -9,7 +9,7 @@
 #include "content/mesh/mesh_build.h"
 #include "player/exit.h"
 #include "player/interrupt.h"
-#include "player/standard_streams.h"
+#include "player/print.h"
 #include "player/verbs/panorama_preview.h"
 #include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"

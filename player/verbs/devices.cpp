@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "player/standard_streams.h"
+#include "player/print.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {
@@ -120,7 +120,7 @@ int devices(bool json) {
                               {"product", device.product},
                               {"opens", device.opens},
                               {"use", how_to_use(device)}});
-    print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    print_json(out);
     return 0;
   }
   print("Built in:\n");

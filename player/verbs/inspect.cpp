@@ -5,12 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "content/keys/enum_words.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/tet_file.h"
 #include "player/exit.h"
+#include "player/print.h"
 #include "player/run/tool_words.h"
-#include "player/standard_streams.h"
 #include "player/verbs/content_folder.h"
 #include "player/verbs/inspect_panorama.h"
 #include "player/verbs/inspect_tets.h"
@@ -98,7 +99,7 @@ Json describe_tools(const Level& level) {
   Json list = Json::array();
   for (const LevelNode& node : level.nodes)
     if (node.handle)
-      list.push_back({{"name", node.name}, {"device", node.handle->device}, {"force", name_of(node.handle->force)}});
+      list.push_back({{"name", node.name}, {"device", node.handle->device}, {"force", word_of(node.handle->force)}});
   return list;
 }
 
@@ -178,7 +179,7 @@ std::string join(const Json& list) {
   return text.empty() ? "none" : text;
 }
 
-void print_findings(const Json& json, const Box& box) {
+void print_text(const Json& json, const Box& box) {
   print("{}\n", json["file"].get<std::string>());
   print("  {} nodes, {} meshes, {} triangles, {} vertices, {} materials, {} images\n", json["nodes"].get<std::size_t>(),
         json["meshes"].get<std::size_t>(), json["triangles"].get<std::size_t>(), json["vertices"].get<std::size_t>(),
@@ -224,12 +225,12 @@ int inspect(const std::string& file, bool as_json) {
   const std::vector<ObjectReport> objects = inspect_objects(*level);
   const Json json = describe(*level, objects);
   if (as_json) {
-    print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_json(json);
     return kDone;
   }
   Box box;
   for (const ObjectReport& object : objects) box.add(object.box);
-  print_findings(json, box);
+  print_text(json, box);
   return kDone;
 }
 

@@ -8,7 +8,7 @@
 
 #include "content/files/exr.h"
 #include "player/exit.h"
-#include "player/standard_streams.h"
+#include "player/print.h"
 
 namespace pliant {
 namespace {
@@ -45,7 +45,7 @@ int inspect_panorama(const std::filesystem::path& path, bool as_json) {
                {"height", panorama->height}, {"mean_luminance", pixels ? sum / static_cast<double>(pixels) : 0.0},
                {"largest_luminance", most},  {"notes", notes}};
   if (as_json) {
-    print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_json(json);
     return kDone;
   }
   print("{}\n  panorama: {} x {} pixels, luminance {:.3g} on average, {:.3g} at most\n", path.string(), panorama->width,

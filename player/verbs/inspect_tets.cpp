@@ -9,7 +9,7 @@
 #include "content/tets/tet_parts.h"
 #include "content/tets/tet_quality.h"
 #include "player/exit.h"
-#include "player/standard_streams.h"
+#include "player/print.h"
 
 namespace pliant {
 namespace {
@@ -92,7 +92,7 @@ int inspect_tets(const std::filesystem::path& path, bool as_json) {
   json.update(describe(mesh));
   json["notes"] = file->notes;
   if (as_json) {
-    print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_json(json);
     return kDone;
   }
   print("{}\n", path.string());

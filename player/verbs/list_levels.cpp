@@ -1,10 +1,10 @@
 // pliant run --list: the levels that ship, with what each says of itself.
-#include <fmt/format.h>
 
 #include <algorithm>
 
 #include "content/level_file.h"
 #include "player/exit.h"
+#include "player/print.h"
 #include "player/verbs/content_folder.h"
 #include "player/verbs/verbs.h"
 
@@ -20,7 +20,7 @@ int list_levels() {
   for (const std::filesystem::path& level : levels) {
     const Result<std::string> about = read_about(level);
     if (!about) return fail(kFailed, about.error());
-    fmt::print("{:<{}}  {}\n", level.stem().string(), longest, about->substr(0, about->find('\n')));
+    print("{:<{}}  {}\n", level.stem().string(), longest, about->substr(0, about->find('\n')));
   }
   return kDone;
 }

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
 #include "engine/sources.h"
-#include "player/run/tool_words.h"
 #include "player/run/unfelt.h"
 #include "player/verbs/content_folder.h"
 #include "player/verbs/unit.h"
@@ -80,7 +80,7 @@ Outcome choose_tool_force(const RunOptions& options, Level& level) {
   bool any = false;
   for (LevelNode& node : level.nodes) {
     if (!node.handle) continue;
-    node.handle->force = *tool_force_of(options.tool_force);  // the command line has checked it
+    node.handle->force = *value_of_word<ToolForce>(options.tool_force);  // the command line has checked it
     any = true;
   }
   if (any) return {};
@@ -165,8 +165,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   }
   std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
-  for (const std::string& assignment : options.sets)
-    if (const Status status = set_key(level, assignment); !status) return wrong_arguments(status.error());
+  if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
   if (!options.tool_force.empty())
     if (Outcome wrong = choose_tool_force(options, level)) return wrong;
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "player/exit.h"
-#include "player/standard_streams.h"
+#include "player/print.h"
 #include "player/verbs/content_folder.h"
 #include "player/verbs/verbs.h"
 
@@ -20,9 +20,9 @@ const char* word(Severity severity) {
     case Severity::kWarning:
       return "warning";
     case Severity::kNote:
-      break;
+      return "note";
   }
-  return "note";
+  UNREACHABLE();
 }
 
 }  // namespace

@@ -71,14 +71,15 @@ void find_weight(const World& world, ToolTouchState& tool) {
 
 // Two things on one device would each be told that the whole of its force is theirs.
 Status check_free(const World& world, Entity tool, Entity device) {
-  const std::string sentence = "its device `" + name_of(world, device) + "` already moves `{}`; give each its own";
+  const auto moves = [&](Entity other) {
+    return Error{"tool `" + name_of(world, tool) + "`",
+                 fmt::format("its device `{}` already moves `{}`; give each its own", name_of(world, device),
+                             name_of(world, other))};
+  };
   for (auto [entity, probe] : world.registry.view<Probe>())
-    if (probe.device == device)
-      return Error{"tool `" + name_of(world, tool) + "`", fmt::format(fmt::runtime(sentence), name_of(world, entity))};
+    if (probe.device == device) return moves(entity);
   for (const auto& other : world.tools->tools)
-    if (other->device == device)
-      return Error{"tool `" + name_of(world, tool) + "`",
-                   fmt::format(fmt::runtime(sentence), name_of(world, other->entity))};
+    if (other->device == device) return moves(other->entity);
   return Done{};
 }
 

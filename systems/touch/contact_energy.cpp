@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "runtime/assert.h"
+
 namespace pliant {
 namespace {
 
@@ -156,7 +158,7 @@ ShareKernel share_kernel(Shape shape, double reach, double volume) {
     case Shape::kKelvinlet:
       return kernel(0.5, 0.4, 1.4);  // 0.029
   }
-  return kernel(1.0, 1.0, 1.0);
+  UNREACHABLE();
 }
 
 double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/assert.h"
 #include "runtime/kernel.h"
 #include "systems/touch/nonlinear_step.h"
 
@@ -257,6 +258,7 @@ void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
     case Shape::kKelvinlet:
       return add_kelvinlet(mesh, begin, source, fresh, targets);
   }
+  UNREACHABLE();
 }
 
 void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums) {

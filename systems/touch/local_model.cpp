@@ -111,40 +111,70 @@ double damping_of(const Deformable& d) {
 }
 
 double RestoringLaw::force(double h) const {
-  if (kind == SpringLaw::kCubic) return h + cubic * h * h * h;
-  if (kind == SpringLaw::kExponential && h < 0) return -std::expm1(-stiffening * h) / stiffening;
-  return h;
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      return h;
+    case SpringLaw::kCubic:
+      return h + cubic * h * h * h;
+    case SpringLaw::kExponential:
+      return h < 0 ? -std::expm1(-stiffening * h) / stiffening : h;
+  }
+  UNREACHABLE();
 }
 
 double RestoringLaw::potential(double h) const {
-  if (kind == SpringLaw::kCubic) return h * h * (0.5 + 0.25 * cubic * h * h);
-  if (kind == SpringLaw::kExponential && h < 0) {
-    const double x = -stiffening * h;
-    // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
-    const double d = x < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
-    return d / (stiffening * stiffening);
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      break;
+    case SpringLaw::kCubic:
+      return h * h * (0.5 + 0.25 * cubic * h * h);
+    case SpringLaw::kExponential:
+      if (h < 0) {
+        const double x = -stiffening * h;
+        // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
+        const double d = x < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
+        return d / (stiffening * stiffening);
+      }
+      break;
   }
   return 0.5 * h * h;
 }
 
 double RestoringLaw::slope(double h) const {
-  if (kind == SpringLaw::kCubic) return 1 + 3 * cubic * h * h;
-  if (kind == SpringLaw::kExponential && h < 0) return std::exp(-stiffening * h);
-  return 1.0;
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      return 1.0;
+    case SpringLaw::kCubic:
+      return 1 + 3 * cubic * h * h;
+    case SpringLaw::kExponential:
+      return h < 0 ? std::exp(-stiffening * h) : 1.0;
+  }
+  UNREACHABLE();
 }
 
 double RestoringLaw::discrete_gradient(double h0, double h1) const {
-  if (kind == SpringLaw::kCubic) return 0.5 * (h0 + h1) + 0.25 * cubic * (h0 + h1) * (h0 * h0 + h1 * h1);
-  if (kind == SpringLaw::kExponential && (h0 < 0 || h1 < 0)) {
-    const double d = h1 - h0;
-    if (h0 < 0 && h1 < 0) {
-      // -(1/alpha) (e^(-alpha h0) expm1(-alpha d) / (-alpha d) - 1)
-      const double x = -stiffening * d;
-      const double ratio = std::abs(x) < 1e-5 ? 1 + x / 2 + x * x / 6 : std::expm1(x) / x;
-      return -(std::exp(-stiffening * h0) * ratio - 1) / stiffening;
-    }
-    if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
-    return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      break;
+    case SpringLaw::kCubic:
+      return 0.5 * (h0 + h1) + 0.25 * cubic * (h0 + h1) * (h0 * h0 + h1 * h1);
+    case SpringLaw::kExponential:
+      if (h0 < 0 || h1 < 0) {
+        const double d = h1 - h0;
+        if (h0 < 0 && h1 < 0) {
+          // -(1/alpha) (e^(-alpha h0) expm1(-alpha d) / (-alpha d) - 1)
+          const double x = -stiffening * d;
+          const double ratio = std::abs(x) < 1e-5 ? 1 + x / 2 + x * x / 6 : std::expm1(x) / x;
+          return -(std::exp(-stiffening * h0) * ratio - 1) / stiffening;
+        }
+        if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
+        return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
+      }
+      break;
   }
   return 0.5 * (h0 + h1);
 }
@@ -207,28 +237,30 @@ Motion motion(const Deformable& deformable, double dt) {
 }
 
 Status check(const Deformable& d, const std::string& name) {
-  struct Range {
+  using R = DeformableRange;
+  struct Bound {
     const char* key;
-    double value, low, high;
+    double value;
+    Range range;
   };
-  const Range ranges[] = {
-      {"stiffness", d.stiffness, 1e-6, 1e7},
-      {"cubic", d.cubic, 0.0, 1e15},
-      {"stiffening", d.stiffening, 1e-6, 1e5},
-      {"relaxation.stiffness", d.relaxation_stiffness, 0.0, 1e7},
-      {"relaxation.time", d.relaxation_time, 1e-6, 1e6},
-      {"damping_ratio", d.damping_ratio, 0.0, 1000.0},
-      {"settling_time", d.settling_time, 1e-6, 1e4},
-      {"contact_damping", d.contact_damping, 0.0, 1e6},
-      {"reach", d.reach, 1e-9, 1e6},
-      {"volume", d.volume, 0.0, 1.0},
-      {"friction_static", d.friction_static, 0.0, 100.0},
-      {"friction_sliding", d.friction_sliding, 0.0, d.friction_static},
+  const Bound bounds[] = {
+      {"stiffness", d.stiffness, R::kStiffness},
+      {"cubic", d.cubic, R::kCubic},
+      {"stiffening", d.stiffening, R::kStiffening},
+      {"relaxation.stiffness", d.relaxation_stiffness, R::kRelaxationStiffness},
+      {"relaxation.time", d.relaxation_time, R::kRelaxationTime},
+      {"damping_ratio", d.damping_ratio, R::kDampingRatio},
+      {"settling_time", d.settling_time, R::kSettlingTime},
+      {"contact_damping", d.contact_damping, R::kContactDamping},
+      {"reach", d.reach, {R::kReach.min, R::kReach.max, /*above_min*/ true}},  // spawn has replaced 0
+      {"volume", d.volume, R::kVolume},
+      {"friction_static", d.friction_static, kFrictionRange},
+      {"friction_sliding", d.friction_sliding, {kFrictionRange.min, d.friction_static}},
   };
-  for (const Range& range : ranges) {
-    if (range.value >= range.low && range.value <= range.high) continue;  // false for NaN
-    return Error{name, fmt::format("deformable.{} is {}; give a number from {} to {}", range.key, range.value,
-                                   range.low, range.high)};
+  for (const Bound& bound : bounds) {
+    if (bound.range.holds(bound.value)) continue;
+    return Error{name, fmt::format("deformable.{} is {}; give a number {} {} to {}", bound.key, bound.value,
+                                   bound.range.above_min ? "above" : "from", bound.range.min, bound.range.max)};
   }
   return Done{};
 }

@@ -184,7 +184,7 @@ Status prepare_touch(World& world) {
   Snapshot snapshot;
   for (auto [entity, deformable, pose] : registry.view<Deformable, const Pose>()) {
     const Mesh& mesh = world.meshes[deformable.mesh];
-    if (deformable.reach == 0.0) deformable.reach = 0.08 * mesh.box.diagonal();
+    if (deformable.reach == 0.0) deformable.reach = default_reach(mesh);
     if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
     HeightField& field = world.fields[deformable.field];
     ObjectState object;

@@ -42,7 +42,7 @@ Result<FieldCost> measure_field_cost(const World& world, double frame_rate) {
   source.center = mesh->position(0);
   source.normal = mesh->normal(0);
   source.amplitude = 1e-3f;
-  const float reach = static_cast<float>(deformable->reach > 0 ? deformable->reach : 0.08 * mesh->box.diagonal());
+  const float reach = static_cast<float>(deformable->reach > 0 ? deformable->reach : default_reach(*mesh));
   source.inv_reach2 = 1 / (reach * reach);
   source.shape = deformable->shape;
   source.parameter = source.shape == Shape::kVolume ? 5.0f : 0.04f;

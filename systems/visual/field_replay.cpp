@@ -151,6 +151,7 @@ void FieldReplay::add(const FieldEvent& event, FieldFeed& feed) {
       end_tick();
       return;
   }
+  UNREACHABLE();
 }
 
 std::uint32_t FieldReplay::gather(std::uint32_t zone, std::uint64_t mask, bool fold) {

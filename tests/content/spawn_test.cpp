@@ -84,8 +84,11 @@ TEST(Spawn, NodesBecomeEntitiesInOrderUnderTheirParentsAndOnlyThoseOfTheScene) {
   const World world = spawned(level);
   const Entity thing = find_by_name(world, "thing"), child = find_by_name(world, "child");
   EXPECT_EQ(find_by_name(world, "hidden"), kNoEntity);
-  EXPECT_EQ(world.hierarchy.order().size(), 2u);
-  EXPECT_EQ(world.hierarchy.parent(child), thing);
+  const std::vector<Hierarchy::Link>& order = world.hierarchy.order();
+  ASSERT_EQ(order.size(), 2u);
+  EXPECT_EQ(order[0].entity, thing);
+  EXPECT_EQ(order[1].entity, child);
+  EXPECT_EQ(order[1].parent, 0);
   EXPECT_EQ(vec3(world.registry.get<WorldTransform>(child).matrix[3]), vec3(1, 5, 0));
 }
 

@@ -48,7 +48,8 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"run", "plate.obj", "--probe", "p=device:7"}, 2, "pliant devices");
   expect_refused({"run", "plate.obj", "--probe", "p=orbit", "--probe", "p=orbit"}, 2, "twice");
   expect_refused({"run", "plate.obj", "--set", "nonsense"}, 2, "nonsense");
-  expect_refused({"run", "plate.obj", "--set", "*.deformable.stifness=3"}, 2, "unknown key 'stifness'; did you mean");
+  expect_refused({"run", "plate.obj", "--set", "*.deformable.stifness=3"}, 2,
+                 "unknown key 'stifness' in PLIANT_deformable; did you mean");
   expect_refused({"run", "plate.obj", "--set", "*.deformable.stiffness=-3"}, 2, "small-depth slope");
   expect_refused({"run", "plate.obj", "--set", "*.deformable.weight=3"}, 2, "settling_time");
   expect_refused({"run", "plate.obj", "--set", "nobody.deformable.stiffness=3"}, 2, "nobody");

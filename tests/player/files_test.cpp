@@ -121,6 +121,18 @@ TEST_F(Files, ADeviceForTwoIsRefusedWhereItIsReadAndWhereItIsRun) {
   expect_refused({"run", "level.gltf"}, 1, "`left`");
 }
 
+// The pointer is of the node that cannot be made, whatever it is called.
+TEST_F(Files, ValidateNamesTheNodeThatCannotBeMade) {
+  for (const std::string name : {"same", "x: node `same`", "same`"}) {
+    write_text(folder / "level.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],)"
+                                      R"("extensionsUsed":["PLIANT_deformable"],"nodes":[{"name":"same"},{"name":")" +
+                                          name + R"(","extensions":{"PLIANT_deformable":{}}}]})");
+    const Said said = pliant({"validate", "level.gltf"});
+    EXPECT_EQ(said.status, 1);
+    EXPECT_TRUE(said.out.starts_with("/nodes/1: error: has PLIANT_deformable but no mesh; ")) << said.out;
+  }
+}
+
 TEST_F(Files, UnknownPliantKeysAreRefusedByName) {
   write_text(folder / "level.gltf",
              R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"extensionsUsed":["PLIANT_probe"],)"

@@ -12,6 +12,7 @@
 #include "engine/recording.h"
 #include "engine/soft_clock.h"
 #include "engine/sources.h"
+#include "player/record/csv.h"
 #include "player/record/keeper.h"
 #include "player/record/pen.h"
 #include "player/record/plot.h"
@@ -30,6 +31,24 @@
 namespace pliant {
 namespace {
 namespace fs = std::filesystem;
+
+TEST(Csv, AnyNameIsOneCell) {
+  EXPECT_EQ(csv_text("finger"), "finger");
+  EXPECT_EQ(csv_text("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_text("say \"hm\""), "\"say \"\"hm\"\"\"");
+  EXPECT_EQ(csv_text("two\r\nrows"), "two\\r\\nrows");
+  EXPECT_EQ(csv_text("\x1b[31m,\xff"), "\"\\x1b[31m,\\xff\"");
+}
+
+// Cairo draws nothing more after text that is no UTF-8.
+TEST(Pen, GoesOnAfterTextThatIsNoUtf8) {
+  Pen pen(64, 32);
+  const double width = pen.text(0, 20, 12, 0,
+                                "caf\xe9 \x9b"
+                                "31m");
+  EXPECT_GT(width, 0.0);
+  EXPECT_EQ(cairo_status(pen.get()), CAIRO_STATUS_SUCCESS);
+}
 
 std::string recorded_bytes(const RecordingHeader& header, std::size_t ticks) {
   const fs::path file = fs::temp_directory_path() / ("pliant-recording-" + std::to_string(::getpid()));

@@ -166,7 +166,7 @@ TEST_F(ToolRun, AWayToMakeTheForceThatThereIsNotIsRefused) {
   expect_refused({"run", "block.glb", "--tool-force", "magic"}, 2,
                  "must be one of held, linear, contacts; got 'magic'");
   expect_refused({"run", "block.glb", "--set", "hand.handle.force=magic"}, 2,
-                 "must be one of held, linear, contacts; got \"magic\"");
+                 "must be one of held, linear, contacts; got 'magic'");
   write_text(folder / "plate.obj", plate_obj());
   expect_refused({"run", "plate.obj", "--tool-force", "linear"}, 2, "--tool-force");
 }

@@ -16,11 +16,9 @@ TEST(Histogram, PercentilesAgreeWithSortedSamplesWithinABucket) {
   std::lognormal_distribution<double> duration(9.0, 2.0);  // [ns] around 8 us, over five decades
   Histogram histogram;
   std::vector<std::uint64_t> samples;
-  double sum = 0.0;
   for (int i = 0; i < 50000; ++i) {
     samples.push_back(static_cast<std::uint64_t>(duration(random)));
     histogram.add(samples.back());
-    sum += static_cast<double>(samples.back());
   }
   std::sort(samples.begin(), samples.end());
   for (double q : {0.001, 0.1, 0.5, 0.9, 0.99, 0.999, 1.0}) {
@@ -30,7 +28,6 @@ TEST(Histogram, PercentilesAgreeWithSortedSamplesWithinABucket) {
     EXPECT_LE(histogram.percentile_us(q), exact * (1.0 + 1.0 / 64.0) + 1e-3) << q;  // 64 buckets an octave
   }
   EXPECT_EQ(histogram.max_us(), static_cast<double>(samples.back()) * 1e-3);
-  EXPECT_NEAR(histogram.mean_us(), sum * 1e-3 / static_cast<double>(samples.size()), 1e-6 * histogram.mean_us());
   EXPECT_EQ(histogram.count(), samples.size());
 }
 
@@ -38,7 +35,6 @@ TEST(Histogram, SaysZeroWhenItHoldsNothing) {
   const Histogram histogram;
   EXPECT_EQ(histogram.percentile_us(0.5), 0.0);
   EXPECT_EQ(histogram.max_us(), 0.0);
-  EXPECT_EQ(histogram.mean_us(), 0.0);
 }
 
 TEST(Histogram, KeepsTheLongestDurationThatFits) {

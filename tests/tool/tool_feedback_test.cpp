@@ -444,9 +444,16 @@ TEST(ToolFeedback, ADeviceThatMovesAProbeAlreadyIsRefused) {
   Stage stage;
   const Entity probe = stage.world.registry.create();
   stage.world.registry.add<Probe>(probe, {}).device = stage.device;
+  // Names come from files and are no formats.
+  const std::string odd = "a{b}%s%n{}{0}";
+  stage.world.registry.add<Name>(probe, {"tip" + odd});
+  stage.world.registry.get<Name>(stage.device).value = odd;
+  for (auto [entity, handle] : stage.world.registry.view<Handle6>()) handle.device = odd;
   const Status status = prepare_tools(stage.world);
   ASSERT_FALSE(status);
-  EXPECT_NE(status.error().what.find("give each its own"), std::string::npos);
+  EXPECT_NE(status.error().what.find("its device `" + odd + "` already moves `tip" + odd + "`; give each its own"),
+            std::string::npos)
+      << status.error().what;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "components/deformable.h"
+#include "runtime/assert.h"
 
 namespace pliant {
 
@@ -26,7 +27,7 @@ inline double law(const Deformable& d, double depth) {
     case SpringLaw::kExponential:
       return d.stiffness / d.stiffening * (std::exp(d.stiffening * depth) - 1);
   }
-  return 0;
+  UNREACHABLE();
 }
 
 inline constexpr SpringLaw kLaws[] = {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential,

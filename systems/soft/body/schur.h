@@ -43,7 +43,6 @@ class CoupledSolver {
   const Rows& follow() const { return follow_; }
   // b_h - A_ht y of the last factorise: what flesh and right-hand side do to the handle.
   const Vector6& reduced_right() const { return reduced_right_; }
-  const LinearSolver& flesh_solver() const { return *flesh_; }
 
  private:
   void solve_seven(const Matrix6& hh, const Vector& b, Vector& x);

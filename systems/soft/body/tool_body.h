@@ -21,7 +21,6 @@ namespace pliant {
 class ToolBody : public Body {
  public:
   bool has_handle() const { return handle_.has_value(); }
-  const Handle6& handle_settings() const { return settings_; }
   const RigidHandle& handle() const { return *handle_; }  // now
 
   // --- What holds the handle. Only with a handle.

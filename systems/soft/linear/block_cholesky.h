@@ -22,8 +22,7 @@ class BlockCholesky final : public LinearSolver {
   void solve_many(Eigen::Ref<Rows> columns) const override;
   void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const override;
 
-  std::size_t factor_size() const { return kStrip * factor_strips_; }  // numbers in L, zeros taken along included
-  double flops() const { return flops_; }                              // additions and multiplications of a factorise()
+  double flops() const { return flops_; }  // additions and multiplications of a factorise()
 
  private:
   struct alignas(64) Strip {

@@ -1,5 +1,6 @@
 #include "systems/soft/linear/linear_solver.h"
 
+#include "runtime/assert.h"
 #include "systems/soft/linear/auto_solver.h"
 #include "systems/soft/linear/block_cholesky.h"
 #include "systems/soft/linear/cholmod.h"
@@ -32,7 +33,7 @@ std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_r
     case SolverKind::kConjugateGradient:
       return std::make_unique<ConjugateGradient>();
   }
-  return nullptr;
+  UNREACHABLE();
 }
 
 void LinearSolver::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {

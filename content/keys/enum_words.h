@@ -1,0 +1,135 @@
+// The words that stand for enumerators in level files and arguments, each once. A new enumerator without a word does
+// not compile (-Wswitch).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/deformable.h"
+#include "components/haptic_device.h"
+#include "components/probe.h"
+#include "components/soft_body.h"
+
+namespace pliant {
+
+// nullptr past the last enumerator. Enumerators count from 0 without a gap.
+constexpr const char* word_of(SpringLaw law) {
+  switch (law) {
+    case SpringLaw::kLinear:
+      return "linear";
+    case SpringLaw::kCubic:
+      return "cubic";
+    case SpringLaw::kExponential:
+      return "exponential";
+    case SpringLaw::kStandardLinearSolid:
+      return "sls";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(Response response) {
+  switch (response) {
+    case Response::kFollow:
+      return "follow";
+    case Response::kLag:
+      return "lag";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(Shape shape) {
+  switch (shape) {
+    case Shape::kPunch:
+      return "punch";
+    case Shape::kHertz:
+      return "hertz";
+    case Shape::kGaussian:
+      return "gaussian";
+    case Shape::kWendland:
+      return "wendland";
+    case Shape::kVolume:
+      return "volume";
+    case Shape::kKelvinlet:
+      return "kelvinlet";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(Distance distance) {
+  switch (distance) {
+    case Distance::kChord:
+      return "chord";
+    case Distance::kSurface:
+      return "surface";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(ProbeMeets meets) {
+  switch (meets) {
+    case ProbeMeets::kAll:
+      return "all";
+    case ProbeMeets::kSurfaces:
+      return "surfaces";
+    case ProbeMeets::kBodies:
+      return "bodies";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(DriverKind driver) {
+  switch (driver) {
+    case DriverKind::kNull:
+      return "null";
+    case DriverKind::kScript:
+      return "script";
+    case DriverKind::kOrbit:
+      return "orbit";
+    case DriverKind::kMouse:
+      return "mouse";
+    case DriverKind::kExternal:
+      return "external";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(Attachment attachment) {
+  switch (attachment) {
+    case Attachment::kSpring:
+      return "spring";
+    case Attachment::kSlave:
+      return "slave";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(ToolForce force) {
+  switch (force) {
+    case ToolForce::kHeld:
+      return "held";
+    case ToolForce::kLinear:
+      return "linear";
+    case ToolForce::kContacts:
+      return "contacts";
+  }
+  return nullptr;
+}
+
+// All words of an enumeration, in the order of its values.
+template <class Enum>
+std::vector<std::string> words_of() {
+  std::vector<std::string> words;
+  while (const char* word = word_of(static_cast<Enum>(words.size()))) words.emplace_back(word);
+  return words;
+}
+
+template <class Enum>
+std::optional<Enum> value_of_word(const std::string& word) {
+  const std::vector<std::string> words = words_of<Enum>();
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (words[i] == word) return static_cast<Enum>(i);
+  return std::nullopt;
+}
+
+}  // namespace pliant
