@@ -1,5 +1,5 @@
-// The field on the processor against the field on the card, from 1e4 vertices up: what a whole evaluation costs on
-// each, what the processor pays when only the reached zones move, how far the two are apart, and how much of the card's
+// The field on the processor against the field on the GPU, from 1e4 vertices up: what a whole evaluation costs on
+// each, what the processor pays when only the reached zones move, how far the two are apart, and how much of the GPU's
 // measured copy bandwidth the compute shader uses.
 //   bench_field [--large] [--out FILE.json]
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ double median_us(int repeats, Work work) {
 
 struct Row {
   std::uint32_t vertices = 0, reached = 0;
-  double reached_us = 0, whole_us = 0, card_us = 0, copy_us = 0;
+  double reached_us = 0, whole_us = 0, gpu_us = 0, copy_us = 0;
   double height_error = 0;  // [1] of the largest height
   double normal_error = 0;  // [deg]
 };
@@ -83,19 +83,19 @@ Row measure(const FieldProgram& program, int n) {
 
   const std::size_t bytes = here.size() * sizeof(vec4);
   const gpu::Buffer stream = gpu::Buffer::writable(nullptr, bytes);
-  FieldOnCard field(mesh);
-  row.card_us = median_us(15, [&] {
+  FieldOnGpu field(mesh);
+  row.gpu_us = median_us(15, [&] {
     field.evaluate(program, sources, stream);
     glFinish();
   });
-  std::vector<vec4> card(here.size());
-  glGetNamedBufferSubData(stream.id(), 0, static_cast<GLsizeiptr>(bytes), card.data());
+  std::vector<vec4> gpu(here.size());
+  glGetNamedBufferSubData(stream.id(), 0, static_cast<GLsizeiptr>(bytes), gpu.data());
   double largest = 0;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     largest = std::max<double>(largest, std::abs(here[v].w));
-    row.height_error = std::max<double>(row.height_error, std::abs(here[v].w - card[v].w));
+    row.height_error = std::max<double>(row.height_error, std::abs(here[v].w - gpu[v].w));
     const dvec3 a = normalize(dvec3(mesh.normal(v) + vec3(here[v]))),
-                b = normalize(dvec3(mesh.normal(v) + vec3(card[v])));
+                b = normalize(dvec3(mesh.normal(v) + vec3(gpu[v])));
     row.normal_error = std::max(row.normal_error, length(cross(a, b)) * 180 / M_PI);
   }
   row.height_error /= largest;
@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
   glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
   fmt::print("The field on {}\n", (*context)->renderer_name());
   fmt::print("{:>10} {:>9} {:>11} {:>11} {:>11} {:>11} {:>8} {:>10} {:>10}\n", "vertices", "reached", "reached us",
-             "whole us", "card us", "copy us", "of copy", "height err", "normal deg");
+             "whole us", "GPU us", "copy us", "of copy", "height err", "normal deg");
   std::string json = fmt::format("{{\n  \"renderer\": \"{}\",\n  \"field\": [", (*context)->renderer_name());
   std::vector<int> sizes{41, 130, 409};
   if (arguments.on) sizes.push_back(1291);
@@ -141,15 +141,15 @@ int main(int argc, char** argv) {
     }
     const Row r = measure(*program, n);
     fmt::print("{:>10} {:>9} {:>11.1f} {:>11.1f} {:>11.1f} {:>11.1f} {:>7.0f}% {:>10.1e} {:>10.1e}\n", r.vertices,
-               r.reached, r.reached_us, r.whole_us, r.card_us, r.copy_us, 100 * r.copy_us / r.card_us, r.height_error,
+               r.reached, r.reached_us, r.whole_us, r.gpu_us, r.copy_us, 100 * r.copy_us / r.gpu_us, r.height_error,
                r.normal_error);
     json += fmt::format(
         "{}\n    {{\"vertices\": {}, \"reached\": {}, \"processor_reached_us\": {:.2f}, \"processor_whole_us\": "
         "{:.1f}, "
-        "\"card_us\": {:.1f}, \"card_copy_us\": {:.1f}, \"share_of_copy\": {:.3f}, \"height_error\": {:.2e}, "
+        "\"gpu_us\": {:.1f}, \"gpu_copy_us\": {:.1f}, \"share_of_copy\": {:.3f}, \"height_error\": {:.2e}, "
         "\"normal_error_deg\": {:.2e}}}",
-        n == 41 ? "" : ",", r.vertices, r.reached, r.reached_us, r.whole_us, r.card_us, r.copy_us,
-        r.copy_us / r.card_us, r.height_error, r.normal_error);
+        n == 41 ? "" : ",", r.vertices, r.reached, r.reached_us, r.whole_us, r.gpu_us, r.copy_us, r.copy_us / r.gpu_us,
+        r.height_error, r.normal_error);
   }
   json += "\n  ]\n}\n";
   arguments.save(json);

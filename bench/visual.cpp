@@ -1,6 +1,6 @@
 // What a picture costs: milliseconds from upload to the finished frame (median), and the bytes that travel, for bodies
 // of growing fineness at two sizes. A tenth of the zones changes before every frame. The error beside it: how far the
-// stream on the card is from the one that was sent (the largest component; it must be 0).
+// stream on the GPU is from the one that was sent (the largest component; it must be 0).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The field around one contact, as numbers: what the zone kernels evaluate and what travels to the card. Object frame,
+// The field around one contact, as numbers: what the zone kernels evaluate and what travels to the GPU. Object frame,
 // single precision; the arithmetic is shaders/shared/field.glsl.
 #pragma once
 

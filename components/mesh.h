@@ -2,7 +2,7 @@
 //
 // A touch mesh is welded (one vertex per position), its vertices and triangles are in Hilbert order, and it never
 // changes after load: heights live in a HeightField. Every run of kZoneSize vertices is a zone, so the zone of vertex v
-// is v / kZoneSize. One notion serves sleeping, upload to the card, the flood that finds what a contact reaches, and
+// is v / kZoneSize. One notion serves sleeping, upload to the GPU, the flood that finds what a contact reaches, and
 // the SIMD batch. Triangles have trees of their own (a tree over zones alone would
 // leave 256 triangles to test in each leaf). Lifetime: from load to unload. Writer: content. Read by every clock.
 #pragma once

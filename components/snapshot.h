@@ -23,7 +23,7 @@ struct ObjectSnapshot {
   std::vector<std::uint32_t> zones;  // which zones, capacity min(all, kMaxPublishedZones)
   std::vector<vec4> stream;          // kZoneSize (nx, ny, nz, h) for each of them, packed in the same order
   std::uint32_t awake_vertices = 0;
-  bool on_card = false;  // no zones: the whole field is these sources, evaluated by the card
+  bool on_gpu = false;  // no zones: the whole field is these sources, evaluated by the GPU
   std::uint32_t term_count = 0;
   std::vector<FieldSource> terms;  // capacity for every source and release
   // Fields that the GPU steps on its own copy: their inputs up to this snapshot's tick while `told`, else `zones` hold

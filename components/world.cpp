@@ -24,7 +24,7 @@ std::vector<std::string> explain_dropped(std::uint32_t dropped) {
   if (dropped & kDroppedTravel)
     sentences.push_back("a probe moved farther in a tick than the level is large; check the device's units");
   if (dropped & kDroppedReleases)
-    sentences.push_back("more dents were recovering at once than the card's list holds; use --field cpu");
+    sentences.push_back("more dents were recovering at once than the GPU's list holds; use --field cpu");
   if (dropped & kDroppedStale)
     sentences.push_back("a device's pose came too late and its force went to zero; check its connection");
   if (dropped & kDroppedFactor)

@@ -33,7 +33,7 @@ enum DroppedBit : std::uint32_t {  // 8 was one more, and is not given again
   kDroppedContacts = 1,   // more contacts on one object than it has room for: use fewer probes, or split the object
   kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check the device
   kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
-  kDroppedReleases = 32,  // more dents were recovering at once than the card's list holds: the oldest vanished
+  kDroppedReleases = 32,  // more dents were recovering at once than the GPU's list holds: the oldest vanished
   kDroppedFactor = 64,    // a body's step could not be solved and it stood still: raise `young` or `density`, or mend
                           // its mesh
   kDroppedMotion = 128,   // a body's motion was not a number and it was stopped: reduce `soft_step`
@@ -50,7 +50,7 @@ struct TouchState;  // systems/touch/touch_state.h: working memory of the touch 
 inline constexpr Range kTouchRateRange{10.0, 100000.0};  // [Hz] of Simulation::touch_rate
 
 // Where height fields live (systems/touch/field.h).
-enum class FieldPlace : std::uint8_t { kProcessor, kCard };
+enum class FieldPlace : std::uint8_t { kProcessor, kGpu };
 
 struct World {
   World();
@@ -72,7 +72,7 @@ struct World {
   Environment environment;
   Simulation simulation;
   FieldPlace field_place =
-      FieldPlace::kProcessor;         // kCard: of every object whose parameters allow it; read by prepare_touch
+      FieldPlace::kProcessor;         // kGpu: of every object whose parameters allow it; read by prepare_touch
   std::uint32_t dropped = 0;          // DroppedBit
   std::shared_ptr<TouchState> touch;  // null until prepare_touch
   std::shared_ptr<SoftState> soft;    // null where nothing is soft or rigid, and until prepare_soft

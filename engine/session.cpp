@@ -126,11 +126,15 @@ Status Session::step(std::uint64_t ticks) {
   const double dt = 1.0 / p.world.simulation.touch_rate;
   try {
     for (std::uint64_t i = 0; i < ticks; ++i) {
-      const Tick tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
+      if (p.replayed && p.ticks >= p.replayed->ticks.size())
+        return Error{"Session::step", fmt::format("all {} ticks of the recording have run; call Session::restart()",
+                                                  p.replayed->ticks.size())};
+      const Tick tick = p.replayed ? p.replayed_tick() : Tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
       p.soft->reach(tick.time);
       p.before(tick);
       p.schedule->run(p.world, tick);
       p.after(tick);
+      if (p.recorder && p.ticks % 1024 == 0) p.recorder->drain();
       ++p.ticks;
       p.time = static_cast<double>(p.ticks) * dt;
     }
@@ -139,6 +143,7 @@ Status Session::step(std::uint64_t ticks) {
     return Error{"Session::step", std::string("stopped by an exception: ") + thrown.what()};
   }
   p.rows.acquire();
+  if (p.recorder) p.recorder->drain();
   return Done{};
 }
 
@@ -146,7 +151,9 @@ Status Session::start() {
   if (Status s = parts_->stand_still("Session::start"); !s) return s;
   Parts& p = *parts_;
   if (p.ticks > 0) return Error{"Session::start", "it has run before; call Session::restart() first"};
+  if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
   limit_tool_ticks(p.world);
+  if (p.recorder) p.recorder->start();
   TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); }};
   p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,
                                          std::numeric_limits<std::uint64_t>::max(), std::move(hooks));
@@ -179,7 +186,12 @@ Status Session::stop() {
 }
 
 Status Session::restart() {
-  const Status stopped = stop();
+  Status stopped = stop();
+  if (parts_->recorder) {
+    const Status ended = end_recording();
+    if (stopped && !ended) stopped = ended;
+  }
+  parts_->replayed.reset();
   if (Status s = parts_->prepare(); !s) return s;
   return stopped;
 }

@@ -71,6 +71,7 @@ std::vector<Entity> touchable(const World& world) {
 Session::Parts::~Parts() {
   if (clock) clock->stop();
   for (SessionHand& hand : hands) close_driver(hand);
+  if (recorder) static_cast<void>(recorder->finish());
 }
 
 Status Session::Parts::prepare() {

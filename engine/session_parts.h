@@ -6,15 +6,18 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "components/world.h"
 #include "content/level/level.h"
+#include "engine/recording.h"
 #include "engine/session_view.h"
 #include "engine/soft_clock.h"
 #include "engine/touch_clock.h"
 #include "pliant/session.h"
 #include "runtime/exchange.h"
+#include "runtime/recorder.h"
 #include "runtime/schedule.h"
 
 namespace pliant {
@@ -51,6 +54,30 @@ struct HandRow {
   std::array<vec3, Reading::kMostContacts> weights{};  // [1] barycentric
 };
 
+// One probe's or tool's pose of one tick, on its way into a recording.
+struct PoseRow {
+  std::uint64_t tick = 0;
+  RecordedPose pose;
+};
+
+// A recording that is being written. Rows come from the clock; who owns the session, or a thread of its own in real
+// time, writes them.
+class SessionRecorder {
+ public:
+  SessionRecorder(RecordingWriter writer, std::size_t hands);
+  void note(std::uint64_t tick, const HapticDevice& device);  // touch clock: every hand, in order
+  void drain();
+  void start();  // a thread drains from now on
+  Status finish();
+
+ private:
+  RecordingWriter writer_;
+  std::size_t hands_, written_ = 0;  // poses of the tick under way
+  Recorder<PoseRow> rows_;
+  std::vector<PoseRow> taken_;
+  std::jthread thread_;
+};
+
 // A parameter that changes between ticks.
 struct Edit {
   Entity entity;
@@ -77,6 +104,8 @@ struct Session::Parts {
   std::unique_ptr<Ring<Edit>> edits;                // owner -> touch clock
   mutable TripleBuffer<std::vector<HandRow>> rows;  // touch clock -> owner
   SessionView view;                                 // owner's
+  std::unique_ptr<SessionRecorder> recorder;        // null: nothing is recorded
+  std::optional<Recording> replayed;
 
   explicit Parts(const Scene& from) : scene(from) {}
   ~Parts();
@@ -95,6 +124,7 @@ struct Session::Parts {
 
   // On the touch clock, or the caller's thread in lockstep.
   void before(Tick tick);
+  Tick replayed_tick();  // its poses are the devices' then
   void read_told(SessionHand& hand, Tick tick);
   void read_driver(SessionHand& hand, Tick tick);
   void after(Tick tick);

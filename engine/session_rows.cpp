@@ -35,6 +35,7 @@ void Session::Parts::after(Tick tick) {
     SessionHand& hand = hands[i];
     const HapticDevice& device = world.registry.get<HapticDevice>(hand.device);
     if (hand.driver) hand.driver->write({device.force_sent, device.torque_sent});
+    if (recorder) recorder->note(tick.index, device);
     HandRow& row = out[i];
     const ProbeReading read = pliant::reading(world, hand.entity);
     row.reading.tick = tick.index;

@@ -1,4 +1,4 @@
-// The whole height field from the list of sources, on the card: stream[v] = sum of the sources' targets at v. Nothing else
+// The whole height field from the list of sources, on the GPU: stream[v] = sum of the sources' targets at v. Nothing else
 // travels, and nothing is kept from frame to frame (P1 section 5).
 layout(local_size_x = 128) in;
 

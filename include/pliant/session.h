@@ -108,6 +108,15 @@ class Session {
   Status restart();     // as it was opened, at time 0; sources and parameters stay as they are
   double time() const;  // [s]
 
+  // --- Recordings: the pose of every probe and tool at every tick
+  // From the next tick on; before the clocks start. A file that is there is refused, unless it is a recording and
+  // `replace` is set. The file appears whole with end_recording(), restart() or the session's end.
+  Status record(const std::filesystem::path& file, bool replace = false);
+  Status end_recording();
+  // Every source is the recording from now on, in lockstep: the same scene gives the same bits. step() fails behind its
+  // last tick. Not after a tick has run.
+  Status replay(const std::filesystem::path& file);
+
   // --- Parameters, between ticks: friction, stiffness, damping and device limits (docs/embedding.md lists them).
   Status set(const std::string& object, const std::string& key, double value);
   Result<double> get(const std::string& object, const std::string& key) const;
@@ -131,5 +140,8 @@ class Session {
   explicit Session(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };
+
+// A recording as rows of tick, time, probe, position, rotation (w first) and whether its device was ready.
+Status export_recording(const std::filesystem::path& recording, const std::filesystem::path& csv);
 
 }  // namespace pliant

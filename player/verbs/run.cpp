@@ -113,7 +113,7 @@ Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Fr
     frames = std::move(made).value();
   } else if (asked) {
     return failed(made.error());
-  } else if (run.world.field_place == FieldPlace::kCard) {
+  } else if (run.world.field_place == FieldPlace::kGpu) {
     return failed({"--field gpu", "there is no GPU to compute on: " + made.error().message() + ", or use --field cpu"});
   } else {
     say(run, made.error().message() + " (going on without pictures)");
@@ -205,7 +205,7 @@ Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared
   if (options.fps > 0.0) session.frame_ticks = regular_frames(loop.ticks, loop.rate, options.fps);
   if (options.frames > 0) session.frame_ticks = spread_frames(loop.ticks, options.frames);
   // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
-  const std::string field = loop.world.field_place == FieldPlace::kCard ? "gpu" : "cpu";
+  const std::string field = loop.world.field_place == FieldPlace::kGpu ? "gpu" : "cpu";
   session.open = [&options, &next, field](const std::string& file) -> std::optional<Error> {
     next = Prepared();
     RunOptions other = file == options.level ? same_level(options) : another_level(options, file);
@@ -297,7 +297,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
                      ran.drawn ? &*ran.drawn : nullptr,
                      ran.pictures,
                      ran.mode,
-                     world.field_place == FieldPlace::kCard ? "gpu" : "cpu",
+                     world.field_place == FieldPlace::kGpu ? "gpu" : "cpu",
                      rate,
                      ran.overruns,
                      explain_dropped(world.dropped),

@@ -87,13 +87,13 @@ Outcome choose_tool_force(const RunOptions& options, Level& level) {
   return wrong_arguments({"--tool-force", "is for tools, and the level has no PLIANT_handle; leave it out"});
 }
 
-// Where height fields live. `auto` goes by measured cost where there is a card and a display to refresh; lockstep stays
+// Where height fields live. `auto` goes by measured cost where there is a GPU and a display to refresh; lockstep stays
 // on the processor, so that the same input gives the same bits everywhere.
 FieldPlace choose_field(const RunOptions& options, bool windowed, const World& world) {
-  if (options.field == "gpu") return FieldPlace::kCard;
+  if (options.field == "gpu") return FieldPlace::kGpu;
   if (options.field == "cpu" || !windowed) return FieldPlace::kProcessor;
   const Result<FieldCost> cost = measure_field_cost(world, 60.0);
-  return cost && cost->card_us < cost->processor_us ? FieldPlace::kCard : FieldPlace::kProcessor;
+  return cost && cost->gpu_us < cost->processor_us ? FieldPlace::kGpu : FieldPlace::kProcessor;
 }
 
 // Once, however many surfaces there are: which of them settle so slowly that they have another damping than their own.

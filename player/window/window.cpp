@@ -63,7 +63,7 @@ Result<std::unique_ptr<Window>> Window::create(int width, int height) {
   window->handle_ = glfwCreateWindow(width, height, "Pliant", nullptr, nullptr);
   if (!window->handle_)
     return Error{"--window", "the display gives no OpenGL 4.5 core context" + reason() +
-                                 "; install libgl1-mesa-dri or the card's driver, or use --headless"};
+                                 "; install libgl1-mesa-dri or the GPU's driver, or use --headless"};
   glfwMakeContextCurrent(window->handle_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window->handle_, window.get());

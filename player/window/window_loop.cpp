@@ -101,7 +101,7 @@ void WindowLoop::keep() {
   }
 }
 
-// Pictures that were asked for; a slow card takes fewer.
+// Pictures that were asked for; a slow GPU takes fewer.
 std::filesystem::path WindowLoop::next_frame() {
   const std::uint64_t reached = touch_ ? touch_->now() : 0;
   if (!touch_ || next_frame_ >= s_.frame_ticks.size() || s_.frame_ticks[next_frame_] > reached) return {};

@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlowDraw = 70.0;      // [ms] a card (or a processor in its stead) that needs longer draws coarser,
+constexpr double kSlowDraw = 70.0;      // [ms] a GPU (or a processor in its stead) that needs longer draws coarser,
 constexpr double kFastDraw = 20.0;      // [ms] and one that needs less draws finer, up to every pixel
 constexpr double kWantedDraw = 40.0;    // [ms]
 constexpr double kLongestDraw = 500.0;  // [ms] for a screenshot

@@ -1,5 +1,5 @@
 // The force field's target at one vertex: arithmetic that is at once GLSL and C++ (systems/touch/shape.h), so that the
-// field on the card and the field on the processor agree to rounding. Needs shape.glsl before it. methods.md 1.3, 1.4.
+// field on the GPU and the field on the processor agree to rounding. Needs shape.glsl before it. methods.md 1.3, 1.4.
 //
 // A source is three vec4: place = (center [m], 1/R^2), push = (unit normal, amplitude [m]), kind = (parameter, shape, 0, 0),
 // with shapes numbered as in components/deformable.h. Returned: (nx, ny, nz, h), added to N0 and along N0.

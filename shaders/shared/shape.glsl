@@ -1,5 +1,5 @@
 // Shape functions of the force field: arithmetic that is at once GLSL and C++ (systems/touch/shape.h), so that the
-// processor and the card agree to rounding. methods.md 1.3; P1 section 3.
+// processor and the GPU agree to rounding. methods.md 1.3; P1 section 3.
 //
 // f(rho) is the share of the amplitude that a vertex at distance r = rho R from the contact gives way; f(0) = 1.
 // Each function takes u = rho^2 in [0, 1] and returns (f, df/du): the gradient along the surface is 2 (df/du) d / R^2,

@@ -38,7 +38,7 @@ struct CondensedState {
   Eigen::Matrix<double, Eigen::Dynamic, 6> lever;
 
   void resize(int most_contacts, int most_modes);
-  // Where the model stands. What its stiff contacts push with it does not know (reduction/stiff_contacts.h): they go on
+  // Where the model stands. What its stiff contacts push with it does not know (reduce/stiff_contacts.h): they go on
   // from what they did in the model before, or the first tick would have to find a whole tower's forces from nothing.
   void start(const CondensedContacts& model);
 };

@@ -51,7 +51,7 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
   // A tip that stops does not throw the surface on: left behind, it starts with no speed inwards.
   if (source.now.amplitude > source.before.amplitude) source.before = source.now;
   if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
-  if (object.on_card) return remember_release(object, {source.now, source.before, tick.time}, world.dropped);
+  if (object.on_gpu) return remember_release(object, {source.now, source.before, tick.time}, world.dropped);
   const float inv_dt = static_cast<float>(1 / tick.dt);
   object.teller.fold(source.told, source.before, source.now);
   for (const std::uint32_t zone : source.zones) {
@@ -75,7 +75,7 @@ void mark_reached(SourceState& source, ObjectState& object, HeightField& field) 
   for (const std::uint32_t zone : source.zones) {
     object.zone_sources[zone] |= std::uint64_t{1} << number;
     if (!source.offset.empty()) object.teller.offsets(number, zone, source.offset, false);
-    if (!object.on_card) wake(field, zone, kZoneReached);
+    if (!object.on_gpu) wake(field, zone, kZoneReached);
   }
 }
 

@@ -69,7 +69,7 @@ void dynamics(World& world, Tick tick) {
     ObjectState& object = world.touch->objects[slot];
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
     HeightField& field = world.fields[deformable.field];
-    if (object.on_card) {  // the card draws it; what has to move here is the list
+    if (object.on_gpu) {  // the GPU draws it; what has to move here is the list
       list_terms(object, deformable, tick);
       std::uint32_t reached = 0;
       for (const SourceState& source : object.sources)

@@ -35,7 +35,7 @@ HeightState released_at(const ObjectState& object, const Mesh& mesh, std::uint32
 }  // namespace
 
 HeightState surface_at(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex) {
-  if (!object.on_card) return {field.stream[vertex].w, field.rate[vertex].w};
+  if (!object.on_gpu) return {field.stream[vertex].w, field.rate[vertex].w};
   HeightState state = released_at(object, mesh, vertex, object.time);
   for (const SourceState& source : object.sources)
     if (source.active) state.height += target_at(source.now, mesh.position(vertex), mesh.normal(vertex)).w;
@@ -44,13 +44,13 @@ HeightState surface_at(const ObjectState& object, const Mesh& mesh, const Height
 
 HeightState residual_before(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
                             Tick tick) {
-  if (object.on_card) return released_at(object, mesh, vertex, tick.time);
+  if (object.on_gpu) return released_at(object, mesh, vertex, tick.time);
   return {field.residual[vertex].w, field.rate[vertex].w};
 }
 
 double residual_after(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
                       Tick tick) {
-  if (object.on_card) return released_at(object, mesh, vertex, tick.time + tick.dt).height;
+  if (object.on_gpu) return released_at(object, mesh, vertex, tick.time + tick.dt).height;
   const Motion& motion = object.motion;
   const PaintedMotion& painted = object.painted;
   const double h = field.residual[vertex].w, r = field.rate[vertex].w;

@@ -129,7 +129,7 @@ void force_field(World& world, Tick tick) {
     for (SourceState& source : object.sources) {
       for (const std::uint32_t zone : source.zones) {
         object.zone_sources[zone] = 0;
-        if (!object.on_card) field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneReached);
+        if (!object.on_gpu) field.zone_state[zone] &= static_cast<std::uint8_t>(~kZoneReached);
       }
       if (source.contact == kNoEntity) continue;  // an echo
       Contact& contact = world.registry.get<Contact>(source.contact);

@@ -189,8 +189,8 @@ Status prepare_touch(World& world) {
     HeightField& field = world.fields[deformable.field];
     ObjectState object;
     object.entity = entity;
-    object.on_card = world.field_place == FieldPlace::kCard && has_closed_form(deformable, mesh);
-    if (object.on_card) {
+    object.on_gpu = world.field_place == FieldPlace::kGpu && has_closed_form(deformable, mesh);
+    if (object.on_gpu) {
       field = {};
       object.releases.reserve(kMaxReleases);
       object.terms.reserve(2 * kMaxReleases + kMaxContactsPerObject);
@@ -207,7 +207,7 @@ Status prepare_touch(World& world) {
     object.zone_sources.assign(mesh.zone_count(), 0);
     object.visited.assign(mesh.zone_count(), 0);
     object.dirty.reserve(mesh.zone_count());
-    if (world.field_place == FieldPlace::kCard && !object.on_card)
+    if (world.field_place == FieldPlace::kGpu && !object.on_gpu)
       object.teller = FieldTeller(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
     for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // what is not at rest must be shown again
       field.zone_state[zone] &= kZoneListed | kZoneResidual;
@@ -217,10 +217,10 @@ Status prepare_touch(World& world) {
       }
     }
     object.teller.begin_if_at_rest(object, field);
-    const std::size_t published = object.on_card ? 0 : std::min(mesh.zone_count(), kMaxPublishedZones);
+    const std::size_t published = object.on_gpu ? 0 : std::min(mesh.zone_count(), kMaxPublishedZones);
     object.waiting.reserve(published);
     snapshot.objects.push_back({entity, 0, std::vector<std::uint32_t>(published),
-                                std::vector<vec4>(published * kZoneSize), 0, object.on_card, 0,
+                                std::vector<vec4>(published * kZoneSize), 0, object.on_gpu, 0,
                                 std::vector<FieldSource>(object.terms.capacity()), object.teller.feed(), false});
     extent.add(object.world_box);
     touch->objects.push_back(std::move(object));

@@ -20,7 +20,7 @@ bool copy_zones(ObjectState& object, HeightField& field, ObjectSnapshot& out) {
   out.object = object.entity;
   out.awake_vertices = field.awake_vertices;
   out.zone_count = 0;
-  out.on_card = object.on_card;
+  out.on_gpu = object.on_gpu;
   object.teller.begin_if_at_rest(object, field);
   out.told = object.teller.tells();
   out.term_count = static_cast<std::uint32_t>(object.terms.size());

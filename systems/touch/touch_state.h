@@ -55,7 +55,7 @@ struct SourceState {
   std::vector<MarchItem> heap;       // working memory of the march; its capacity is what matters
 };
 
-// Card only: what a contact left behind at a moment. See field.h.
+// GPU only: what a contact left behind at a moment. See field.h.
 struct Release {
   FieldSource now, before;  // the target at that moment and one tick earlier
   double time = 0.0;        // [s] of that moment
@@ -107,9 +107,9 @@ struct ObjectState {
   double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
   bool listed = false;                      // it stands in TouchState::awake
   std::vector<dvec3> searched;              // [m] per tip of every probe: where other walls were last looked for
-  bool on_card = false;                     // the field is `terms`, drawn by the card; there is no HeightField
-  std::vector<Release> releases;            // card only; capacity kMaxReleases
-  std::vector<FieldSource> terms;           // card only: the whole field at `time`
+  bool on_gpu = false;                      // the field is `terms`, drawn by the GPU; there is no HeightField
+  std::vector<Release> releases;            // GPU only; capacity kMaxReleases
+  std::vector<FieldSource> terms;           // GPU only: the whole field at `time`
   FieldTeller teller;                       // where the GPU steps a copy of the field
   double time = 0.0;                        // [s] end of the last tick
   std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject

@@ -1,4 +1,4 @@
-// The surroundings as the card wants them: a cube map whose level k holds what a coat of roughness k / (levels - 1)
+// The surroundings as the GPU wants them: a cube map whose level k holds what a coat of roughness k / (levels - 1)
 // gathers about each direction (the first factor of the split sum: Karis, Real Shading in Unreal Engine 4, 2013).
 #pragma once
 

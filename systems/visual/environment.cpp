@@ -87,7 +87,7 @@ LampConstants lamp_of(const Light& light, const mat4& m) {
   return lamp;
 }
 
-// The level's lights, as many as the card takes; one that can cast a shadow first.
+// The level's lights, as many as the GPU takes; one that can cast a shadow first.
 std::vector<LampConstants> level_lamps(const World& world) {
   std::vector<LampConstants> lamps;
   bool casts = false;

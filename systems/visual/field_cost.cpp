@@ -34,7 +34,7 @@ Result<FieldCost> measure_field_cost(const World& world, double frame_rate) {
     if (!has_closed_form(d, m)) continue;  // the processor steps it all the same
     if (!mesh || m.vertex_count > mesh->vertex_count) mesh = &m, deformable = &d;
   }
-  if (!mesh) return Error{"field", "no deformable's field is cheaper for the card"};
+  if (!mesh) return Error{"field", "no deformable's field is cheaper for the GPU"};
   Result<FieldProgram> program = FieldProgram::make();
   if (!program) return program.error();
 
@@ -64,10 +64,10 @@ Result<FieldCost> measure_field_cost(const World& world, double frame_rate) {
   });
   cost.processor_us = tick * world.simulation.touch_rate / frame_rate + (sink > 1e30f ? 1 : 0);
 
-  FieldOnCard field(*mesh);
+  FieldOnGpu field(*mesh);
   const gpu::Buffer stream = gpu::Buffer::writable(nullptr, std::size_t{mesh->zone_count()} * kZoneSize * sizeof(vec4));
   const std::array<FieldSource, 2> sources{source, source};
-  cost.card_us = median_us([&] {
+  cost.gpu_us = median_us([&] {
     field.evaluate(*program, sources, stream);
     glFinish();
   });

@@ -1,4 +1,4 @@
-// What a level's fields would cost per displayed frame on the processor and on the card, measured on this machine: what
+// What a level's fields would cost per displayed frame on the processor and on the GPU, measured on this machine: what
 // `--field auto` chooses by.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace pliant {
 
 struct FieldCost {
   double processor_us = 0.0;  // [us] per frame: the zones that one contact reaches, for every touch tick of the frame
-  double card_us = 0.0;       // [us] per frame: the whole mesh once, two sources
+  double gpu_us = 0.0;        // [us] per frame: the whole mesh once, two sources
 };
 
 // Of the largest deformable whose field the GPU can evaluate alone (has_closed_form). Needs a current OpenGL 4.5

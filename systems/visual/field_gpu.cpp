@@ -31,12 +31,12 @@ std::pair<gpu::Buffer, gpu::Buffer> rest_on_card(const Mesh& mesh) {
   return {gpu::Buffer::fixed(std::span<const vec4>(rest)), gpu::Buffer::fixed(std::span<const vec2>(rest_yz))};
 }
 
-FieldOnCard::FieldOnCard(const Mesh& mesh) : vertices_(mesh.vertex_count) {
+FieldOnGpu::FieldOnGpu(const Mesh& mesh) : vertices_(mesh.vertex_count) {
   std::tie(rest_, rest_yz_) = rest_on_card(mesh);
 }
 
-std::size_t FieldOnCard::evaluate(const FieldProgram& program, std::span<const FieldSource> sources,
-                                  const gpu::Buffer& stream) {
+std::size_t FieldOnGpu::evaluate(const FieldProgram& program, std::span<const FieldSource> sources,
+                                 const gpu::Buffer& stream) {
   if (sources.empty() && at_rest_) return 0;
   at_rest_ = sources.empty();
   std::vector<CardSource> packed(sources.size());

@@ -1,4 +1,4 @@
-// The field on the card: shaders/field.comp writes an object's stream from the list of sources that the touch clock
+// The field on the GPU: shaders/field.comp writes an object's stream from the list of sources that the touch clock
 // publishes (systems/touch/field.h). Rest positions and normals travel once; per frame, 48 bytes a source.
 #pragma once
 
@@ -29,16 +29,16 @@ class FieldProgram {
   static Result<FieldProgram> make();
 
  private:
-  friend class FieldOnCard;
+  friend class FieldOnGpu;
   gpu::Program program_;
   GLint source_count_ = -1, vertex_count_ = -1;
 };
 
 // One object's field.
-class FieldOnCard {
+class FieldOnGpu {
  public:
-  FieldOnCard() = default;
-  explicit FieldOnCard(const Mesh& mesh);
+  FieldOnGpu() = default;
+  explicit FieldOnGpu(const Mesh& mesh);
 
   // Writes the whole stream of whole zones into `stream` (kZoneSize x zones vec4). Returns the bytes that travelled;
   // when there was and is nothing to draw, nothing happens.

@@ -1,4 +1,4 @@
-// What is the same for everything in one picture: the card's side is shaders/frame.glsl, member by member (std140).
+// What is the same for everything in one picture: the GPU's side is shaders/frame.glsl, member by member (std140).
 #pragma once
 
 #include <array>

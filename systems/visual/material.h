@@ -1,4 +1,4 @@
-// Materials on the card: one block of constants each, and the pictures they share.
+// Materials on the GPU: one block of constants each, and the pictures they share.
 #pragma once
 
 #include <vector>

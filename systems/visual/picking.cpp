@@ -65,7 +65,7 @@ void Picking::draw(const Surfaces& surfaces, const mat4& clip_from_world, const 
   glUniformMatrix4fv(clip_from_world_, 1, GL_FALSE, &through_pixel[0][0]);
   surfaces.draw_all();
 
-  // Into memory of the card's own; it is only fetched once it is there.
+  // Into memory of the GPU's own; it is only fetched once it is there.
   glBindBuffer(GL_PIXEL_PACK_BUFFER, answer_.id());
   for (std::size_t i = 0; i < kPlanes; ++i) {
     glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));

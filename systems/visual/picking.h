@@ -20,9 +20,9 @@ class Picking {
  public:
   static Result<Picking> make();
 
-  // Draws the surfaces as the card has them. An answer that nobody took yet is forgotten.
+  // Draws the surfaces as the GPU has them. An answer that nobody took yet is forgotten.
   void draw(const Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question);
-  // The answer, once, as soon as the card has it; with `wait`, not before.
+  // The answer, once, as soon as the GPU has it; with `wait`, not before.
   std::optional<PickAnswer> take(const Surfaces& surfaces, bool wait);
 
  private:

@@ -62,7 +62,7 @@ void Renderer::Parts::measure_scene() {
   if (scene.empty()) scene.add(Box{vec3(-0.5f), vec3(0.5f)});
 }
 
-// What this picture needs and the card does not have yet; returns the bytes that travelled.
+// What this picture needs and the GPU does not have yet; returns the bytes that travelled.
 std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int height) {
   measure_scene();
   FrameConstants constants;
@@ -191,8 +191,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   parts.shadow = Shadow::make();
   parts.nothing = gpu::VertexArray::make();
   if (glGetError() == GL_OUT_OF_MEMORY)
-    return Error{"graphics card",
-                 "has no room for this level's meshes and textures; use a coarser mesh or smaller ones"};
+    return Error{"GPU", "has no room for this level's meshes and textures; use a coarser mesh or smaller ones"};
   return renderer;
 }
 

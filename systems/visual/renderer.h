@@ -88,7 +88,7 @@ class Renderer {
 
   // Asks along with the next picture, whose viewpoint counts; of several questions the last.
   void pick(const PickQuestion& question);
-  // The answer, once. Never waits for the card, unless told to: then the next picture's answer is there after it.
+  // The answer, once. Never waits for the GPU, unless told to: then the next picture's answer is there after it.
   std::optional<PickAnswer> picked(bool wait = false);
 
  private:

@@ -1,4 +1,4 @@
-// The skin of one soft body on the card: where every vertex is and which way it faces, as shaders/skin.glsl reads it.
+// The skin of one soft body on the GPU: where every vertex is and which way it faces, as shaders/skin.glsl reads it.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class Skin {
   // Takes positions [m] and unit normals, world frame; false, and nothing is taken, where there are too few or too
   // many.
   bool take(std::span<const vec3> position, std::span<const vec3> normal);
-  // Brings the card up to date. Returns the bytes that travelled: 16 a vertex, or none.
+  // Brings the GPU up to date. Returns the bytes that travelled: 16 a vertex, or none.
   std::size_t upload();
 
   std::size_t vertices() const { return here_.size(); }

@@ -113,12 +113,11 @@ Result<Surfaces> Surfaces::make(const World& world) {
   for (auto [entity, drawable] : world.registry.view<Drawable>()) {
     Item item = make_item(world, entity, world.draw_meshes[drawable.mesh]);
     if (item.stream.buffer().size() > static_cast<std::size_t>(largest))
-      return Error{"graphics card",
-                   fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}; "
-                               "use a card, or a coarser mesh",
-                               item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20)};
+      return Error{"GPU", fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}; "
+                                      "use a GPU, or a coarser mesh",
+                                      item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20)};
     if (item.replay.bytes() > static_cast<std::size_t>(largest))
-      return Error{"graphics card",
+      return Error{"GPU",
                    fmt::format("the field of a surface of {} vertices needs {} MiB there, this driver allows {}; "
                                "use --field cpu, or a coarser mesh",
                                item.stream.values().size(), item.replay.bytes() >> 20, largest >> 20)};
@@ -135,7 +134,7 @@ Result<Surfaces> Surfaces::make(const World& world) {
     if (!replay) return replay.error();
     made.replay_program_ = *std::move(replay);
   }
-  if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.on_card; })) {
+  if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.on_gpu; })) {
     Result<FieldProgram> field = FieldProgram::make();
     if (!field) return field.error();
     made.field_program_ = *std::move(field);
@@ -170,10 +169,10 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   if (item.gives_way && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
     stream = world.fields[deformable->field].stream;
   item.stream = StreamCopies(stream);
-  if (item.gives_way && world.field_place == FieldPlace::kCard) {
-    item.on_card = has_closed_form(*deformable, *touch);
-    item.replayed = !item.on_card;
-    if (item.on_card) item.field = FieldOnCard(*touch);
+  if (item.gives_way && world.field_place == FieldPlace::kGpu) {
+    item.on_gpu = has_closed_form(*deformable, *touch);
+    item.replayed = !item.on_gpu;
+    if (item.on_gpu) item.field = FieldOnGpu(*touch);
     if (item.replayed) item.replay = FieldReplay(*touch, *deformable, 1 / world.simulation.touch_rate);
   }
   if (touch && soft) item.skin = Skin(touch->vertex_count);
@@ -191,7 +190,7 @@ Surfaces::Item* Surfaces::find(Entity entity) {
 void Surfaces::take(const ObjectSnapshot& object, std::uint64_t tick) {
   Item* item = find(object.object);
   if (!item || !item->gives_way) return;
-  if (item->on_card) {
+  if (item->on_gpu) {
     item->sources.assign(object.terms.begin(), object.terms.begin() + object.term_count);
   } else if (!item->replayed || !object.feed || !item->replay.take(*object.feed, object.told, tick)) {
     item->stream.take({object.zones.data(), object.zone_count}, object.stream);
@@ -230,9 +229,9 @@ std::size_t Surfaces::upload() {
       item.moved = false;
     }
     travelled += item.skin.upload();
-    changed_ = changed_ || (item.on_card && !item.field.at_rest());
+    changed_ = changed_ || (item.on_gpu && !item.field.at_rest());
     travelled +=
-        item.on_card ? item.field.evaluate(field_program_, item.sources, item.stream.buffer()) : item.stream.upload();
+        item.on_gpu ? item.field.evaluate(field_program_, item.sources, item.stream.buffer()) : item.stream.upload();
     if (item.replayed) travelled += item.replay.evaluate(replay_program_, item.stream.buffer());
   }
   changed_ = changed_ || travelled > 0;

@@ -1,4 +1,4 @@
-// Every Drawable on the card: what never changes in static buffers, and what makes it give way or move: the stream of a
+// Every Drawable on the GPU: what never changes in static buffers, and what makes it give way or move: the stream of a
 // deformable, the skin of a soft body, the pose of a rigid one.
 #pragma once
 
@@ -61,7 +61,7 @@ class Surfaces {
     gpu::VertexArray layout;
     std::vector<Part> parts;
     StreamCopies stream;
-    FieldOnCard field;                 // only where the field is a list on the card
+    FieldOnGpu field;                  // only where the field is a list on the GPU
     std::vector<FieldSource> sources;  // its newest
     FieldReplay replay;                // only where the GPU steps a copy of the field
     Skin skin;                         // of a soft body, else of no vertex
@@ -71,7 +71,7 @@ class Surfaces {
     std::uint32_t number = 0;
     bool rides = false;  // its vertices are where the skin says
     bool moved = false;  // its placement is newer here
-    bool on_card = false, replayed = false;
+    bool on_gpu = false, replayed = false;
     bool gives_way = false;
     bool encloses = false;  // its back is never seen from outside, whatever its materials say
     bool mirrored = false;  // its placement turns triangles inside out

@@ -39,9 +39,9 @@ Result<TetLines> TetLines::make(const World& world) {
     const std::vector<std::uint32_t> ends = edges_of(mesh);
     item.edge_ends = static_cast<GLsizei>(ends.size());
     item.edges = gpu::Buffer::fixed<std::uint32_t>(ends);
-    item.on_card = gpu::Buffer::writable(nullptr, item.nodes.size() * sizeof(vec3));
+    item.on_gpu = gpu::Buffer::writable(nullptr, item.nodes.size() * sizeof(vec3));
     item.layout = gpu::VertexArray::make();
-    item.layout.source(0, item.on_card, sizeof(vec3));
+    item.layout.source(0, item.on_gpu, sizeof(vec3));
     item.layout.floats(0, 0, 3, 0);
     item.layout.indices(item.edges);
     made.items_.push_back(std::move(item));
@@ -61,7 +61,7 @@ std::size_t TetLines::upload() {
   std::size_t travelled = 0;
   for (Item& item : items_) {
     if (!item.newer_here) continue;
-    travelled += item.on_card.write(0, item.nodes.data(), item.nodes.size() * sizeof(vec3));
+    travelled += item.on_gpu.write(0, item.nodes.data(), item.nodes.size() * sizeof(vec3));
     item.newer_here = false;
   }
   return travelled;

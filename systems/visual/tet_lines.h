@@ -26,7 +26,7 @@ class TetLines {
     Entity entity;
     std::vector<vec3> nodes;  // [m] world
     bool newer_here = true;
-    gpu::Buffer on_card, edges;
+    gpu::Buffer on_gpu, edges;
     gpu::VertexArray layout;
     GLsizei edge_ends = 0;
   };

@@ -1,4 +1,4 @@
-// The stream of one object, twice: on the processor and on the card. This class alone knows which copy is newer, zone
+// The stream of one object, twice: on the processor and on the GPU. This class alone knows which copy is newer, zone
 // by zone; nothing but changed zones travels.
 #pragma once
 
@@ -21,14 +21,14 @@ class StreamCopies {
 
   // Takes whole zones, packed in the order of `zones`; zones that do not exist are ignored. Nothing travels yet.
   void take(std::span<const std::uint32_t> zones, std::span<const vec4> packed);
-  // Brings the card up to date, neighbouring zones in one transfer. Returns the bytes that travelled.
+  // Brings the GPU up to date, neighbouring zones in one transfer. Returns the bytes that travelled.
   std::size_t upload();
 
   const gpu::Buffer& buffer() const { return on_card_; }
   std::span<const vec4> values() const { return here_; }
 
  private:
-  std::vector<vec4> here_;              // [1,1,1,m] never older than the card's
+  std::vector<vec4> here_;              // [1,1,1,m] never older than the GPU's
   std::vector<bool> newer_here_;        // per zone
   std::vector<std::uint32_t> waiting_;  // zones with newer_here_, in the order in which they came
   gpu::Buffer on_card_;

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "pliant/pliant.h"
@@ -301,6 +303,50 @@ TEST(Session, ADriverIsReadAndWrittenEveryTickWithinItsLimit) {
   EXPECT_EQ(log.last, 0.0);
 }
 
+TEST(Session, ARecordingGivesTheSameBitsAgain) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "session_recording";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path file = folder / "press.rec", csv = folder / "press.csv";
+  dvec3 force(0);
+  std::uint64_t ran = 0;
+  {
+    Session session = opened(press_scene());
+    EXPECT_FALSE(session.end_recording());
+    ASSERT_TRUE(session.record(file));
+    EXPECT_FALSE(session.record(folder / "other.rec")) << "one is under way";
+    press(session, 0.003);
+    force = session.reading("finger")->force;
+    ran = session.figures().ticks;
+    EXPECT_FALSE(std::filesystem::exists(file)) << "it appears whole";
+    ASSERT_TRUE(session.end_recording());
+    EXPECT_FALSE(session.record(file)) << "it is there";
+    EXPECT_FALSE(session.replay(file)) << "ticks have run";
+    ASSERT_TRUE(session.restart());
+    EXPECT_FALSE(session.replay(folder / "nothing.rec"));
+    ASSERT_TRUE(session.replay(file));
+    EXPECT_FALSE(session.start()) << "a replay is lockstep";
+    std::uint64_t ticks = 0;
+    while (session.step()) ++ticks;
+    EXPECT_EQ(ticks, ran);
+    EXPECT_EQ(session.reading("finger")->force, force);
+  }
+  Scene other("other");
+  other.add_surface("tissue", sheet());
+  other.add_probe("thumb");
+  EXPECT_THAT(opened(other).replay(file).error().message(), HasSubstr("other probes"));
+  ASSERT_TRUE(export_recording(file, csv));
+  EXPECT_FALSE(export_recording(file, csv)) << "it is there";
+  std::ifstream in(csv);
+  std::string line, first;
+  std::size_t lines = 0;
+  for (; std::getline(in, line); ++lines)
+    if (lines == 1) first = line;
+  EXPECT_EQ(lines, ran + 1);
+  EXPECT_EQ(first, "0,0,\"finger\",0,0.0005,0,1,0,0,0,1");
+  std::filesystem::remove_all(folder);
+}
+
 // Until `done`, at most five seconds.
 template <class Done>
 bool within_five_seconds(Done done) {
@@ -359,6 +405,9 @@ TEST(Session, WhatADriverThrowsEndsTheRunWithZeroForce) {
 
 TEST(Session, APoseToldOncePerPictureIsReachedWithoutALoss) {
   Session session = opened(press_scene());
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "session_live.rec";
+  std::filesystem::remove(file);
+  ASSERT_TRUE(session.record(file));
   ASSERT_TRUE(session.move("finger", {0, 0.001, 0}));
   ASSERT_TRUE(session.start());
   EXPECT_FALSE(session.set("finger", "nothing", 1.0));
@@ -372,6 +421,12 @@ TEST(Session, APoseToldOncePerPictureIsReachedWithoutALoss) {
   }));
   ASSERT_TRUE(within_five_seconds([&] { return session.reading("finger")->force.y == 0.0; })) << "silence is a loss";
   ASSERT_TRUE(session.stop());
+  const std::uint64_t ticks = session.figures().ticks - session.figures().overruns;
+  ASSERT_TRUE(session.restart());
+  ASSERT_TRUE(session.replay(file));
+  ASSERT_TRUE(session.step(ticks - 1));
+  EXPECT_FALSE(session.step(3)) << "every tick was recorded, the last one too";
+  std::filesystem::remove(file);
 }
 
 TEST(Driver, IsKnownByItsNameOnce) {

@@ -1,4 +1,4 @@
-// Where contacts are foretold to be, against the smooth surfaces that the meshes stand for.
+// Where contacts are predicted to be, against the smooth surfaces that the meshes stand for.
 #include "systems/soft/collide/contact_geometry.h"
 
 #include <gtest/gtest.h>
@@ -96,7 +96,7 @@ TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
   contact.axes = axes_along(contact.normal);
   const SurfacePoint a = contact.a, b = contact.b;
 
-  scene.block.skin.foretell(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kT), kT);
+  scene.block.skin.predict(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kT), kT);
   ASSERT_TRUE(look_again(scene.pair(), contact));
   EXPECT_LT(degrees_between(contact.normal, end), 0.5);
   EXPECT_LT(degrees_between(contact.axes * leaning_axes(contact.lean)[0], contact.normal), 1e-6);
@@ -149,7 +149,7 @@ TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
   EXPECT_GT(looked_at, 3);
 }
 
-// What has come to rest stays where it is, also in what is foretold of it.
+// What has come to rest stays where it is, also in what is predicted of it.
 TEST(ContactGeometry, WhatStopsIsForetoldWhereItStands) {
   Going block(test::block_mesh(vec3(0.01f)), dvec3(0.02, 0, 0), dvec3(0.003, 0, 0.001));
   for (int i = 0; i < 3; ++i) block.skin.refit(block.body, kT, 1e-3);
@@ -157,7 +157,7 @@ TEST(ContactGeometry, WhatStopsIsForetoldWhereItStands) {
     EXPECT_LT(length(block.skin.ahead(v) - block.skin.vertex(v).x), 1e-12) << v;
 }
 
-// Faster than the surface's triangles are large: such a motion will not go on, and nothing is foretold.
+// Faster than the surface's triangles are large: such a motion will not go on, and nothing is predicted.
 TEST(ContactGeometry, AnImpactIsNotForetold) {
   const dvec3 now = (kRadius + 0.001) * kUp, went(0, -0.008, 0), corner(-0.005, -0.005, -0.005);
   Going block(test::block_mesh(vec3(0.01f)), now - corner, went);

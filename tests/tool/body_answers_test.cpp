@@ -72,11 +72,11 @@ TEST(ToolContacts, LeaveOutAnOpenContactThatNothingCouldBePredictedOf) {
   for (std::size_t i = 0; i < scene.contacts.size(); ++i) {
     ContactPoint& c = scene.contacts[i];
     if (i % 2 == 0) c.impulse = dvec3(0.0), c.depth = 0.0;
-    c.foretold = true;
+    c.predicted = true;
     pushing += c.impulse.x > 0.0;
     open += c.impulse.x == 0.0 && c.depth == 0.0;
     ASSERT_TRUE(chosen(i));
-    c.foretold = false;  // its plane stands where its features were
+    c.predicted = false;  // its plane stands where its features were
     EXPECT_EQ(chosen(i), c.impulse.x > 0.0 || c.depth > 0.0) << "contact " << i;
   }
   EXPECT_GT(pushing, 0u);

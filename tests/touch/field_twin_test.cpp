@@ -1,4 +1,4 @@
-// The field as a list of sources, which the card evaluates, against the field that the processor steps zone by zone.
+// The field as a list of sources, which the GPU evaluates, against the field that the processor steps zone by zone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,13 +44,13 @@ TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSup
         d.reach = 0.03;
         d.spring = law;
         d.shape = shape;
-        Scene cpu(d, FieldPlace::kProcessor), card(d, FieldPlace::kCard);
+        Scene cpu(d, FieldPlace::kProcessor), gpu(d, FieldPlace::kGpu);
         play(cpu.stage, cpu.a, cpu.b, ticks);
-        play(card.stage, card.a, card.b, ticks);
-        const ObjectState& object = card.stage.world.touch->objects[0];
-        ASSERT_TRUE(object.on_card);
+        play(gpu.stage, gpu.a, gpu.b, ticks);
+        const ObjectState& object = gpu.stage.world.touch->objects[0];
+        ASSERT_TRUE(object.on_gpu);
         ASSERT_FALSE(object.terms.empty());
-        const Mesh& mesh = card.stage.mesh(card.surface);
+        const Mesh& mesh = gpu.stage.mesh(gpu.surface);
         double largest = 0, height = 0, angle = 0;
         for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
           vec4 sum(0);
@@ -64,10 +64,10 @@ TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSup
         }
         EXPECT_LT(height, 1e-5 * largest) << int(law) << ' ' << int(shape) << ' ' << ticks;
         EXPECT_LT(angle, 0.1) << int(law) << ' ' << int(shape) << ' ' << ticks;
-        for (auto [p, q] : {std::pair{cpu.a, card.a}, {cpu.b, card.b}}) {
-          EXPECT_LT(length(cpu.stage.read(p).force - card.stage.read(q).force), 1e-5)
+        for (auto [p, q] : {std::pair{cpu.a, gpu.a}, {cpu.b, gpu.b}}) {
+          EXPECT_LT(length(cpu.stage.read(p).force - gpu.stage.read(q).force), 1e-5)
               << int(law) << ' ' << int(shape) << ' ' << ticks;
-          EXPECT_NEAR(cpu.stage.read(p).height, card.stage.read(q).height, 1e-7);
+          EXPECT_NEAR(cpu.stage.read(p).height, gpu.stage.read(q).height, 1e-7);
         }
       }
     }
@@ -77,15 +77,15 @@ TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSup
 TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
   Deformable d;
   d.reach = 0.03;
-  Scene card(d, FieldPlace::kCard);
-  play(card.stage, card.a, card.b, 200);
-  card.stage.place(card.a, {0, 0.2, 0});
-  card.stage.place(card.b, {0, 0.2, 0});
-  card.stage.wait(0.02);
-  EXPECT_FALSE(card.stage.world.touch->objects[0].terms.empty());
-  card.stage.wait(1.0);
-  EXPECT_TRUE(card.stage.world.touch->objects[0].terms.empty());
-  EXPECT_TRUE(card.stage.world.touch->objects[0].releases.empty());
+  Scene gpu(d, FieldPlace::kGpu);
+  play(gpu.stage, gpu.a, gpu.b, 200);
+  gpu.stage.place(gpu.a, {0, 0.2, 0});
+  gpu.stage.place(gpu.b, {0, 0.2, 0});
+  gpu.stage.wait(0.02);
+  EXPECT_FALSE(gpu.stage.world.touch->objects[0].terms.empty());
+  gpu.stage.wait(1.0);
+  EXPECT_TRUE(gpu.stage.world.touch->objects[0].terms.empty());
+  EXPECT_TRUE(gpu.stage.world.touch->objects[0].releases.empty());
 }
 
 // Without a closed form the CPU keeps the field and feeds the inputs to the GPU. Once the feed is full (no reader),
@@ -94,19 +94,19 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   Deformable d;
   d.reach = 0.03;
   d.spring = SpringLaw::kCubic;
-  Scene card(d, FieldPlace::kCard);
-  World& world = card.stage.world;
+  Scene gpu(d, FieldPlace::kGpu);
+  World& world = gpu.stage.world;
   const ObjectState& object = world.touch->objects[0];
-  EXPECT_FALSE(object.on_card);
+  EXPECT_FALSE(object.on_gpu);
   ASSERT_TRUE(object.teller.feed());
   FieldFeed& feed = *object.teller.feed();
   const auto newest = [&]() -> const ObjectSnapshot& {
-    publish(world, {0, card.stage.time(), card.stage.dt()});
+    publish(world, {0, gpu.stage.time(), gpu.stage.dt()});
     world.snapshots->acquire();
     return world.snapshots->read().objects[0];
   };
-  play(card.stage, card.a, card.b, 100);
-  EXPECT_GT(card.stage.field(card.surface).awake_vertices, 0u);
+  play(gpu.stage, gpu.a, gpu.b, 100);
+  EXPECT_GT(gpu.stage.field(gpu.surface).awake_vertices, 0u);
   EXPECT_TRUE(newest().told);
   EXPECT_EQ(newest().zone_count, 0u);
   std::size_t ticks = 0, events = 0;
@@ -120,17 +120,17 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   // Nobody listens: the ring runs full.
   int waited = 0;
   while (object.teller.tells() && ++waited < 100000) {
-    card.stage.place(card.a, 0.095 * normalize(dvec3(std::sin(1e-3 * waited), 1, 0)));
-    card.stage.tick();
+    gpu.stage.place(gpu.a, 0.095 * normalize(dvec3(std::sin(1e-3 * waited), 1, 0)));
+    gpu.stage.tick();
   }
   EXPECT_FALSE(object.teller.tells());
   const ObjectSnapshot& streams = newest();
   EXPECT_FALSE(streams.told);
   EXPECT_GT(streams.zone_count, 0u);
   // At rest, and seen to be: it begins anew.
-  card.stage.place(card.a, {0, 0.2, 0});
-  card.stage.place(card.b, {0, 0.2, 0});
-  card.stage.wait(2.0);
+  gpu.stage.place(gpu.a, {0, 0.2, 0});
+  gpu.stage.place(gpu.b, {0, 0.2, 0});
+  gpu.stage.wait(2.0);
   for (FieldEvent event; feed.events.pop(event);) continue;
   for (int i = 0; i < 100; ++i) newest();
   EXPECT_TRUE(newest().told);
@@ -144,19 +144,18 @@ TEST(FieldTwins, MoreReleasesThanTheListHoldsAreCountedAndSurvived) {
   d.reach = 0.008;  // dents apart from each other
   d.settling_time = 5.0;
   d.shape = Shape::kWendland;
-  Scene card(d, FieldPlace::kCard);
+  Scene gpu(d, FieldPlace::kGpu);
   for (int i = 0; i < 400; ++i) {
-    card.stage.place(card.a,
-                     (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
-    card.stage.tick();
-    ASSERT_LE(card.stage.world.touch->objects[0].releases.size(), kMaxReleases);
-    ASSERT_TRUE(std::isfinite(length(card.stage.read(card.a).force)));
+    gpu.stage.place(gpu.a, (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
+    gpu.stage.tick();
+    ASSERT_LE(gpu.stage.world.touch->objects[0].releases.size(), kMaxReleases);
+    ASSERT_TRUE(std::isfinite(length(gpu.stage.read(gpu.a).force)));
   }
-  EXPECT_NE(card.stage.world.dropped & kDroppedReleases, 0u);
+  EXPECT_NE(gpu.stage.world.dropped & kDroppedReleases, 0u);
 }
 
 TEST(FieldTwins, PressesThatOverlapOnASlowSurfaceDoNotDriveEachOthersRimsUp) {
-  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kCard}) {
+  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kGpu}) {
     Deformable d;
     d.reach = 0.03;
     d.settling_time = 5.0;

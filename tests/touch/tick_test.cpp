@@ -31,7 +31,7 @@ void play(Stage& stage, Entity a, Entity b) {
 }
 
 TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
-  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kCard}) {
+  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kGpu}) {
     for (const SpringLaw kind : kLaws) {
       for (const Distance distance : {Distance::kChord, Distance::kSurface}) {
         for (const Response response : {Response::kFollow, Response::kLag}) {
@@ -56,7 +56,7 @@ TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
 }
 
 TEST(Tick, NeverAllocatesOverSeamsAndBehindCreases) {
-  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kCard}) {
+  for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kGpu}) {
     for (const SpringLaw kind : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
       Stage stage;
       stage.world.field_place = place;

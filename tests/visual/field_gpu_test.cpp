@@ -15,7 +15,7 @@ namespace {
 
 using scenes::Stage;
 
-TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
+TEST(FieldOnGpu, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
   Result<std::unique_ptr<HeadlessContext>> context = HeadlessContext::create();
   if (!context) GTEST_SKIP() << context.error().message();
   Result<FieldProgram> program = FieldProgram::make();
@@ -27,13 +27,13 @@ TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
       d.reach = 0.03;
       d.spring = law;
       d.shape = shape;
-      Stage cpu, card;
+      Stage cpu, gpu;
       Entity surface[2];
       int n = 0;
-      for (Stage* stage : {&cpu, &card}) {
+      for (Stage* stage : {&cpu, &GPU}) {
         surface[n++] = stage->add(scenes::sphere(24, 0.1), d);
         const Entity a = stage->add_probe({0, 0.11, 0.01}), b = stage->add_probe({0.03, 0.11, -0.01});
-        stage->world.field_place = stage == &cpu ? FieldPlace::kProcessor : FieldPlace::kCard;
+        stage->world.field_place = stage == &cpu ? FieldPlace::kProcessor : FieldPlace::kGpu;
         stage->prepare();
         for (int i = 0; i < 250; ++i) {  // press, slide, and one leaves
           stage->place(a, (0.1 - 0.005 * std::min(1.0, i / 60.0)) * normalize(dvec3(std::sin(0.004 * i), 1, 0.1)));
@@ -42,11 +42,11 @@ TEST(FieldOnCard, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
           stage->tick();
         }
       }
-      const Mesh& mesh = card.mesh(surface[1]);
+      const Mesh& mesh = gpu.mesh(surface[1]);
       const std::size_t size = std::size_t{mesh.zone_count()} * kZoneSize;
       const gpu::Buffer stream = gpu::Buffer::writable(nullptr, size * sizeof(vec4));
-      FieldOnCard field(mesh);
-      const std::vector<FieldSource>& terms = card.world.touch->objects[0].terms;
+      FieldOnGpu field(mesh);
+      const std::vector<FieldSource>& terms = gpu.world.touch->objects[0].terms;
       ASSERT_GE(terms.size(), 2u);
       EXPECT_EQ(field.evaluate(*program, terms, stream), terms.size() * sizeof(CardSource))
           << "what travels is the list";

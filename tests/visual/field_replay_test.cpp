@@ -26,7 +26,7 @@ struct Twin {
   double largest = 0, height = 0, angle = 0;  // [m] [m] [degrees]
 
   Twin(const Primitive& primitive, const Deformable& d) {
-    stage.world.field_place = FieldPlace::kCard;
+    stage.world.field_place = FieldPlace::kGpu;
     surface = stage.add(primitive, d);
     copies = StreamCopies(std::vector<vec4>(std::size_t{mesh().zone_count()} * kZoneSize, vec4(0)));
     replay = FieldReplay(mesh(), stage.world.registry.get<Deformable>(surface), stage.dt());

@@ -1,4 +1,4 @@
-// The card's side by itself: context, shaders, P1's two lines, and which copy of a stream is newer.
+// The GPU's side by itself: context, shaders, P1's two lines, and which copy of a stream is newer.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -142,9 +142,9 @@ TEST(Upload, OnlyZonesThatChangedTravelAndTheCardThenAgrees) {
   EXPECT_EQ(copies.upload(), 3 * kZoneBytes);
   EXPECT_EQ(copies.upload(), 0u);
 
-  const std::vector<vec4> on_card = read_back<vec4>(copies.buffer(), kZones * kZoneSize);
+  const std::vector<vec4> on_gpu = read_back<vec4>(copies.buffer(), kZones * kZoneSize);
   const float expected[kZones] = {0.5f, 0.5f, 2.5f, 3.0f, 0.5f, 0.5f, 0.5f, 7.0f, 0.5f};
-  for (std::size_t i = 0; i < on_card.size(); ++i) EXPECT_EQ(on_card[i], vec4(expected[i / kZoneSize])) << i;
+  for (std::size_t i = 0; i < on_gpu.size(); ++i) EXPECT_EQ(on_gpu[i], vec4(expected[i / kZoneSize])) << i;
 }
 
 }  // namespace

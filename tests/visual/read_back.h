@@ -1,4 +1,4 @@
-// What a buffer on the card holds.
+// What a buffer on the GPU holds.
 #pragma once
 
 #include <vector>

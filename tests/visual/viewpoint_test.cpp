@@ -1,4 +1,4 @@
-// Where pictures are taken from, what lights them, and where they go: all without a card.
+// Where pictures are taken from, what lights them, and where they go: all without a gpu.
 #include "systems/visual/viewpoint.h"
 
 #include <gtest/gtest.h>

@@ -52,7 +52,7 @@ bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {
   contact.gap = foot.height;
   contact.depth = 0.0;
   contact.turning = dmat2(0.0);
-  contact.foretold = false;
+  contact.predicted = false;
   contact.normal = pose_.rotation * (is_a ? -foot.normal : foot.normal);
   const dvec3 along = contact.axes[1] - contact.normal * dot(contact.normal, contact.axes[1]);
   const double length = glm::length(along);

@@ -10,7 +10,7 @@ constexpr double kSameSide = 0.7;    // [1] cosine: normals of one and the same 
 constexpr double kCrease = 0.5;      // [1] cosine between triangles: no contact slides over a sharper edge
 constexpr int kMostTriangles = 8;    // walked over in a step
 constexpr double kParallel = 1e-2;   // [1] sine below which two edges have no normal of their own
-constexpr double kDeepest = 0.25;    // [mean edges] foretold to be deeper than this: it will not go on as it did
+constexpr double kDeepest = 0.25;    // [mean edges] predicted to be deeper than this: it will not go on as it did
 constexpr double kLeast = 5e-3;      // [1] sine: normals that lean less than this are as they were
 constexpr double kDifference = 0.5;  // [mean edges]
 constexpr double kFlat = 0.01;       // [1] of both bends: what is flatter, or hollow, counts as if bent by that
@@ -19,7 +19,7 @@ constexpr double kReach = 0.3;       // [mean edges] farther, a turning by diffe
 
 struct Touch {
   SurfacePoint a, b;
-  dvec3 apart{0};  // [m] from b to a, where they are foretold
+  dvec3 apart{0};  // [m] from b to a, where they are predicted
   dvec3 normal{0};
 };
 
@@ -89,7 +89,7 @@ dvec3 without(dvec3 v, dvec3 along) {
   return v - dot(v, along) / dot(along, along) * along;
 }
 
-// `offset` [m]: a stands so far aside from where it is foretold.
+// `offset` [m]: a stands so far aside from where it is predicted.
 std::optional<Touch> vertex_touch(const FeaturePair& pair, const Surface& of_a, const Surface& of_b, dvec3 offset) {
   const Skin& b = pair.b;
   const dvec3 p = pair.a.ahead(pair.feature_a) + offset;

@@ -1,6 +1,6 @@
 // How a contact lies where the step will end. Proximity finds pairs of features where the step begins; in a step of
 // 1/60 s a finger slides over whole triangles, and planes frozen where it began would stand in its way like stairs. So
-// points and normal are those of the step's end, foretold by the last step's motion. A contact's gap is what its law
+// points and normal are those of the step's end, predicted by the last step's motion. A contact's gap is what its law
 // needs: gap + T u_n is the gap at the end.
 //
 // Normals are those of the smooth surfaces that skins stand for. A vertex or edge that touches beside the point where
@@ -20,14 +20,14 @@ struct FeaturePair {
   const Skin& b;
   bool edges = false;
   std::uint32_t feature_a = 0, feature_b = 0;
-  dvec3 normal{0, 1, 0};  // [1] where the step begins; what is foretold leans at most 45 degrees against it
+  dvec3 normal{0, 1, 0};  // [1] where the step begins; what is predicted leans at most 45 degrees against it
 };
 
-// Fills a, b, normal and gap of a contact. False: nothing can be foretold (the motion leads too far round the surface);
-// the contact stays as it was found.
+// Fills a, b, normal and gap of a contact. False: nothing can be predicted (the motion leads too far round the
+// surface); the contact stays as it was found.
 bool look_ahead(const FeaturePair& pair, ContactPoint& contact);
 
-// After look_ahead, where the skins now know better how they end (Skin::foretell): normal and lean, which is against
+// After look_ahead, where the skins now know better how they end (Skin::predict): normal and lean, which is against
 // the axes as they were laid, and end_gap. False: all stays as it was.
 bool look_again(const FeaturePair& pair, ContactPoint& contact);
 

@@ -125,7 +125,7 @@ struct Proximity::Parts {
     c.gap = f.meeting.gap;
     c.depth = std::max(0.0, -f.meeting.gap);
     const FeaturePair pair = pair_of(f);
-    c.foretold = look_ahead(pair, c);
+    c.predicted = look_ahead(pair, c);
     c.source = candidate.source;
     c.key = candidate.key;
     // A probe has no friction of its own: as on a yielding surface, what it touches says how it grips.
@@ -134,7 +134,7 @@ struct Proximity::Parts {
     c.mu_sliding = std::sqrt(first.friction_sliding * second.friction_sliding);
     carry_over(f.last, c);
     c.joined = late || (f.last && f.last->joined && f.last->impulse.x > 0.0);
-    if (c.foretold) find_turning(pair, c);
+    if (c.predicted) find_turning(pair, c);
     return c;
   }
 
@@ -320,11 +320,11 @@ bool Proximity::look_again(const std::vector<std::unique_ptr<Body>>& bodies, dou
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i]->size() == 0) continue;
     bodies[i]->move_skin(velocity);
-    p.skins[i].foretell(velocity, T);
+    p.skins[i].predict(velocity, T);
   }
   bool any = false;
   for (ContactPoint& contact : contacts) {
-    contact.again = contact.foretold && pliant::look_again(p.pair_of(p.found[contact.source]), contact);
+    contact.again = contact.predicted && pliant::look_again(p.pair_of(p.found[contact.source]), contact);
     any |= contact.again;
   }
   return any;

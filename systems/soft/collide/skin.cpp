@@ -166,13 +166,13 @@ dmat3 Skin::turn(std::uint32_t t) const {
   return frame(position_[c.y] - position_[c.x], normal_[t]) * glm::transpose(frame(rest, rest_.normal[t]));
 }
 
-void Skin::foretell(const std::vector<dvec3>& velocity, double T) {
+void Skin::predict(const std::vector<dvec3>& velocity, double T) {
   for (std::size_t v = 0; v < ahead_.size(); ++v) ahead_[v] = position_[v] + T * velocity[v];
   position_.swap(ahead_);
   find_normals();
   find_curvatures();
   position_.swap(ahead_);
-  foretold_ = true;
+  predicted_ = true;
 }
 
 void Skin::refit(const Body& body, double T, double reach) {
@@ -180,9 +180,9 @@ void Skin::refit(const Body& body, double T, double reach) {
   const bool still = body.size() == 0 && std::all_of(body.skin_velocity.begin(), body.skin_velocity.end(),
                                                      [](const dvec3& v) { return v == dvec3(0); });
   const bool same = std::equal(position_.begin(), position_.end(), body.skin_position.begin());
-  if (still && still_ && same && reach == reach_ && !foretold_) return;
+  if (still && still_ && same && reach == reach_ && !predicted_) return;
   swept_ = false;
-  still_ = still && same, foretold_ = false;  // a body that has just stopped is foretold to go on, once
+  still_ = still && same, predicted_ = false;  // a body that has just stopped is predicted to go on, once
   const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
   last_step_ = T;
   for (std::uint32_t v = 0; v < count; ++v) {

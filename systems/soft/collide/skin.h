@@ -68,7 +68,7 @@ class Skin {
   dvec3 ahead(std::uint32_t v) const { return ahead_[v]; }
   // Where it will be if the body keeps `velocity` [m/s, per vertex] for T [s]: ahead(), and normals and curvatures as
   // they are there. All else stays as it is.
-  void foretell(const std::vector<dvec3>& velocity, double T);
+  void predict(const std::vector<dvec3>& velocity, double T);
   std::array<Moving, 3> triangle(std::uint32_t t) const;
   std::array<Moving, 2> edge(std::uint32_t e) const { return {vertex(edges_[e].from), vertex(edges_[e].to)}; }
   EdgeShape edge_shape(std::uint32_t e) const;
@@ -138,8 +138,8 @@ class Skin {
   std::vector<float> vertex_strayed_, triangle_strayed_;
   std::vector<std::vector<float>> run_strayed_;
   double reach_ = -1.0;
-  bool still_ = false;     // nothing moved in the last step
-  bool foretold_ = false;  // normals are those of ahead()
+  bool still_ = false;      // nothing moved in the last step
+  bool predicted_ = false;  // normals are those of ahead()
   std::vector<Box> vertex_box_, triangle_box_;
   std::vector<std::vector<Box>> boxes_, normal_boxes_;
 };

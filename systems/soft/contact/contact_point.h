@@ -16,9 +16,9 @@ struct ContactPoint {
   dvec3 normal{0, 1, 0};                     // [1] world, unit, from b's outside towards a; where the step will end
   double gap = 0.0;                          // [m] along it, for the step's linear law: at the end it is gap + T u_n
   double depth = 0.0;                        // [m] >= 0: how deep a is behind b where the step begins
-  double end_gap = 0.0;                      // [m] foretold along the normal, after look_again
-  bool foretold = false;                     // normal and gap are those of the step's end
-  bool again = false;                        // foretold once more, with this step's impulses
+  double end_gap = 0.0;                      // [m] predicted along the normal, after look_again
+  bool predicted = false;                    // normal and gap are those of the step's end
+  bool again = false;                        // predicted once more, with this step's impulses
   dvec2 lean{0};                             // [1] of the normal against axes[0], along the tangents
   dmat2 turning{0};                          // [1/m] of the normal with slip (contact_geometry.h: find_turning)
   dmat2 over_a{0}, over_b{0};                // [1] how far the place of touch goes over each body, per slip

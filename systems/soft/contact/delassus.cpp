@@ -221,7 +221,7 @@ double still_inside(const ContactPoint& c, std::size_t i, double beta, const Del
   return yields ? 0.0 : (1.0 - beta) * c.depth;
 }
 
-// The contacts' laws become those of the normals and gaps that they will have. An end gap was foretold with the
+// The contacts' laws become those of the normals and gaps that they will have. An end gap was predicted with the
 // velocities of the solution that there is, and changes with what a new one does to them.
 void look_again(const std::vector<ContactPoint>& contacts, double T, double beta, const Delassus& delassus,
                 ContactProblem& problem) {

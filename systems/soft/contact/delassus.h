@@ -42,7 +42,7 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 // (contact_budget.h), is `left`. Then once more: now the contacts lie where the step will end by the solution
 // (Proximity::look_again); until then they were where the last step's motion led. In the level `hand` that takes a
 // third off the error of the 1 kHz force, doing so once more changes little. Later sweeps start from the impulses that
-// there are; of a contact that is not foretold the law stays what it was.
+// there are; of a contact that is not predicted the law stays what it was.
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
                             std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left = nullptr);

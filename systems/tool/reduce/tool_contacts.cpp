@@ -40,7 +40,7 @@ bool yields(const FinishedStep& step, Eigen::Index row) {
 // An open contact whose features part before the step ends: its plane stands where nothing is.
 bool passed_by(const FinishedStep& step, std::size_t i) {
   const ContactPoint& p = step.contacts[i];
-  return !p.foretold && !(p.impulse.x > 0.0) && p.depth == 0.0 && !yields(step, 3 * static_cast<Eigen::Index>(i));
+  return !p.predicted && !(p.impulse.x > 0.0) && p.depth == 0.0 && !yields(step, 3 * static_cast<Eigen::Index>(i));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Memory on the card, and how vertices are read out of it.
+// Memory on the GPU, and how vertices are read out of it.
 #pragma once
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// Every display that may carry a context, best first: cards, then Mesa without any surface (which finds a card's driver
+// Every display that may carry a context, best first: GPUs, then Mesa without any surface (which finds a GPU's driver
 // too, or draws on the processor).
 std::vector<EGLDisplay> displays() {
   std::vector<EGLDisplay> found;
@@ -51,7 +51,7 @@ Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
   const std::vector<EGLDisplay> candidates = displays();
   if (candidates.empty())
     return Error{"EGL",
-                 "offers neither a graphics card nor Mesa's surfaceless platform; install libegl-mesa0 and "
+                 "offers neither a GPU nor Mesa's surfaceless platform; install libegl-mesa0 and "
                  "libgl1-mesa-dri"};
   for (const EGLDisplay display : candidates) {
     const EGLContext context = make_current_on(display);
@@ -64,7 +64,7 @@ Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
   }
   return Error{"EGL",
                "no driver gives an OpenGL 4.5 core context; install libgl1-mesa-dri (22 or later) or the "
-               "graphics card's own driver"};
+               "GPU's own driver"};
 }
 
 // The display stays initialised: EGL hands the same one to everybody in the process, who may still be using it.

@@ -1,4 +1,4 @@
-// An OpenGL 4.5 core context without a window: EGL on a device with a card if there is one, else surfaceless.
+// An OpenGL 4.5 core context without a window: EGL on a device with a GPU if there is one, else surfaceless.
 #pragma once
 
 #include <memory>

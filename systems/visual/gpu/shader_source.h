@@ -1,4 +1,4 @@
-// A shader's text as the card gets it: the version line, then the file with every `#include "x.glsl"` put in its place
+// A shader's text as the GPU gets it: the version line, then the file with every `#include "x.glsl"` put in its place
 // (once per shader), and a way back from the compiler's line numbers to files.
 #pragma once
 

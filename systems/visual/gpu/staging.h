@@ -1,5 +1,5 @@
-// Bytes on their way to the card: memory that both sides see all the time (GL_MAP_PERSISTENT), in three parts, so that
-// the processor writes one while the card still copies out of the others. No call waits for the driver's own copies.
+// Bytes on their way to the GPU: memory that both sides see all the time (GL_MAP_PERSISTENT), in three parts, so that
+// the processor writes one while the GPU still copies out of the others. No call waits for the driver's own copies.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class Staging {
   Object<DestroyBuffer> buffer_;  // unmapped as it is deleted
   std::byte* mapped_ = nullptr;
   std::size_t part_size_ = 0, part_ = 0, used_ = 0;
-  std::array<Fence, kParts> copied_;  // when the card has taken a part
+  std::array<Fence, kParts> copied_;  // when the GPU has taken a part
 };
 
 }  // namespace pliant::gpu

@@ -1,4 +1,4 @@
-// Pictures on the card.
+// Pictures on the GPU.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ enum class Meaning {
 class Texture {
  public:
   Texture() = default;
-  // Fails where the picture's size and its bytes do not agree, or the card cannot hold it.
+  // Fails where the picture's size and its bytes do not agree, or the GPU cannot hold it.
   static Result<Texture> from_image(const Image& image, Meaning meaning);
   // A cube map in linear RGB, half floats: level by level, face by face (+X -X +Y -Y +Z -Z), `face` pixels an edge in
   // level 0 and half as many in each that follows.
