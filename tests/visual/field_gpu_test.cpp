@@ -30,7 +30,7 @@ TEST(FieldOnGpu, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
       Stage cpu, gpu;
       Entity surface[2];
       int n = 0;
-      for (Stage* stage : {&cpu, &GPU}) {
+      for (Stage* stage : {&cpu, &gpu}) {
         surface[n++] = stage->add(scenes::sphere(24, 0.1), d);
         const Entity a = stage->add_probe({0, 0.11, 0.01}), b = stage->add_probe({0.03, 0.11, -0.01});
         stage->world.field_place = stage == &cpu ? FieldPlace::kProcessor : FieldPlace::kGpu;
