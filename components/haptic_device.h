@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "components/math.h"
+#include "components/range.h"
 #include "pliant/parameters.h"
 #include "runtime/store.h"
 
@@ -30,6 +31,14 @@ struct HapticDevice : DeviceParameters {
   double sensed_at = 0.0;  // [s] when; older than kStaleAfter: treated as lost
   dvec3 force_sent{0};     // [N] world, what left for the hand in this tick
   dvec3 torque_sent{0};    // [N m] world, the same; only tools make any
+};
+
+// What its numbers may be, in a file and in code.
+struct DeviceRange {
+  static constexpr Range kScale{0.0, 1e6, true};    // [1]
+  static constexpr Range kMaxForce{0.0, 1e3};       // [N]
+  static constexpr Range kMaxStiffness{0.0, 1e7};   // [N/m]
+  static constexpr Range kMaxSlew{0.0, 1e7, true};  // [N/s]
 };
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "components/math.h"
+#include "components/range.h"
 #include "pliant/parameters.h"
 #include "runtime/entity.h"
 #include "runtime/store.h"
@@ -32,5 +33,7 @@ struct Probe : ProbeParameters {
   dvec3 force{0};   // [N] world, on the probe: the sum over its contacts, before the safety layer
   dvec3 torque{0};  // [N m] world, about the probe's position: what its contacts make at their lever
 };
+
+inline constexpr Range kProbeLengths{0.0, 1e3};  // [m] radius, length and coordinates of points
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 
 #include "components/math.h"
 #include "components/mesh.h"
+#include "components/range.h"
 #include "components/tet_mesh.h"
 #include "pliant/parameters.h"
 
@@ -25,5 +26,16 @@ struct Handle6 : HandleParameters {
 struct RigidBody : RigidBodyParameters {
   Handle<Mesh> skin;  // set at spawn
 };
+
+// What their numbers may be, in a file and in code.
+struct SoftBodyRange {
+  static constexpr Range kYoung{0.0, 1e12, true};   // [Pa]
+  static constexpr Range kPoisson{0.0, 0.499};      // [1]
+  static constexpr Range kDensity{0.0, 1e6, true};  // [kg/m3]
+  static constexpr Range kCell{0.0, 1e3};           // [m]
+  static constexpr Range kMass{0.0, 1e9};           // [kg] of a rigid body
+};
+inline constexpr Range kPairRange{0.0, 1e9};        // of couplings' springs and dampers, and of Rayleigh's damping
+inline constexpr Range kSaturationRange{0.0, 1e4};  // [N], [N m] of a coupling
 
 }  // namespace pliant

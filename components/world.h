@@ -48,6 +48,8 @@ struct ToolTouch;   // systems/tool/tool_touch_state.h: tools on the touch clock
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
 
 inline constexpr Range kTouchRateRange{10.0, 100000.0};  // [Hz] of Simulation::touch_rate
+inline constexpr Range kSoftStepRange{1e-4, 1.0};        // [s] of Simulation::soft_step
+inline constexpr Range kGravityRange{-1e3, 1e3};         // [m/s2] of each of its components
 
 // Where height fields live (systems/touch/field.h).
 enum class FieldPlace : std::uint8_t { kProcessor, kGpu };

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "engine/sources.h"
 #include "systems/tool/prepare_tools.h"
@@ -100,7 +101,14 @@ Status Session::connect(const std::string& name, std::unique_ptr<Driver> driver,
   if (!driver) return Error{"Session::connect `" + name + "`", "the driver is null; give one"};
   if (hand->source != HandSource::kNone && hand->source != HandSource::kLevel)
     return Error{"Session::connect `" + name + "`", "it has a source already; call Session::release() first"};
-  if (Status opened = driver->open(id); !opened) return opened;
+  try {
+    if (Status opened = driver->open(id); !opened) return opened;
+    hand->can = driver->capabilities();
+  } catch (const std::exception& thrown) {
+    return Error{"Session::connect `" + name + "`", std::string("the driver threw: ") + thrown.what()};
+  } catch (...) {
+    return Error{"Session::connect `" + name + "`", "the driver threw something unknown"};
+  }
   hand->driver = std::move(driver);
   return parts_->give(*hand, HandSource::kDriver);
 }
@@ -115,6 +123,7 @@ Status Session::release(const std::string& name) {
   device.path = {};
   device.status = DeviceStatus::kLost;
   device.force_sent = device.torque_sent = dvec3(0);
+  static_cast<DeviceParameters&>(device) = parts_->limits_of(*hand);
   hand->source = HandSource::kNone;
   hand->placed = false;
   return Done{};
@@ -123,7 +132,13 @@ Status Session::release(const std::string& name) {
 Status Session::step(std::uint64_t ticks) {
   if (Status s = parts_->stand_still("Session::step"); !s) return s;
   Parts& p = *parts_;
+  if (p.lived) return Error{"Session::step", "it has run in real time; call Session::restart() first"};
   const double dt = 1.0 / p.world.simulation.touch_rate;
+  const auto end = [&](const std::string& why) {
+    let_go(p.world, {p.ticks, dt, p.time});
+    p.zero_drivers();
+    return Error{"Session::step", "stopped by an exception: " + why};
+  };
   try {
     for (std::uint64_t i = 0; i < ticks; ++i) {
       if (p.replayed && p.ticks >= p.replayed->ticks.size())
@@ -139,8 +154,9 @@ Status Session::step(std::uint64_t ticks) {
       p.time = static_cast<double>(p.ticks) * dt;
     }
   } catch (const std::exception& thrown) {
-    let_go(p.world, {p.ticks, dt, p.time});
-    return Error{"Session::step", std::string("stopped by an exception: ") + thrown.what()};
+    return end(thrown.what());
+  } catch (...) {
+    return end("of an unknown kind");
   }
   p.rows.acquire();
   if (p.recorder) p.recorder->drain();
@@ -153,8 +169,10 @@ Status Session::start() {
   if (p.ticks > 0) return Error{"Session::start", "it has run before; call Session::restart() first"};
   if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
   limit_tool_ticks(p.world);
+  p.lived = true;
   if (p.recorder) p.recorder->start();
-  TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); }};
+  TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
+                   [&p] { p.zero_drivers(); }};
   p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,
                                          std::numeric_limits<std::uint64_t>::max(), std::move(hooks));
   p.clock->start();
@@ -220,8 +238,14 @@ Status Session::set(const std::string& object, const std::string& key, double va
         return s;
       edit.entity = *p.find_object(object);
     } else {
-      if (value < 0.0) return Error{"`" + object + "`: " + key, "is negative; give 0 or more"};
-      edit.entity = p.find_hand(object)->device;
+      DeviceParameters changed = device->second;
+      changed.*(live.device) = value;
+      if (Status s = check_device(object, changed); !s) return s;
+      std::swap(device->second, changed);
+      const SessionHand& hand = *p.find_hand(object);
+      edit.entity = hand.device;
+      edit.value = p.limits_of(hand).*(live.device);  // never beyond what its driver can render
+      std::swap(device->second, changed);             // until a tick takes it
     }
     if (!p.edits->push(edit)) return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
     if (live.surface) surface->second.*(live.surface) = value;

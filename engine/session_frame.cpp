@@ -1,5 +1,7 @@
 // What a Session shows (pliant/session.h): readings, deformed vertices, forces on them, the stream.
+#include "engine/limits.h"
 #include "engine/session_parts.h"
+#include "systems/soft/soft_state.h"
 
 namespace pliant {
 namespace {
@@ -36,6 +38,16 @@ SessionFigures Session::figures() const {
            p.overruns, p.soft->figures().steps};
   }
   return out;
+}
+
+Result<std::vector<std::string>> Session::findings() const {
+  const Parts& p = *parts_;
+  if (Status s = p.stand_still("Session::findings"); !s) return s.error();
+  std::vector<std::string> sentences = explain_dropped(p.world.dropped | (p.world.soft ? p.world.soft->dropped : 0));
+  for (const SessionHand& hand : p.hands)
+    for (std::string& sentence : explain_limits(p.world, hand.entity, hand.name))
+      sentences.push_back(std::move(sentence));
+  return sentences;
 }
 
 void Session::Parts::look() {

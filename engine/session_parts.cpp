@@ -6,6 +6,7 @@
 #include <set>
 
 #include "components/soft_body.h"
+#include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "systems/device/hands.h"
 #include "systems/schedule.h"
@@ -36,27 +37,6 @@ Status check_names(const std::vector<std::string>& names, const char* what) {
   return Done{};
 }
 
-// What a file's reader has checked of a file, of meshes that were made in code.
-Status check_arrays(const Level& level) {
-  for (const LevelMesh& mesh : level.meshes)
-    for (const Primitive& p : mesh.primitives) {
-      const std::size_t count = p.position.size();
-      for (const std::size_t size :
-           {p.normal.size(), p.tangent.size(), p.uv.size(), p.stiffness.size(), p.friction.size(), p.damping.size(),
-            p.relaxation.size(), p.pinned.size(), p.handle.size()})
-        if (size != 0 && size != count)
-          return Error{"mesh `" + mesh.name + "`",
-                       fmt::format("has {} positions and {} values beside them; give none or as many", count, size)};
-      if (p.index.size() % 3 != 0)
-        return Error{"mesh `" + mesh.name + "`", "the number of indices is no multiple of three; give whole triangles"};
-      for (const std::uint32_t i : p.index)
-        if (i >= count)
-          return Error{"mesh `" + mesh.name + "`",
-                       fmt::format("index {} is beyond its {} positions; check the triangles", i, count)};
-    }
-  return Done{};
-}
-
 std::vector<Entity> touchable(const World& world) {
   std::vector<Entity> found;
   for (auto [entity, pose] : world.registry.view<const Pose>()) {
@@ -76,7 +56,7 @@ Session::Parts::~Parts() {
 
 Status Session::Parts::prepare() {
   notes = scene.level().notes;
-  if (Status s = check_arrays(scene.level()); !s) return s;
+  if (Status s = check_scene(scene.level()); !s) return s;
   auto spawned = spawn_level(scene.level(), &notes);
   if (!spawned) return spawned.error();
   clock.reset();
@@ -113,12 +93,13 @@ Status Session::Parts::prepare() {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (const Deformable* surface = world.registry.find<Deformable>(object_entities[i]))
       surfaces[objects[i]] = *surface;
-  for (const SessionHand& hand : hands) devices[hand.name] = world.registry.get<HapticDevice>(hand.device);
+  for (const SessionHand& hand : hands) devices.emplace(hand.name, world.registry.get<HapticDevice>(hand.device));
 
   schedule.emplace(touch_schedule());
   soft = std::make_unique<SoftClock>(world);
   ticks = overruns = 0;
   time = 0.0;
+  lived = false;
   edits = std::make_unique<Ring<Edit>>(kMostEdits);
   for (std::vector<HandRow>& slot : rows.slots()) slot.assign(hands.size(), {});
   view.reset(world);
@@ -126,6 +107,7 @@ Status Session::Parts::prepare() {
     SessionHand* const hand = find_hand(old.name);
     if (!hand || old.source == HandSource::kLevel || old.source == HandSource::kNone) continue;
     hand->driver = std::move(old.driver);
+    hand->can = old.can;
     hand->path = std::move(old.path);
     hand->source = HandSource::kNone;
     if (Status s = give(*hand, old.source); !s) return s;
@@ -176,21 +158,43 @@ Status Session::Parts::give(SessionHand& hand, HandSource source) {
   if (source == HandSource::kPath) {
     device.driver = DriverKind::kScript;
     device.path = world.paths.add(Path(hand.path));
-  } else if (source == HandSource::kDriver) {
-    const DeviceCapabilities can = hand.driver->capabilities();
-    if (can.max_force > 0.0) device.max_force = std::min(device.max_force, can.max_force);
-    if (can.max_stiffness > 0.0)
-      device.max_stiffness =
-          device.max_stiffness > 0.0 ? std::min(device.max_stiffness, can.max_stiffness) : can.max_stiffness;
   }
+  static_cast<DeviceParameters&>(device) = limits_of(hand);
   return Done{};
 }
 
-void Session::Parts::close_driver(SessionHand& hand) {
+DeviceParameters Session::Parts::limits_of(const SessionHand& hand) const {
+  DeviceParameters limits = devices.at(hand.name);
+  const DeviceCapabilities& can = hand.can;
+  if (can.max_force > 0.0) limits.max_force = std::min(limits.max_force, can.max_force);
+  if (can.max_stiffness > 0.0)
+    limits.max_stiffness =
+        limits.max_stiffness > 0.0 ? std::min(limits.max_stiffness, can.max_stiffness) : can.max_stiffness;
+  return limits;
+}
+
+void Session::Parts::zero_drivers() noexcept {
+  for (SessionHand& hand : hands) {
+    if (!hand.driver) continue;
+    try {
+      hand.driver->write({});
+    } catch (...) {  // what fails is left: its device's own watchdog ends the force
+    }
+  }
+}
+
+void Session::Parts::close_driver(SessionHand& hand) noexcept {
   if (!hand.driver) return;
-  hand.driver->write({});
-  hand.driver->close();
+  try {
+    hand.driver->write({});
+  } catch (...) {  // closed all the same
+  }
+  try {
+    hand.driver->close();
+  } catch (...) {  // gone all the same
+  }
   hand.driver.reset();
+  hand.can = {};
 }
 
 void Session::Parts::read_told(SessionHand& hand, Tick tick) {

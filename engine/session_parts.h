@@ -39,6 +39,7 @@ struct SessionHand {
   Entity entity, device;
   HandSource source = HandSource::kNone;
   Path path;                                     // of kPath, for restart()
+  DeviceCapabilities can;                        // its, while it is connected
   std::unique_ptr<Driver> driver;                // of kDriver
   std::unique_ptr<TripleBuffer<ToldPose>> told;  // owner -> touch clock
   // Touch clock's: the way to the newest pose that was told.
@@ -100,6 +101,7 @@ struct Session::Parts {
   std::unique_ptr<TouchClock> clock;  // null: lockstep
   std::uint64_t ticks = 0;            // done, in lockstep and in earlier real time
   std::uint64_t overruns = 0;
+  bool lived = false;                               // it has run in real time: its devices are lost until restart()
   double time = 0.0;                                // [s] where the next lockstep tick begins
   std::unique_ptr<Ring<Edit>> edits;                // owner -> touch clock
   mutable TripleBuffer<std::vector<HandRow>> rows;  // touch clock -> owner
@@ -118,7 +120,9 @@ struct Session::Parts {
   Status stand_still(const char* what) const;  // an error while the clocks run
 
   Status give(SessionHand& hand, HandSource source);  // once; release() first
-  void close_driver(SessionHand& hand);
+  void close_driver(SessionHand& hand) noexcept;
+  void zero_drivers() noexcept;
+  DeviceParameters limits_of(const SessionHand& hand) const;  // the level's or the driver's, whichever are smaller
 
   void look();  // the newest that the clocks show
 

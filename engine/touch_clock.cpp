@@ -131,13 +131,8 @@ void TouchClock::run() {
   } catch (...) {
     error_ = Error{"touch clock", "stopped by an exception of an unknown kind"};
   }
-  if (error_) {
-    let_go(world_, last_);
-    try {
-      if (hooks_.idle) hooks_.idle(last_);
-    } catch (...) {  // what fails twice is left: its device's own watchdog ends the force
-    }
-  }
+  if (error_) let_go(world_, last_);
+  if (hooks_.end) hooks_.end();
   done_ = true;
 }
 

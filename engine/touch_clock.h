@@ -31,6 +31,7 @@ struct TouchHooks {
   std::function<void(Tick)> before;  // drivers are read, edits come in
   std::function<void(Tick)> after;   // drivers are written, rows are noted
   std::function<void(Tick)> idle;    // instead of both, while it is paused: the forces are zero
+  std::function<void()> end;         // last of all, whatever ended it: drivers are written zero. Must not throw
 };
 
 // All devices are lost and feel nothing: safety has been told, so that each passes the gate again when it comes back.

@@ -71,7 +71,7 @@ Key pair(std::string name, std::string unit, Access access, std::string doc) {
       [](const Json& json) {
         return std::array<double, 2>{json[0].get<double>(), json[1].get<double>()};
       });
-  out.range = {0.0, 1e9};
+  out.range = kPairRange;
   return out;
 }
 template <class Access>
@@ -170,8 +170,8 @@ std::string settle_deformable(void* owner) {
 std::vector<Key> probe_keys() {
   std::vector<Key> keys;
   keys.push_back(
-      number("radius", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::radius), "radius of every tip; 0: a point"));
-  keys.push_back(number("length", "m", {0.0, 1e3}, at(&LevelNode::probe, &Probe::length),
+      number("radius", "m", kProbeLengths, at(&LevelNode::probe, &Probe::radius), "radius of every tip; 0: a point"));
+  keys.push_back(number("length", "m", kProbeLengths, at(&LevelNode::probe, &Probe::length),
                         "length of a capsule's axis, from the node along its +Y; 0: none"));
   Key points = key(
       "points", "m", KeyType::kPoints,
@@ -189,7 +189,7 @@ std::vector<Key> probe_keys() {
         for (const Json& p : json) places.emplace_back(p[0].get<float>(), p[1].get<float>(), p[2].get<float>());
         return places;
       });
-  points.range = {-1e3, 1e3};
+  points.range = {-kProbeLengths.max, kProbeLengths.max};
   keys.push_back(points);
   keys.push_back(
       choice("meets", at(&LevelNode::probe, &Probe::meets), "yielding surfaces, soft and rigid bodies, or both"));
@@ -217,12 +217,12 @@ std::vector<Key> device_keys() {
   keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
-  keys.push_back(number("scale", "1", {0.0, 1e6, true}, d(&H::scale), "workspace to world"));
-  keys.push_back(number("max_force", "N", {0.0, 1e3}, d(&H::max_force), "norm of the force sent"));
-  keys.push_back(number("max_stiffness", "N/m", {0.0, 1e7}, d(&H::max_stiffness),
+  keys.push_back(number("scale", "1", DeviceRange::kScale, d(&H::scale), "workspace to world"));
+  keys.push_back(number("max_force", "N", DeviceRange::kMaxForce, d(&H::max_force), "norm of the force sent"));
+  keys.push_back(number("max_stiffness", "N/m", DeviceRange::kMaxStiffness, d(&H::max_stiffness),
                         "limit on the rise of force with displacement; 0: none"));
   keys.push_back(
-      number("max_slew", "N/s", {0.0, 1e7, true}, d(&H::max_slew), "limit on the change of force with time"));
+      number("max_slew", "N/s", DeviceRange::kMaxSlew, d(&H::max_slew), "limit on the change of force with time"));
   return keys;
 }
 
@@ -230,13 +230,13 @@ std::vector<Key> soft_body_keys() {
   using S = SoftBody;
   const auto s = [](auto member) { return at(&LevelNode::soft_body, member); };
   std::vector<Key> keys;
-  keys.push_back(number("young", "Pa", {0.0, 1e12, true}, s(&S::young), "Young's modulus"));
+  keys.push_back(number("young", "Pa", SoftBodyRange::kYoung, s(&S::young), "Young's modulus"));
   keys.push_back(number(
-      "poisson", "1", {0.0, 0.499}, s(&S::poisson),
+      "poisson", "1", SoftBodyRange::kPoisson, s(&S::poisson),
       fmt::format("Poisson's ratio; from {} on the tetrahedra lock: flesh is over 10 % too stiff", kLockingPoisson)));
-  keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, s(&S::density), "density"));
+  keys.push_back(number("density", "kg/m3", SoftBodyRange::kDensity, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
-  keys.push_back(number("cell", "m", {0.0, 1e3}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
+  keys.push_back(number("cell", "m", SoftBodyRange::kCell, s(&S::cell), "lattice cell; 0: sized from the bounds"));
   keys.push_back(
       text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
   keys.push_back(
@@ -258,9 +258,10 @@ std::vector<Key> handle_keys() {
   keys.push_back(
       pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
   keys.push_back(pair("coupling.rotation", "N m/rad, N m s/rad", h(&H::rotation), "the same for rotation"));
-  keys.push_back(number("coupling.max_force", "N", {0.0, 1e4}, h(&H::max_force), "saturation of the coupling's force"));
   keys.push_back(
-      number("coupling.max_torque", "N m", {0.0, 1e4}, h(&H::max_torque), "saturation of the coupling's torque"));
+      number("coupling.max_force", "N", kSaturationRange, h(&H::max_force), "saturation of the coupling's force"));
+  keys.push_back(
+      number("coupling.max_torque", "N m", kSaturationRange, h(&H::max_torque), "saturation of the coupling's torque"));
   keys.push_back(flag("carried", h(&H::carried), "hold up the tool's weight, so that the hand does not feel it"));
   keys.push_back(choice("force", h(&H::force),
                         "how the touch clock makes its force: held from the last soft step, by the linear model, or "
@@ -274,8 +275,8 @@ std::vector<Key> rigid_body_keys() {
   using R = RigidBody;
   const auto r = [](auto member) { return at(&LevelNode::rigid_body, member); };
   std::vector<Key> keys;
-  keys.push_back(number("mass", "kg", {0.0, 1e9}, r(&R::mass), "mass; 0: from density"));
-  keys.push_back(number("density", "kg/m3", {0.0, 1e6, true}, r(&R::density), "density"));
+  keys.push_back(number("mass", "kg", SoftBodyRange::kMass, r(&R::mass), "mass; 0: from density"));
+  keys.push_back(number("density", "kg/m3", SoftBodyRange::kDensity, r(&R::density), "density"));
   keys.push_back(
       number("friction_static", "1", kFrictionRange, r(&R::friction_static), "coefficient of static friction"));
   keys.push_back(
@@ -313,7 +314,7 @@ std::vector<Key> simulation_keys() {
   const auto s = [](auto member) { return at(&Level::simulation, member); };
   std::vector<Key> keys;
   keys.push_back(number("touch_rate", "Hz", kTouchRateRange, s(&S::touch_rate), "rate of the touch clock"));
-  keys.push_back(number("soft_step", "s", {1e-4, 1.0}, s(&S::soft_step), "step of the soft clock"));
+  keys.push_back(number("soft_step", "s", kSoftStepRange, s(&S::soft_step), "step of the soft clock"));
   Key gravity = key(
       "gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),
       [](dvec3 g) {
@@ -323,7 +324,7 @@ std::vector<Key> simulation_keys() {
         return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
                                 : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
       });
-  gravity.range = {-1e3, 1e3};
+  gravity.range = kGravityRange;
   keys.push_back(gravity);
   return keys;
 }

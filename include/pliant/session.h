@@ -124,6 +124,10 @@ class Session {
   // --- What is felt and seen
   Result<Reading> reading(const std::string& hand) const;
   SessionFigures figures() const;
+  // Whatever kept a hand from what the law says so far, or was left out: forces that were clipped, withheld, gated or
+  // slewed, poses that were no numbers, contacts that were dropped, each in a sentence with its cure. Not while the
+  // clocks run.
+  Result<std::vector<std::string>> findings() const;
   // Deformed vertices, world frame [m], in the order in which the object's MeshData or file has them.
   Status vertices(const std::string& object, std::vector<vec3>& out);
   // The force on each of these vertices, world frame [N]: that of the contacts of probes, by their barycentric

@@ -10,8 +10,9 @@ bool finite(dvec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// The norm, never each axis: the direction must stay.
+// The norm, never each axis: the direction must stay. A limit that is no number lets nothing through.
 dvec3 clamp_norm(dvec3 v, double most) {
+  if (!(most > 0.0)) return dvec3(0);
   const double size = length(v);
   return size > most ? v * (most / size) : v;
 }
