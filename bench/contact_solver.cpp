@@ -15,8 +15,8 @@
 
 #include "bench/measure.h"
 #include "systems/soft/contact/contact_admm.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "systems/soft/fem/flesh.h"
+#include "systems/soft/fem/tissue.h"
 #include "systems/soft/linear/block_cholesky.h"
 #include "systems/soft/linear/linear_solver.h"
 
@@ -78,29 +78,29 @@ Vector truth(const BlockMatrix& a, const Vector& b) {
 }
 
 Row measure(const TetMesh& mesh, SolverKind kind) {
-  Flesh flesh(mesh, FleshMaterial{.young = 1e5, .poisson = 0.45, .density = 1000}, mesh.free_count);
-  const auto solver = make_solver(kind, flesh.moving());
-  solver->analyse(flesh.inner());
+  Tissue tissue(mesh, TissueMaterial{.young = 1e5, .poisson = 0.45, .density = 1000}, mesh.free_count);
+  const auto solver = make_solver(kind, tissue.moving());
+  solver->analyse(tissue.inner());
   std::vector<double> assemble, factorise, solve, total;
   Row row{std::string(solver->name()), mesh.tets.size()};
-  Vector x = Vector::Zero(3 * flesh.moving());
+  Vector x = Vector::Zero(3 * tissue.moving());
   for (int step = 0; step < kSteps; ++step) {
     const double t0 = processor_ms();
-    flesh.assemble(kStep, kGravity);
+    tissue.assemble(kStep, kGravity);
     const double t1 = processor_ms();
-    solver->place(flesh.position());
-    const bool solvable = solver->factorise(flesh.inner());
+    solver->place(tissue.position());
+    const bool solvable = solver->factorise(tissue.inner());
     const double t2 = processor_ms();
-    if (solvable) solver->solve(flesh.right(), x);
+    if (solvable) solver->solve(tissue.right(), x);
     const double t3 = processor_ms();
     assemble.push_back(t1 - t0), factorise.push_back(t2 - t1), solve.push_back(t3 - t2), total.push_back(t3 - t0);
     if (step % kChecked == kChecked - 1) {
-      const Vector exact = truth(flesh.inner(), flesh.right());
+      const Vector exact = truth(tissue.inner(), tissue.right());
       row.error = std::max(row.error, (x - exact).norm() / exact.norm());
     }
-    for (std::uint32_t i = 0; i < flesh.moving(); ++i) {
-      flesh.velocity()[i] = {x[3 * i], x[3 * i + 1], x[3 * i + 2]};
-      flesh.position()[i] += kStep * flesh.velocity()[i];
+    for (std::uint32_t i = 0; i < tissue.moving(); ++i) {
+      tissue.velocity()[i] = {x[3 * i], x[3 * i + 1], x[3 * i + 2]};
+      tissue.position()[i] += kStep * tissue.velocity()[i];
     }
   }
   row.assemble = percentile(assemble, 0.5), row.factorise = percentile(factorise, 0.5);

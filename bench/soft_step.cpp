@@ -1,11 +1,10 @@
 // What a whole soft step of a tool costs (systems/schedule.cpp), by tetrahedra and by contacts, stage by stage, and
-// what a touch tick of that tool costs, beside how far each is off. A paddle of flesh, its upper face a rigid handle on
-// a scripted device, is pressed on a bed of studs and circles there with friction: one contact a stud, however fine the
-// flesh. The clocks run as in real time where a step takes its whole T: models come one step late and are brought up to
-// date along the handle's path.
-// Times on the wall, and of the processor for this one thread. Every run does the same arithmetic, so each step and
-// tick is measured in several and its least time counts: what else runs on the machine disturbs seldom the same one
-// twice.
+// what a touch tick of that tool costs, beside how far each is off. A paddle of tissue, its upper face a rigid handle
+// on a scripted device, is pressed on a bed of studs and circles there with friction: one contact a stud, however fine
+// the tissue. The clocks run as in real time where a step takes its whole T: models come one step late and are brought
+// up to date along the handle's path. Times on the wall, and of the processor for this one thread. Every run does the
+// same arithmetic, so each step and tick is measured in several and its least time counts: what else runs on the
+// machine disturbs seldom the same one twice.
 //   bench_soft_step --small --out soft_step.json
 #include <fmt/format.h>
 #include <malloc.h>
@@ -123,7 +122,7 @@ struct Costs {
   double contacts = 0, pushing = 0, sweeps = 0;  // means of a step
   Times times;
   // Errors, the largest of the steps that were checked; all [1].
-  double flesh_error = 0;     // of A_tt^-1 J_t^T lambda, |x - x'| / |x'|, x' from a factor, refined
+  double tissue_error = 0;    // of A_tt^-1 J_t^T lambda, |x - x'| / |x'|, x' from a factor, refined
   double residual = 0;        // of the contact laws, of the largest |bias|
   double velocity_error = 0;  // of the contact velocities, of the largest |bias|, against 1e-12
   double force_error = 0;     // of the sum of all contact forces, of its size, against 1e-12
@@ -141,17 +140,17 @@ class Bench {
     tets::hold(
         paddle, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 0.999 * kPaddle.y; });
     costs_.tetrahedra = paddle.tets.size();
-    SoftBody flesh;
-    flesh.young = 1e4;
-    flesh.poisson = 0.45;
-    flesh.rayleigh = {1.0, 0.005};
-    flesh.friction_static = flesh.friction_sliding = kFriction;
+    SoftBody tissue;
+    tissue.young = 1e4;
+    tissue.poisson = 0.45;
+    tissue.rayleigh = {1.0, 0.005};
+    tissue.friction_static = tissue.friction_sliding = kFriction;
     Handle6 handle;
     handle.translation = {2000, 20};
     handle.rotation = {5, 0.05};
     handle.max_force = 50;
     handle.max_torque = 5;
-    tool_ = stage_.add_soft(std::move(paddle), flesh, {kStart}, &handle);
+    tool_ = stage_.add_soft(std::move(paddle), tissue, {kStart}, &handle);
     RigidBody ground;
     ground.fixed = true;
     ground.friction_static = ground.friction_sliding = kFriction;
@@ -178,7 +177,7 @@ class Bench {
     }
     costs_.step_bytes = heap() - ready_;
     costs_.steps = steps;
-    costs_.moving = stage_.flesh(tool_).flesh().moving();
+    costs_.moving = stage_.tissue(tool_).tissue().moving();
     for (double* mean : {&costs_.contacts, &costs_.pushing, &costs_.sweeps}) *mean /= steps;
     if (!tick_residuals_.empty()) costs_.tick_residual = median(tick_residuals_);
     return costs_;
@@ -247,7 +246,7 @@ class Bench {
 
   // The step that is over, against the same equations solved to the last digits.
   void check() {
-    check_flesh();
+    check_tissue();
     const SoftState& soft = stage_.soft();
     const Eigen::Index rows = 3 * soft.problem.count;
     ContactProblem exact = soft.problem;
@@ -266,11 +265,11 @@ class Bench {
     keep(costs_.force_error, length(force - exact_force) / length(exact_force));
   }
 
-  // The tool's black box, asked for what this step's impulses do to its flesh.
-  void check_flesh() {
+  // The tool's black box, asked for what this step's impulses do to its tissue.
+  void check_tissue() {
     const SoftState& soft = stage_.soft();
-    const SoftBodyState& tool = stage_.flesh(tool_);
-    const BlockMatrix& a = tool.flesh().inner();
+    const SoftBodyState& tool = stage_.tissue(tool_);
+    const BlockMatrix& a = tool.tissue().inner();
     Rows pushed = Rows::Zero(tool.size(), 3);
     Vector b = Vector::Zero(tool.size());
     for (const ContactPoint& c : soft.contacts) {
@@ -292,7 +291,7 @@ class Bench {
       direct.solve(b - rest, correction);
       x += correction;
     }
-    costs_.flesh_error = std::max(costs_.flesh_error, (found.col(0) - x).norm() / x.norm());
+    costs_.tissue_error = std::max(costs_.tissue_error, (found.col(0) - x).norm() / x.norm());
   }
 
   scenes::ToolStage stage_;
@@ -346,7 +345,7 @@ void print_head() {
   fmt::print(
       "{:>6} {:>6} {:>8} {:>7} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n",
       "tets", "moving", "contacts", "pushing", "sweeps", "p50", "p99", "max", "wall p50", "free", "prox.", "delassus",
-      "sweeps", "linear", "rest", "flesh", "velocity", "force");
+      "sweeps", "linear", "rest", "tissue", "velocity", "force");
 }
 
 void print_row(const Costs& c) {
@@ -357,7 +356,7 @@ void print_row(const Costs& c) {
   for (const double stage : {median(c.times[kFreeMotion]), median(c.times[kProximity]), delassus_ms(c),
                              median(c.times[kSweeps]), median(c.times[kLinearise]), median(c.times[kRest])})
     fmt::print(" {:>8.3f}", stage);
-  fmt::print(" {:>8.1e} {:>8.1e} {:>8.1e}\n", c.flesh_error, c.velocity_error, c.force_error);
+  fmt::print(" {:>8.1e} {:>8.1e} {:>8.1e}\n", c.tissue_error, c.velocity_error, c.force_error);
 }
 
 std::string json(const std::vector<double>& times, const char* name, const char* unit) {
@@ -375,7 +374,7 @@ std::string json(const Costs& c) {
       c.tetrahedra, c.moving, c.studs, c.contacts, c.pushing, c.sweeps, c.steps,
       json(c.times[kProcessor], "processor", "ms"), json(c.times[kWall], "wall", "ms"), median(c.times[kFreeMotion]),
       median(c.times[kProximity]), delassus_ms(c), median(c.times[kSweeps]), median(c.times[kLinearise]),
-      median(c.times[kRest]), c.flesh_error, c.residual, c.velocity_error, c.force_error, c.reference);
+      median(c.times[kRest]), c.tissue_error, c.residual, c.velocity_error, c.force_error, c.reference);
 }
 
 struct Report {
@@ -415,7 +414,7 @@ void print_ticks(const std::vector<std::pair<const char*, Costs>>& ticks) {
 
 void print_memory(const std::vector<Costs>& all) {
   fmt::print(
-      "\nHeap in use: bytes a tetrahedron of mesh and skin, and of flesh, solver and contacts; MB of models\n"
+      "\nHeap in use: bytes a tetrahedron of mesh and surface, and of tissue, solver and contacts; MB of models\n"
       "{:>6} {:>9} {:>7} {:>7} {:>7}\n",
       "tets", "contacts", "mesh", "step", "models");
   for (const Costs& c : all)

@@ -36,11 +36,11 @@ struct alignas(64) TreeNode {
 
 // Two trees over the triangles in their order.
 // `levels`: boxes over runs of kLeafSize triangles, then over runs of kTreeWidth boxes, up to one root, for what moves
-// (systems/soft/collide/skin.h fits such boxes anew) or sums over runs. levels[0] are the leaves: leaf i holds
-// triangles [i*kLeafSize, min((i+1)*kLeafSize, count)). Box i of level n > 0 holds boxes [i*kTreeWidth, ...) of level
-// n-1. levels.back() has one box. `nodes`: for queries at rest (systems/touch/triangle_tree.h). Its runs are cut where
-// the boxes get small, and its boxes hold the control points of the triangles' curved patches too. nodes[0] is the
-// root, children behind parents.
+// (systems/soft/collide/collision_mesh.h fits such boxes anew) or sums over runs. levels[0] are the leaves: leaf i
+// holds triangles [i*kLeafSize, min((i+1)*kLeafSize, count)). Box i of level n > 0 holds boxes [i*kTreeWidth, ...) of
+// level n-1. levels.back() has one box. `nodes`: for queries at rest (systems/touch/triangle_tree.h). Its runs are cut
+// where the boxes get small, and its boxes hold the control points of the triangles' curved patches too. nodes[0] is
+// the root, children behind parents.
 struct TriangleTree {
   std::vector<std::vector<Box>> levels;
   std::vector<TreeNode> nodes;

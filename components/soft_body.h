@@ -1,4 +1,4 @@
-// The second system's authoring (P2): flesh, its rigid handle, and rigid bodies. Keys of PLIANT_soft_body,
+// The second system's authoring (P2): tissue, its rigid handle, and rigid bodies. Keys of PLIANT_soft_body,
 // PLIANT_handle and PLIANT_rigid_body. Rate: soft (read). Writer: content at spawn.
 #pragma once
 
@@ -15,8 +15,8 @@
 namespace pliant {
 
 struct SoftBody : SoftBodyParameters {
-  Handle<TetMesh> tets;  // set at spawn
-  Handle<Mesh> skin;     // set at spawn: the embedded surface, which collides and is drawn
+  Handle<TetMesh> tets;         // set at spawn
+  Handle<Mesh> collision_mesh;  // set at spawn: the embedded surface, which collides and is drawn
 };
 
 struct Handle6 : HandleParameters {
@@ -24,7 +24,7 @@ struct Handle6 : HandleParameters {
 };
 
 struct RigidBody : RigidBodyParameters {
-  Handle<Mesh> skin;  // set at spawn
+  Handle<Mesh> collision_mesh;  // set at spawn
 };
 
 // What their numbers may be, in a file and in code.

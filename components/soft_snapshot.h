@@ -1,4 +1,4 @@
-// What the soft clock shows to the visual clock: where skins, tetrahedra, rigid bodies and contacts are.
+// What the soft clock shows to the visual clock: where collision meshes, tetrahedra, rigid bodies and contacts are.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ inline constexpr std::size_t kMaxShownContacts = 512;
 struct SoftObjectSnapshot {
   Entity object;
   Pose pose;                   // RigidBody: world. SoftBody: of its handle, or identity
-  std::vector<vec3> position;  // [m] world, per skin vertex; empty: the rest shape under `pose`
-  std::vector<vec3> normal;    // [1] world, unit, per skin vertex
+  std::vector<vec3> position;  // [m] world, per collision mesh vertex; empty: the rest shape under `pose`
+  std::vector<vec3> normal;    // [1] world, unit, per collision mesh vertex
   std::vector<vec3> nodes;     // [m] world, of the tetrahedra; empty for rigid bodies
 };
 
@@ -32,7 +32,7 @@ struct ContactMark {
 struct HandleMark {
   Entity tool;  // has a Handle6
   Pose pose;
-  vec3 force{0}, torque{0};   // [N], [N m] world, that flesh and contacts put on the handle
+  vec3 force{0}, torque{0};   // [N], [N m] world, that tissue and contacts put on the handle
   vec3 middle{0}, wanted{0};  // [m] world, of the handle: where its middle is, and where the device wants it
 };
 

@@ -122,18 +122,18 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
   }
 }
 
-// Flesh that can be simulated, but not well.
-void find_in_flesh(const Level& level, const World& world, Findings& findings) {
+// Tissue that can be simulated, but not well.
+void find_in_tissue(const Level& level, const World& world, Findings& findings) {
   for (auto [entity, soft_body] : world.registry.view<const SoftBody>()) {
     const std::string node = pointer_of(level, world, entity);  // clang 14 captures no structured bindings
     const TetMesh& tets = world.tet_meshes[soft_body.tets];
     const auto warn = [&](std::string what) { findings.push_back({Severity::kWarning, node, std::move(what)}); };
-    const std::uint32_t parts = count_parts(tets), pieces = count_parts(world.meshes[soft_body.skin]);
+    const std::uint32_t parts = count_parts(tets), pieces = count_parts(world.meshes[soft_body.collision_mesh]);
     if (parts > pieces)
-      warn(
-          fmt::format("its flesh falls into {} parts where its skin has {}: what joins them is thinner than the cell; "
-                      "make `cell` smaller",
-                      parts, pieces));
+      warn(fmt::format(
+          "its tetrahedra fall into {} parts where its surface has {}: what joins them is thinner than the cell; "
+          "make `cell` smaller",
+          parts, pieces));
     if (const std::string doubt = locking_doubt(soft_body, tets.tets.size()); !doubt.empty()) warn(doubt);
     if (tets.quality.smallest_dihedral < kSharp)
       warn(
@@ -186,7 +186,7 @@ Findings validate_level(const fs::path& path) {
   }
   if (any_error(findings)) return findings;
   if (const Result<World> world = spawn(*level); world)
-    find_in_flesh(*level, *world, findings);
+    find_in_tissue(*level, *world, findings);
   else
     findings.push_back(from_spawn(*level, world.error()));
   return findings;

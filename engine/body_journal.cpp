@@ -25,13 +25,13 @@ dvec3 centre_of_mass(const std::vector<dvec3>& nodes, const std::vector<double>&
 
 // Of a soft body without a handle: the centre of mass, and the rotation nearest to sum m (x - c) X^T, X the node's rest
 // position from the rest shape's centre of mass (Mueller et al. 2005, shape matching). `rotation`: the last step's.
-Pose mean_pose(const Flesh& flesh, const std::vector<dvec3>& rest, const dquat& rotation) {
-  const dvec3 centre = centre_of_mass(flesh.position(), flesh.mass());
+Pose mean_pose(const Tissue& tissue, const std::vector<dvec3>& rest, const dquat& rotation) {
+  const dvec3 centre = centre_of_mass(tissue.position(), tissue.mass());
   dmat3 moment(0);
   double size = 0.0;
   for (std::size_t i = 0; i < rest.size(); ++i) {
-    moment += flesh.mass()[i] * glm::outerProduct(flesh.position()[i] - centre, rest[i]);
-    size += flesh.mass()[i] * dot(rest[i], rest[i]);
+    moment += tissue.mass()[i] * glm::outerProduct(tissue.position()[i] - centre, rest[i]);
+    size += tissue.mass()[i] * dot(rest[i], rest[i]);
   }
   dquat nearest = rotation;
   if (size > 0.0) extract_rotation(moment / size, nearest);
@@ -53,7 +53,7 @@ BodyJournal::BodyJournal(const World& world, std::size_t steps)
     const auto* soft = dynamic_cast<const SoftBodyState*>(&body);
     if (!soft || soft->has_handle()) continue;
     rest_.back() = world.tet_meshes[world.registry.get<SoftBody>(body.entity).tets].nodes;
-    const dvec3 centre = centre_of_mass(rest_.back(), soft->flesh().mass());
+    const dvec3 centre = centre_of_mass(rest_.back(), soft->tissue().mass());
     for (dvec3& node : rest_.back()) node -= centre;
   }
   for (std::uint32_t i = 0; i < soft_.bodies.size(); ++i) {
@@ -81,7 +81,7 @@ void BodyJournal::note_bodies(std::uint64_t step, double time) {
     else if (const auto* tool = dynamic_cast<const ToolBody*>(&body); tool && tool->has_handle())
       pose = tool->handle().object_pose();
     else if (const auto* soft = dynamic_cast<const SoftBodyState*>(&body))
-      pose = mean_pose(soft->flesh(), rest_[i], rotation_[i]);
+      pose = mean_pose(soft->tissue(), rest_[i], rotation_[i]);
     rotation_[i] = pose.rotation;
     recorder_.record({step, time, i, pose.position, pose.rotation});
   }

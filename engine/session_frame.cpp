@@ -12,8 +12,8 @@ constexpr const char* kNoSurface = "does not give way (it has no PLIANT_deformab
 const Mesh* mesh_of(const World& world, Entity entity) {
   const Registry& all = world.registry;
   if (const Deformable* surface = all.find<Deformable>(entity)) return &world.meshes[surface->mesh];
-  if (const SoftBody* body = all.find<SoftBody>(entity)) return &world.meshes[body->skin];
-  if (const RigidBody* body = all.find<RigidBody>(entity)) return &world.meshes[body->skin];
+  if (const SoftBody* body = all.find<SoftBody>(entity)) return &world.meshes[body->collision_mesh];
+  if (const RigidBody* body = all.find<RigidBody>(entity)) return &world.meshes[body->collision_mesh];
   return nullptr;
 }
 

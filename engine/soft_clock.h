@@ -2,7 +2,7 @@
 // - Lockstep: on the caller's thread, whenever virtual time has reached a multiple of Simulation::soft_step, before the
 //   touch tick of that moment; what it publishes, that tick has.
 // - Real time: on a thread of its own, as fast as it can but no faster than one step every soft_step; a step that comes
-//   late is an overrun, and as long as the time since the one before (up to kLongestStep steps), so that flesh keeps
+//   late is an overrun, and as long as the time since the one before (up to kLongestStep steps), so that tissue keeps
 //   pace with the hand. It shares nothing with other clocks but what travels by TripleBuffer and Ring.
 #pragma once
 

@@ -22,7 +22,7 @@ std::vector<System<World>> touch_schedule() {
       {"read_devices", read_devices},  // HapticDevice -> Probe pose and velocity
       {"move_objects", move_objects},  // Kinematic -> Pose, velocity and box of what animations and scripts carry
       {"collision", collision},        // Probe x Deformable -> Contacts {foot, normal, height}
-      {"press", press},                // flesh of tools x Deformable -> Contact
+      {"press", press},                // tissue of tools x Deformable -> Contact
       {"force_field", force_field},    // Contacts -> amplitudes (small LCP); wakes the zones within reach
       {"dynamics", dynamics},          // awake zones: exact step, stream = targets + residual; rest sleeps
       {"friction_feedback", friction_feedback},  // minus the gradient of one stored energy, friction -> Probe force
@@ -37,12 +37,12 @@ std::vector<System<World>> soft_schedule() {
   return {
       {"read_tool_input", read_tool_input},  // ToolInput -> where the device holds each handle
       {"free_motion", free_motion},          // assemble, factorise, v* of every body as if nothing touched
-      {"find_contacts", find_contacts},      // skins -> ContactPoint {points, normal, gap}; on P1 surfaces by P1's law
-      {"solve_contacts", solve_contacts},    // Delassus operator, Signorini and Coulomb -> impulses, velocities
+      {"find_contacts", find_contacts},    // surfaces -> ContactPoint {points, normal, gap}; on P1 surfaces by P1's law
+      {"solve_contacts", solve_contacts},  // Delassus operator, Signorini and Coulomb -> impulses, velocities
       {"linearise_tools", linearise_tools},  // what the step says about each handle -> HandleModel
       {"advance_bodies", advance_bodies},    // x += T v; P1 surfaces give way
       {"publish_tools", publish_tools},      // HandleModel -> touch clock
-      {"publish_soft", publish_soft},        // skins, contacts, handles -> visual clock; presses -> touch clock
+      {"publish_soft", publish_soft},        // surfaces, contacts, handles -> visual clock; presses -> touch clock
   };
 }
 

@@ -233,7 +233,7 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(number("young", "Pa", SoftBodyRange::kYoung, s(&S::young), "Young's modulus"));
   keys.push_back(number(
       "poisson", "1", SoftBodyRange::kPoisson, s(&S::poisson),
-      fmt::format("Poisson's ratio; from {} on the tetrahedra lock: flesh is over 10 % too stiff", kLockingPoisson)));
+      fmt::format("Poisson's ratio; from {} on the tetrahedra lock: tissue is over 10 % too stiff", kLockingPoisson)));
   keys.push_back(number("density", "kg/m3", SoftBodyRange::kDensity, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", SoftBodyRange::kCell, s(&S::cell), "lattice cell; 0: sized from the bounds"));
@@ -254,7 +254,7 @@ std::vector<Key> handle_keys() {
   std::vector<Key> keys;
   keys.push_back(box("box", h(&H::box),
                      "which part of a soft body is rigid: a box in the object frame; left out: the attribute _HANDLE"));
-  keys.push_back(choice("attachment", h(&H::attachment), "how flesh is held to the handle"));
+  keys.push_back(choice("attachment", h(&H::attachment), "how tissue is held to the handle"));
   keys.push_back(
       pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
   keys.push_back(pair("coupling.rotation", "N m/rad, N m s/rad", h(&H::rotation), "the same for rotation"));
@@ -367,7 +367,7 @@ std::vector<Extension> make_table() {
   table.push_back(extension("haptic_device", "Moves a probe, and may push back.", &LevelNode::device, device_keys()));
   table.back().settle = settle_device;
   table.push_back(
-      extension("soft_body", "The node's mesh is flesh with inertia.", &LevelNode::soft_body, soft_body_keys()));
+      extension("soft_body", "The node's mesh is tissue with inertia.", &LevelNode::soft_body, soft_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->soft_body); };
   table.push_back(extension("handle",
                             "What a person holds a soft body by, its rigid part, or a rigid one, the whole of it.",

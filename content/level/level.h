@@ -99,8 +99,9 @@ struct Level {
   std::vector<Image> images;
   std::vector<LevelAnimation> animations;
   std::optional<LevelEnvironment> environment;
-  Simulation simulation;           // PLIANT_simulation
-  std::vector<std::string> notes;  // what was read differently than a user might expect (skins, skipped points...)
+  Simulation simulation;  // PLIANT_simulation
+  std::vector<std::string>
+      notes;  // what was read differently than a user might expect (collision meshes, skipped points...)
   std::size_t document_notes = 0;  // of these, the first are warnings of the document (open_gltf)
   // The glTF it came from: while it is there, save_level keeps meshes, materials, pictures and animations from it.
   // Whoever changes one of those resets it, and everything is then written from the Level alone.

@@ -143,10 +143,10 @@ class Spawner {
     return Done{};
   }
 
-  Status rigid_body(std::size_t n, Handle<Mesh> skin) {
+  Status rigid_body(std::size_t n, Handle<Mesh> collision_mesh) {
     RigidBody& body = world_.registry.add<RigidBody>(entities_[n], *level_.nodes[n].rigid_body);
-    body.skin = skin;
-    const Mesh& mesh = world_.meshes[skin];
+    body.collision_mesh = collision_mesh;
+    const Mesh& mesh = world_.meshes[collision_mesh];
     const double box = std::pow(static_cast<double>(mesh.box.diagonal()), 3.0);
     if (body.fixed || mass_properties(mesh).volume > kFlat * box) return Done{};
     return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
@@ -154,7 +154,7 @@ class Spawner {
 
   static bool is_touched(const LevelNode& node) { return node.deformable || node.rigid_body; }
 
-  // Flesh is never shared: which of its nodes are held is the node's own.
+  // Tissue is never shared: which of its nodes are held is the node's own.
   Status soft_body(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     const LevelMesh* mesh = node.mesh < 0 ? nullptr : &level_.meshes[static_cast<std::size_t>(node.mesh)];
@@ -169,7 +169,7 @@ class Spawner {
     world_.registry.add<Pose>(entities_[n], pose);
     SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
     body.tets = world_.tet_meshes.add(std::move(parts->tets));
-    body.skin = world_.meshes.add(std::move(parts->surface.mesh));
+    body.collision_mesh = world_.meshes.add(std::move(parts->surface.mesh));
     world_.registry.add<Drawable>(entities_[n], {world_.draw_meshes.add(std::move(parts->surface.draw))});
     return Done{};
   }

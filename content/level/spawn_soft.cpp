@@ -15,8 +15,8 @@
 namespace pliant {
 namespace {
 
-// [mean edges of the tetrahedra] Flesh is touched through its skin's vertices: where they are farther apart, whatever
-// presses between them moves those far away and sinks through the flesh below it.
+// [mean edges of the tetrahedra] Tissue is touched through its collision mesh's vertices: where they are farther apart,
+// whatever presses between them moves those far away and sinks through the tissue below it.
 constexpr double kLongestEdge = 2.0;
 
 // The tetrahedra of the body's file, in the object frame.
@@ -73,7 +73,7 @@ std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
 
 std::string soft_fault(const LevelNode& node) {
   if (node.soft_body && node.deformable)
-    return "has both PLIANT_soft_body and PLIANT_deformable; keep one, the node's mesh is flesh or a yielding surface";
+    return "has both PLIANT_soft_body and PLIANT_deformable; keep one, the node's mesh is tissue or a yielding surface";
   if (node.soft_body && node.rigid_body)
     return "has both PLIANT_soft_body and PLIANT_rigid_body; keep one, or mark the rigid part with PLIANT_handle";
   if (node.rigid_body && node.deformable)
@@ -116,7 +116,7 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     const Primitive boundary = boundary_primitive(parts.tets);
     if (!mesh)
       if (Status s = build({&boundary, 1}, mat4(1.0f)); !s) return s.error();
-    parts.tets.skin = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
+    parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
     parts.tets.quality = measure_quality(parts.tets.nodes, parts.tets.tets);
   }
   Result<std::vector<NodeGroup>> group =
@@ -126,7 +126,7 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     std::vector<Primitive> finer = mesh->primitives;
     if (refine(finer, to_object, kLongestEdge * mean_edge(parts.tets))) {
       if (Status s = build(finer, to_object); !s) return s.error();
-      parts.tets.skin = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
+      parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
     }
   }
   put_in_order(parts.tets, *group);

@@ -1,4 +1,4 @@
-// A node with PLIANT_soft_body as flesh: tetrahedra, and the surface that rides on them.
+// A node with PLIANT_soft_body as tissue: tetrahedra, and the surface that rides on them.
 #pragma once
 
 #include <filesystem>

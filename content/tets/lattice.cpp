@@ -66,7 +66,7 @@ Result<TetMesh> make_lattice(const Mesh& surface, double cell) {
   mesh.nodes = std::move(stuffing->nodes);
   mesh.tets = std::move(stuffing->tets);
   put_in_order(mesh, {});
-  mesh.skin = embed(surface, mesh.nodes, mesh.tets);
+  mesh.embedding = embed(surface, mesh.nodes, mesh.tets);
   mesh.quality = measure_quality(mesh.nodes, mesh.tets);
   return mesh;
 }

@@ -3,8 +3,8 @@
 // Isosurface stuffing (Labelle & Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles",
 // 2007) on a body-centred cubic lattice: lattice tetrahedra inside stay as they are, those that the surface cuts are
 // warped and clipped to it. It won over an embedded lattice of whole cells, whose elements are better still (60 and 90
-// degrees) but whose steps on the surface put half a cell too much flesh all around: at four cells across a finger that
-// doubles its mass. Deterministic, and independent of the number of threads.
+// degrees) but whose steps on the surface put half a cell too much tissue all around: at four cells across a finger
+// that doubles its mass. Deterministic, and independent of the number of threads.
 #pragma once
 
 #include "components/mesh.h"

@@ -99,7 +99,7 @@ class Embedder {
   Embedding find(dvec3 p, dvec3 outward) const {
     Embedding found = best_near(p, 0.0, nullptr);
     if (found.tet == kNoTet) {
-      // Flesh behind the vertex's tangent plane is its own; what lies in front may be another finger's.
+      // Tissue behind the vertex's tangent plane is its own; what lies in front may be another finger's.
       double distance = nearest(p, &outward);
       const bool own = distance < std::numeric_limits<double>::max();
       if (!own) distance = nearest(p, nullptr);
@@ -171,14 +171,14 @@ class Embedder {
 std::vector<Embedding> embed(const Mesh& surface, const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) {
   ASSERT(!tets.empty());
   const Embedder embedder(nodes, tets);
-  std::vector<Embedding> skin(surface.vertex_count);
-  parallel_for(skin.size(), 256, [&](std::size_t begin, std::size_t end) {
+  std::vector<Embedding> collision_mesh(surface.vertex_count);
+  parallel_for(collision_mesh.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto vertex = static_cast<std::uint32_t>(v);
-      skin[v] = embedder.find(dvec3(surface.position(vertex)), dvec3(surface.normal(vertex)));
+      collision_mesh[v] = embedder.find(dvec3(surface.position(vertex)), dvec3(surface.normal(vertex)));
     }
   });
-  return skin;
+  return collision_mesh;
 }
 
 }  // namespace pliant

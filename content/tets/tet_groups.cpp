@@ -62,7 +62,7 @@ bool claim(const std::vector<dvec3>& nodes, const BuiltMesh& surface, const Box&
 Result<std::vector<NodeGroup>> group_nodes(const std::vector<dvec3>& nodes, const BuiltMesh& surface,
                                            const SoftBody& body, const Handle6* handle) {
   std::vector<NodeGroup> group(nodes.size(), NodeGroup::kFree);
-  const std::string extent = "the flesh reaches from " + text(surface.mesh.box);
+  const std::string extent = "the tissue reaches from " + text(surface.mesh.box);
   if (!body.pinned.empty() || is_painted(surface.pinned)) {
     if (!claim(nodes, surface, body.pinned, surface.pinned, NodeGroup::kPinned, group))
       return Error{"PLIANT_soft_body/pinned",

@@ -13,7 +13,7 @@ Result<Level> import_tets(const std::filesystem::path& path) {
   Level level;
   level.notes = std::move(file->notes);
   level.notes.push_back(
-      fmt::format("the mesh is the boundary of {} tetrahedra; as flesh, name the file in PLIANT_soft_body/mesh",
+      fmt::format("the mesh is the boundary of {} tetrahedra; as tissue, name the file in PLIANT_soft_body/mesh",
                   file->tets.size()));
   // Nodes on the boundary only, in their order.
   constexpr std::uint32_t kInside = 0xffffffffu;

@@ -42,7 +42,7 @@ void put_in_order(TetMesh& mesh, const std::vector<NodeGroup>& group) {
     tet_moved[tet_order[i]] = i;
   }
   mesh.tets = std::move(tets);
-  for (Embedding& e : mesh.skin) e.tet = tet_moved[e.tet];
+  for (Embedding& e : mesh.embedding) e.tet = tet_moved[e.tet];
 }
 
 }  // namespace pliant

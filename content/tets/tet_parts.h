@@ -1,4 +1,5 @@
-// In how many separate pieces flesh and skin are: flesh that falls into more than its skin has lost a thin bridge.
+// In how many separate pieces tissue and collision mesh are: tissue that falls into more than its collision mesh has
+// lost a thin bridge.
 #pragma once
 
 #include "components/mesh.h"

@@ -48,7 +48,7 @@ struct DeformableParameters {
   double thickness = 0.0;         // [m] 0: deep
 };
 
-// Flesh: co-rotational FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
+// Tissue: co-rotational FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
 struct SoftBodyParameters {
   double young = 5e3;                    // [Pa]
   double poisson = 0.45;                 // [1]

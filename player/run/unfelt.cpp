@@ -27,11 +27,13 @@ std::string name_of(const World& world, Entity entity) {
 std::vector<Body> bodies(const World& world) {
   std::vector<Body> list;
   for (auto [entity, body, pose] : world.registry.view<SoftBody, Pose>())
-    if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) && body.skin.valid())
-      list.push_back({name_of(world, entity), pose, world.meshes[body.skin].box});
+    if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) &&
+        body.collision_mesh.valid())
+      list.push_back({name_of(world, entity), pose, world.meshes[body.collision_mesh].box});
   for (auto [entity, body, pose] : world.registry.view<RigidBody, Pose>())
-    if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) && body.skin.valid())
-      list.push_back({name_of(world, entity), pose, world.meshes[body.skin].box});
+    if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) &&
+        body.collision_mesh.valid())
+      list.push_back({name_of(world, entity), pose, world.meshes[body.collision_mesh].box});
   return list;
 }
 

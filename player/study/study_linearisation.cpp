@@ -158,7 +158,7 @@ struct Followed {
   }
 };
 
-// What is felt beyond the flesh's weight: a heavy tool must not make errors look small.
+// What is felt beyond the tissue's weight: a heavy tool must not make errors look small.
 double felt2(const ForceSample& sample, const Vector6& weight) {
   return (sample.full - weight).head<3>().squaredNorm();
 }
@@ -194,7 +194,7 @@ Status follow_models(Truth& truth, const std::string& level, std::size_t length,
     if (interrupt.requested()) return interrupted();
     soft_step(*world, schedule, k, T, static_cast<double>(k) * T, &truth.handle[k * length]);
     const HandleModel& model = tool_of(*world).pending;
-    out.weight = model.contacts.flesh_mass * join(world->simulation.gravity, dvec3(0));
+    out.weight = model.contacts.tissue_mass * join(world->simulation.gravity, dvec3(0));
     off += (model.force - truth.wrench[k * length]).head<3>().squaredNorm();
     size += (truth.wrench[k * length] - out.weight).head<3>().squaredNorm();
     out.contacts = std::max(out.contacts, model.contacts.count);

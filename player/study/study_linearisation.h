@@ -25,7 +25,7 @@ struct ForceSample {
 struct MethodFigures {
   std::string name;
   double rms_N = 0.0, max_N = 0.0;                  // of the force's error
-  double rms_share = 0.0;                           // [1] of the RMS of what is felt beyond the flesh's weight
+  double rms_share = 0.0;                           // [1] of the RMS of what is felt beyond the tissue's weight
   double p50_us = 0.0, p99_us = 0.0, max_us = 0.0;  // cost of a tick
 };
 
@@ -35,7 +35,7 @@ struct LinearisationFigures {
   double soft_step = 0.0, tick = 0.0, seconds = 0.0;  // [s]
   std::size_t tetrahedra = 0;
   int contacts = 0, modes = 0;         // most in any model
-  Vector6 weight = Vector6::Zero();    // of the flesh
+  Vector6 weight = Vector6::Zero();    // of the tissue
   double rms_N = 0.0, max_N = 0.0;     // of the true force beyond the weight
   double step_share = 0.0;             // [1] RMS error of the soft step at its own instants: what no model can undo
   std::vector<MethodFigures> methods;  // held, linear, contacts, full

@@ -168,7 +168,7 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   json["touchable"] = touchable;
   json["bare_mesh"] = !level.has_pliant();
   json["objects"] = list;
-  json["flesh"] = describe_flesh(level);
+  json["flesh"] = describe_tissue(level);
   json["notes"] = level.notes;
   return json;
 }
@@ -203,7 +203,7 @@ void print_text(const Json& json, const Box& box) {
     print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),
           device.empty() ? "no device" : "device " + device, tool["force"].get<std::string>());
   }
-  print_flesh(json["flesh"]);
+  print_tissue(json["flesh"]);
   for (const Json& sentence : json["notes"]) print("  note: {}\n", sentence.get<std::string>());
   if (!json["touchable"].get<bool>())
     print("  cannot be touched: there is no triangle in the scene that is shown\n");

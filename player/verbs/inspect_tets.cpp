@@ -39,34 +39,34 @@ Json describe(const TetMesh& mesh) {
 
 }  // namespace
 
-Json describe_flesh(const Level& level) {
+Json describe_tissue(const Level& level) {
   Json list = Json::array();
   bool any = false;
   for (const LevelNode& node : level.nodes) any = any || (node.in_scene && node.soft_body);
   if (!any) return list;
   Level bodies = level;
-  bodies.environment.reset();  // a sky that is missing keeps nobody from looking at flesh
+  bodies.environment.reset();  // a sky that is missing keeps nobody from looking at tissue
   const Result<World> world = spawn(bodies);
   if (!world) return Json::array({{{"problem", world.error().message()}}});
   for (auto [entity, body] : world->registry.view<const SoftBody>()) {
     const TetMesh& tets = world->tet_meshes[body.tets];
-    Json flesh = describe(tets);
-    flesh["problems"] = Json::array();
+    Json tissue = describe(tets);
+    tissue["problems"] = Json::array();
     if (const std::string doubt = locking_doubt(body, tets.tets.size()); !doubt.empty())
-      flesh["problems"].push_back(doubt);
-    list.push_back(std::move(flesh));
+      tissue["problems"].push_back(doubt);
+    list.push_back(std::move(tissue));
   }
   return list;
 }
 
-void print_flesh(const Json& flesh) {
-  for (const Json& body : flesh) {
+void print_tissue(const Json& tissue) {
+  for (const Json& body : tissue) {
     if (body.contains("problem")) {
-      print("  flesh: {}\n", body["problem"].get<std::string>());
+      print("  tissue: {}\n", body["problem"].get<std::string>());
       continue;
     }
     print(
-        "  flesh {}: {} tetrahedra, {} nodes ({} on the handle, {} pinned), {} boundary triangles, {} part{}, {:.4g} "
+        "  tissue {}: {} tetrahedra, {} nodes ({} on the handle, {} pinned), {} boundary triangles, {} part{}, {:.4g} "
         "m3\n",
         body["name"].get<std::string>(), body["tetrahedra"].get<std::size_t>(), body["nodes"].get<std::size_t>(),
         body["handle_nodes"].get<std::size_t>(), body["pinned_nodes"].get<std::size_t>(),
@@ -96,9 +96,9 @@ int inspect_tets(const std::filesystem::path& path, bool as_json) {
     return kDone;
   }
   print("{}\n", path.string());
-  print_flesh(Json::array({json}));
+  print_tissue(Json::array({json}));
   for (const std::string& sentence : file->notes) print("  note: {}\n", sentence);
-  print("  flesh for a level: name it in PLIANT_soft_body/mesh; its boundary can be touched: `pliant run FILE`\n");
+  print("  tissue for a level: name it in PLIANT_soft_body/mesh; its boundary can be touched: `pliant run FILE`\n");
   return kDone;
 }
 

@@ -97,8 +97,8 @@ std::optional<double> ground_below(const World& world, Entity tool, const Box& b
     if (below) ground = std::max(ground.value_or(other.max.y), static_cast<double>(other.max.y));
   };
   for (auto [entity, body, pose] : world.registry.view<Deformable, Pose>()) offer(entity, body.mesh, pose);
-  for (auto [entity, body, pose] : world.registry.view<SoftBody, Pose>()) offer(entity, body.skin, pose);
-  for (auto [entity, body, pose] : world.registry.view<RigidBody, Pose>()) offer(entity, body.skin, pose);
+  for (auto [entity, body, pose] : world.registry.view<SoftBody, Pose>()) offer(entity, body.collision_mesh, pose);
+  for (auto [entity, body, pose] : world.registry.view<RigidBody, Pose>()) offer(entity, body.collision_mesh, pose);
   return ground;
 }
 
@@ -107,7 +107,7 @@ std::optional<double> ground_below(const World& world, Entity tool, const Box& b
 Path make_tool_orbit(const World& world, Entity tool) {
   constexpr double kPress = 0.15, kSlide = 0.25;  // [1] of the tool's height and width
   const Pose& pose = world.registry.get<Pose>(tool);
-  const Box box = world_box(world.meshes[world.registry.get<SoftBody>(tool).skin], pose);
+  const Box box = world_box(world.meshes[world.registry.get<SoftBody>(tool).collision_mesh], pose);
   const dvec3 size(box.max - box.min);
   const double away = std::max(0.0, box.min.y - ground_below(world, tool, box).value_or(box.min.y - 0.5 * size.y));
   const dvec3 press = pose.position - dvec3(0, away + kPress * size.y, 0);

@@ -37,8 +37,8 @@ void add(SoftState& soft, Entity entity, std::unique_ptr<Body> body) {
 void add_soft(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<SoftBody>()) {
     const Handle6* handle = world.registry.find<Handle6>(entity);
-    auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.skin], body, handle,
-                                                 pose_of(world, entity));
+    auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.collision_mesh], body,
+                                                 handle, pose_of(world, entity));
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
     state->self_collides = true;  // fingers pinch, a strip folds
@@ -48,7 +48,7 @@ void add_soft(const World& world, SoftState& soft) {
 
 // A rigid body that moves. An error where it encloses nothing.
 Result<RigidMass> mass_of(const World& world, Entity entity, const RigidBody& body) {
-  const MassProperties shape = mass_properties(world.meshes[body.skin]);
+  const MassProperties shape = mass_properties(world.meshes[body.collision_mesh]);
   const double mass = body.mass > 0.0 ? body.mass : body.density * shape.volume;
   const double density = mass / shape.volume;
   const dmat3 inertia = density * shape.inertia;
@@ -60,7 +60,7 @@ Result<RigidMass> mass_of(const World& world, Entity entity, const RigidBody& bo
 
 Status add_rigid(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<RigidBody>()) {
-    const Mesh& mesh = world.meshes[body.skin];
+    const Mesh& mesh = world.meshes[body.collision_mesh];
     const Pose pose = pose_of(world, entity);
     std::unique_ptr<Body> state;
     if (body.fixed) {
@@ -117,24 +117,24 @@ SoftSnapshot first_snapshot(const SoftState& soft) {
   return snapshot;
 }
 
-// Whether one of these points has come through the body's skin, all of which is still at rest.
+// Whether one of these points has come through the body's collision mesh, all of which is still at rest.
 bool come_through(const World& world, const Body& body, const std::vector<dvec3>& from, const std::vector<dvec3>& to) {
   const Pose pose = pose_of(world, body.entity);
   for (std::size_t i = 0; i < from.size(); ++i)
-    if (first_entry(*body.skin, pose.to_local(from[i]), pose.to_local(to[i])).valid()) return true;
+    if (first_entry(*body.collision_mesh, pose.to_local(from[i]), pose.to_local(to[i])).valid()) return true;
   return false;
 }
 
-// Tools' flesh begins as it rests. It settles without contacts: where it came through something, it begins in its rest
+// Tools' tissue begins as it rests. It settles without contacts: where it came through something, it begins in its rest
 // shape and falls on it instead.
 void settle_tools(const World& world, SoftState& soft) {
   for (const std::unique_ptr<Body>& body : soft.bodies) {
     auto* tool = dynamic_cast<ToolBody*>(body.get());
     if (!tool || !tool->has_handle()) continue;
-    const std::vector<dvec3> rest = tool->skin_position;
+    const std::vector<dvec3> rest = tool->surface_position;
     tool->settle(world.simulation.gravity);
     const auto is_in_the_way = [&](const std::unique_ptr<Body>& other) {
-      return other != body && come_through(world, *other, rest, tool->skin_position);
+      return other != body && come_through(world, *other, rest, tool->surface_position);
     };
     if (std::any_of(soft.bodies.begin(), soft.bodies.end(), is_in_the_way)) tool->unsettle();
   }

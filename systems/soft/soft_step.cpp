@@ -29,7 +29,9 @@ void leave_out_failed(SoftState& soft) {
 
 // Bodies that a level puts into each other.
 void tally_beginning(SoftState& soft) {
-  const auto size = [&](std::uint32_t body) { return static_cast<double>(soft.bodies[body]->skin->box.diagonal()); };
+  const auto size = [&](std::uint32_t body) {
+    return static_cast<double>(soft.bodies[body]->collision_mesh->box.diagonal());
+  };
   for (const ContactPoint& c : soft.contacts) {
     const double least = kSunken * std::min(size(c.body_a), size(c.body_b));
     if (c.depth <= std::max(soft.tally.began_inside, least)) continue;

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-void free_motion(World& world, Tick tick);     // v* of every body, without contacts; skin velocities
-void find_contacts(World& world, Tick tick);   // pairs of skin points that may touch within the step
+void free_motion(World& world, Tick tick);     // v* of every body, without contacts; collision mesh velocities
+void find_contacts(World& world, Tick tick);   // pairs of collision mesh points that may touch within the step
 void solve_contacts(World& world, Tick tick);  // impulses, and v = v* + A^-1 J^T lambda
 void advance_bodies(World& world, Tick tick);  // x += T v; surfaces give way
 

@@ -29,8 +29,8 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   stiff.assign(static_cast<std::size_t>(most_contacts), 0);
 }
 
-// methods.md 2.4, the flesh's matrix being diagonal: A_tt = 1 + tick damping + tick^2 frequency2, A_th = border,
-// A_hh = flesh_mass + tick flesh_damping + tick^2 flesh_stiffness.
+// methods.md 2.4, the tissue's matrix being diagonal: A_tt = 1 + tick damping + tick^2 frequency2, A_th = border,
+// A_hh = tissue_mass + tick tissue_damping + tick^2 tissue_stiffness.
 void CondensedContacts::prepare_tick(double seconds) {
   tick = seconds;
   const double tick2 = tick * tick;
@@ -38,7 +38,7 @@ void CondensedContacts::prepare_tick(double seconds) {
   inverse.head(modes) = (1.0 + tick * damping.head(modes).array() + tick2 * frequency2.head(modes).array()).inverse();
   border.topRows(modes) =
       modal_mass.topRows(modes) + tick * modal_damping.topRows(modes) + tick2 * modal_stiffness.topRows(modes);
-  reduced = flesh_mass + tick * flesh_damping + tick2 * flesh_stiffness;
+  reduced = tissue_mass + tick * tissue_damping + tick2 * tissue_stiffness;
   reduced_handle.topRows(rows) = from_handle.topRows(rows);
   auto w = delassus.topLeftCorner(rows, rows);
   w = flexibility.topLeftCorner(rows, rows) / (tick * (tick + flexibility_lag));

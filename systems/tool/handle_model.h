@@ -4,11 +4,11 @@
 // A twist or wrench is six numbers: linear first, then angular, world axes, about the handle's centre (handle.h).
 // d: displacement of the handle since the model's pose; w: its twist; w0: the model's; w': its rate.
 //
-// Two descriptions of the wrench that flesh and contacts put on the handle:
+// Two descriptions of the wrench that tissue and contacts put on the handle:
 // - LinearModel, as P2 has it: F = force - K d - B (w - w0) - M w'. One step's matrix C = M + T B + T^2 K is split by
 //   the shape that the step gives to everything that moves with the handle, so that M, B and K are what that shape has
 //   of each, and none of them can give out energy.
-// - CondensedContacts, beyond P2: flesh and objects as a few vibration modes, the rest of their flexibility without
+// - CondensedContacts, beyond P2: tissue and objects as a few vibration modes, the rest of their flexibility without
 //   inertia, and the contacts between them; the touch tick solves Signorini and Coulomb again with them.
 #pragma once
 
@@ -21,7 +21,7 @@
 namespace pliant {
 
 inline constexpr int kMaxCondensed = 64;  // contacts that the touch tick solves again
-inline constexpr int kMaxModes = 128;     // of flesh and objects together
+inline constexpr int kMaxModes = 128;     // of tissue and objects together
 
 using Rows6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
@@ -29,20 +29,20 @@ struct LinearModel {
   Vector6 force = Vector6::Zero();      // [N], [N m] at d = 0, w = w0, w' = 0
   Matrix6 stiffness = Matrix6::Zero();  // K [N/m ...] symmetric, eigenvalues >= 0; so are the other two
   Matrix6 damping = Matrix6::Zero();    // B [N s/m ...]
-  Matrix6 mass = Matrix6::Zero();       // M [kg ...] of flesh and of what sticks to it
+  Matrix6 mass = Matrix6::Zero();       // M [kg ...] of tissue and of what sticks to it
 };
 
-// Flesh moves as Phi w + modes q'; Phi is what one soft step gives it per unit of w. Modes are of one body each (the
-// flesh with the handle held, or an object), of mass 1: q'' + damping q' + frequency2 q = load + from_modes^T f + what
+// Tissue moves as Phi w + modes q'; Phi is what one soft step gives it per unit of w. Modes are of one body each (the
+// tissue with the handle held, or an object), of mass 1: q'' + damping q' + frequency2 q = load + from_modes^T f + what
 // the handle does. q = 0 and d = 0 at the model's time. Rows of a contact: normal, first tangent, second tangent; all
 // arrays have room for more than `count` and `modes`, the leading parts count.
 struct CondensedContacts {
   int count = 0;  // contacts
   int modes = 0;
-  Vector6 flesh_force = Vector6::Zero();  // [N], [N m] on the handle at q = 0, d = 0: elasticity and weight alone
-  Matrix6 flesh_mass = Matrix6::Zero();   // of Phi
-  Matrix6 flesh_damping = Matrix6::Zero();
-  Matrix6 flesh_stiffness = Matrix6::Zero();
+  Vector6 tissue_force = Vector6::Zero();  // [N], [N m] on the handle at q = 0, d = 0: elasticity and weight alone
+  Matrix6 tissue_mass = Matrix6::Zero();   // of Phi
+  Matrix6 tissue_damping = Matrix6::Zero();
+  Matrix6 tissue_stiffness = Matrix6::Zero();
 
   Vector frequency2;  // [1/s2]
   Vector damping;     // [1/s]
@@ -70,11 +70,12 @@ struct CondensedContacts {
   std::vector<dvec2> slip;          // [m] along the tangents, since the axes were laid
   std::vector<std::uint8_t> stiff;  // nothing gives way there: its force is the tick's to find (stiff_contacts.h)
 
-  // Of the above, for ticks of `tick` seconds, so that a tick need not make them (methods.md 2.4 with modes for flesh).
+  // Of the above, for ticks of `tick` seconds, so that a tick need not make them (methods.md 2.4 with modes for
+  // tissue).
   double tick = 1e-3;
   Vector inverse;                     // modes: 1 / (1 + tick damping + tick^2 frequency2)
   Rows6 border;                       // modes x 6: modal_mass + tick modal_damping + tick^2 modal_stiffness
-  Matrix6 reduced = Matrix6::Zero();  // flesh_mass + tick ... - border^T inverse border
+  Matrix6 reduced = Matrix6::Zero();  // tissue_mass + tick ... - border^T inverse border
   Rows6 reduced_handle;               // 3 count x 6: contact velocity per w, modes following
   Eigen::MatrixXd delassus;           // [1/kg] 3 count x 3 count, handle held
 
@@ -92,7 +93,7 @@ struct HandleModel {
   dvec3 centre{0};                        // [m] of the handle, in the tool's object frame
   Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone
   Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight, and what carries the tool
-  Vector6 force = Vector6::Zero();  // [N], [N m] that flesh and contacts put on the handle, as the soft step saw it
+  Vector6 force = Vector6::Zero();  // [N], [N m] that tissue and contacts put on the handle, as the soft step saw it
   LinearModel linear;
   CondensedContacts contacts;
 };
@@ -107,7 +108,7 @@ struct ToolInput {
   RigidMotion handle;   // the 1 kHz handle's centre
   std::uint32_t set_backs = 0;  // how often the touch clock has asked for the tool to be set back into the hand
   std::uint32_t seen = 0;       // HandleModel::set_backs of the model in use
-  // [N s], [N m s] Sum over all ticks so far of what flesh and contacts did to the handle.
+  // [N s], [N m s] Sum over all ticks so far of what tissue and contacts did to the handle.
   Vector6 impulse = Vector6::Zero();
 };
 

@@ -16,7 +16,7 @@ void add(Hash& hash, const Vector6& v) {
 void hash_soft(const World& world, Hash& hash) {
   if (world.soft) {
     for (const std::unique_ptr<Body>& body : world.soft->bodies) {
-      for (const dvec3 x : body->skin_position) add(hash, x);
+      for (const dvec3 x : body->surface_position) add(hash, x);
       for (const double v : body->velocity()) hash.add(v);
     }
     for (const ContactPoint& contact : world.soft->contacts) {

@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-void hash_soft(const World& world, Hash& hash);         // bodies, contacts and handles; reads every skin vertex
+void hash_soft(const World& world, Hash& hash);  // bodies, contacts and handles; reads every collision mesh vertex
 void hash_tool_forces(const World& world, Hash& hash);  // every tool's force and torque; cheap, for use each tick
 
 }  // namespace pliant

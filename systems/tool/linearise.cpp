@@ -44,7 +44,7 @@ void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) 
   CondensedContacts& c = model.contacts;
   const Eigen::Index rows = 3 * c.count, modes = c.modes;
   model.linear.force -= model.linear.stiffness * state.d + model.linear.damping * (model.handle.velocity - w0);
-  c.flesh_force -= c.flesh_stiffness * state.d + c.modal_stiffness.topRows(modes).transpose() * state.q.head(modes);
+  c.tissue_force -= c.tissue_stiffness * state.d + c.modal_stiffness.topRows(modes).transpose() * state.q.head(modes);
   c.load.head(modes) -=
       c.frequency2.head(modes).cwiseProduct(state.q.head(modes)) + c.modal_stiffness.topRows(modes) * state.d;
   c.rate.head(modes) = state.rate.head(modes);

@@ -35,7 +35,7 @@ struct Weight {
   dvec3 centre{0};
 };
 
-// Nodes have their elements' mass, as in Flesh.
+// Nodes have their elements' mass, as in Tissue.
 Weight weight_of(const SoftBody& body, const TetMesh& mesh) {
   Weight out;
   for (const Tet& tet : mesh.tets) {
@@ -53,7 +53,7 @@ Weight weight_of(const SoftBody& body, const TetMesh& mesh) {
 
 Weight weight_of(const World& world, Entity entity) {
   if (const RigidBody* body = world.registry.find<RigidBody>(entity)) {
-    const MassProperties shape = mass_properties(world.meshes[body->skin]);
+    const MassProperties shape = mass_properties(world.meshes[body->collision_mesh]);
     return {body->mass > 0.0 ? body->mass : body->density * shape.volume, shape.centre};
   }
   const SoftBody& body = world.registry.get<SoftBody>(entity);

@@ -103,9 +103,9 @@ Vector6 contact_tick(ToolTouchState& tool, const HandleModel& model, TickHandle&
 // One implicit step of the handle between device and model.
 //
 // A new description of the wrench adds the difference that leaves it as it was if the handle goes on as it did. Found
-// while the handle went by the new description alone, it would hold the flesh's resistance to a jerk that the very next
-// tick does not know. A new model's contacts, besides, stop within a tick or two what still moves into one another at
-// the step's end. So they first go along unseen, the linear model saying only what a change of the handle's motion
+// while the handle went by the new description alone, it would hold the tissue's resistance to a jerk that the very
+// next tick does not know. A new model's contacts, besides, stop within a tick or two what still moves into one another
+// at the step's end. So they first go along unseen, the linear model saying only what a change of the handle's motion
 // meets: where contacts slide, it does not know which way the force goes.
 void step(ToolTouchState& tool, const HandleModel& model, const Handle6& settings, Tick tick) {
   const RigidMotion target = tool.sensed.at(model.centre);
@@ -115,7 +115,8 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   handle.velocity = tool.handle.velocity;
   handle.inertia = model.handle_mass;
   handle.inertia.diagonal() += bond.matrix;
-  // What carries the tool is as old as the flesh's weight in the model: without the one, the other would lift the hand.
+  // What carries the tool is as old as the tissue's weight in the model: without the one, the other would lift the
+  // hand.
   const double believed = trust(model, tick.time);
   if (believed < 1.0 && tool.used != ToolForce::kLinear) use(tool, ToolForce::kLinear);
   const Vector6 felt = believed * tool.wrench;

@@ -12,7 +12,7 @@ namespace pliant {
 void run_soft_step(Schedule<World>& schedule, World& world, Tick tick);
 
 void read_tool_input(World& world, Tick tick);  // where the hands are
-void linearise_tools(World& world, Tick tick);  // what the touch tick will take for the tool's flesh
+void linearise_tools(World& world, Tick tick);  // what the touch tick will take for the tool's tissue
 void publish_tools(World& world, Tick tick);    // HandleModel -> touch clock
 
 }  // namespace pliant

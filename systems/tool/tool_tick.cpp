@@ -22,8 +22,8 @@ dmat3 turned_axes(dvec2 lean, const dmat2& turning, dvec2 slip) {
 }
 
 // w = A^-1 b, or as the handle is told. A: what one tick resists a change of w with.
-Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, const Vector6& flesh_right) {
-  return handle.moved ? handle.next : Vector6(factor.solve(handle.right + flesh_right));
+Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, const Vector6& tissue_right) {
+  return handle.moved ? handle.next : Vector6(factor.solve(handle.right + tissue_right));
 }
 
 // [1] How far a contact's normal leans since bodies have given way differently where slip would lead: what slip changes
@@ -123,12 +123,12 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
 Vector6 linear_tick(const LinearModel& model, const Vector6& w0, const Vector6& d, double tick, TickHandle& handle) {
   // (M_h + M + tick B + tick^2 K) w = right + M w_before + tick (force - K d + B w0): methods.md 2.7.
   const Vector6 before = handle.velocity;
-  const Matrix6 flesh = model.mass + tick * model.damping + tick * tick * model.stiffness;
+  const Matrix6 tissue = model.mass + tick * model.damping + tick * tick * model.stiffness;
   const Vector6 right = model.mass * before + tick * (model.force - model.stiffness * d + model.damping * w0);
   Eigen::LLT<Matrix6> factor;
-  if (!handle.moved) factor.compute(handle.inertia + flesh);
+  if (!handle.moved) factor.compute(handle.inertia + tissue);
   handle.velocity = free_twist(factor, handle, right);
-  return (right - flesh * handle.velocity) / tick;
+  return (right - tissue * handle.velocity) / tick;
 }
 
 void CondensedState::resize(int most_contacts, int most_modes) {
@@ -191,7 +191,7 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
   auto rate = state.rate.head(modes), free = state.free_rate.head(modes);
 
   // Right-hand sides of modes and handle: momentum and forces at the tick's beginning.
-  Vector6 right = model.flesh_mass * before + tick * (model.flesh_force - model.flesh_stiffness * state.d);
+  Vector6 right = model.tissue_mass * before + tick * (model.tissue_force - model.tissue_stiffness * state.d);
   right.noalias() += model.modal_mass.topRows(modes).transpose().lazyProduct(rate);
   right.noalias() -= tick * model.modal_stiffness.topRows(modes).transpose().lazyProduct(state.q.head(modes));
   free = rate + tick * (model.load.head(modes) - model.frequency2.head(modes).cwiseProduct(state.q.head(modes)));
@@ -227,7 +227,7 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
 
   Vector6 impulse = right;
   const double tick2 = tick * tick;
-  impulse -= (model.flesh_mass + tick * model.flesh_damping + tick2 * model.flesh_stiffness) * handle.velocity;
+  impulse -= (model.tissue_mass + tick * model.tissue_damping + tick2 * model.tissue_stiffness) * handle.velocity;
   impulse.noalias() -= model.border.topRows(modes).transpose().lazyProduct(rate);
   impulse.noalias() += model.from_handle.topRows(rows).transpose().lazyProduct(lambda.head(rows));
   advance(model, state, handle, lambda);

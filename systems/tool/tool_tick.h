@@ -1,4 +1,4 @@
-// A tick of the handle at 1 kHz (methods.md 2.7, 2.8), on plain numbers: everything about flesh and contacts is in the
+// A tick of the handle at 1 kHz (methods.md 2.7, 2.8), on plain numbers: everything about tissue and contacts is in the
 // model, everything about device and handle in TickHandle. Nothing here allocates.
 #pragma once
 
@@ -17,7 +17,7 @@ struct TickHandle {
 };
 
 // d: displacement of the handle since the model's pose. Both return the wrench on the handle over the tick, inertia of
-// the flesh included. [N], [N m]
+// the tissue included. [N], [N m]
 Vector6 linear_tick(const LinearModel& model, const Vector6& w0, const Vector6& d, double tick, TickHandle& handle);
 
 // What a CondensedContacts has become since its time. Sized once.

@@ -65,7 +65,7 @@ struct ToolTouchState {
   double heard_at = 0.0;         // [s] of the last input with a placed handle; its `impulse`
   Vector6 heard = Vector6::Zero();
   Vector6 expected =
-      Vector6::Zero();         // [N], [N m] what flesh and contacts did to the handle, mean since the last input
+      Vector6::Zero();         // [N], [N m] what tissue and contacts did to the handle, mean since the last input
   std::uint32_t set_back = 0;  // ToolInput::set_backs done
   CondensedState replay;
 
@@ -89,7 +89,7 @@ struct ToolTouchState {
   RigidMotion sensed;                       // the device
   bool sensing = false;                     // `sensed` means something
   double sensed_at = 0.0;                   // [s] beginning of the tick that sensed it
-  Vector6 wrench = Vector6::Zero();         // [N], [N m] flesh and contacts on the handle, over the last tick
+  Vector6 wrench = Vector6::Zero();         // [N], [N m] tissue and contacts on the handle, over the last tick
   Vector6 impulse = Vector6::Zero();        // [N s], [N m s] its sum over time
   bool away = false;                        // it waits to be set back into the hand
   std::uint32_t set_backs = 0;              // how often it has asked for that

@@ -134,7 +134,7 @@ bool something_presses(Registry& registry) {
   return soft.begin() != soft.end();
 }
 
-// Contacts that flesh may drive, as many as probes have left room for.
+// Contacts that tissue may drive, as many as probes have left room for.
 void make_presses(World& world, TouchState& touch) {
   for (ObjectState& object : touch.objects) {
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);

@@ -35,7 +35,7 @@ void assign(ObjectState& object, const ObjectPresses& presses, Registry& registr
   }
 }
 
-// `left`: [s] until the flesh is where the soft step has put it.
+// `left`: [s] until the tissue is where the soft step has put it.
 void follow(const PressState& state, const Mesh& mesh, double left, Contact& contact) {
   const PressPoint& point = state.point;
   const dvec3 x = point.position - left * point.velocity;

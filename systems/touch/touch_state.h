@@ -62,7 +62,7 @@ struct Release {
 };
 inline constexpr std::size_t kMaxReleases = 64;
 
-// A contact without a probe: flesh of a tool presses here.
+// A contact without a probe: tissue of a tool presses here.
 struct PressState {
   Entity contact;  // has a Contact
   bool used = false;

@@ -35,7 +35,7 @@ bool leaves_shadow(const Material& m) {
   return m.transmission < 0.5f && (m.alpha != Material::Alpha::kBlend || m.base_color.a >= 0.5f);
 }
 
-// A surface that nobody painted: flesh-like, a little wet, so that dents catch the light.
+// A surface that nobody painted: tissue-like, a little wet, so that dents catch the light.
 Material default_material() {
   Material m;
   m.base_color = {0.60f, 0.20f, 0.16f, 1.0f};

@@ -36,8 +36,8 @@ Placement placement_block(const mat4& to_world, std::uint32_t number, bool rides
 const Mesh* touch_mesh_of(const World& world, Entity entity) {
   Handle<Mesh> mesh;
   if (const Deformable* deformable = world.registry.find<Deformable>(entity)) mesh = deformable->mesh;
-  if (const SoftBody* soft = world.registry.find<SoftBody>(entity)) mesh = soft->skin;
-  if (const RigidBody* rigid = world.registry.find<RigidBody>(entity)) mesh = rigid->skin;
+  if (const SoftBody* soft = world.registry.find<SoftBody>(entity)) mesh = soft->collision_mesh;
+  if (const RigidBody* rigid = world.registry.find<RigidBody>(entity)) mesh = rigid->collision_mesh;
   return mesh.valid() ? &world.meshes[mesh] : nullptr;
 }
 

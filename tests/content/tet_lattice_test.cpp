@@ -120,11 +120,11 @@ TEST(Lattice, EveryVertexOfTheSkinRidesWhereItStandsAndFollowsAffineMapsExactly)
   for (const Primitive& shape : {icosphere(4), torus(1.0f, 0.15f, 64, 24)}) {
     const Mesh surface = mesh_of({shape});
     const TetMesh mesh = lattice(surface, 0.21);
-    ASSERT_EQ(mesh.skin.size(), surface.vertex_count);
+    ASSERT_EQ(mesh.embedding.size(), surface.vertex_count);
     const dmat3 stretch(1.3, 0.2, -0.1, 0.4, 0.7, 0.0, 0.1, -0.3, 1.1);
     const dvec3 shift(3, -2, 5);
     for (std::uint32_t v = 0; v < surface.vertex_count; ++v) {
-      const Embedding& e = mesh.skin[v];
+      const Embedding& e = mesh.embedding[v];
       dvec3 at(0), moved(0);
       double sum = 0.0;
       for (std::size_t i = 0; i < 4; ++i) {
@@ -168,7 +168,7 @@ TEST(Lattice, ACavityStaysEmptyAndTwoBodiesStayTwo) {
   const Mesh pair = mesh_of({icosphere(4), beside});
   const TetMesh mesh = lattice(pair, 0.15);
   for (std::uint32_t v = 0; v < pair.vertex_count; ++v)
-    for (const std::uint32_t corner : mesh.tets[mesh.skin[v].tet])
+    for (const std::uint32_t corner : mesh.tets[mesh.embedding[v].tet])
       EXPECT_EQ(mesh.nodes[corner].x > 1.2, pair.position(v).x > 1.2f) << "a vertex rides on the other body";
 }
 
@@ -214,7 +214,7 @@ TEST(Lattice, TheSameBitsWhateverTheNumberOfThreads) {
     Hash hash;
     hash.add_bytes(mesh.nodes.data(), mesh.nodes.size() * sizeof(dvec3));
     hash.add_bytes(mesh.tets.data(), mesh.tets.size() * sizeof(Tet));
-    for (const Embedding& e : mesh.skin) {
+    for (const Embedding& e : mesh.embedding) {
       hash.add_bytes(&e.tet, sizeof e.tet);
       hash.add_bytes(e.weight.data(), sizeof e.weight);
     }

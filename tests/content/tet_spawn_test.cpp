@@ -1,4 +1,4 @@
-// From a level to flesh: what spawn makes of PLIANT_soft_body, PLIANT_handle and PLIANT_rigid_body, and what it
+// From a level to tissue: what spawn makes of PLIANT_soft_body, PLIANT_handle and PLIANT_rigid_body, and what it
 // refuses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using test::level_of;
 using test::sheet;
 using testing::HasSubstr;
 
-// A ball of flesh of radius 0.05 m.
+// A ball of tissue of radius 0.05 m.
 Level ball(const LocalTransform& local = {}) {
   Primitive sphere = icosphere(3);
   for (vec3& p : sphere.position) p *= 0.05f;
@@ -59,7 +59,7 @@ const char* const kBlock =
     "POINTS 8 double\n0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1\n"
     "CELLS 5 25\n4 0 1 2 4\n4 3 2 1 7\n4 5 4 7 1\n4 6 7 4 2\n4 1 2 4 7\nCELL_TYPES 5\n10 10 10 10 10\n";
 
-TEST(SpawnSoft, FleshHasTetrahedraASkinADrawableAndAPose) {
+TEST(SpawnSoft, TissueHasTetrahedraASurfaceADrawableAndAPose) {
   LocalTransform local;
   local.translation = {1, 2, 3};
   local.rotation = glm::angleAxis(0.7f, normalize(vec3(1, 2, -1)));
@@ -68,16 +68,16 @@ TEST(SpawnSoft, FleshHasTetrahedraASkinADrawableAndAPose) {
   const Entity thing = find_by_name(world, "thing");
   const SoftBody& body = world.registry.get<SoftBody>(thing);
   const TetMesh& tets = world.tet_meshes[body.tets];
-  const Mesh& skin = world.meshes[body.skin];
+  const Mesh& collision_mesh = world.meshes[body.collision_mesh];
   EXPECT_EQ(world.registry.get<Pose>(thing).position, dvec3(1, 2, 3));
   EXPECT_FALSE(world.registry.has<Deformable>(thing));
-  ASSERT_EQ(tets.skin.size(), skin.vertex_count);
+  ASSERT_EQ(tets.embedding.size(), collision_mesh.vertex_count);
   EXPECT_EQ(tets.free_count, tets.node_count());
   // The scale is baked in: an ellipsoid of half axes 0.1, 0.05, 0.05 m.
-  EXPECT_NEAR(skin.box.size().x, 0.2f, 1e-6f);
-  EXPECT_NEAR(total_volume(tets), mass_properties(skin).volume, 0.05 * total_volume(tets));
+  EXPECT_NEAR(collision_mesh.box.size().x, 0.2f, 1e-6f);
+  EXPECT_NEAR(total_volume(tets), mass_properties(collision_mesh).volume, 0.05 * total_volume(tets));
   for (const DrawVertex& v : world.draw_meshes[world.registry.get<Drawable>(thing).mesh].vertices)
-    EXPECT_EQ(skin.position(v.touch_vertex), v.position);
+    EXPECT_EQ(collision_mesh.position(v.touch_vertex), v.position);
 }
 
 TEST(SpawnSoft, NodesStandInTheOrderFreeHandlePinnedByTheirBoxes) {
@@ -100,10 +100,10 @@ TEST(SpawnSoft, NodesStandInTheOrderFreeHandlePinnedByTheirBoxes) {
 
 TEST(SpawnSoft, PaintHoldsTheNodesBeneathIt) {
   Level level = ball();
-  Primitive& skin = level.meshes[0].primitives[0];
-  for (const vec3& p : skin.position) {
-    skin.pinned.push_back(p.y < -0.02f ? 1.0f : 0.0f);
-    skin.handle.push_back(p.y > 0.02f ? 0.7f : 0.3f);
+  Primitive& collision_mesh = level.meshes[0].primitives[0];
+  for (const vec3& p : collision_mesh.position) {
+    collision_mesh.pinned.push_back(p.y < -0.02f ? 1.0f : 0.0f);
+    collision_mesh.handle.push_back(p.y > 0.02f ? 0.7f : 0.3f);
   }
   level.nodes[0].handle = Handle6{};
   const World world = spawned(level);
@@ -120,18 +120,18 @@ TEST(SpawnSoft, PaintHoldsTheNodesBeneathIt) {
 
 TEST(SpawnSoft, PaintIsReadFromAndWrittenToFiles) {
   Level level = ball();
-  Primitive& skin = level.meshes[0].primitives[0];
-  skin.pinned.assign(skin.position.size(), 0.25f);
-  skin.handle.assign(skin.position.size(), 0.75f);
+  Primitive& collision_mesh = level.meshes[0].primitives[0];
+  collision_mesh.pinned.assign(collision_mesh.position.size(), 0.25f);
+  collision_mesh.handle.assign(collision_mesh.position.size(), 0.75f);
   const Result<Bytes> glb = level_as_glb(level);
   ASSERT_TRUE(glb.ok());
   const Result<Level> back = load_gltf(*glb, true, {});
   ASSERT_TRUE(back.ok()) << back.error().message();
-  EXPECT_EQ(back->meshes[0].primitives[0].pinned, skin.pinned);
-  EXPECT_EQ(back->meshes[0].primitives[0].handle, skin.handle);
+  EXPECT_EQ(back->meshes[0].primitives[0].pinned, collision_mesh.pinned);
+  EXPECT_EQ(back->meshes[0].primitives[0].handle, collision_mesh.handle);
 }
 
-TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesMeshAsSkin) {
+TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesMeshAsSurface) {
   const Temporary file("block.vtk", kBlock);
   Level level = ball();
   level.path = file.path.parent_path() / "level.gltf";
@@ -145,12 +145,12 @@ TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesM
   EXPECT_EQ(tets.tets.size(), 5u);
   for (const Tet& t : tets.tets) EXPECT_GT(tet_volume(tets.nodes, t), 0.0);
   EXPECT_NEAR(total_volume(tets), 1e-3, 1e-10);
-  const Mesh& skin = world.meshes[body.skin];
-  EXPECT_TRUE(skin.closed);
-  EXPECT_EQ(skin.triangles.size(), 12u);
-  EXPECT_NEAR(mass_properties(skin).volume, 1e-3, 1e-9);
-  for (std::uint32_t v = 0; v < skin.vertex_count; ++v)
-    EXPECT_GT(dot(skin.normal(v), skin.position(v) - skin.box.center()), 0.0f);
+  const Mesh& collision_mesh = world.meshes[body.collision_mesh];
+  EXPECT_TRUE(collision_mesh.closed);
+  EXPECT_EQ(collision_mesh.triangles.size(), 12u);
+  EXPECT_NEAR(mass_properties(collision_mesh).volume, 1e-3, 1e-9);
+  for (std::uint32_t v = 0; v < collision_mesh.vertex_count; ++v)
+    EXPECT_GT(dot(collision_mesh.normal(v), collision_mesh.position(v) - collision_mesh.box.center()), 0.0f);
 
   // With a mesh on the node, that surface rides on the block.
   level.nodes[0].mesh = 0;
@@ -158,8 +158,8 @@ TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesM
   for (vec3& p : level.meshes[0].primitives[0].position) p += vec3(0.5f);
   const World ridden = spawned(level);
   const SoftBody& rider = ridden.registry.get<SoftBody>(find_by_name(ridden, "thing"));
-  EXPECT_EQ(ridden.meshes[rider.skin].vertex_count, 642u);
-  for (const Embedding& e : ridden.tet_meshes[rider.tets].skin)
+  EXPECT_EQ(ridden.meshes[rider.collision_mesh].vertex_count, 642u);
+  for (const Embedding& e : ridden.tet_meshes[rider.tets].embedding)
     for (const double w : e.weight) EXPECT_GE(w, -1e-9);
 }
 
@@ -169,12 +169,12 @@ TEST(SpawnSoft, ARigidBodyHasASkinAndIsDrawn) {
   level.nodes[0].rigid_body = RigidBody{};
   const World world = spawned(level);
   const Entity thing = find_by_name(world, "thing");
-  const Mesh& skin = world.meshes[world.registry.get<RigidBody>(thing).skin];
-  EXPECT_EQ(skin.vertex_count, 642u);
+  const Mesh& collision_mesh = world.meshes[world.registry.get<RigidBody>(thing).collision_mesh];
+  EXPECT_EQ(collision_mesh.vertex_count, 642u);
   EXPECT_TRUE(world.registry.has<Pose>(thing) && world.registry.has<Drawable>(thing));
 }
 
-TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndFleshThatFallsApart) {
+TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndTissueThatFallsApart) {
   const Temporary file("notes.vtk", std::string(kBlock).replace(std::string(kBlock).find("4 0 1 2 4"), 9, "4 0 2 1 4"));
   const auto findings = [&](auto change) {
     Level level = ball();
@@ -203,7 +203,7 @@ TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndFleshThatFallsApart) {
     for (const std::uint32_t v : index) p.index.push_back(v + count);
     p.index.insert(p.index.end(), {0, 5, count});
   });
-  EXPECT_THAT(apart, HasSubstr("other /nodes/0: its flesh falls into 2 parts where its skin has 1"));
+  EXPECT_THAT(apart, HasSubstr("other /nodes/0: its tetrahedra fall into 2 parts where its surface has 1"));
   const std::string unheld = findings([](Level& level) { level.nodes[0].soft_body->pinned = Box{vec3(8), vec3(9)}; });
   EXPECT_THAT(unheld, HasSubstr("error /nodes/0: PLIANT_soft_body/pinned: holds no node"));
 }

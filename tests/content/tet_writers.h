@@ -45,7 +45,7 @@ inline std::string msh_2(const NodesAndTets& mesh, bool binary, bool swapped) {
   TetWriter w(binary, swapped);
   w.text(fmt::format("$MeshFormat\n2.2 {} 8\n", int(binary)));
   if (binary) w.value(std::int32_t{1}).text("\n");
-  w.text(fmt::format("$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"flesh\"\n$EndPhysicalNames\n$Nodes\n{}\n",
+  w.text(fmt::format("$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"tissue\"\n$EndPhysicalNames\n$Nodes\n{}\n",
                      mesh.first.size()));
   for (std::size_t n = 0; n < mesh.first.size(); ++n)
     w.value(std::int32_t(7 + 2 * n)).point(mesh.first[n]).line();  // tags with gaps

@@ -31,7 +31,7 @@ TEST_F(Tets, ARunSaysWhatWasMendedOfTheFileThatItsLevelNames) {
   write_text(folder / "one.vtk", kOne);
   write_text(folder / "level.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
       "extensionsUsed": ["PLIANT_soft_body"],
-      "nodes": [{"name": "flesh", "extensions": {"PLIANT_soft_body": {"mesh": "one.vtk"}}}]})");
+      "nodes": [{"name": "tissue", "extensions": {"PLIANT_soft_body": {"mesh": "one.vtk"}}}]})");
   const Said said = pliant({"run", "level.gltf", "--seconds", "0.05", "--frames", "0", "--out", "out"});
   ASSERT_EQ(said.status, 0) << said.err;
   for (const char* note : {"one.vtk: 1 inverted tetrahedron", "one.vtk: 1 node that no tetrahedron names"}) {

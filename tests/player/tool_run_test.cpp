@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kHeight = 0.04;  // [m] of the block
 
-// About the origin, n x n squares a face: flesh is pushed where its skin has vertices.
+// About the origin, n x n squares a face: tissue is pushed where its collision mesh has vertices.
 Primitive box(vec3 size, int n) {
   Primitive p;
   for (int axis = 0; axis < 3; ++axis)
@@ -171,7 +171,7 @@ TEST_F(ToolRun, AWayToMakeTheForceThatThereIsNotIsRefused) {
   expect_refused({"run", "plate.obj", "--tool-force", "linear"}, 2, "--tool-force");
 }
 
-TEST_F(ToolRun, FleshThatLocksIsSaidByValidateInspectAndOnceByRun) {
+TEST_F(ToolRun, TissueThatLocksIsSaidByValidateInspectAndOnceByRun) {
   const std::string sentence = "has a Poisson's ratio of 0.49: from 0.47 on its ";
   Result<Level> level = load_level(folder / "block.glb");
   ASSERT_TRUE(level.ok());
@@ -286,7 +286,7 @@ TEST_F(ToolRun, LockstepGivesTheSameBitsAndAReplayTheSameAgain) {
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(report("first")["hash"], report("third")["hash"]);
   ASSERT_EQ(press("softer", {"--set", "hand.soft_body.young=15000"}).status, 0);
-  EXPECT_NE(report("first")["hash"], report("softer")["hash"]) << "the hash knows the flesh";
+  EXPECT_NE(report("first")["hash"], report("softer")["hash"]) << "the hash knows the tissue";
 }
 
 TEST_F(ToolRun, AToolWithoutADeviceThatMovesIsHeldWhereItStands) {
@@ -361,7 +361,7 @@ TEST_F(ToolRun, RealTimeRunsBothClocksAndStopsThemTogether) {
   EXPECT_LE(json["soft"]["steps"].get<int>(), 40) << "no faster than one every 1/60 s";
 }
 
-TEST_F(ToolRun, ALevelWithoutFleshHasNoSoftClock) {
+TEST_F(ToolRun, ALevelWithoutTissueHasNoSoftClock) {
   write_text(folder / "plate.obj", plate_obj());
   ASSERT_EQ(pliant({"run", "plate.obj", "--seconds", "0.05", "--out", "plate", "--frames", "0"}).status, 0);
   EXPECT_FALSE(report("plate").contains("soft"));

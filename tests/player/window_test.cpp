@@ -192,7 +192,7 @@ TEST_F(WindowTest, AScriptStartsOverInAWindowAndHoldsItsLastRowWithoutOne) {
 
 TEST_F(WindowTest, TheMouseTakesAToolFromItsScriptAndLeavesItWhereItIsLetGo) {
 #ifdef PLIANT_SANITIZED
-  GTEST_SKIP() << "flesh under a sanitizer takes minutes";
+  GTEST_SKIP() << "tissue under a sanitizer takes minutes";
 #endif
   // `./dev run hand`, as the README has it: taken hold of at its first finger's knuckle, moved to the right, let go.
   const Said said =

@@ -16,13 +16,13 @@ namespace pliant::scenes {
 namespace {
 
 Mesh built(const Primitive& primitive) {
-  Result<BuiltMesh> result = build_mesh("skin", std::span(&primitive, 1), mat4(1));
+  Result<BuiltMesh> result = build_mesh("surface", std::span(&primitive, 1), mat4(1));
   ASSERT(result.ok());
   return std::move(result->mesh);
 }
 
-// Each vertex of the skin rides on the node that it was made from.
-std::vector<Embedding> embed(const TetMesh& tets, const Mesh& skin) {
+// Each vertex of the collision mesh rides on the node that it was made from.
+std::vector<Embedding> embed(const TetMesh& tets, const Mesh& collision_mesh) {
   std::map<std::array<float, 3>, Embedding> at;
   for (std::uint32_t t = 0; t < tets.tets.size(); ++t)
     for (std::size_t k = 0; k < 4; ++k) {
@@ -32,7 +32,8 @@ std::vector<Embedding> embed(const TetMesh& tets, const Mesh& skin) {
       at.try_emplace({x.x, x.y, x.z}, place);
     }
   std::vector<Embedding> all;
-  for (std::uint32_t v = 0; v < skin.vertex_count; ++v) all.push_back(at.at({skin.px[v], skin.py[v], skin.pz[v]}));
+  for (std::uint32_t v = 0; v < collision_mesh.vertex_count; ++v)
+    all.push_back(at.at({collision_mesh.px[v], collision_mesh.py[v], collision_mesh.pz[v]}));
   return all;
 }
 
@@ -82,9 +83,9 @@ ToolStage::ToolStage(double soft_step, double rate_hz) : Stage(rate_hz), soft_sc
 }
 
 Entity ToolStage::add_soft(TetMesh tets, SoftBody body, Pose pose, const Handle6* handle) {
-  Mesh skin = built(border(tets));
-  tets.skin = embed(tets, skin);
-  body.skin = world.meshes.add(std::move(skin));
+  Mesh collision_mesh = built(border(tets));
+  tets.embedding = embed(tets, collision_mesh);
+  body.collision_mesh = world.meshes.add(std::move(collision_mesh));
   body.tets = world.tet_meshes.add(std::move(tets));
   const Entity entity = world.registry.create();
   world.registry.add(entity, Name{"soft"});
@@ -95,7 +96,7 @@ Entity ToolStage::add_soft(TetMesh tets, SoftBody body, Pose pose, const Handle6
 }
 
 Entity ToolStage::add_rigid(const Primitive& primitive, RigidBody body, Pose pose, const Handle6* handle) {
-  body.skin = world.meshes.add(built(primitive));
+  body.collision_mesh = world.meshes.add(built(primitive));
   const Entity entity = world.registry.create();
   world.registry.add(entity, Name{"rigid"});
   world.registry.add(entity, pose);
@@ -157,11 +158,11 @@ dvec3 ToolStage::contact_force(Entity on, Entity other) {
 double ToolStage::kinetic_energy() {
   double sum = 0.0;
   for (const std::uint32_t i : soft().moving) {
-    const auto* flesh = dynamic_cast<const SoftBodyState*>(soft().bodies[i].get());
-    if (!flesh) continue;
-    for (std::size_t n = 0; n < flesh->flesh().mass().size(); ++n) {
-      const dvec3 v = flesh->flesh().velocity()[n];
-      sum += 0.5 * flesh->flesh().mass()[n] * dot(v, v);
+    const auto* tissue = dynamic_cast<const SoftBodyState*>(soft().bodies[i].get());
+    if (!tissue) continue;
+    for (std::size_t n = 0; n < tissue->tissue().mass().size(); ++n) {
+      const dvec3 v = tissue->tissue().velocity()[n];
+      sum += 0.5 * tissue->tissue().mass()[n] * dot(v, v);
     }
   }
   return sum;
@@ -170,8 +171,8 @@ double ToolStage::kinetic_energy() {
 double ToolStage::elastic_energy() {
   double sum = 0.0;
   for (const std::uint32_t i : soft().moving)
-    if (const auto* flesh = dynamic_cast<const SoftBodyState*>(soft().bodies[i].get()))
-      sum += flesh->flesh().elastic_energy();
+    if (const auto* tissue = dynamic_cast<const SoftBodyState*>(soft().bodies[i].get()))
+      sum += tissue->tissue().elastic_energy();
   return sum;
 }
 

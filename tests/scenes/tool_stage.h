@@ -17,7 +17,7 @@ class ToolStage : public Stage {
  public:
   explicit ToolStage(double soft_step, double rate_hz = 1000.0);
 
-  // The skin is the border. With `handle` it is a tool, with a device of its own that can do anything.
+  // The collision mesh is the border. With `handle` it is a tool, with a device of its own that can do anything.
   Entity add_soft(TetMesh tets, SoftBody body, Pose pose, const Handle6* handle = nullptr);
   Entity add_rigid(const Primitive& primitive, RigidBody body, Pose pose, const Handle6* handle = nullptr);
   void prepare();
@@ -29,13 +29,13 @@ class ToolStage : public Stage {
 
   SoftState& soft() { return *world.soft; }
   Body& body(Entity entity);
-  SoftBodyState& flesh(Entity entity) { return dynamic_cast<SoftBodyState&>(body(entity)); }
+  SoftBodyState& tissue(Entity entity) { return dynamic_cast<SoftBodyState&>(body(entity)); }
   HapticDevice& device_of(Entity tool) { return world.registry.get<HapticDevice>(tool); }
   double soft_step() const { return world.simulation.soft_step; }
 
   // [N] of all contacts between two bodies in the last step, on `on`.
   dvec3 contact_force(Entity on, Entity other);
-  double kinetic_energy();  // [J] of everything soft, flesh and handles
+  double kinetic_energy();  // [J] of everything soft, tissue and handles
   double elastic_energy();  // [J]
 
  private:

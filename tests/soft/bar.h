@@ -1,5 +1,5 @@
 // A straight bar of tetrahedra for tests: cells along x, y, z in Kuhn's six each; which nodes are free, on the handle
-// or pinned is said by a predicate. Its skin is its own border, a vertex on each border node.
+// or pinned is said by a predicate. Its collision mesh is its own border, a vertex on each border node.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace pliant {
 
 struct Bar {
   TetMesh tets;
-  Mesh skin;
+  Mesh collision_mesh;
 };
 
 enum class Role : std::uint8_t { kFree, kHandle, kPinned };
@@ -73,18 +73,18 @@ Bar make_bar(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell, 
     uvec3 triangle{0};
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t node = found[0].corner[static_cast<std::size_t>(c)];
-      const auto [place, is_new] = vertex_of.try_emplace(node, bar.skin.vertex_count);
+      const auto [place, is_new] = vertex_of.try_emplace(node, bar.collision_mesh.vertex_count);
       triangle[c] = place->second;
       if (!is_new) continue;
-      ++bar.skin.vertex_count;
+      ++bar.collision_mesh.vertex_count;
       const vec3 x(bar.tets.nodes[node]);
-      bar.skin.px.push_back(x.x), bar.skin.py.push_back(x.y), bar.skin.pz.push_back(x.z);
+      bar.collision_mesh.px.push_back(x.x), bar.collision_mesh.py.push_back(x.y), bar.collision_mesh.pz.push_back(x.z);
       Embedding place_in{.tet = found[0].tet, .weight = {0, 0, 0, 0}};
       const Tet& tet = bar.tets.tets[found[0].tet];
       place_in.weight[static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) - tet.begin())] = 1.0;
-      bar.tets.skin.push_back(place_in);
+      bar.tets.collision_mesh.push_back(place_in);
     }
-    bar.skin.triangles.push_back(triangle);
+    bar.collision_mesh.triangles.push_back(triangle);
   }
   return bar;
 }

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "systems/soft/fem/flesh_step.h"
+#include "systems/soft/fem/tissue_step.h"
 #include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
@@ -14,7 +14,7 @@ namespace {
 // `cells` across the height H; length L along x, width W along z, clamped at x = 0, pushed up at the other end.
 struct Beam {
   double L = 0.1, H = 0.0125, W = 0.0125;  // [m]
-  FleshMaterial material{.young = 1e5, .poisson = 0.0, .density = 1000};
+  TissueMaterial material{.young = 1e5, .poisson = 0.0, .density = 1000};
   int cells = 2;
 
   double second_moment() const { return W * H * H * H / 12; }
@@ -23,9 +23,9 @@ struct Beam {
 class ClampedBeam {
  public:
   explicit ClampedBeam(const Beam& beam)
-      : beam_(beam), mesh_(mesh_of(beam)), flesh_(mesh_, beam.material, mesh_.free_count) {
-    solver_ = make_solver(SolverKind::kBlockCholesky, flesh_.moving());
-    solver_->analyse(flesh_.inner());
+      : beam_(beam), mesh_(mesh_of(beam)), tissue_(mesh_, beam.material, mesh_.free_count) {
+    solver_ = make_solver(SolverKind::kBlockCholesky, tissue_.moving());
+    solver_->analyse(tissue_.inner());
     // The load spreads evenly over the end: each node has the area of the end's cells around it.
     share_.assign(mesh_.nodes.size(), 0.0);
     double sum = 0.0;
@@ -40,15 +40,15 @@ class ClampedBeam {
   // How far the end's middle has moved [m].
   dvec3 tip() const {
     dvec3 tip(0);
-    for (std::uint32_t i = 0; i < mesh_.free_count; ++i) tip += share_[i] * (flesh_.position()[i] - mesh_.nodes[i]);
+    for (std::uint32_t i = 0; i < mesh_.free_count; ++i) tip += share_[i] * (tissue_.position()[i] - mesh_.nodes[i]);
     return tip;
   }
   // At rest under P [N] up at the end, linear.
   double small_deflection(double P) {
     const std::vector<dvec3> push = load(P);
-    EXPECT_TRUE(settle_flesh(flesh_, *solver_, dvec3(0), {.push = &push}).solved);
+    EXPECT_TRUE(settle_tissue(tissue_, *solver_, dvec3(0), {.push = &push}).solved);
     const double up = tip().y;
-    flesh_.position() = mesh_.nodes;
+    tissue_.position() = mesh_.nodes;
     return up;
   }
   // The same at any size, by steps of T [s] until one moves the end by less than 1e-6 of the length. Jumping to the
@@ -56,9 +56,9 @@ class ClampedBeam {
   void settle(double P, double T) {
     const std::vector<dvec3> push = load(P);
     for (int i = 0; i < 500; ++i) {
-      ASSERT_TRUE(step_flesh(flesh_, *solver_, T, dvec3(0), {.push = &push}).solved);
+      ASSERT_TRUE(step_tissue(tissue_, *solver_, T, dvec3(0), {.push = &push}).solved);
       double fastest = 0;
-      for (const dvec3& v : flesh_.velocity()) fastest = std::max(fastest, length(v));
+      for (const dvec3& v : tissue_.velocity()) fastest = std::max(fastest, length(v));
       if (fastest * T < 1e-6 * beam_.L) return;
     }
     FAIL() << "still moving under " << P << " N";
@@ -81,7 +81,7 @@ class ClampedBeam {
 
   Beam beam_;
   TetMesh mesh_;
-  Flesh flesh_;
+  Tissue tissue_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<double> share_;
 };

@@ -1,4 +1,4 @@
-// Skins of few vertices: boxes of twelve triangles, whose vertices are far from where they touch.
+// CollisionMeshes of few vertices: boxes of twelve triangles, whose vertices are far from where they touch.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,8 +6,8 @@
 #include "content/level/spawn_soft.h"
 #include "systems/soft/body/soft_body_state.h"
 #include "tests/scenes/tool_stage.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {
@@ -112,10 +112,10 @@ Primitive primitive_of(const Mesh& mesh) {
   return p;
 }
 
-// Flesh as a level makes it of a box in `squares` squares a side.
+// Tissue as a level makes it of a box in `squares` squares a side.
 SoftParts soft_box(vec3 size, int squares) {
   LevelNode node;
-  node.name = "flesh";
+  node.name = "tissue";
   node.mesh = 0;
   node.soft_body = SoftBody{{.cell = 0.0125}};
   const LevelMesh mesh{"box", {primitive_of(test::block_mesh(size, squares))}};
@@ -124,17 +124,17 @@ SoftParts soft_box(vec3 size, int squares) {
   return std::move(*parts);
 }
 
-// How deep a small rigid box sinks into the middle of a soft plate, and how deep the plate's flesh into the ground.
+// How deep a small rigid box sinks into the middle of a soft plate, and how deep the plate's tissue into the ground.
 struct Pressed {
-  double box = 0.0, flesh = 0.0;  // [m]
+  double box = 0.0, tissue = 0.0;  // [m]
 };
 Pressed press_middle(int squares) {
   const Mesh ground = test::block_mesh(vec3(1.0f, 0.2f, 1.0f)), small = test::block_mesh(vec3(0.03f));
   const SoftParts plate = soft_box(vec3(0.12f, 0.03f, 0.12f), squares);
-  const SoftBody flesh{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
+  const SoftBody tissue{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
   ContactLoop loop;
   loop.add<FixedBody>(ground, Pose{dvec3(0, -0.1, 0)});
-  const auto& body = loop.add<SoftBodyState>(plate.tets, plate.surface.mesh, flesh, nullptr,
+  const auto& body = loop.add<SoftBodyState>(plate.tets, plate.surface.mesh, tissue, nullptr,
                                              Pose{dvec3(0.003, 0.0151, 0.001)}, SolverKind::kAuto);
   auto& box =
       loop.add<RigidState>(small, Pose{dvec3(0.003, 0.046, 0.001), yaw(0.3)}, test::block_mass(dvec3(0.03), 0.2));
@@ -142,11 +142,11 @@ Pressed press_middle(int squares) {
   for (int i = 0; i < 150; ++i) loop.step(kT);
   double weight = 0.2 * kG;
   EXPECT_LT(length(loop.force(2, 1) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
-  for (const double m : body.flesh().mass()) weight += m * kG;
+  for (const double m : body.tissue().mass()) weight += m * kG;
   EXPECT_LT(length(loop.force(1, 0) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
   EXPECT_LT(tilt(box), 0.01) << squares;
   Pressed out{0.03 - (box.centre().y - 0.015), 0.0};
-  for (const dvec3& x : body.flesh().position()) out.flesh = std::max(out.flesh, -x.y);
+  for (const dvec3& x : body.tissue().position()) out.tissue = std::max(out.tissue, -x.y);
   return out;
 }
 
@@ -155,7 +155,7 @@ TEST(CoarseContact, ASoftPlateOfTwelveTrianglesGivesWayWhereItIsPressed) {
   const Pressed coarse = press_middle(1), fine = press_middle(16);
   EXPECT_GT(fine.box, 5e-4);
   EXPECT_NEAR(coarse.box, fine.box, 0.15 * fine.box);
-  EXPECT_LT(coarse.flesh, fine.flesh + 5e-4);
+  EXPECT_LT(coarse.tissue, fine.tissue + 5e-4);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 #include "content/tets/lattice.h"
 #include "systems/soft/body/soft_body_state.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kG = 9.81;        // [m/s2]
 constexpr float kRadius = 0.02f;   // [m] of the ball
 constexpr double kMass = 0.05;     // [kg] of the rigid one
 
-// A ball in a fixed hollow: rigid, or of flesh.
+// A ball in a fixed hollow: rigid, or of tissue.
 struct Rest {
   Mesh ball = test::sphere_mesh(kRadius, 3);
   Mesh hollow;
@@ -33,10 +33,10 @@ struct Rest {
       auto made = make_lattice(ball, 0.008);
       EXPECT_TRUE(made);
       tets = std::move(*made);
-      const SoftBody flesh{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
-      auto& state = loop.add<SoftBodyState>(tets, ball, flesh, nullptr, Pose{at}, SolverKind::kAuto);
+      const SoftBody tissue{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
+      auto& state = loop.add<SoftBodyState>(tets, ball, tissue, nullptr, Pose{at}, SolverKind::kAuto);
       weight = 0.0;
-      for (const double m : state.flesh().mass()) weight += m * kG;
+      for (const double m : state.tissue().mass()) weight += m * kG;
       body = &state;
     } else {
       body = &loop.add<RigidState>(ball, Pose{at}, test::sphere_mass(kRadius, kMass));
@@ -48,8 +48,8 @@ struct Rest {
   }
   dvec3 centre() const {
     dvec3 sum(0);
-    for (const dvec3& x : body->skin_position) sum += x;
-    return sum / double(body->skin_position.size());
+    for (const dvec3& x : body->surface_position) sum += x;
+    return sum / double(body->surface_position.size());
   }
   dvec3 normal(const ContactPoint& c) const { return c.body_a == 1 ? c.normal : -c.normal; }
   dvec3 force() const { return loop.force(1, 0); }  // [N] on the ball
@@ -68,7 +68,7 @@ struct Rest {
   template <class Height>
   double depth(Height height, double cosine) const {
     double deepest = -1.0;
-    for (const dvec3& x : body->skin_position) deepest = std::max(deepest, (height(x.x, x.z) - x.y) * cosine);
+    for (const dvec3& x : body->surface_position) deepest = std::max(deepest, (height(x.x, x.z) - x.y) * cosine);
     return deepest;
   }
 };
@@ -155,7 +155,7 @@ TEST(ConcaveContact, ACornersWallsBearTheComponentsOfTheWeight) {
         normal[wall] = 1.0;
         const double component = -rest.weight * down[wall];
         if (friction == 0.0) EXPECT_NEAR(rest.pressed_by(normal), component, 1e-3 * rest.weight) << wall;
-        for (const dvec3& x : rest.body->skin_position) ASSERT_GT(x[wall], -2e-5);
+        for (const dvec3& x : rest.body->surface_position) ASSERT_GT(x[wall], -2e-5);
       }
     }
 }

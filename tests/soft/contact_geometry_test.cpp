@@ -5,7 +5,7 @@
 
 #include "systems/soft/body/rigid_state.h"
 #include "systems/tool/tool_tick.h"
-#include "tests/soft/skin_shapes.h"
+#include "tests/soft/collision_shapes.h"
 
 namespace pliant {
 namespace {
@@ -14,16 +14,16 @@ constexpr double kT = 1.0 / 60.0;                 // [s]
 constexpr double kRadius = 0.03, kSmall = 0.012;  // [m]
 constexpr dvec3 kUp{0, 1, 0};
 
-// A skin that went by `went` in the last step and stands at `at` now.
+// A collision mesh that went by `went` in the last step and stands at `at` now.
 struct Going {
   Mesh mesh;
   FixedBody body;
-  Skin skin;
-  Going(Mesh&& shape, dvec3 at, dvec3 went) : mesh(std::move(shape)), body(mesh, Pose{}), skin(body) {
-    const std::vector<dvec3> rest = body.skin_position;
+  CollisionMesh collision_mesh;
+  Going(Mesh&& shape, dvec3 at, dvec3 went) : mesh(std::move(shape)), body(mesh, Pose{}), collision_mesh(body) {
+    const std::vector<dvec3> rest = body.surface_position;
     for (const dvec3 place : {at - went, at}) {
-      for (std::size_t v = 0; v < rest.size(); ++v) body.skin_position[v] = rest[v] + place;
-      skin.refit(body, kT, 1e-3);
+      for (std::size_t v = 0; v < rest.size(); ++v) body.surface_position[v] = rest[v] + place;
+      collision_mesh.refit(body, kT, 1e-3);
     }
   }
 };
@@ -53,9 +53,12 @@ struct CornerOnSphere {
       : block(test::block_mesh(vec3(0.01f)), now - dvec3(-0.005), went),
         sphere(test::sphere_mesh(float(kRadius), 3), dvec3(0), dvec3(0)),
         triangle(triangle_towards(sphere.mesh, normalize(now))) {
-    while (length(block.skin.vertex(vertex).x - now) > 1e-6 && vertex + 1 < block.mesh.vertex_count) ++vertex;
+    while (length(block.collision_mesh.vertex(vertex).x - now) > 1e-6 && vertex + 1 < block.mesh.vertex_count) ++vertex;
   }
-  FeaturePair pair() const { return {block.skin, sphere.skin, false, vertex, triangle, sphere.skin.normal(triangle)}; }
+  FeaturePair pair() const {
+    return {
+        block.collision_mesh, sphere.collision_mesh, false, vertex, triangle, sphere.collision_mesh.normal(triangle)};
+  }
 };
 
 dmat3 axes_along(dvec3 normal) {
@@ -96,7 +99,7 @@ TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
   contact.axes = axes_along(contact.normal);
   const SurfacePoint a = contact.a, b = contact.b;
 
-  scene.block.skin.predict(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kT), kT);
+  scene.block.collision_mesh.predict(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kT), kT);
   ASSERT_TRUE(look_again(scene.pair(), contact));
   EXPECT_LT(degrees_between(contact.normal, end), 0.5);
   EXPECT_LT(degrees_between(contact.axes * leaning_axes(contact.lean)[0], contact.normal), 1e-6);
@@ -104,21 +107,21 @@ TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
   EXPECT_EQ(contact.a.position, a.position) << "what pushes where is the step's first look";
   EXPECT_EQ(contact.b.position, b.position);
 
-  scene.block.skin.refit(scene.block.body, kT, 1e-3);
-  EXPECT_LT(length(scene.block.skin.ahead(scene.vertex) - now), 1e-9) << "the next step knows nothing of it";
+  scene.block.collision_mesh.refit(scene.block.body, kT, 1e-3);
+  EXPECT_LT(length(scene.block.collision_mesh.ahead(scene.vertex) - now), 1e-9) << "the next step knows nothing of it";
 }
 
 // Soft things are dented by what slides over them, and the dent comes along: curvature is that of the shape at rest.
 TEST(ContactGeometry, ADentDoesNotCountAsCurvature) {
   const dvec3 now = kRadius * kUp;
   CornerOnSphere scene(now, dvec3(0));
-  std::vector<dvec3>& skin = scene.sphere.body.skin_position;
-  for (dvec3& x : skin) x.y = std::min(x.y, 0.8 * kRadius);
-  scene.sphere.skin.refit(scene.sphere.body, kT, 1e-3);
-  scene.sphere.skin.refit(scene.sphere.body, kT, 1e-3);
-  scene.block.body.skin_position[scene.vertex].y = 0.8 * kRadius;
-  scene.block.skin.refit(scene.block.body, kT, 1e-3);
-  scene.block.skin.refit(scene.block.body, kT, 1e-3);
+  std::vector<dvec3>& collision_mesh = scene.sphere.body.surface_position;
+  for (dvec3& x : collision_mesh) x.y = std::min(x.y, 0.8 * kRadius);
+  scene.sphere.collision_mesh.refit(scene.sphere.body, kT, 1e-3);
+  scene.sphere.collision_mesh.refit(scene.sphere.body, kT, 1e-3);
+  scene.block.body.surface_position[scene.vertex].y = 0.8 * kRadius;
+  scene.block.collision_mesh.refit(scene.block.body, kT, 1e-3);
+  scene.block.collision_mesh.refit(scene.block.body, kT, 1e-3);
   ContactPoint contact;
   ASSERT_TRUE(look_ahead(scene.pair(), contact));
   EXPECT_LT(degrees_between(contact.normal, kUp), 0.1);
@@ -136,13 +139,14 @@ TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
   const Going little(test::sphere_mesh(float(kSmall), 2), (kRadius + kSmall) * towards, dvec3(0));
   int looked_at = 0;
   for (std::uint32_t v = 0; v < little.mesh.vertex_count; ++v) {
-    const dvec3 x = little.skin.vertex(v).x;
+    const dvec3 x = little.collision_mesh.vertex(v).x;
     const double beside = length(x - dot(x, towards) * towards);
     if (dot(x, towards) > kRadius + 0.2 * kSmall || beside < 0.001 || beside > 0.004) continue;
     const std::uint32_t t = triangle_towards(large.mesh, normalize(x));
     ContactPoint contact;
-    ASSERT_TRUE(look_ahead({little.skin, large.skin, false, v, t, large.skin.normal(t)}, contact));
-    const double lean = degrees_between(-little.skin.vertex_normal(v), towards);
+    ASSERT_TRUE(look_ahead({little.collision_mesh, large.collision_mesh, false, v, t, large.collision_mesh.normal(t)},
+                           contact));
+    const double lean = degrees_between(-little.collision_mesh.vertex_normal(v), towards);
     EXPECT_LT(degrees_between(contact.normal, towards), 0.15 * lean) << v;
     ++looked_at;
   }
@@ -152,9 +156,9 @@ TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
 // What has come to rest stays where it is, also in what is predicted of it.
 TEST(ContactGeometry, WhatStopsIsForetoldWhereItStands) {
   Going block(test::block_mesh(vec3(0.01f)), dvec3(0.02, 0, 0), dvec3(0.003, 0, 0.001));
-  for (int i = 0; i < 3; ++i) block.skin.refit(block.body, kT, 1e-3);
+  for (int i = 0; i < 3; ++i) block.collision_mesh.refit(block.body, kT, 1e-3);
   for (std::uint32_t v = 0; v < block.mesh.vertex_count; ++v)
-    EXPECT_LT(length(block.skin.ahead(v) - block.skin.vertex(v).x), 1e-12) << v;
+    EXPECT_LT(length(block.collision_mesh.ahead(v) - block.collision_mesh.vertex(v).x), 1e-12) << v;
 }
 
 // Faster than the surface's triangles are large: such a motion will not go on, and nothing is predicted.
@@ -163,10 +167,11 @@ TEST(ContactGeometry, AnImpactIsNotForetold) {
   Going block(test::block_mesh(vec3(0.01f)), now - corner, went);
   const Going sphere(test::sphere_mesh(float(kRadius), 3), dvec3(0), dvec3(0));
   std::uint32_t vertex = 0;
-  while (length(block.skin.vertex(vertex).x - now) > 1e-6) ASSERT_LT(++vertex, block.mesh.vertex_count);
+  while (length(block.collision_mesh.vertex(vertex).x - now) > 1e-6) ASSERT_LT(++vertex, block.mesh.vertex_count);
   const std::uint32_t t = triangle_towards(sphere.mesh, kUp);
   ContactPoint contact;
-  EXPECT_FALSE(look_ahead({block.skin, sphere.skin, false, vertex, t, sphere.skin.normal(t)}, contact));
+  EXPECT_FALSE(look_ahead(
+      {block.collision_mesh, sphere.collision_mesh, false, vertex, t, sphere.collision_mesh.normal(t)}, contact));
 }
 
 // A pad of springs carried straight over a bump of curvature k loses k s^2 / 2 of its depth by a slip s.

@@ -14,8 +14,8 @@
 #include "systems/soft/contact/contact_sweeps.h"
 #include "systems/soft/linear/pivoted_lu.h"
 #include "tests/scenes/count_allocations.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {
@@ -215,16 +215,16 @@ TEST(ContactSolver, AStackOnASlopeHoldsBelowTheFrictionAngleAndSlipsAbove) {
 }
 
 TEST(ContactSolver, PlatesThatPinchASoftBlockPushEquallyAndOppositely) {
-  const Mesh plate = test::block_mesh(vec3(0.02f, 0.08f, 0.08f), 2), skin = test::block_mesh(vec3(0.05f), 3);
+  const Mesh plate = test::block_mesh(vec3(0.02f, 0.08f, 0.08f), 2), collision_mesh = test::block_mesh(vec3(0.05f), 3);
   const SoftBody material{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {1.0, 0.02}}};
-  auto tets = make_lattice(skin, 0.0167);
+  auto tets = make_lattice(collision_mesh, 0.0167);
   ASSERT_TRUE(tets);
   ContactLoop loop;
   loop.limits = kStep;
   loop.gravity = dvec3(0);
   std::vector<FixedBody*> plates;
   for (const double side : {-1.0, 1.0}) plates.push_back(&loop.add<FixedBody>(plate, Pose{dvec3(side * 0.0351, 0, 0)}));
-  loop.add<SoftBodyState>(*tets, skin, material, nullptr, Pose{}, SolverKind::kAuto);
+  loop.add<SoftBodyState>(*tets, collision_mesh, material, nullptr, Pose{}, SolverKind::kAuto);
   loop.set_friction(0.6, 0.6);
   int unsettled = 0;
   for (int i = 0; i < 90; ++i) {

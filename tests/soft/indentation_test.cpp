@@ -1,5 +1,5 @@
 // A deep block under a punch and under a sphere against the closed forms of the half space (methods.md 3.2), for
-// nu = 0.3. A quarter of a disc of flesh, rings around the contact, growing outwards; what stands on the symmetry
+// nu = 0.3. A quarter of a disc of tissue, rings around the contact, growing outwards; what stands on the symmetry
 // planes slides in them. One factorisation gives the compliance W between the nodes of the surface; punch and sphere
 // are small contact problems over it, without friction.
 #include <gtest/gtest.h>
@@ -8,14 +8,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/soft/fem/flesh_step.h"
+#include "systems/soft/fem/tissue_step.h"
 #include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {
 
 constexpr double kRadius = 0.004;  // [m] of the finely meshed disc
-const FleshMaterial kBlock{.young = 1e4, .poisson = 0.3, .density = 1, .strain = Strain::kLinear};
+const TissueMaterial kBlock{.young = 1e4, .poisson = 0.3, .density = 1, .strain = Strain::kLinear};
 const double kPi = std::acos(-1.0);
 const double kEStar = kBlock.young / (1 - kBlock.poisson * kBlock.poisson);
 
@@ -53,11 +53,11 @@ QuarterBlock::QuarterBlock(int rings, int growing, double factor) {
     if (circle > 0) p.x *= square / circle, p.z *= square / circle;
   }
   tets::hold(mesh, [&](dvec3 p) { return p.y < -0.999 * depth_ || std::hypot(p.x, p.z) > 0.999 * depth_; });
-  Flesh flesh(mesh, kBlock, mesh.free_count);
+  Tissue tissue(mesh, kBlock, mesh.free_count);
   const double T = 1e4;  // [s] inertia is nothing against stiffness
-  flesh.assemble(T, dvec3(0));
+  tissue.assemble(T, dvec3(0));
   double stiffest = 0;
-  BlockMatrix& A = flesh.inner();
+  BlockMatrix& A = tissue.inner();
   for (std::uint32_t i = 0; i < mesh.free_count; ++i)
     stiffest = std::max(stiffest, A.value[A.diagonal[i]].diagonal().maxCoeff());
   std::vector<std::uint32_t> surface;
@@ -68,7 +68,7 @@ QuarterBlock::QuarterBlock(int rings, int growing, double factor) {
     if (p.y > -1e-9 && std::hypot(p.x, p.z) < 1.001 * kRadius)
       surface.push_back(i), radius_.push_back(std::hypot(p.x, p.z));
   }
-  auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
+  auto solver = make_solver(SolverKind::kBlockCholesky, tissue.moving());
   solver->analyse(A);
   EXPECT_TRUE(solver->factorise(A));
   const auto count = static_cast<Eigen::Index>(surface.size());

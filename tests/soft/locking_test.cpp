@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "content/level/spawn_soft.h"
-#include "systems/soft/fem/flesh_step.h"
+#include "systems/soft/fem/tissue_step.h"
 #include "tests/scenes/tet_shapes.h"
 #include "tests/scenes/tool_stage.h"
 
@@ -31,12 +31,12 @@ class Block {
   // [N/m] of the patch's nodes together, each pushed alike
   double stiffness(double poisson) const {
     const double T = 1e5;  // [s] inertia is nothing against stiffness
-    Flesh flesh(mesh_, {.young = 1e4, .poisson = poisson, .density = 1, .strain = Strain::kLinear}, mesh_.free_count);
-    flesh.assemble(T, dvec3(0));
-    auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
-    solver->analyse(flesh.inner());
-    EXPECT_TRUE(solver->factorise(flesh.inner()));
-    Rows down = Rows::Zero(3 * flesh.inner().size, 1);
+    Tissue tissue(mesh_, {.young = 1e4, .poisson = poisson, .density = 1, .strain = Strain::kLinear}, mesh_.free_count);
+    tissue.assemble(T, dvec3(0));
+    auto solver = make_solver(SolverKind::kBlockCholesky, tissue.moving());
+    solver->analyse(tissue.inner());
+    EXPECT_TRUE(solver->factorise(tissue.inner()));
+    Rows down = Rows::Zero(3 * tissue.inner().size, 1);
     std::vector<Eigen::Index> patch;
     for (std::uint32_t i = 0; i < mesh_.free_count; ++i)
       if (mesh_.nodes[i].y > kHalf - 1e-5 && std::hypot(mesh_.nodes[i].x, mesh_.nodes[i].z) < 0.0125)

@@ -7,8 +7,8 @@
 #include "systems/soft/body/rigid_state.h"
 #include "tests/scenes/tet_shapes.h"
 #include "tests/scenes/tool_stage.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {
@@ -66,27 +66,27 @@ struct Pile {
     for (int i = 0; i < int(std::lround(seconds / kStep)); ++i) stage.step();
   }
 
-  const std::vector<dvec3>& skin(std::size_t i) { return stage.body(bodies[i]).skin_position; }
+  const std::vector<dvec3>& collision_mesh(std::size_t i) { return stage.body(bodies[i]).surface_position; }
   dvec3 centre(std::size_t i) {
     dvec3 sum(0);
-    for (const dvec3& x : skin(i)) sum += x;
-    return sum / double(skin(i).size());
+    for (const dvec3& x : collision_mesh(i)) sum += x;
+    return sum / double(collision_mesh(i).size());
   }
   double lowest(std::size_t i) {  // [m]
     double y = 1e300;
-    for (const dvec3& x : skin(i)) y = std::min(y, x.y);
+    for (const dvec3& x : collision_mesh(i)) y = std::min(y, x.y);
     return y;
   }
   double highest(std::size_t i) {
     double y = -1e300;
-    for (const dvec3& x : skin(i)) y = std::max(y, x.y);
+    for (const dvec3& x : collision_mesh(i)) y = std::max(y, x.y);
     return y;
   }
   double fastest() {  // [m/s] of all vertices
     double most = 0.0;
     std::vector<dvec3> v;
     for (const Entity e : bodies) {
-      stage.body(e).move_skin(v);
+      stage.body(e).move_surface(v);
       for (const dvec3& x : v) most = std::max(most, length(x));
     }
     return most;
@@ -259,7 +259,7 @@ TEST(Pile, APebbleElsewhereChangesNothing) {
     if (pebble) pile.rigid({0.4, 0.0005, 0.4}, kUpright, dvec3(0.001));
     pile.stage.world.simulation.gravity = dvec3(6, -9.81, 0);
     pile.run(0.5);
-    return pile.skin(0);
+    return pile.collision_mesh(0);
   };
   const std::vector<dvec3> alone = slide(false), with = slide(true);
   EXPECT_GT(alone[0].x, 0.05) << "it should slide";
@@ -304,11 +304,12 @@ TEST(Pile, WhatBeginsInsideIsPushedOutTheShortestWay) {
   }
 }
 
-// [1] of a point: how often a skin goes round it, by solid angles (Van Oosterom & Strackee 1983).
+// [1] of a point: how often a collision mesh goes round it, by solid angles (Van Oosterom & Strackee 1983).
 double winding(const Body& body, dvec3 p) {
   double angle = 0.0;
-  for (const uvec3& t : body.skin->triangles) {
-    const dvec3 a = body.skin_position[t.x] - p, b = body.skin_position[t.y] - p, c = body.skin_position[t.z] - p;
+  for (const uvec3& t : body.collision_mesh->triangles) {
+    const dvec3 a = body.surface_position[t.x] - p, b = body.surface_position[t.y] - p,
+                c = body.surface_position[t.z] - p;
     const double la = length(a), lb = length(b), lc = length(c);
     angle += 2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
   }
@@ -317,9 +318,9 @@ double winding(const Body& body, dvec3 p) {
 
 // Sets a soft body in motion as a whole; it is a step further then.
 void throw_down(Pile& pile, std::size_t body, double speed) {
-  SoftBodyState& flesh = pile.stage.flesh(pile.bodies[body]);
-  flesh.free_step(kStep, dvec3(0, -speed / kStep, 0));
-  flesh.advance(kStep);
+  SoftBodyState& tissue = pile.stage.tissue(pile.bodies[body]);
+  tissue.free_step(kStep, dvec3(0, -speed / kStep, 0));
+  tissue.advance(kStep);
 }
 
 // At 3 m/s a body goes 50 mm in a step.
@@ -358,7 +359,7 @@ TEST(Pile, SoftBodiesThrownAtEachOtherDoNotPass) {
       pile.stage.step();
       ASSERT_GT(pile.centre(1).y, pile.centre(0).y) << balls << ' ' << step;
       for (const int i : {0, 1})
-        for (const dvec3& x : pile.skin(static_cast<std::size_t>(i))) {
+        for (const dvec3& x : pile.collision_mesh(static_cast<std::size_t>(i))) {
           const dvec3 inwards = x + 0.02 * kSize * normalize(x - pile.centre(static_cast<std::size_t>(1 - i)));
           ASSERT_LT(winding(pile.stage.body(pile.bodies[static_cast<std::size_t>(1 - i)]), inwards), 0.5) << step;
         }
@@ -415,7 +416,7 @@ TEST(Pile, TheEndsOfASqueezedRingMeetAndDoNotPassThroughEachOther) {
       if (c.body_a == c.body_b) pressed += c.impulse.x;
   }
   EXPECT_GT(pressed, 0.0);
-  const std::vector<dvec3>& now = pile.stage.flesh(pile.bodies[0]).flesh().position();
+  const std::vector<dvec3>& now = pile.stage.tissue(pile.bodies[0]).tissue().position();
   dvec3 of_first(0), of_last(0);
   for (const std::size_t n : first) of_first += now[n] / double(first.size());
   for (const std::size_t n : last) of_last += now[n] / double(last.size());

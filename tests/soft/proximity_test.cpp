@@ -5,11 +5,11 @@
 #include <random>
 #include <set>
 
+#include "systems/soft/collide/collision_mesh.h"
 #include "systems/soft/collide/meeting.h"
-#include "systems/soft/collide/skin.h"
-#include "systems/soft/collide/skin_pairs.h"
+#include "systems/soft/collide/mesh_pairs.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 using test::ContactLoop;
 constexpr double kT = 1.0 / 60.0;  // [s]
 
-// A skin that moves as a test says, vertex by vertex.
+// A collision mesh that moves as a test says, vertex by vertex.
 class ScriptedBody : public FixedBody {
  public:
   explicit ScriptedBody(const Mesh& mesh) : FixedBody(mesh, {}) {}
@@ -26,11 +26,11 @@ class ScriptedBody : public FixedBody {
   // From where the vertices are to `where`(rest position) within T.
   template <class Where>
   void move_to(double T, Where where) {
-    for (std::uint32_t v = 0; v < skin->vertex_count; ++v)
-      skin_velocity[v] = (where(dvec3(skin->position(v))) - skin_position[v]) / T;
+    for (std::uint32_t v = 0; v < collision_mesh->vertex_count; ++v)
+      surface_velocity[v] = (where(dvec3(collision_mesh->position(v))) - surface_position[v]) / T;
   }
   void arrive(double T) {
-    for (std::size_t v = 0; v < skin_position.size(); ++v) skin_position[v] += T * skin_velocity[v];
+    for (std::size_t v = 0; v < surface_position.size(); ++v) surface_position[v] += T * surface_velocity[v];
   }
 };
 
@@ -50,12 +50,14 @@ struct Wobble {
 };
 
 // Corner i of triangle s with triangle t; edge i with edge k: if that triangle is the one to look at them.
-bool vertex_meets(const Skin& a, std::uint32_t s, int i, const Skin& b, std::uint32_t t, const Reach& reach) {
+bool vertex_meets(const CollisionMesh& a, std::uint32_t s, int i, const CollisionMesh& b, std::uint32_t t,
+                  const Reach& reach) {
   const std::uint32_t v = a.mesh().triangles[s][i];
   return (a.live(s) & 1u << i) && dot(a.vertex_normal(v), b.normal(t)) <= kFacing &&
          meet_triangle(a.vertex(v), b.triangle(t), reach);
 }
-bool edges_meet(const Skin& a, std::uint32_t s, int i, const Skin& b, std::uint32_t t, int k, const Reach& reach) {
+bool edges_meet(const CollisionMesh& a, std::uint32_t s, int i, const CollisionMesh& b, std::uint32_t t, int k,
+                const Reach& reach) {
   const std::uint32_t e = a.edge_of(s, i), f = b.edge_of(t, k);
   return (a.live(s) & 8u << i) && (b.live(t) & 8u << k) && dot(a.edge_normal(e), b.edge_normal(f)) <= kFacing &&
          meet_edge(a.edge(e), a.edge_shape(e), b.edge(f), b.edge_shape(f), reach);
@@ -74,23 +76,27 @@ TEST(Proximity, TheTreesMissNoMeetingThatBruteForceFinds) {
       const dvec3 from = i == 0 ? apart : -apart;
       path[i] = {from, -from / 0.1, random_direction(random), random_direction(random) * 60.0, 8.0};
     }
-    std::array<Skin, 2> skin{Skin(body[0]), Skin(body[1])};
+    std::array<CollisionMesh, 2> collision_mesh{CollisionMesh(body[0]), CollisionMesh(body[1])};
     for (int step = 0; step < 3; ++step) {
       for (int i = 0; i < 2; ++i) {
         body[i].move_to(1.0, [&](dvec3 x) { return path[i](x, step * kT); });
         body[i].arrive(1.0);
         body[i].move_to(kT, [&](dvec3 x) { return path[i](x, (step + 1) * kT); });
-        skin[i].refit(body[i], kT, 0.5 * std::max(reach.front, reach.behind));
+        collision_mesh[i].refit(body[i], kT, 0.5 * std::max(reach.front, reach.behind));
       }
       std::set<std::pair<std::uint32_t, std::uint32_t>> visited;
-      for_each_pair(skin[0], skin[1], [&](std::uint32_t s, std::uint32_t t) { visited.insert({s, t}); });
+      for_each_pair(collision_mesh[0], collision_mesh[1], [&](std::uint32_t s, std::uint32_t t) {
+        visited.insert({s, t});
+      });
       const auto triangles = static_cast<std::uint32_t>(mesh.triangles.size());
       for (std::uint32_t s = 0; s < triangles; ++s)
         for (std::uint32_t t = 0; t < triangles; ++t) {
           bool meets = false;
           for (int i = 0; i < 3 && !meets; ++i) {
-            meets |= vertex_meets(skin[0], s, i, skin[1], t, reach) || vertex_meets(skin[1], t, i, skin[0], s, reach);
-            for (int k = 0; k < 3 && !meets; ++k) meets |= edges_meet(skin[0], s, i, skin[1], t, k, reach);
+            meets |= vertex_meets(collision_mesh[0], s, i, collision_mesh[1], t, reach) ||
+                     vertex_meets(collision_mesh[1], t, i, collision_mesh[0], s, reach);
+            for (int k = 0; k < 3 && !meets; ++k)
+              meets |= edges_meet(collision_mesh[0], s, i, collision_mesh[1], t, k, reach);
           }
           if (!meets) continue;
           ++meetings;
@@ -104,12 +110,12 @@ TEST(Proximity, TheTreesMissNoMeetingThatBruteForceFinds) {
 TEST(Proximity, EveryVertexAndEdgeIsLookedAtOnce) {
   const Mesh mesh = test::sphere_mesh(0.05f, 3);
   const ScriptedBody body(mesh);
-  const Skin skin(body);
-  std::vector<int> vertices(mesh.vertex_count), edges(skin.edges().size());
+  const CollisionMesh collision_mesh(body);
+  std::vector<int> vertices(mesh.vertex_count), edges(collision_mesh.edges().size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int i = 0; i < 3; ++i) {
-      vertices[mesh.triangles[t][i]] += (skin.owned(t) >> i) & 1;
-      edges[skin.edge_of(t, i)] += (skin.owned(t) >> (3 + i)) & 1;
+      vertices[mesh.triangles[t][i]] += (collision_mesh.owned(t) >> i) & 1;
+      edges[collision_mesh.edge_of(t, i)] += (collision_mesh.owned(t) >> (3 + i)) & 1;
     }
   EXPECT_EQ(edges.size(), mesh.triangles.size() * 3 / 2);
   EXPECT_TRUE(std::all_of(vertices.begin(), vertices.end(), [](int n) { return n == 1; }));
@@ -165,7 +171,7 @@ Depth throw_at_plate(const Mesh& mesh, const RigidMass& mass, double radius, dve
   for (int i = 0; i < 30; ++i) {
     loop.step(kT);
     depth.last = -1.0;
-    for (const dvec3& x : body.skin_position) {
+    for (const dvec3& x : body.surface_position) {
       const dvec3 local = glm::conjugate(turned) * x;
       if (std::abs(local.x) < 0.19 && std::abs(local.z) < 0.19) depth.last = std::max(depth.last, 0.001 - local.y);
     }
@@ -176,8 +182,8 @@ Depth throw_at_plate(const Mesh& mesh, const RigidMass& mass, double radius, dve
 
 // At 5 m/s a body travels 83 mm in a step and turns by more than a radian in the one in which it is stopped: contacts
 // hold its first order, the second is worked off afterwards.
-// A flat skin, tilted by 0.2 rad about its edge, comes down on a ridge. Where it has come to lie flat when the edges
-// cross, they touch; where it stays tilted, what lies lower than its edge does.
+// A flat collision mesh, tilted by 0.2 rad about its edge, comes down on a ridge. Where it has come to lie flat when
+// the edges cross, they touch; where it stays tilted, what lies lower than its edge does.
 TEST(Proximity, EdgesMeetIfTheySupportEachOtherWhereTheyCross) {
   const std::array<Moving, 2> edge{Moving{{-0.01, 0.002, 0.0}, {0, -0.003, 0}},
                                    Moving{{0.01, 0.002, 0.0}, {0, -0.003, 0}}};
@@ -350,7 +356,7 @@ TEST(Proximity, AHandOnAnObjectHasTensOfContactsAndKeepsThem) {
   bodies.push_back(std::make_unique<ScriptedBody>(ground));
   bodies.push_back(std::make_unique<ScriptedBody>(ball));
   auto& moving = static_cast<ScriptedBody&>(*bodies[1]);
-  // Flattened where it rests, as flesh would be.
+  // Flattened where it rests, as tissue would be.
   const auto pressed = [](dvec3 x) {
     x.y = std::max(x.y, -0.03) + 0.08 + 1e-4;
     return x;
@@ -396,7 +402,7 @@ TEST(Proximity, ContactAxesAreOrthonormalAndTurnSteadily) {
       else
         scripted.move_to(1.0, ground_at);
       scripted.arrive(1.0);
-      std::fill(scripted.skin_velocity.begin(), scripted.skin_velocity.end(), dvec3(0));
+      std::fill(scripted.surface_velocity.begin(), scripted.surface_velocity.end(), dvec3(0));
     }
     proximity.find(bodies, kT, 1e-3, contacts);
     ASSERT_GE(contacts.size(), 4u);

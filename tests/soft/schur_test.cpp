@@ -64,7 +64,7 @@ struct Finger {
     handle.attachment = attachment;
     handle.carried = false;  // what carries it is no part of the matrix
     const Pose placement{{0.1, 0.2, -0.1}, rotation_of({0.3, -0.5, 0.2})};
-    state = std::make_unique<SoftBodyState>(bar.tets, bar.skin, body, &handle, placement, std::move(solver));
+    state = std::make_unique<SoftBodyState>(bar.tets, bar.collision_mesh, body, &handle, placement, std::move(solver));
     const Pose there{{0.12, 0.21, -0.1}, rotation_of({0.6, -0.5, 0.9})};
     state->set_device(there, join({0.1, 0.05, 0}, {1, 2, 0}));
     for (int i = 0; i < 4; ++i) step();
@@ -80,31 +80,31 @@ struct System {
   Vector b;
 };
 
-// The paper's matrices, whole and dense, from flesh whose nodes all have rows; at the state that a step begins with.
+// The paper's matrices, whole and dense, from tissue whose nodes all have rows; at the state that a step begins with.
 System dense_system(const Finger& finger) {
   const SoftBodyState& state = *finger.state;
   const TetMesh& tets = finger.bar.tets;
-  Flesh whole(tets, {.young = finger.body.young, .alpha = finger.body.rayleigh[0], .beta = finger.body.rayleigh[1]},
-              tets.node_count());
-  whole.position() = state.flesh().position();
-  whole.velocity() = state.flesh().velocity();
+  Tissue whole(tets, {.young = finger.body.young, .alpha = finger.body.rayleigh[0], .beta = finger.body.rayleigh[1]},
+               tets.node_count());
+  whole.position() = state.tissue().position();
+  whole.velocity() = state.tissue().velocity();
   whole.assemble(T, kGravity);
-  Eigen::MatrixXd flesh = whole.inner().dense();
+  Eigen::MatrixXd tissue = whole.inner().dense();
   Vector right = whole.right();
 
-  const Eigen::Index nodes = flesh.rows(), first = 3 * tets.free_count;
+  const Eigen::Index nodes = tissue.rows(), first = 3 * tets.free_count;
   System out;
   if (finger.handle.attachment == Attachment::kSlave) {  // [v_t; v_h] = P [v_t; w]
     Eigen::MatrixXd P = Eigen::MatrixXd::Zero(nodes, first + 6);
     P.topLeftCorner(first, first).setIdentity();
     for (std::uint32_t i = 0; i < tets.handle_count; ++i)
       P.block<3, 6>(first + 3 * i, first) = grip_matrix(state.handle().arm(i));
-    out = {P.transpose() * flesh * P, P.transpose() * right};
+    out = {P.transpose() * tissue * P, P.transpose() * right};
   } else {
     const double damped = 1 + T * finger.body.rayleigh[0];
     const Matrix6 mass = state.handle().mass_matrix();
     out.A = Eigen::MatrixXd::Zero(nodes + 6, nodes + 6);
-    out.A.topLeftCorner(nodes, nodes) = flesh;
+    out.A.topLeftCorner(nodes, nodes) = tissue;
     out.A.bottomRightCorner<6, 6>() = damped * mass;
     out.b = Vector::Zero(nodes + 6);
     out.b.head(nodes) = right;
@@ -179,7 +179,7 @@ TEST(Schur, FreeMotionAndSolvesOfATwoPartToolAreThoseOfItsWholeMatrixWithEverySo
     }
 }
 
-TEST(Schur, AStepTakesExactlySevenSolvesOfTheFlesh) {
+TEST(Schur, AStepTakesExactlySevenSolvesOfTheTissue) {
   for (const Attachment attachment : {Attachment::kSlave, Attachment::kSpring}) {
     Counter counter;
     Finger finger(attachment, std::make_unique<CountingSolver>(counter));
@@ -204,7 +204,7 @@ TEST(Schur, ContactsSeeOneBodyWhetherItsPartsAreSolvedTogetherOrApart) {
     Rows together = Rows::Zero(n, 3 * points), hat = Rows::Zero(3 * points, 6);
     std::vector<SurfacePoint> point;
     for (int i = 0; i < points; ++i) {
-      const auto count = static_cast<std::uint32_t>(finger.bar.skin.triangles.size());
+      const auto count = static_cast<std::uint32_t>(finger.bar.collision_mesh.triangles.size());
       point.push_back({static_cast<std::uint32_t>(i) * count / points, {0.2, 0.5, 0.3}, {}});
       state.spread(point.back(), axes, i % 2 ? -1.0 : 1.0, together, 3 * i);
       state.handle_rows(point.back(), axes, i % 2 ? -1.0 : 1.0, hat.middleRows<3>(3 * i));

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {
@@ -44,7 +44,7 @@ struct Flight {
   dvec3 force() const { return loop.force(1, 0); }  // [N] on the body
   double lowest() const {
     double y = 1.0;
-    for (const dvec3& x : body->skin_position) y = std::min(y, x.y);
+    for (const dvec3& x : body->surface_position) y = std::min(y, x.y);
     return y;
   }
 };

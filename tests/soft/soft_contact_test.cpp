@@ -1,4 +1,4 @@
-// Flesh in contact: what rests is carried by its weight, what is gripped is held as far as the cone goes.
+// Tissue in contact: what rests is carried by its weight, what is gripped is held as far as the cone goes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -6,8 +6,8 @@
 
 #include "content/tets/lattice.h"
 #include "systems/soft/body/soft_body_state.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
-#include "tests/soft/skin_shapes.h"
 
 namespace pliant {
 namespace {
@@ -16,11 +16,11 @@ using test::ContactLoop;
 constexpr double kT = 1.0 / 60.0;  // [s]
 
 struct SoftBlock {
-  Mesh skin;
+  Mesh collision_mesh;
   TetMesh tets;
   SoftBody material{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
-  explicit SoftBlock(vec3 size, int squares, double cell) : skin(test::block_mesh(size, squares)) {
-    auto made = make_lattice(skin, cell);
+  explicit SoftBlock(vec3 size, int squares, double cell) : collision_mesh(test::block_mesh(size, squares)) {
+    auto made = make_lattice(collision_mesh, cell);
     EXPECT_TRUE(made);
     tets = std::move(*made);
   }
@@ -37,20 +37,20 @@ double total(const std::vector<double>& m) {
   return sum;
 }
 
-TEST(SoftContact, ABlockOfFleshRestsOnTheGroundWithItsWeight) {
+TEST(SoftContact, ABlockOfTissueRestsOnTheGroundWithItsWeight) {
   const Mesh ground = test::block_mesh(vec3(1.0f, 0.2f, 1.0f));
   const SoftBlock block(vec3(0.05f), 3, 0.0167);
   ContactLoop loop;
   loop.add<FixedBody>(ground, Pose{dvec3(0, -0.1, 0)});
-  const auto& body = loop.add<SoftBodyState>(block.tets, block.skin, block.material, nullptr,
+  const auto& body = loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr,
                                              Pose{dvec3(0.003, 0.03, 0.001)}, SolverKind::kAuto);
   loop.set_friction(0.5, 0.4);
   for (int i = 0; i < 120; ++i) loop.step(kT);
   double lowest = 1.0;
-  for (const dvec3& x : body.skin_position) lowest = std::min(lowest, x.y);
+  for (const dvec3& x : body.surface_position) lowest = std::min(lowest, x.y);
   EXPECT_NEAR(lowest, 0.0, 1e-5);
   const dvec3 force = loop.force(1, 0);
-  const double weight = total(body.flesh().mass()) * 9.81;
+  const double weight = total(body.tissue().mass()) * 9.81;
   EXPECT_NEAR(force.y, weight, 1e-3 * weight);
   EXPECT_NEAR(force.x, 0.0, 1e-3 * weight);
   EXPECT_LT(body.velocity().cwiseAbs().maxCoeff(), 1e-4);
@@ -63,13 +63,13 @@ TEST(SoftContact, SoftBlocksStack) {
   loop.add<FixedBody>(ground, Pose{dvec3(0, -0.1, 0)});
   std::vector<const SoftBodyState*> stack;
   for (int i = 0; i < 2; ++i)
-    stack.push_back(&loop.add<SoftBodyState>(block.tets, block.skin, block.material, nullptr,
+    stack.push_back(&loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr,
                                              Pose{dvec3(0.004 * i, 0.0252 + 0.0502 * i, 0.002)}, SolverKind::kAuto));
   loop.set_friction(0.5, 0.4);
   for (int i = 0; i < 90; ++i) loop.step(kT);
-  const dvec3 upper = mean(stack[1]->flesh().position());
+  const dvec3 upper = mean(stack[1]->tissue().position());
   for (int i = 0; i < 30; ++i) loop.step(kT);
-  EXPECT_LT(length(mean(stack[1]->flesh().position()) - upper), 1e-4);
+  EXPECT_LT(length(mean(stack[1]->tissue().position()) - upper), 1e-4);
   EXPECT_GT(upper.y, 0.065);  // on top, both somewhat compressed
   EXPECT_LT(upper.y, 0.0755);
 }
@@ -85,7 +85,7 @@ double dropped(double mu) {
   const Mesh table = test::block_mesh(vec3(0.045f, 0.02f, 0.2f), 2);
   loop.add<FixedBody>(table, Pose{dvec3(0, -0.0351, 0)});
   const auto& body =
-      loop.add<SoftBodyState>(block.tets, block.skin, block.material, nullptr, Pose{}, SolverKind::kAuto);
+      loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr, Pose{}, SolverKind::kAuto);
   loop.set_friction(mu, mu);
   const auto move = [&](double close, double lift, int steps) {
     for (int side = 0; side < 2; ++side) fingers[side]->set_velocity(dvec3((side ? -1 : 1) * close, lift, 0), dvec3(0));
@@ -93,10 +93,10 @@ double dropped(double mu) {
   };
   move(0.0022 * 3, 0, 20);
   move(0, 0, 20);
-  const double before = mean(body.flesh().position()).y;
+  const double before = mean(body.tissue().position()).y;
   move(0, 0.1, 30);
   move(0, 0, 30);
-  return 0.05 - (mean(body.flesh().position()).y - before);
+  return 0.05 - (mean(body.tissue().position()).y - before);
 }
 
 // E A strain = 20 kPa x 25 cm2 x 4 mm / 50 mm = 4 N a side, more for the sides that are held; the weight is 1.23 N.
@@ -105,21 +105,22 @@ TEST(SoftContact, ASoftCubeIsLiftedByTwoFingersAsFarAsTheConeHolds) {
   EXPECT_GT(dropped(0.1), 0.02);
 }
 
-// A ball that is driven 12 mm into flesh and out again: it never gets behind the skin, which then is as it was.
-TEST(SoftContact, ABallPressedDeepIntoFleshLeavesItWhole) {
+// A ball that is driven 12 mm into tissue and out again: it never gets behind the collision mesh, which then is as it
+// was.
+TEST(SoftContact, ABallPressedDeepIntoTissueLeavesItWhole) {
   const Mesh ball = test::sphere_mesh(0.02f, 2), ground = test::block_mesh(vec3(1.0f, 0.2f, 1.0f));
   SoftBlock block(vec3(0.06f, 0.04f, 0.06f), 6, 0.015);
   ContactLoop loop;
   loop.add<FixedBody>(ground, Pose{dvec3(0, -0.12, 0)});
   auto& driven = loop.add<FixedBody>(ball, Pose{dvec3(0.002, 0.0405, 0.001)});
   const auto& body =
-      loop.add<SoftBodyState>(block.tets, block.skin, block.material, nullptr, Pose{}, SolverKind::kAuto);
+      loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr, Pose{}, SolverKind::kAuto);
   loop.set_friction(0.4, 0.3);
-  const auto deepest = [&] {  // of the ball's vertices below the skin, along y
+  const auto deepest = [&] {  // of the ball's vertices below the collision mesh, along y
     double depth = 0;
-    for (const dvec3& p : driven.skin_position)
-      for (const uvec3& t : block.skin.triangles) {
-        const dvec3 a = body.skin_position[t.x], b = body.skin_position[t.y], c = body.skin_position[t.z];
+    for (const dvec3& p : driven.surface_position)
+      for (const uvec3& t : block.collision_mesh.triangles) {
+        const dvec3 a = body.surface_position[t.x], b = body.surface_position[t.y], c = body.surface_position[t.z];
         const dvec3 n = cross(b - a, c - a);
         if (n.y <= 0) continue;
         const double along = dot(n, a - p) / n.y;
@@ -131,7 +132,7 @@ TEST(SoftContact, ABallPressedDeepIntoFleshLeavesItWhole) {
     return depth;
   };
   for (int i = 0; i < 40; ++i) loop.step(kT);
-  const std::vector<dvec3> rested = body.skin_position;
+  const std::vector<dvec3> rested = body.surface_position;
   double worst = 0;
   for (int i = 0; i < 40; ++i) {
     driven.set_velocity(dvec3(0, i < 20 ? -0.0375 : 0.0375, 0), dvec3(0));
@@ -146,7 +147,7 @@ TEST(SoftContact, ABallPressedDeepIntoFleshLeavesItWhole) {
   for (int i = 0; i < 60; ++i) loop.step(kT);
   double change = 0;
   for (std::size_t v = 0; v < rested.size(); ++v)
-    change = std::max(change, std::abs(body.skin_position[v].y - rested[v].y));
+    change = std::max(change, std::abs(body.surface_position[v].y - rested[v].y));
   EXPECT_LT(change, 5e-4);  // friction on the ground holds a little of how it was squeezed
 }
 
@@ -163,13 +164,14 @@ double distance(dvec3 p, const std::array<dvec3, 3>& x) {
   return inside ? std::min(best, std::abs(dot(p - x[0], n)) / length(n)) : best;
 }
 
-// [m] how deep the deepest vertex of one skin is inside another, by the solid angle that the other fills around it.
+// [m] how deep the deepest vertex of one collision mesh is inside another, by the solid angle that the other fills
+// around it.
 double deepest_inside(const Body& of, const Body& in) {
   double deepest = 0.0;
-  for (const dvec3& p : of.skin_position) {
+  for (const dvec3& p : of.surface_position) {
     double angle = 0.0, nearest = 1e300;
-    for (const uvec3& t : in.skin->triangles) {
-      const std::array<dvec3, 3> x{in.skin_position[t.x], in.skin_position[t.y], in.skin_position[t.z]};
+    for (const uvec3& t : in.collision_mesh->triangles) {
+      const std::array<dvec3, 3> x{in.surface_position[t.x], in.surface_position[t.y], in.surface_position[t.z]};
       const dvec3 a = x[0] - p, b = x[1] - p, c = x[2] - p;  // Van Oosterom & Strackee 1983
       const double la = length(a), lb = length(b), lc = length(c);
       angle += 2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
@@ -181,7 +183,7 @@ double deepest_inside(const Body& of, const Body& in) {
 }
 
 // Two soft cubes thrown at each other, each at 1 m/s: 33 mm a step towards each other, with 50 mm cubes.
-TEST(SoftContact, FleshThrownAtFleshDoesNotPassThroughIt) {
+TEST(SoftContact, TissueThrownAtTissueDoesNotPassThroughIt) {
   const SoftBlock block(vec3(0.05f), 3, 0.0167);
   for (const double turned : {0.0, 0.6}) {
     ContactLoop loop;
@@ -191,7 +193,8 @@ TEST(SoftContact, FleshThrownAtFleshDoesNotPassThroughIt) {
       const double side = i == 0 ? -1.0 : 1.0;
       const Pose pose{dvec3(0.07 * side, 0.006 * side, 0.004),
                       glm::angleAxis(turned * side, normalize(dvec3(1, 2, 3)))};
-      cube[i] = &loop.add<SoftBodyState>(block.tets, block.skin, block.material, nullptr, pose, SolverKind::kAuto);
+      cube[i] =
+          &loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr, pose, SolverKind::kAuto);
       cube[i]->free_step(kT, dvec3(-side / kT, 0, 0));  // a push as a whole
       cube[i]->advance(kT);
     }
@@ -199,49 +202,50 @@ TEST(SoftContact, FleshThrownAtFleshDoesNotPassThroughIt) {
     const auto momentum = [&] {
       dvec3 sum(0);
       for (const SoftBodyState* body : cube)
-        for (std::size_t n = 0; n < body->flesh().mass().size(); ++n)
-          sum += body->flesh().mass()[n] * body->flesh().velocity()[n];
+        for (std::size_t n = 0; n < body->tissue().mass().size(); ++n)
+          sum += body->tissue().mass()[n] * body->tissue().velocity()[n];
       return sum;
     };
     const dvec3 before = momentum();
-    const double mass = total(cube[0]->flesh().mass());
+    const double mass = total(cube[0]->tissue().mass());
     double worst = 0.0;
     std::size_t touched = 0;
     for (int i = 0; i < 40; ++i) {
       loop.step(kT);
       touched += loop.contacts.size();
       worst = std::max({worst, deepest_inside(*cube[0], *cube[1]), deepest_inside(*cube[1], *cube[0])});
-      EXPECT_LT(mean(cube[0]->flesh().position()).x, mean(cube[1]->flesh().position()).x) << turned << ' ' << i;
+      EXPECT_LT(mean(cube[0]->tissue().position()).x, mean(cube[1]->tissue().position()).x) << turned << ' ' << i;
     }
     EXPECT_GT(touched, 10u);
     EXPECT_LT(worst, 1.5e-3) << turned;
     EXPECT_LT(length(momentum() - before), 1e-9 * mass) << turned;
-    EXPECT_LT(mean(cube[0]->flesh().velocity()).x, 0.05) << "it should have been stopped";
+    EXPECT_LT(mean(cube[0]->tissue().velocity()).x, 0.05) << "it should have been stopped";
   }
 }
 
 // Two fingers of one hand, 20 mm apart, struck together by plates that come at 1 m/s from both sides.
 TEST(SoftContact, FingersStruckTogetherDoNotPassThroughEachOther) {
   const float cell = 0.0025f;
-  const Mesh skin = test::voxel_mesh(16, 28, 4, vec3(cell), vec3(-0.02f, -0.01f, -0.005f),
-                                     [](int i, int j, int) { return j < 4 || i < 4 || i >= 12; });
-  auto made = make_lattice(skin, 0.005);
+  const Mesh collision_mesh = test::voxel_mesh(16, 28, 4, vec3(cell), vec3(-0.02f, -0.01f, -0.005f),
+                                               [](int i, int j, int) { return j < 4 || i < 4 || i >= 12; });
+  auto made = make_lattice(collision_mesh, 0.005);
   ASSERT_TRUE(made);
   const Mesh plate = test::block_mesh(vec3(0.01f, 0.03f, 0.03f), 2);
   ContactLoop loop;
   loop.gravity = dvec3(0);
-  SoftBody flesh{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.01}}};
-  const auto& hand = loop.add<SoftBodyState>(*made, skin, flesh, nullptr, Pose{}, SolverKind::kAuto);
+  SoftBody tissue{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.01}}};
+  const auto& hand = loop.add<SoftBodyState>(*made, collision_mesh, tissue, nullptr, Pose{}, SolverKind::kAuto);
   loop.bodies[0]->self_collides = true;
   std::array<FixedBody*, 2> plates;
   for (std::size_t i = 0; i < 2; ++i)
     plates[i] = &loop.add<FixedBody>(plate, Pose{dvec3((i == 0 ? -1.0 : 1.0) * 0.0255, 0.045, 0.0)});
   loop.set_friction(0.3, 0.3);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> opposite;  // vertices of the fingers' inner sides
-  for (std::uint32_t v = 0; v < skin.vertex_count; ++v)
-    for (std::uint32_t w = 0; w < skin.vertex_count; ++w)
-      if (std::abs(skin.px[v] + 0.01f) < 1e-5f && std::abs(skin.px[w] - 0.01f) < 1e-5f &&
-          std::abs(skin.py[v] - skin.py[w]) < 1e-5f && std::abs(skin.pz[v] - skin.pz[w]) < 1e-5f && skin.py[v] > 0.02f)
+  for (std::uint32_t v = 0; v < collision_mesh.vertex_count; ++v)
+    for (std::uint32_t w = 0; w < collision_mesh.vertex_count; ++w)
+      if (std::abs(collision_mesh.px[v] + 0.01f) < 1e-5f && std::abs(collision_mesh.px[w] - 0.01f) < 1e-5f &&
+          std::abs(collision_mesh.py[v] - collision_mesh.py[w]) < 1e-5f &&
+          std::abs(collision_mesh.pz[v] - collision_mesh.pz[w]) < 1e-5f && collision_mesh.py[v] > 0.02f)
         opposite.emplace_back(v, w);
   ASSERT_GT(opposite.size(), 50u);
   const double T = 0.01;  // [s]
@@ -253,7 +257,8 @@ TEST(SoftContact, FingersStruckTogetherDoNotPassThroughEachOther) {
     loop.step(T);
     for (const ContactPoint& c : loop.contacts) met += c.body_a == c.body_b && c.impulse.x > 0.0;
     double least = 1.0;
-    for (const auto& [v, w] : opposite) least = std::min(least, hand.skin_position[w].x - hand.skin_position[v].x);
+    for (const auto& [v, w] : opposite)
+      least = std::min(least, hand.surface_position[w].x - hand.surface_position[v].x);
     EXPECT_GT(least, -1e-3) << "step " << i;
   }
   EXPECT_GT(met, 50u) << "finger pushes finger";

@@ -44,7 +44,7 @@ Primitive ground_box() {
 
 double weight(ToolStage& stage, Entity soft) {
   double mass = 0.0;
-  for (const double m : stage.flesh(soft).flesh().mass()) mass += m;
+  for (const double m : stage.tissue(soft).tissue().mass()) mass += m;
   return mass * 9.81;
 }
 
@@ -124,8 +124,8 @@ struct Grip {
   double height() {  // [m] of the cube's middle over the fingers'
     dvec3 sum(0);
     const Body& body = stage.body(soft);
-    for (const dvec3 x : body.skin_position) sum += x;
-    return sum.y / double(body.skin_position.size()) - dynamic_cast<FixedBody&>(stage.body(left)).pose().position.y;
+    for (const dvec3 x : body.surface_position) sum += x;
+    return sum.y / double(body.surface_position.size()) - dynamic_cast<FixedBody&>(stage.body(left)).pose().position.y;
   }
   ToolStage stage;
   Entity soft, left, right;
@@ -172,8 +172,9 @@ TEST(SoftStep, AHeldCubeNeverGainsEnergyOverTenThousandSteps) {
   const double m = weight(grip.stage, grip.soft) / 9.81;
   const auto energy = [&] {
     double potential = 0.0;
-    const Flesh& flesh = grip.stage.flesh(grip.soft).flesh();
-    for (std::size_t n = 0; n < flesh.mass().size(); ++n) potential += flesh.mass()[n] * 9.81 * flesh.position()[n].y;
+    const Tissue& tissue = grip.stage.tissue(grip.soft).tissue();
+    for (std::size_t n = 0; n < tissue.mass().size(); ++n)
+      potential += tissue.mass()[n] * 9.81 * tissue.position()[n].y;
     return potential + grip.stage.kinetic_energy() + grip.stage.elastic_energy();
   };
   const double scale = grip.stage.elastic_energy() + m * 9.81 * kEdge;
@@ -214,19 +215,19 @@ TEST(SoftStep, AMotionThatIsNoNumberIsStoppedAndSaid) {
   stage.prepare();
   stage.step();
   dynamic_cast<RigidState&>(stage.body(rigid)).set_velocity(dvec3(std::nan(""), 0, 0), dvec3(0));
-  const double before = stage.body(soft).skin_position[0].y;
+  const double before = stage.body(soft).surface_position[0].y;
   for (int i = 0; i < 10; ++i) stage.step();
   EXPECT_TRUE(stage.soft().dropped & kDroppedMotion);
   EXPECT_FALSE(explain_dropped(stage.soft().dropped).empty());
-  for (const dvec3 x : stage.body(rigid).skin_position) EXPECT_TRUE(std::isfinite(dot(x, x)));
-  EXPECT_LT(stage.body(soft).skin_position[0].y, before);  // the others fall on
+  for (const dvec3 x : stage.body(rigid).surface_position) EXPECT_TRUE(std::isfinite(dot(x, x)));
+  EXPECT_LT(stage.body(soft).surface_position[0].y, before);  // the others fall on
 }
 
 TEST(SoftStep, ABodyThatCannotBeSolvedStandsStillAndSaysSo) {
   ToolStage stage(kStep);
   const Entity soft = stage.add_soft(cube(2), rubber(), {dvec3(0, 0.2, 0)});
   stage.prepare();
-  const_cast<Flesh&>(stage.flesh(soft).flesh()).position()[0] = dvec3(std::nan(""), 0, 0);
+  const_cast<Tissue&>(stage.tissue(soft).tissue()).position()[0] = dvec3(std::nan(""), 0, 0);
   stage.step();
   EXPECT_NE(stage.soft().dropped & (kDroppedFactor | kDroppedMotion), 0u);
 }
@@ -243,7 +244,7 @@ TEST(PublishSoft, ASnapshotShowsWhatMovesAndWhatPushes) {
   EXPECT_EQ(shown.step, 60u);
   ASSERT_EQ(shown.objects.size(), 2u);  // the ground does not move
   EXPECT_EQ(shown.objects[0].object, soft);
-  EXPECT_EQ(shown.objects[0].position.size(), stage.body(soft).skin_position.size());
+  EXPECT_EQ(shown.objects[0].position.size(), stage.body(soft).surface_position.size());
   EXPECT_EQ(shown.objects[1].object, rigid);
   double pushed = 0.0;
   for (const ContactMark& contact : shown.contacts) pushed += double(std::abs(contact.force.y));

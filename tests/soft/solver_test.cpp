@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "systems/soft/fem/flesh.h"
+#include "systems/soft/fem/tissue.h"
 #include "systems/soft/linear/auto_solver.h"
 
 namespace pliant {
@@ -222,7 +222,7 @@ TEST_P(EverySolver, RefusesWhatIsNotPositiveDefinite) {
 // A clamped beam of soft tissue as the soft step has it, nodes near and far: stiffness (T c / h)^2 times inertia.
 struct Beam {
   TetMesh mesh;
-  std::unique_ptr<Flesh> flesh;
+  std::unique_ptr<Tissue> tissue;
 
   Beam(std::uint32_t nx, std::uint32_t ny) {
     const double h = 0.1 / (ny - 1);
@@ -236,27 +236,27 @@ struct Beam {
       for (std::uint32_t& node : tet) node = shift(node);
       mesh.tets.push_back(tet);
     }
-    flesh = std::make_unique<Flesh>(mesh, FleshMaterial{.young = 1e5, .poisson = 0.45}, mesh.free_count);
+    tissue = std::make_unique<Tissue>(mesh, TissueMaterial{.young = 1e5, .poisson = 0.45}, mesh.free_count);
   }
 };
 
 TEST_P(EverySolver, AgreesWithADenseFactorOnABendingBeam) {
   for (const double T : {0.001, 0.01, 0.1, 1e6}) {
     Beam beam(11, 4);
-    const auto solver = make_solver(GetParam(), beam.flesh->moving());
-    solver->analyse(beam.flesh->inner());
+    const auto solver = make_solver(GetParam(), beam.tissue->moving());
+    solver->analyse(beam.tissue->inner());
     for (int step = 0; step < 3; ++step) {
-      beam.flesh->assemble(T, {0, 0, -9.81});
-      solver->place(beam.flesh->position());
-      ASSERT_TRUE(solver->factorise(beam.flesh->inner()));
-      const Vector b = beam.flesh->right(), truth = beam.flesh->inner().dense().llt().solve(b);
+      beam.tissue->assemble(T, {0, 0, -9.81});
+      solver->place(beam.tissue->position());
+      ASSERT_TRUE(solver->factorise(beam.tissue->inner()));
+      const Vector b = beam.tissue->right(), truth = beam.tissue->inner().dense().llt().solve(b);
       Vector x = Vector::Zero(b.size());
       solver->solve(b, x);
       EXPECT_LT(distance(x, truth), 2e-8) << "a step of " << T << " s";
-      for (std::uint32_t i = 0; i < beam.flesh->moving(); ++i) {
+      for (std::uint32_t i = 0; i < beam.tissue->moving(); ++i) {
         const dvec3 v(truth[3 * i], truth[3 * i + 1], truth[3 * i + 2]);
-        beam.flesh->velocity()[i] = v;
-        beam.flesh->position()[i] += std::min(T, 0.05) * v;
+        beam.tissue->velocity()[i] = v;
+        beam.tissue->position()[i] += std::min(T, 0.05) * v;
       }
     }
   }
@@ -268,12 +268,12 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsOnTwiceTheNodesWhenItKnowsWhereThey
     for (const bool finer : {false, true}) {
       Beam beam(finer ? 23 : 16, finer ? 8 : 6);
       ConjugateGradient solver;
-      solver.analyse(beam.flesh->inner());
-      beam.flesh->assemble(0.01, {0, 0, -9.81});
-      if (known) solver.place(beam.flesh->position());
-      ASSERT_TRUE(solver.factorise(beam.flesh->inner()));
-      Vector x = Vector::Zero(3 * beam.flesh->moving());
-      solver.solve(beam.flesh->right(), x);
+      solver.analyse(beam.tissue->inner());
+      beam.tissue->assemble(0.01, {0, 0, -9.81});
+      if (known) solver.place(beam.tissue->position());
+      ASSERT_TRUE(solver.factorise(beam.tissue->inner()));
+      Vector x = Vector::Zero(3 * beam.tissue->moving());
+      solver.solve(beam.tissue->right(), x);
       EXPECT_TRUE(solver.converged());
       iterations[known][finer] = solver.iterations();
     }
@@ -284,14 +284,14 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsOnTwiceTheNodesWhenItKnowsWhereThey
 TEST(ConjugateGradient, StartsFromTheGuess) {
   Beam beam(14, 5);
   ConjugateGradient solver;
-  solver.analyse(beam.flesh->inner());
-  beam.flesh->assemble(0.01, {0, 0, -9.81});
-  solver.place(beam.flesh->position());
-  ASSERT_TRUE(solver.factorise(beam.flesh->inner()));
-  Vector x = Vector::Zero(3 * beam.flesh->moving());
-  solver.solve(beam.flesh->right(), x);
+  solver.analyse(beam.tissue->inner());
+  beam.tissue->assemble(0.01, {0, 0, -9.81});
+  solver.place(beam.tissue->position());
+  ASSERT_TRUE(solver.factorise(beam.tissue->inner()));
+  Vector x = Vector::Zero(3 * beam.tissue->moving());
+  solver.solve(beam.tissue->right(), x);
   EXPECT_GT(solver.iterations(), 5);
-  solver.solve(beam.flesh->right(), x);
+  solver.solve(beam.tissue->right(), x);
   EXPECT_LE(solver.iterations(), 1);
   solver.solve(Vector::Zero(x.size()), x = Vector::Zero(x.size()));
   EXPECT_EQ(solver.iterations(), 0);
@@ -302,28 +302,28 @@ TEST(ConjugateGradient, StartsFromTheGuess) {
 TEST(AutoSolver, ChangesItsMethodAndNotItsAnswers) {
   Beam beam(18, 6);
   AutoSolver solver;
-  solver.analyse(beam.flesh->inner());
+  solver.analyse(beam.tissue->inner());
   for (const int columns : {0, 40, 0, 0, 2, 90, 90}) {
-    beam.flesh->assemble(0.01, {0, 0, -9.81});
-    solver.place(beam.flesh->position());
-    ASSERT_TRUE(solver.factorise(beam.flesh->inner()));
+    beam.tissue->assemble(0.01, {0, 0, -9.81});
+    solver.place(beam.tissue->position());
+    ASSERT_TRUE(solver.factorise(beam.tissue->inner()));
     BlockCholesky direct;
-    direct.analyse(beam.flesh->inner());
-    ASSERT_TRUE(direct.factorise(beam.flesh->inner()));
-    const Vector b = beam.flesh->right();
+    direct.analyse(beam.tissue->inner());
+    ASSERT_TRUE(direct.factorise(beam.tissue->inner()));
+    const Vector b = beam.tissue->right();
     Vector x = Vector::Zero(b.size()), truth = x;
     solver.solve(b, x);
     direct.solve(b, truth);
     EXPECT_LT(distance(x, truth), 1e-8);
     if (columns == 0) continue;
     Rows many(b.size(), columns);
-    for (int c = 0; c < columns; ++c) many.col(c) = random_vector(beam.flesh->moving(), static_cast<unsigned>(c));
+    for (int c = 0; c < columns; ++c) many.col(c) = random_vector(beam.tissue->moving(), static_cast<unsigned>(c));
     Rows right = many;
     solver.solve_many(many);
     direct.solve_many(right);
     EXPECT_LT((many - right).norm(), 1e-8 * right.norm());
     BlockColumns pushes;
-    pushes.clear(beam.flesh->moving());
+    pushes.clear(beam.tissue->moving());
     for (int three = 0; three < columns / 3; ++three) {
       pushes.entries.push_back({static_cast<std::uint32_t>(7 * three) % pushes.size, Block::Identity()});
       pushes.close();

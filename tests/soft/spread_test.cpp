@@ -1,5 +1,5 @@
-// What a point of a soft body's skin pulls at and follows, against its Jacobian written out over all twelve nodes that
-// it may ride on.
+// What a point of a soft body's collision mesh pulls at and follows, against its Jacobian written out over all twelve
+// nodes that it may ride on.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -14,7 +14,7 @@ namespace {
 const dmat3 kAxes = glm::mat3_cast(rotation_of({0.2, 0.4, -0.7}));
 const dvec3 kPlaces[]{{1, 0, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0.2, 0.5, 0.3}};  // barycentric
 
-// A finger whose last layer is pinned. Its skin stands on its nodes, or rides inside its tetrahedra.
+// A finger whose last layer is pinned. Its collision mesh stands on its nodes, or rides inside its tetrahedra.
 struct Finger {
   Bar bar = make_bar(4, 2, 2, 0.01, [](std::uint32_t i, std::uint32_t, std::uint32_t) {
     return i == 4 ? Role::kPinned : i <= 1 ? Role::kHandle : Role::kFree;
@@ -24,9 +24,9 @@ struct Finger {
 
   explicit Finger(bool inside) {
     if (inside)
-      for (Embedding& place : bar.tets.skin) place.weight = {0.1, 0.2, 0.3, 0.4};
+      for (Embedding& place : bar.tets.collision_mesh) place.weight = {0.1, 0.2, 0.3, 0.4};
     handle.attachment = Attachment::kSlave;
-    state = std::make_unique<SoftBodyState>(bar.tets, bar.skin, SoftBody{}, &handle,
+    state = std::make_unique<SoftBodyState>(bar.tets, bar.collision_mesh, SoftBody{}, &handle,
                                             Pose{{0.1, 0.2, -0.1}, rotation_of({0.3, -0.5, 0.2})});
     state->free_step(1.0 / 60, {0, -9.81, 0});
   }
@@ -36,7 +36,7 @@ struct Finger {
     Rows out = Rows::Zero(3, state->size());
     for (int corner = 0; corner < 3; ++corner)
       for (std::size_t k = 0; k < 4; ++k) {
-        const Embedding& place = tets.skin[bar.skin.triangles[point.triangle][corner]];
+        const Embedding& place = tets.collision_mesh[bar.collision_mesh.triangles[point.triangle][corner]];
         const std::uint32_t node = tets.tets[place.tet][k];
         const double weight = point.barycentric[corner] * place.weight[k];
         if (node < tets.free_count)
@@ -57,7 +57,7 @@ TEST(Spread, AndGatherAreTheJacobianOfTwelveNodes) {
     const Finger finger(inside);
     const SoftBodyState& state = *finger.state;
     const Rows x = Rows::Random(state.size(), 7);
-    for (std::uint32_t t = 0; t < finger.bar.skin.triangles.size(); ++t)
+    for (std::uint32_t t = 0; t < finger.bar.collision_mesh.triangles.size(); ++t)
       for (const dvec3 place : kPlaces) {
         const SurfacePoint point{t, place, {}};
         const Rows J = finger.jacobian(point);
@@ -75,7 +75,7 @@ TEST(Spread, AndGatherAreTheJacobianOfTwelveNodes) {
 TEST(Spread, AndGatherLeaveNodesOfNoWeightAlone) {
   const Finger finger(false);
   const SoftBodyState& state = *finger.state;
-  for (std::uint32_t t = 0; t < finger.bar.skin.triangles.size(); ++t)
+  for (std::uint32_t t = 0; t < finger.bar.collision_mesh.triangles.size(); ++t)
     for (const dvec3 place : kPlaces) {
       const SurfacePoint point{t, place, {}};
       const Rows J = finger.jacobian(point);

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <utility>
 
-#include "systems/soft/fem/flesh_step.h"
+#include "systems/soft/fem/tissue_step.h"
 #include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {
 
-const FleshMaterial kGel{
+const TissueMaterial kGel{
     .young = 1e5, .poisson = 0.45, .density = 1000, .beta = 1e-3};  // a stiff gel: thin legs sag by a few percent
 
 TEST(TetCorpus, EveryMeshSettlesUnderItsWeight) {
@@ -24,26 +24,26 @@ TEST(TetCorpus, EveryMeshSettlesUnderItsWeight) {
     Result<TetFile> file = load_tets(path);
     ASSERT_TRUE(file) << path;
     const TetMesh mesh = scenes::stand(std::move(*file));
-    Flesh flesh(mesh, kGel, mesh.free_count);
-    auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
-    solver->analyse(flesh.inner());
+    Tissue tissue(mesh, kGel, mesh.free_count);
+    auto solver = make_solver(SolverKind::kBlockCholesky, tissue.moving());
+    solver->analyse(tissue.inner());
     double fastest = 0;
     const int steps = std::clamp(static_cast<int>(40000 / mesh.tets.size()), 4, 60);
     for (int i = 0; i < steps; ++i) {
-      ASSERT_TRUE(step_flesh(flesh, *solver, 0.6 / steps, {0, -9.81, 0}).solved) << path << " step " << i;
-      const double kinetic = kinetic_energy(flesh);
+      ASSERT_TRUE(step_tissue(tissue, *solver, 0.6 / steps, {0, -9.81, 0}).solved) << path << " step " << i;
+      const double kinetic = kinetic_energy(tissue);
       ASSERT_TRUE(std::isfinite(kinetic)) << path;
       fastest = std::max(fastest, kinetic);
     }
-    const double volume = tets::volume(mesh, flesh.position()) / tets::volume(mesh, mesh.nodes);
-    EXPECT_LT(kinetic_energy(flesh), 1e-2 * fastest) << path;
+    const double volume = tets::volume(mesh, tissue.position()) / tets::volume(mesh, mesh.nodes);
+    EXPECT_LT(kinetic_energy(tissue), 1e-2 * fastest) << path;
     EXPECT_NEAR(volume, 1, 0.05) << path;
     // At rest elasticity carries the weight.
-    flesh.assemble(1.0, dvec3(0));
+    tissue.assemble(1.0, dvec3(0));
     double carried = 0, weight = 0;
     for (std::uint32_t n = 0; n < mesh.free_count; ++n) {
-      carried += flesh.elastic_force()[3 * n + 1];
-      weight += 9.81 * flesh.mass()[n];
+      carried += tissue.elastic_force()[3 * n + 1];
+      weight += 9.81 * tissue.mass()[n];
     }
     EXPECT_NEAR(carried, weight, 1e-2 * weight) << path;
   }

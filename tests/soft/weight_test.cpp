@@ -13,7 +13,7 @@ namespace {
 
 using scenes::ToolStage;
 
-// A block of 30 mm whose lower half is flesh, held 10 mm beside its middle.
+// A block of 30 mm whose lower half is tissue, held 10 mm beside its middle.
 struct Held {
   ToolStage stage{1.0 / 60.0};
   Entity tool;
@@ -32,7 +32,7 @@ struct Held {
     tool = stage.add_soft(mesh, body, Pose{}, &handle);
     stage.device_of(tool).max_force = 3.3;
     stage.prepare();
-    for (const double m : stage.flesh(tool).flesh().mass()) weight += m * stage.world.simulation.gravity;
+    for (const double m : stage.tissue(tool).tissue().mass()) weight += m * stage.world.simulation.gravity;
   }
   dvec3 force() { return stage.device_of(tool).force_sent; }
   dvec3 torque() { return stage.device_of(tool).torque_sent; }
@@ -62,15 +62,15 @@ TEST(Weight, OfAToolThatNothingCarriesIsFeltAndComesInAgainAfterALoss) {
   expect_all_of_it();
 }
 
-// Flesh hangs as it will rest: nothing falls, and the hand is given nothing.
-TEST(Weight, OfFleshHangsFromTheBeginning) {
+// Tissue hangs as it will rest: nothing falls, and the hand is given nothing.
+TEST(Weight, OfTissueHangsFromTheBeginning) {
   Held held(true);
-  const std::vector<dvec3> first = held.stage.flesh(held.tool).flesh().position();
+  const std::vector<dvec3> first = held.stage.tissue(held.tool).tissue().position();
   double most = 0.0, sag = 0.0;
   held.stage.lead(held.tool, dvec3(0), 0.3, [&] { most = std::max(most, length(held.force())); });
-  const Flesh& flesh = held.stage.flesh(held.tool).flesh();
+  const Tissue& tissue = held.stage.tissue(held.tool).tissue();
   for (std::size_t i = 0; i < first.size(); ++i) {
-    EXPECT_LT(length(flesh.position()[i] - first[i]), 1e-7);
+    EXPECT_LT(length(tissue.position()[i] - first[i]), 1e-7);
     sag = std::max(sag, -first[i].y - 0.015);
   }
   EXPECT_LT(most, 1e-4 * length(held.weight));
@@ -78,7 +78,7 @@ TEST(Weight, OfFleshHangsFromTheBeginning) {
 }
 
 // ... unless it would hang through what is below it: then it begins above that, and falls on it.
-TEST(Weight, OfFleshThatWouldHangThroughAFloorFallsOnItInstead) {
+TEST(Weight, OfTissueThatWouldHangThroughAFloorFallsOnItInstead) {
   for (const double gap : {1e-5, 0.05}) {
     ToolStage stage(1.0 / 60.0);
     TetMesh mesh = tets::box(3, 1, 1, dvec3(-0.03, -0.004, -0.005), dvec3(0.03, 0.004, 0.005));
@@ -94,10 +94,10 @@ TEST(Weight, OfFleshThatWouldHangThroughAFloorFallsOnItInstead) {
     floor.fixed = true;
     stage.add_rigid(scenes::sheet(4, 0.2), floor, Pose{{0, -0.004 - gap, 0}});
     stage.prepare();
-    const std::vector<dvec3>& skin = stage.flesh(tool).skin_position;
+    const std::vector<dvec3>& collision_mesh = stage.tissue(tool).surface_position;
     const auto lowest = [&] {
       double y = 1.0;
-      for (const dvec3& x : skin) y = std::min(y, x.y);
+      for (const dvec3& x : collision_mesh) y = std::min(y, x.y);
       return y;
     };
     if (gap > 1e-3)

@@ -38,7 +38,7 @@ struct Law {
   // Somebody's point at x, `depth` below the plate.
   void press(double x, double depth) {
     ContactPoint contact;
-    contact.body_a = 1;  // the flesh; the plate is body 0
+    contact.body_a = 1;  // the tissue; the plate is body 0
     contact.body_b = 0;
     contact.a.position = dvec3(x, -depth, 0);
     contact.normal = dvec3(0, 1, 0);
@@ -129,7 +129,7 @@ TEST(Yielding, AContactBesideAnOpenRimIsDropped) {
   Law law(plate());
   law.press(0.5 * kSize + 0.01, 1e-3);
   law.press(0.0, 1e-3);
-  const Mesh& mesh = *law.body->skin;
+  const Mesh& mesh = *law.body->collision_mesh;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)  // the search for contacts began at the rim
     for (int c = 0; c < 3; ++c)
       if (mesh.position(mesh.triangles[t][c]) == vec3(0.5f * float(kSize), 0, 0)) law.contacts[0].b.triangle = t;
@@ -187,12 +187,12 @@ TEST(Yielding, ABlockPressedOntoAPlateIsInBalanceAndDentsItAsP1Says) {
     const dvec3 force = press.stage.contact_force(press.tool, press.surface);
     ASSERT_GT(force.y, 0.5);
     EXPECT_LT(std::hypot(force.x, force.z), 0.01 * force.y);
-    const Vector6 coupling = press.stage.flesh(press.tool).coupling_wrench();
+    const Vector6 coupling = press.stage.tissue(press.tool).coupling_wrench();
     EXPECT_NEAR(force.y, -coupling[1], 0.01 * force.y);             // balance at rest
     EXPECT_NEAR(press.amplitude_force(), force.y, 0.05 * force.y);  // P1's law for that dent
-    double depth = 0.0;                                             // of the flesh's underside
-    for (const dvec3 x : press.stage.body(press.tool).skin_position) depth = std::max(depth, -x.y);
-    EXPECT_NEAR(press.deepest(), depth, 0.05 * depth);  // the surface is down where the flesh is
+    double depth = 0.0;                                             // of the tissue's underside
+    for (const dvec3 x : press.stage.body(press.tool).surface_position) depth = std::max(depth, -x.y);
+    EXPECT_NEAR(press.deepest(), depth, 0.05 * depth);  // the surface is down where the tissue is
     EXPECT_GT(depth, 1e-3);
   }
 }
@@ -210,7 +210,7 @@ TEST(Yielding, TheForceHardlyDependsOnHowManyPointsPress) {
     for (int i = 0; i < 200; ++i) stage.step();
     EXPECT_NEAR(stage.contact_force(rigid, surface).y, 2e5 * 1.728e-6 * 9.81, 0.02 * 2e5 * 1.728e-6 * 9.81);
     double depth = 0.0;
-    for (const dvec3 x : stage.body(rigid).skin_position) depth = std::max(depth, -x.y);
+    for (const dvec3 x : stage.body(rigid).surface_position) depth = std::max(depth, -x.y);
     force[cells == 3] = depth;
   }
   EXPECT_NEAR(force[0], force[1], 0.15 * force[0]);  // the same weight sinks in as deep
@@ -225,7 +225,7 @@ TEST(Yielding, AReleasedPlateComesBackAndPushesNobody) {
   EXPECT_EQ(press.deepest(), 0.0);
   const Mesh& mesh = press.stage.mesh(press.surface);
   const Body& body = press.stage.body(press.surface);
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) EXPECT_EQ(body.skin_position[v], dvec3(mesh.position(v)));
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) EXPECT_EQ(body.surface_position[v], dvec3(mesh.position(v)));
 }
 
 TEST(Yielding, AClosedPathOfTheHandGivesNoWork) {
@@ -243,7 +243,7 @@ TEST(Yielding, AClosedPathOfTheHandGivesNoWork) {
   }
 }
 
-TEST(Yielding, TheSurfaceFollowsTheFleshFromTickToTick) {
+TEST(Yielding, TheSurfaceFollowsTheTissueFromTickToTick) {
   Press press;
   double last = 0.0, largest = 0.0;
   press.stage.lead(press.tool, dvec3(0, -0.004, 0), 0.3, [&] {
@@ -254,7 +254,7 @@ TEST(Yielding, TheSurfaceFollowsTheFleshFromTickToTick) {
   EXPECT_LT(largest, last / 10);  // no jump at a soft step: each is ten ticks long
 }
 
-TEST(Yielding, ATickUnderPressingFleshAllocatesNothing) {
+TEST(Yielding, ATickUnderPressingTissueAllocatesNothing) {
   Press press;
   press.stage.lead(press.tool, dvec3(0, -0.004, 0), 0.2);
   for (int n = 0; n < 3; ++n) {

@@ -26,7 +26,8 @@ struct AirTool {
     body.rayleigh = {0.0, beta};
     handle.attachment = attachment;
     handle.carried = carried;
-    state = std::make_unique<SoftBodyState>(bar.tets, bar.skin, body, &handle, Pose{}, SolverKind::kEigenCholesky);
+    state = std::make_unique<SoftBodyState>(bar.tets, bar.collision_mesh, body, &handle, Pose{},
+                                            SolverKind::kEigenCholesky);
     state->set_tie_stiffness(tie);
   }
   void run(int steps, double dt, dvec3 gravity) {
@@ -37,22 +38,22 @@ struct AirTool {
   }
   double mass() const {
     double sum = 0.0;
-    for (std::uint32_t i = 0; i < bar.tets.pinned_begin(); ++i) sum += state->flesh().mass()[i];
+    for (std::uint32_t i = 0; i < bar.tets.pinned_begin(); ++i) sum += state->tissue().mass()[i];
     return sum;
   }
   // [kg m/s], [kg m2/s about the world's origin]; the handle's nodes are the handle's, however they are attached.
   Vector6 momentum() const {
-    const Flesh& flesh = state->flesh();
+    const Tissue& tissue = state->tissue();
     const Vector6 h = state->handle().mass_matrix() * state->handle().motion().velocity;
     dvec3 p = linear(h), L = angular(h) + cross(state->handle().motion().pose.position, linear(h));
     for (std::uint32_t i = 0; i < bar.tets.free_count; ++i) {
-      p += flesh.mass()[i] * flesh.velocity()[i];
-      L += cross(flesh.position()[i], flesh.mass()[i] * flesh.velocity()[i]);
+      p += tissue.mass()[i] * tissue.velocity()[i];
+      L += cross(tissue.position()[i], tissue.mass()[i] * tissue.velocity()[i]);
     }
     return join(p, L);
   }
   bool finite() const {
-    for (const dvec3 x : state->flesh().position())
+    for (const dvec3 x : state->tissue().position())
       if (!std::isfinite(dot(x, x))) return false;
     return state->velocity().allFinite();
   }

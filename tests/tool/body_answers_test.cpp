@@ -16,11 +16,11 @@ double distance(const Eigen::MatrixXd& x, const Eigen::MatrixXd& truth) {
   return (x - truth).norm() / truth.norm();
 }
 
-TEST(BodyAnswers, AreThoseOfTheFleshToItsContactsAndShakesAndTheGramMatrixIsTheirs) {
+TEST(BodyAnswers, AreThoseOfTheTissueToItsContactsAndShakesAndTheGramMatrixIsTheirs) {
   for (const Attachment attachment : {Attachment::kSlave, Attachment::kSpring}) {
     Handle6 handle = firm_handle();
     handle.attachment = attachment;
-    PressScene scene(firm_flesh(), handle, 0.4);
+    PressScene scene(firm_tissue(), handle, 0.4);
     for (int i = 1; i <= 8; ++i)
       scene.step(T, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
     scene.step(T, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));
@@ -28,7 +28,7 @@ TEST(BodyAnswers, AreThoseOfTheFleshToItsContactsAndShakesAndTheGramMatrixIsThei
     const FinishedStep step{scene.bodies, scene.contacts, scene.delassus, scene.problem, T, kUndonePenetration};
     const ToolContacts contacts(step, 0);
     const BodyAnswers of = answers_of(contacts, 0);
-    const Eigen::Index flesh = tool.size() - 6, rows = of.contact_rows(), columns = rows + of.shaken.cols();
+    const Eigen::Index tissue = tool.size() - 6, rows = of.contact_rows(), columns = rows + of.shaken.cols();
     ASSERT_GT(rows, 6);
     ASSERT_EQ(of.shaken.cols(), 6 * kShakes);
     ASSERT_FALSE(std::is_sorted(scene.contacts.begin(), scene.contacts.end(),
@@ -44,9 +44,9 @@ TEST(BodyAnswers, AreThoseOfTheFleshToItsContactsAndShakesAndTheGramMatrixIsThei
     Rows pulls = Rows::Zero(tool.size(), columns);
     for (int i = 0; i < contacts.count(); ++i) tool.spread(contacts[i].a, contacts[i].axes, 1.0, pulls, 3 * i);
     pulls.rightCols(of.shaken.cols()) = of.shaken;
-    Rows expected = pulls.topRows(flesh);
+    Rows expected = pulls.topRows(tissue);
     tool.solve_held(expected);
-    EXPECT_LT(distance(answers.topRows(flesh), expected), 1e-12);
+    EXPECT_LT(distance(answers.topRows(tissue), expected), 1e-12);
     EXPECT_LT(answers.bottomRows<6>().cwiseAbs().maxCoeff(), 1e-12 * answers.cwiseAbs().maxCoeff());
 
     const Eigen::MatrixXd gram = pulls.transpose() * answers;
@@ -59,7 +59,7 @@ TEST(BodyAnswers, AreThoseOfTheFleshToItsContactsAndShakesAndTheGramMatrixIsThei
 }
 
 TEST(ToolContacts, LeaveOutAnOpenContactThatNothingCouldBePredictedOf) {
-  PressScene scene(firm_flesh(), firm_handle(), 0.4);
+  PressScene scene(firm_tissue(), firm_handle(), 0.4);
   for (int i = 1; i <= 8; ++i)
     scene.step(T, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
   scene.step(T, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));

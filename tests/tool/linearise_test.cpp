@@ -31,7 +31,7 @@ struct Moved {
   bool same_contacts = true;  // none opened, closed, or changed between sticking and slipping
 
   Moved(double T, double tick, double friction, const Vector6& by) {
-    PressScene scene(firm_flesh(), firm_handle(), friction);
+    PressScene scene(firm_tissue(), firm_handle(), friction);
     const Pose at = scene.settle(T, 2e-3, 120, tick, model);
     const std::vector<ContactPoint> before = scene.contacts;
     scene.step(T, moved(at, by));
@@ -85,7 +85,7 @@ TEST(Linearise, ATickOfTheStepsOwnLengthIsThatStepWhateverBecomesOfTheContacts) 
 }
 
 // A bar between its handle and a wall, settled at every offset with steps so long that inertia does not count: what a
-// slow hand feels. (Under load the flesh's K' = R K R^T leaves out how R turns with the stress, an error of first
+// slow hand feels. (Under load the tissue's K' = R K R^T leaves out how R turns with the stress, an error of first
 // order.)
 class Tied {
  public:
@@ -96,7 +96,7 @@ class Tied {
                         return i == 0 ? Role::kHandle : i == 5 ? Role::kPinned : Role::kFree;
                       })),
         handle_(firm_handle()) {
-    bodies_.push_back(std::make_unique<SoftBodyState>(bar_.tets, bar_.skin, firm_flesh(), &handle_, Pose{}));
+    bodies_.push_back(std::make_unique<SoftBodyState>(bar_.tets, bar_.collision_mesh, firm_tissue(), &handle_, Pose{}));
     delassus_.of.resize(1);
     model.contacts.resize(kMaxCondensed, kMaxModes);
   }
@@ -120,7 +120,7 @@ class Tied {
   ContactProblem problem_;
 };
 
-TEST(Linearise, LinearModelErrsByTheSquareOfTheOffsetWhereFleshIsSmooth) {
+TEST(Linearise, LinearModelErrsByTheSquareOfTheOffsetWhereTissueIsSmooth) {
   Tied rest;
   rest.settle(Vector6::Zero());
   for (int axis = 0; axis < 6; ++axis) {
@@ -141,7 +141,7 @@ TEST(Linearise, LinearModelErrsByTheSquareOfTheOffsetWhereFleshIsSmooth) {
 
 TEST(Linearise, NoPartOfTheLinearModelCanGiveOutEnergy) {
   for (const double friction : {0.0, 0.3, 20.0}) {
-    PressScene scene(firm_flesh(), firm_handle(), friction);
+    PressScene scene(firm_tissue(), firm_handle(), friction);
     HandleModel model;
     Pose at = scene.settle(0.01, 3e-3, 60, 1e-3, model);
     for (int i = 0; i < 20; ++i) {  // drag it: with little friction everything slips
@@ -159,10 +159,10 @@ TEST(Linearise, NoPartOfTheLinearModelCanGiveOutEnergy) {
   }
 }
 
-// The flesh starts at rest, unloaded, a little above the ground: all that it ever gives back, the hand has put in.
-TEST(Linearise, CondensedFleshNeverGivesOutMoreThanTheHandPutIn) {
+// The tissue starts at rest, unloaded, a little above the ground: all that it ever gives back, the hand has put in.
+TEST(Linearise, CondensedTissueNeverGivesOutMoreThanTheHandPutIn) {
   for (const double friction : {0.0, 0.5}) {
-    PressScene scene(firm_flesh(), firm_handle(), friction);
+    PressScene scene(firm_tissue(), firm_handle(), friction);
     HandleModel model;
     scene.settle(0.016, -0.5e-3, 40, 1e-3, model);
     CondensedState state;
@@ -201,7 +201,7 @@ Rates compare_rates(double friction) {
     return moved(start, by);
   };
   std::vector<Vector6> truth, twists;
-  PressScene full(firm_flesh(), firm_handle(), friction), coarse(firm_flesh(), firm_handle(), friction);
+  PressScene full(firm_tissue(), firm_handle(), friction), coarse(firm_tissue(), firm_handle(), friction);
   for (int i = 0; i <= ticks; ++i) {
     full.step(tick, path(full.start(), i * tick));
     truth.push_back(full.wrench());

@@ -35,13 +35,13 @@ inline Handle6 firm_handle() {
   return handle;
 }
 
-inline SoftBody firm_flesh() {
-  SoftBody flesh;
-  flesh.young = 2e4;
-  flesh.poisson = 0.4;
-  flesh.density = 1000.0;
-  flesh.rayleigh = {1.0, 0.002};
-  return flesh;
+inline SoftBody firm_tissue() {
+  SoftBody tissue;
+  tissue.young = 2e4;
+  tissue.poisson = 0.4;
+  tissue.density = 1000.0;
+  tissue.rayleigh = {1.0, 0.002};
+  return tissue;
 }
 
 inline Pose moved(Pose pose, const Vector6& by) {
@@ -53,15 +53,15 @@ inline Pose moved(Pose pose, const Vector6& by) {
 class PressScene {
  public:
   // The finger hangs down from its handle: the bar's x runs along -y, its free end just over y = 0.
-  PressScene(const SoftBody& flesh, const Handle6& handle, double friction, std::uint32_t length = 5,
+  PressScene(const SoftBody& tissue, const Handle6& handle, double friction, std::uint32_t length = 5,
              std::uint32_t width = 2)
       : bar_(make_finger(length, width, width, kCell)), ground_(ground_mesh()), friction_(friction) {
     start_ = {dvec3(0, length * kCell, 0), rotation_of(dvec3(0, 0, -0.5 * 3.14159265358979323846))};
-    bodies.push_back(std::make_unique<SoftBodyState>(bar_.tets, bar_.skin, flesh, &handle, start_));
+    bodies.push_back(std::make_unique<SoftBodyState>(bar_.tets, bar_.collision_mesh, tissue, &handle, start_));
     bodies.push_back(std::make_unique<FixedBody>(ground_, Pose{}));
-    skin_triangle_.resize(bar_.skin.vertex_count);
-    for (std::uint32_t t = 0; t < bar_.skin.triangles.size(); ++t)
-      for (int c = 0; c < 3; ++c) skin_triangle_[bar_.skin.triangles[t][c]] = {t, c};
+    surface_triangle_.resize(bar_.collision_mesh.vertex_count);
+    for (std::uint32_t t = 0; t < bar_.collision_mesh.triangles.size(); ++t)
+      for (int c = 0; c < 3; ++c) surface_triangle_[bar_.collision_mesh.triangles[t][c]] = {t, c};
   }
   static constexpr double kCell = 0.01;  // [m]
 
@@ -102,7 +102,7 @@ class PressScene {
   void advance() {
     for (auto& body : bodies) body->advance(T_);
   }
-  // [N], [N m] flesh and contacts on the handle over the step.
+  // [N], [N m] tissue and contacts on the handle over the step.
   Vector6 wrench() {
     HandleModel model;
     reduce(T_, model);
@@ -125,14 +125,14 @@ class PressScene {
   void find_contacts() {
     std::vector<ContactPoint> before = std::move(contacts);
     contacts.clear();
-    for (std::uint32_t v = 0; v < bar_.skin.vertex_count; ++v) {
-      const dvec3 x = bodies[0]->skin_position[v];
+    for (std::uint32_t v = 0; v < bar_.collision_mesh.vertex_count; ++v) {
+      const dvec3 x = bodies[0]->surface_position[v];
       if (x.y > margin) continue;
       ContactPoint c;
       c.body_a = 0, c.body_b = 1;
-      c.a.triangle = skin_triangle_[v].triangle;
+      c.a.triangle = surface_triangle_[v].triangle;
       c.a.barycentric = dvec3(0);
-      c.a.barycentric[skin_triangle_[v].corner] = 1.0;
+      c.a.barycentric[surface_triangle_[v].corner] = 1.0;
       c.a.position = x;
       c.b.position = dvec3(x.x, 0, x.z);
       c.normal = dvec3(0, 1, 0);
@@ -149,7 +149,7 @@ class PressScene {
   Bar bar_;
   Mesh ground_;
   double friction_;
-  std::vector<Corner> skin_triangle_;
+  std::vector<Corner> surface_triangle_;
   Pose start_, device_;
   bool placed_ = false;
   double T_ = 0.0;

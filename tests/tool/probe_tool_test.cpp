@@ -73,7 +73,7 @@ TEST(ProbeTool, OnAFixedBodyItsCouplingIsFelt) {
   }
 }
 
-SoftBody flesh() {
+SoftBody tissue() {
   SoftBody body;
   body.young = 1e4;
   body.poisson = 0.4;
@@ -87,7 +87,7 @@ TEST(ProbeTool, ASoftBodyGivesWayAndPushesBack) {
   tets::hold(
       organ, [](dvec3 x) { return x.y < -0.0399; }, [](dvec3) { return false; });
   stage.world.simulation.gravity = dvec3(0);
-  const Entity body = stage.add_soft(std::move(organ), flesh(), at(dvec3(0)));
+  const Entity body = stage.add_soft(std::move(organ), tissue(), at(dvec3(0)));
   const Entity probe = add_probe(stage, {0, 0.02, 0}, 8e-3);
   stage.prepare();
   stage.lead(probe, dvec3(0, 0.02, 0), 0.1);
@@ -97,7 +97,7 @@ TEST(ProbeTool, ASoftBodyGivesWayAndPushesBack) {
     stage.lead(probe, dvec3(0, 8e-3 - depth, 0), 0.6);
     const double force = stage.read(probe).force.y;
     EXPECT_GT(force, 1.3 * last) << depth;
-    EXPECT_LT(force, 0.5 * law(stage, probe, depth)) << "most of the way is the flesh's";
+    EXPECT_LT(force, 0.5 * law(stage, probe, depth)) << "most of the way is the tissue's";
     EXPECT_NEAR(-stage.contact_force(body, probe).y, force, 0.02 * force) << "action and reaction";
     last = force;
   }
@@ -152,7 +152,7 @@ TEST(ProbeTool, ABodyOutOfReachChangesNothing) {
 TEST(ProbeTool, TwoProbesLiftASoftCube) {
   ToolStage stage(kSoftStep);
   add_fixed(stage, dvec3(0.3, 0.02, 0.3), dvec3(0, -0.01, 0));
-  SoftBody body = flesh();
+  SoftBody body = tissue();
   body.density = 500.0;
   body.friction_static = 0.8;
   body.friction_sliding = 0.7;
@@ -171,7 +171,7 @@ TEST(ProbeTool, TwoProbesLiftASoftCube) {
   };
   const auto lowest = [&] {
     double y = 1e9;
-    for (const dvec3& x : stage.body(cube).skin_position) y = std::min(y, x.y);
+    for (const dvec3& x : stage.body(cube).surface_position) y = std::min(y, x.y);
     return y;
   };
   both(0.04, 0.015, 0.3);

@@ -104,7 +104,7 @@ Felt press(World world, double speed, bool jumps, unsigned seed) {
     const dvec3 wanted = tool.sensed.at(tool.model.read().centre).pose.position;
     out.most_stretch = std::max(out.most_stretch, length(wanted - tool.handle.pose.position));
     for (const auto& body : world.soft->bodies)
-      if (body->size() > 0) out.farthest = std::max(out.farthest, length(body->skin_position.front()));
+      if (body->size() > 0) out.farthest = std::max(out.farthest, length(body->surface_position.front()));
   }
   out.work = tool.torque_safety.work;
   out.stored = std::max(tool.force_safety.stored, tool.torque_safety.stored);

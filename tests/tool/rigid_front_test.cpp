@@ -28,7 +28,7 @@ TetMesh block(Rigid rigid) {
   return mesh;
 }
 
-SoftBody flesh(double young = 2e4) {
+SoftBody tissue(double young = 2e4) {
   SoftBody body;
   body.young = young;
   body.poisson = 0.3;
@@ -54,7 +54,7 @@ struct Watch {
 
 Entity add_tool(ToolStage& stage, Rigid rigid, Pose pose, double young = 2e4) {
   const Handle6 handle;
-  const Entity tool = stage.add_soft(block(rigid), flesh(young), pose, &handle);
+  const Entity tool = stage.add_soft(block(rigid), tissue(young), pose, &handle);
   stage.device_of(tool).max_force = 3.3;
   stage.device_of(tool).max_slew = kSlew;
   return tool;
@@ -122,7 +122,7 @@ TEST(RigidFront, OnAFixedFloorTheCouplingAloneIsFelt) {
   expect_the_coupling_is_felt_on_a_floor(Rigid::kAll, 2e4, 3e-3);
 }
 
-TEST(RigidFront, FleshAsHardAsStoneIsOne) {
+TEST(RigidFront, TissueAsHardAsStoneIsOne) {
   for (const double young : {1e8, 1e9, 1e10, 1e12}) expect_the_coupling_is_felt_on_a_floor(Rigid::kBack, young, 3e-3);
 }
 
@@ -183,7 +183,7 @@ TEST(RigidFront, ARigidBoxOnTheFloorIsAsGoodAsTheFloor) {
   EXPECT_NEAR(linear(state_of(stage, watch.tool).device_wrench).y, coupling_law(3e-3), 0.02);
   EXPECT_LE(watch.most_change, kSlew * stage.dt() * (1 + 1e-9));
   EXPECT_LT(watch.most_force, 1.1 * coupling_law(3e-3));
-  for (const dvec3& x : stage.body(between).skin_position)
+  for (const dvec3& x : stage.body(between).surface_position)
     EXPECT_TRUE(x.y > -1e-4 && x.y < 0.0401) << "it is neither pressed in nor thrown up: " << x.y;
 }
 

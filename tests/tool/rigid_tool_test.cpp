@@ -1,5 +1,5 @@
 // A rigid body with a handle: an instrument. Oracles: the coupling's law F_max tanh(k d / F_max) where nothing gives
-// way, a tool of flesh that is rigid all through as a twin, the instrument's weight, action and reaction.
+// way, a tool of tissue that is rigid all through as a twin, the instrument's weight, action and reaction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -94,7 +94,7 @@ TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
     stage.lead(tool, dvec3(0, 0.045 - 0.01, 0), 0.02 / speed);
     stage.lead(tool, dvec3(0, 0.045 - 0.01, 0), 1.0);
     EXPECT_NEAR(felt(stage, tool).y, law({}, 0.01), 0.02 * law({}, 0.01));
-    for (const dvec3& x : stage.body(between).skin_position)
+    for (const dvec3& x : stage.body(between).surface_position)
       EXPECT_TRUE(x.y > -3e-4 && x.y < 0.0303) << "neither pressed in nor thrown up: " << x.y;
   }
 }
@@ -127,7 +127,7 @@ TEST(RigidTool, OnATowerTheForceIsStillForAsLongAsItIsHeld) {
 }
 
 // The same instrument as tetrahedra that all belong to the handle.
-TEST(RigidTool, FeelsAsAToolOfFleshThatIsRigidAllThrough) {
+TEST(RigidTool, FeelsAsAToolOfTissueThatIsRigidAllThrough) {
   const auto forces = [](bool tetrahedra) {
     ToolStage stage(kSoftStep);
     SoftBody soft;
@@ -226,7 +226,7 @@ TEST(RigidTool, TwoInstrumentsPinchASoftCubeAtAnySpeed) {
     both(near, height + 0.03, 0.03 / std::min(speed, 0.3));
     both(near, height + 0.03, 1.5);
     double lowest = 1e300;
-    for (const dvec3& x : stage.body(cube).skin_position) lowest = std::min(lowest, x.y);
+    for (const dvec3& x : stage.body(cube).surface_position) lowest = std::min(lowest, x.y);
     EXPECT_GT(lowest, 0.02) << "it hangs between the two";
     const dvec3 of_left = felt(stage, left), of_right = felt(stage, right);
     EXPECT_GT(of_right.x, 0.2);
@@ -250,7 +250,7 @@ TEST(RigidTool, WhatGetsAwayIsSetBackIntoTheHand) {
   EXPECT_NE(stage.world.dropped & kDroppedSetBack, 0u);
   EXPECT_NE(stage.world.dropped & kDroppedJump, 0u);
   EXPECT_LT(length(state_of(stage, tool).handle.pose.position - dvec3(5, 0.1, 0)), 1e-3);
-  EXPECT_LT(length(stage.body(tool).skin_position.front() - dvec3(5, 0.1, 0)), 0.03);
+  EXPECT_LT(length(stage.body(tool).surface_position.front() - dvec3(5, 0.1, 0)), 0.03);
   EXPECT_LT(most, 0.2) << "[N] below what opens the gate";
   // And it works as before.
   stage.lead(tool, dvec3(5.01, 0.1, 0), 0.1);

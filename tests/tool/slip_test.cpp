@@ -9,7 +9,7 @@
 #include "systems/soft/collide/contact_geometry.h"
 #include "systems/soft/collide/surface_walk.h"
 #include "systems/tool/tool_tick.h"
-#include "tests/soft/skin_shapes.h"
+#include "tests/soft/collision_shapes.h"
 #include "tests/tool/press_scene.h"
 
 namespace pliant {
@@ -36,10 +36,10 @@ class BarOnRidge {
 
   BarOnRidge()
       : bar_(make_bar(8, 2, 2, kCell, [](auto i, auto, auto) { return i == 8 ? Role::kHandle : Role::kFree; })) {
-    find_neighbours(bar_.skin, float(kCell));
+    find_neighbours(bar_.collision_mesh, float(kCell));
     ground_ = ground_mesh();
     find_neighbours(ground_, 100.0f);
-    bodies_.push_back(std::make_unique<SoftBodyState>(bar_.tets, bar_.skin, firm_flesh(), &handle_, Pose{}));
+    bodies_.push_back(std::make_unique<SoftBodyState>(bar_.tets, bar_.collision_mesh, firm_tissue(), &handle_, Pose{}));
     bodies_.push_back(std::make_unique<FixedBody>(ground_, Pose{}));
     model.contacts.resize(kMaxCondensed, kMaxModes);
     rest_ = tool().handle().motion().pose;
@@ -78,9 +78,9 @@ class BarOnRidge {
     c.b.position = ridge;
     c.over_a = dmat2(-1.0);  // it is touched where the ridge is
     c.mu_static = c.mu_sliding = 0.0;
-    const std::vector<dvec3>& x = bodies_[0]->skin_position;
-    for (std::uint32_t t = 0; t < bar_.skin.triangles.size(); ++t) {
-      const uvec3 k = bar_.skin.triangles[t];
+    const std::vector<dvec3>& x = bodies_[0]->surface_position;
+    for (std::uint32_t t = 0; t < bar_.collision_mesh.triangles.size(); ++t) {
+      const uvec3 k = bar_.collision_mesh.triangles[t];
       const dvec3 e = x[k.y] - x[k.x], f = x[k.z] - x[k.x], n = cross(e, f), d = ridge - x[k.x];
       if (!(n.y < -0.9 * length(n))) continue;
       const double det = e.x * f.z - e.z * f.x, u = (d.x * f.z - d.z * f.x) / det, v = (e.x * d.z - e.z * d.x) / det;
@@ -192,17 +192,17 @@ Mesh egg_mesh(vec3 half, int levels) {
 struct Standing {
   Mesh mesh;
   FixedBody body;
-  Skin skin;
-  Standing(Mesh&& shape, dvec3 at) : mesh(std::move(shape)), body(mesh, Pose{}), skin(body) {
-    for (dvec3& x : body.skin_position) x += at;
-    for (int i = 0; i < 2; ++i) skin.refit(body, 0.01, 1e-3);
+  CollisionMesh collision_mesh;
+  Standing(Mesh&& shape, dvec3 at) : mesh(std::move(shape)), body(mesh, Pose{}), collision_mesh(body) {
+    for (dvec3& x : body.surface_position) x += at;
+    for (int i = 0; i < 2; ++i) collision_mesh.refit(body, 0.01, 1e-3);
   }
 };
 
 std::uint32_t lowest_vertex(const Standing& of) {
   std::uint32_t v = 0;
   for (std::uint32_t k = 0; k < of.mesh.vertex_count; ++k)
-    if (of.body.skin_position[k].y < of.body.skin_position[v].y) v = k;
+    if (of.body.surface_position[k].y < of.body.surface_position[v].y) v = k;
   return v;
 }
 
@@ -211,18 +211,20 @@ TEST(Slip, ThePlaceOfTouchStaysOnWhatIsMoreCurved) {
   const vec3 half(0.03f, 0.01f, 0.012f), across(half.z, half.y, half.x);
   const Standing upper(egg_mesh(half, 4), dvec3(0, 0.02, 0)), lower(egg_mesh(across, 4), dvec3(0));
   const std::uint32_t v = lowest_vertex(upper);
-  const dvec3 foot = upper.body.skin_position[v];
+  const dvec3 foot = upper.body.surface_position[v];
   std::uint32_t below = 0;
   for (std::uint32_t t = 0; t < lower.mesh.triangles.size(); ++t) {
     const auto height = [&](std::uint32_t k) {
       const uvec3 c = lower.mesh.triangles[k];
       const dvec3 m =
-          (lower.body.skin_position[c.x] + lower.body.skin_position[c.y] + lower.body.skin_position[c.z]) / 3.0;
+          (lower.body.surface_position[c.x] + lower.body.surface_position[c.y] + lower.body.surface_position[c.z]) /
+          3.0;
       return length(m - foot);
     };
     if (height(t) < height(below)) below = t;
   }
-  const FeaturePair pair{upper.skin, lower.skin, false, v, below, lower.skin.normal(below)};
+  const FeaturePair pair{
+      upper.collision_mesh, lower.collision_mesh, false, v, below, lower.collision_mesh.normal(below)};
   ContactPoint contact;
   ASSERT_TRUE(look_ahead(pair, contact));
   contact.axes = dmat3(dvec3(0, 1, 0), dvec3(1, 0, 0), dvec3(0, 0, -1));
@@ -246,19 +248,19 @@ TEST(Slip, ThePlaceOfTouchStaysOnWhatIsMoreCurved) {
 TEST(Slip, AWalkGoesAsFarAsItSaysAndEndsAtCreases) {
   const double radius = 0.02;
   const Standing ball(test::sphere_mesh(float(radius), 4), dvec3(0)), box(test::block_mesh(vec3(0.02f), 4), dvec3(0));
-  const SurfacePoint from = ball.skin.point_on_triangle(7, dvec3(0.2, 0.3, 0.5));
+  const SurfacePoint from = ball.collision_mesh.point_on_triangle(7, dvec3(0.2, 0.3, 0.5));
   const dvec3 by = 0.01 * normalize(cross(from.position, dvec3(0.3, -0.2, 0.7)));
   const auto there = walk(ball.body, from, by);
   ASSERT_TRUE(there);
   EXPECT_NEAR(radius * std::acos(dot(normalize(there->position), normalize(from.position))), 0.01, 2e-4);
   const uvec3 c = ball.mesh.triangles[there->triangle];
-  const dvec3 at = there->barycentric.x * ball.body.skin_position[c.x] +
-                   there->barycentric.y * ball.body.skin_position[c.y] +
-                   there->barycentric.z * ball.body.skin_position[c.z];
+  const dvec3 at = there->barycentric.x * ball.body.surface_position[c.x] +
+                   there->barycentric.y * ball.body.surface_position[c.y] +
+                   there->barycentric.z * ball.body.surface_position[c.z];
   EXPECT_LT(length(at - there->position), 1e-6);
 
-  const SurfacePoint on_box = box.skin.point_on_triangle(0, dvec3(0.3, 0.3, 0.4));
-  const dvec3 aside = normalize(cross(box.skin.normal(0), dvec3(0.36, 0.48, 0.8)));
+  const SurfacePoint on_box = box.collision_mesh.point_on_triangle(0, dvec3(0.3, 0.3, 0.4));
+  const dvec3 aside = normalize(cross(box.collision_mesh.normal(0), dvec3(0.36, 0.48, 0.8)));
   EXPECT_TRUE(walk(box.body, on_box, 0.0005 * aside));
   EXPECT_FALSE(walk(box.body, on_box, 0.04 * aside));
 }

@@ -147,7 +147,7 @@ TEST(ToolFeedback, AModelsUpdateIsNoJump) {
     stage.state().wanted = mode;
     const auto press = [&](double newton) {
       stage.model.force.setZero();
-      stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = newton;
+      stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = newton;
     };
     press(0.5);
     stage.publish();
@@ -185,14 +185,14 @@ TEST(ToolFeedback, NoTickAfterAModelsUpdateChangesTheForceBeyondTwiceTheSlope) {
   RigidBody floor;
   floor.fixed = true;
   stage.add_rigid(scenes::box(dvec3(0.3, 0.02, 0.3)), floor, Pose{dvec3(0, -0.01, 0), {1, 0, 0, 0}});
-  SoftBody flesh = firm_flesh();
-  flesh.friction_static = flesh.friction_sliding = 0.4;
-  stage.add_soft(tets::box(4, 2, 4, dvec3(-0.04, 0.0, -0.04), dvec3(0.04, 0.03, 0.04)), flesh, Pose{});
+  SoftBody tissue = firm_tissue();
+  tissue.friction_static = tissue.friction_sliding = 0.4;
+  stage.add_soft(tets::box(4, 2, 4, dvec3(-0.04, 0.0, -0.04), dvec3(0.04, 0.03, 0.04)), tissue, Pose{});
   TetMesh finger = tets::box(2, 3, 2, dvec3(-0.01, -0.015, -0.01), dvec3(0.01, 0.015, 0.01));
   tets::hold(
       finger, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 6e-3; });
   const Handle6 handle;
-  const Entity tool = stage.add_soft(finger, flesh, Pose{dvec3(0, 0.047, 0), {1, 0, 0, 0}}, &handle);
+  const Entity tool = stage.add_soft(finger, tissue, Pose{dvec3(0, 0.047, 0), {1, 0, 0, 0}}, &handle);
   stage.prepare();
   const ToolTouchState& state = *stage.world.tools->tools[0];
   std::vector<dvec3> force;
@@ -221,7 +221,7 @@ TEST(ToolFeedback, AModelThatGrewOldFadesToNothing) {
   for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
     Stage stage(coupling(200.0));
     stage.state().wanted = mode;
-    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 1.0;
+    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 1.0;
     stage.publish();
     double before = 1.0, most = 0.0;
     for (int i = 0; i < 150; ++i) {
@@ -239,7 +239,7 @@ TEST(ToolFeedback, AModelThatGrewOldFadesToNothing) {
 struct Pressing {
   PressScene scene;
   Pose at;
-  explicit Pressing(Stage& stage, double friction) : scene(firm_flesh(), firm_handle(), friction, 4, 5) {
+  explicit Pressing(Stage& stage, double friction) : scene(firm_tissue(), firm_handle(), friction, 4, 5) {
     at = scene.settle(1.0 / 60.0, 2e-3, 30, kTick, stage.model);
     stage.hand().position = at.position;
     stage.hand().rotation = at.rotation;
@@ -292,7 +292,7 @@ TEST(ToolFeedback, ATickAllocatesNothing) {
 
 TEST(ToolFeedback, NothingIsFeltOfADeviceThatIsLost) {
   Stage stage(coupling(200.0));
-  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 0.1;
+  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 0.1;
   stage.publish();
   for (int i = 0; i < 40; ++i) stage.tick();
   EXPECT_GT(length(stage.hand().force_sent), 0.05);
@@ -316,7 +316,7 @@ TEST(ToolFeedback, AToolWhoseDeviceIsLostWaitsAndIsTakenUpAgainWithoutAJump) {
   HapticDevice& hand = stage.hand();
   hand.max_force = 3.3;
   hand.max_slew = 20.0;
-  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 0.1;
+  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 0.1;
   double before = 0.0;
   const auto run = [&](int ticks, auto each) {
     for (int i = 0; i < ticks; ++i) {
@@ -365,8 +365,8 @@ TEST(ToolFeedback, ACarriedToolIsLetGoWhenItsModelIsTooOldToBeBelieved) {
   for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
     Stage stage(coupling(200.0));
     stage.state().wanted = mode;
-    // Flesh pulls down with its weight, what carries it holds against that: the hand feels nothing.
-    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = -0.5;
+    // Tissue pulls down with its weight, what carries it holds against that: the hand feels nothing.
+    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = -0.5;
     stage.model.handle_load[1] = 0.5;
     stage.publish();
     double most = 0.0;
@@ -398,7 +398,7 @@ TEST(CondensedState, AStiffContactGoesOnFromItsLastForceUnlessThatIsNoNumber) {
 TEST(ToolFeedback, AModelThatIsNoNumberIsNotFeltAndTheNextOneIs) {
   Stage stage(coupling(200.0));
   const auto press = [&](double newton) {
-    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = newton;
+    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = newton;
     stage.publish();
   };
   press(0.1);
@@ -421,7 +421,7 @@ TEST(ToolFeedback, AModelThatIsNoNumberIsNotFeltAndTheNextOneIs) {
 TEST(ToolFeedback, NothingLeavesAtOnceWhereTheDevicesRotationIsNone) {
   Stage stage(coupling(200.0));
   stage.hand().max_slew = 1.0;  // letting go by slewing would take 100 ticks
-  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.flesh_force[1] = 0.1;
+  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 0.1;
   for (int i = 0; i < 200; ++i) {
     if (i % 16 == 0) stage.publish();
     stage.tick();

@@ -1,5 +1,5 @@
 // Tools where it is hard: jumps, devices that talk nonsense, a handle of few nodes or of all, none at all, pinned
-// flesh.
+// tissue.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -62,7 +62,7 @@ TEST(Tool, ThatIsAllHandleIsARigidBody) {
   const Bar bar = make_bar(2, 1, 1, 0.01, [](std::uint32_t, std::uint32_t, std::uint32_t) { return Role::kHandle; });
   Handle6 handle;
   for (const SolverKind kind : available_solvers()) {
-    SoftBodyState state(bar.tets, bar.skin, {}, &handle, Pose{}, kind);
+    SoftBodyState state(bar.tets, bar.collision_mesh, {}, &handle, Pose{}, kind);
     ASSERT_EQ(state.size(), 6);
     for (int i = 0; i < 30; ++i) {
       state.free_step(T, kGravity);
@@ -70,14 +70,15 @@ TEST(Tool, ThatIsAllHandleIsARigidBody) {
     }
     EXPECT_TRUE(state.solvable());
     EXPECT_LT(length(state.handle().object_pose().position - dvec3(0, -9.81 * T * T * 30 * 31 / 2, 0)), 1e-12);
-    EXPECT_LT(state.flesh_matrix().norm(), 1e-12 * state.handle_mass().norm());
+    EXPECT_LT(state.tissue_matrix().norm(), 1e-12 * state.handle_mass().norm());
   }
 }
 
-TEST(Tool, WithoutAHandleIsFleshThatFalls) {
+TEST(Tool, WithoutAHandleIsTissueThatFalls) {
   const Bar bar = make_finger(2, 1, 1, 0.01);  // whose handle nobody declares
   SoftBody body;
-  SoftBodyState state(bar.tets, bar.skin, body, nullptr, Pose{{0, 1, 0}, {1, 0, 0, 0}}, SolverKind::kEigenCholesky);
+  SoftBodyState state(bar.tets, bar.collision_mesh, body, nullptr, Pose{{0, 1, 0}, {1, 0, 0, 0}},
+                      SolverKind::kEigenCholesky);
   EXPECT_FALSE(state.has_handle());
   EXPECT_EQ(state.size(), 3 * static_cast<int>(bar.tets.node_count()));
   for (int i = 0; i < 30; ++i) {
@@ -86,7 +87,7 @@ TEST(Tool, WithoutAHandleIsFleshThatFalls) {
   }
   // Implicit Euler falls by g T^2 n (n + 1) / 2.
   for (std::uint32_t i = 0; i < bar.tets.node_count(); ++i)
-    EXPECT_LT(length(state.flesh().position()[i] - bar.tets.nodes[i] - dvec3(0, 1 - 9.81 * T * T * 30 * 31 / 2, 0)),
+    EXPECT_LT(length(state.tissue().position()[i] - bar.tets.nodes[i] - dvec3(0, 1 - 9.81 * T * T * 30 * 31 / 2, 0)),
               1e-12);
 }
 
@@ -99,10 +100,10 @@ TEST(Tool, IsPinnedWhereItIsPinned) {
     tool.state->set_device({{-0.01, 0, 0}, {1, 0, 0, 0}}, Vector6::Zero());
     tool.run(300, T, dvec3(0));
     for (std::uint32_t i = bar.tets.pinned_begin(); i < bar.tets.node_count(); ++i)
-      EXPECT_EQ(tool.state->flesh().position()[i], bar.tets.nodes[i]);
+      EXPECT_EQ(tool.state->tissue().position()[i], bar.tets.nodes[i]);
     // It is stretched; the hand holds against it.
     EXPECT_LT(linear(tool.state->coupling_wrench()).x, -1e-3);
-    EXPECT_NEAR((tool.state->coupling_wrench() + tool.state->flesh_wrench()).norm(), 0.0, 1e-6);
+    EXPECT_NEAR((tool.state->coupling_wrench() + tool.state->tissue_wrench()).norm(), 0.0, 1e-6);
   }
 }
 

@@ -1,4 +1,4 @@
-// Tools of handle and flesh: rigid motion, momentum, equilibrium, and what skin and device see of them.
+// Tools of handle and tissue: rigid motion, momentum, equilibrium, and what collision mesh and device see of them.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -23,7 +23,7 @@ TEST(Tool, FollowsItsDeviceWithoutStrainOnceTheWayIsDone) {
       const double part = double(i) / steps, rate = 1 / (steps * T);
       tool.state->set_device({part * way, rotation_of(part * turn)}, join(rate * way, rate * turn));
       tool.run(1, T, dvec3(0));
-      largest = std::max(largest, tool.state->flesh().elastic_energy());
+      largest = std::max(largest, tool.state->tissue().elastic_energy());
     }
     tool.state->set_device({way, rotation_of(turn)}, Vector6::Zero());
     tool.run(600, T, dvec3(0));
@@ -31,10 +31,10 @@ TEST(Tool, FollowsItsDeviceWithoutStrainOnceTheWayIsDone) {
     EXPECT_LT(length(tool.state->handle().object_pose().position - way), 1e-9);
     EXPECT_LT(length(vector_of(handle.pose.rotation * glm::conjugate(rotation_of(turn)))), 1e-8);
     EXPECT_GT(largest, 0.0);
-    EXPECT_LT(tool.state->flesh().elastic_energy(), 1e-10 * largest);
+    EXPECT_LT(tool.state->tissue().elastic_energy(), 1e-10 * largest);
     for (std::uint32_t i = 0; i < tool.bar.tets.node_count(); ++i)
       ASSERT_LT(
-          length(tool.state->flesh().position()[i] - Pose{way, rotation_of(turn)}.to_world(tool.bar.tets.nodes[i])),
+          length(tool.state->tissue().position()[i] - Pose{way, rotation_of(turn)}.to_world(tool.bar.tets.nodes[i])),
           1e-8);
   }
 }
@@ -45,7 +45,7 @@ TEST(Tool, SlavedNodesAreRigidToTheLastDigit) {
   tool.run(20, T, kGravity);
   const TetMesh& tets = tool.bar.tets;
   for (std::uint32_t i = tets.free_count; i < tets.pinned_begin(); ++i)
-    EXPECT_LT(length(tool.state->flesh().position()[i] - tool.state->handle().object_pose().to_world(tets.nodes[i])),
+    EXPECT_LT(length(tool.state->tissue().position()[i] - tool.state->handle().object_pose().to_world(tets.nodes[i])),
               1e-15);
 }
 
@@ -89,11 +89,11 @@ TEST(Tool, HangsFromItsDeviceWithItsWeight) {
     const double weight = 9.81 * tool.mass();
     EXPECT_LT(weight, tool.handle.max_force);
     EXPECT_LT(length(linear(tool.state->coupling_wrench()) - dvec3(0, weight, 0)), 1e-9 * weight);
-    // What flesh adds is the weight of what is not the handle's.
-    const dvec3 flesh = linear(tool.state->flesh_wrench() + tool.state->handle_load());
-    EXPECT_LT(length(flesh - dvec3(0, -weight, 0)), 1e-9 * weight);
+    // What tissue adds is the weight of what is not the handle's.
+    const dvec3 tissue = linear(tool.state->tissue_wrench() + tool.state->handle_load());
+    EXPECT_LT(length(tissue - dvec3(0, -weight, 0)), 1e-9 * weight);
     // And its moment about the handle's centre is what the coupling holds.
-    const Vector6 left = tool.state->coupling_wrench() + tool.state->flesh_wrench() + tool.state->handle_load();
+    const Vector6 left = tool.state->coupling_wrench() + tool.state->tissue_wrench() + tool.state->handle_load();
     EXPECT_LT(left.tail<3>().norm(), 1e-9 * weight * 0.05);
     EXPECT_GT(length(angular(tool.state->coupling_wrench())), 1e-3 * weight * 0.05);
   }
@@ -106,12 +106,13 @@ TEST(Tool, CarriedToolPullsAtItsDeviceOnlyByTheMomentOfItsSag) {
     tool.run(500, 0.2, kGravity);
     const double weight = 9.81 * tool.mass();
     EXPECT_LT(length(linear(tool.state->coupling_wrench())), 1e-9 * weight);
-    // Flesh that bends under its weight moves its centre of mass: that much, and nothing else, is left to the coupling.
+    // Tissue that bends under its weight moves its centre of mass: that much, and nothing else, is left to the
+    // coupling.
     dvec3 centre(0), carried(0);
-    const Flesh& flesh = tool.state->flesh();
+    const Tissue& tissue = tool.state->tissue();
     for (std::uint32_t i = 0; i < tool.bar.tets.pinned_begin(); ++i) {
-      centre += flesh.mass()[i] * flesh.position()[i] / tool.mass();
-      carried += flesh.mass()[i] * tool.state->handle().object_pose().to_world(tool.bar.tets.nodes[i]) / tool.mass();
+      centre += tissue.mass()[i] * tissue.position()[i] / tool.mass();
+      carried += tissue.mass()[i] * tool.state->handle().object_pose().to_world(tool.bar.tets.nodes[i]) / tool.mass();
     }
     EXPECT_GT(length(centre - carried), 1e-5);
     const dvec3 moment = cross(centre - carried, dvec3(0, -weight, 0));
@@ -124,7 +125,7 @@ TEST(Tool, SpringsThatStiffenLeadToTheToolOfSlavedNodes) {
     AirTool tool(attachment, make_finger(4, 1, 1, 0.01), tie);
     tool.state->set_device({}, Vector6::Zero());
     tool.run(300, 0.2, kGravity);
-    return tool.state->flesh().position();
+    return tool.state->tissue().position();
   };
   const std::vector<dvec3> slaved = shape(Attachment::kSlave, 1.0);
   const auto apart = [&](double tie) {
@@ -138,7 +139,7 @@ TEST(Tool, SpringsThatStiffenLeadToTheToolOfSlavedNodes) {
   EXPECT_NEAR(usual / apart(4 * kTieStiffness), 4.0, 0.5);  // inversely with the springs
 }
 
-TEST(Tool, TheHandlesMotionIsWhatFleshCouplingAndWeightMakeOfIt) {
+TEST(Tool, TheHandlesMotionIsWhatTissueCouplingAndWeightMakeOfIt) {
   // M_h (w1 - w0) = T (load + F(w1) + coupling), F linear in w: the books of one step balance.
   for (const Attachment attachment : kBoth) {
     AirTool tool(attachment);
@@ -149,10 +150,10 @@ TEST(Tool, TheHandlesMotionIsWhatFleshCouplingAndWeightMakeOfIt) {
       const Vector6 w1 = tool.state->velocity().tail<6>();
       const SoftBodyState& s = *tool.state;
       const Vector6 impulse =
-          T * (s.handle_load() + s.flesh_wrench() + s.coupling_wrench()) - s.flesh_matrix() * (w1 - w0);
-      EXPECT_LT((s.handle_mass() * (w1 - w0) - impulse).norm(), 1e-10 * (T * s.flesh_wrench()).norm())
+          T * (s.handle_load() + s.tissue_wrench() + s.coupling_wrench()) - s.tissue_matrix() * (w1 - w0);
+      EXPECT_LT((s.handle_mass() * (w1 - w0) - impulse).norm(), 1e-10 * (T * s.tissue_wrench()).norm())
           << int(attachment);
-      const Eigen::Matrix<double, 6, 1> values = s.flesh_matrix().selfadjointView<Eigen::Lower>().eigenvalues();
+      const Eigen::Matrix<double, 6, 1> values = s.tissue_matrix().selfadjointView<Eigen::Lower>().eigenvalues();
       EXPECT_GE(values.minCoeff(), -1e-9 * values.maxCoeff());
       tool.state->advance(T);
     }
@@ -167,17 +168,17 @@ TEST(Tool, SkinMovesWithItsDegreesOfFreedom) {
     SoftBodyState& state = *tool.state;
     const double tiny = 1e-6;
     state.free_step(tiny, kGravity);
-    const std::vector<dvec3> before = state.skin_position, rate = state.skin_velocity;
+    const std::vector<dvec3> before = state.surface_position, rate = state.surface_velocity;
     const Rows v = state.velocity();
-    Rows moved = Rows::Zero(static_cast<Eigen::Index>(3 * tool.bar.skin.triangles.size()), 1);
+    Rows moved = Rows::Zero(static_cast<Eigen::Index>(3 * tool.bar.collision_mesh.triangles.size()), 1);
     const dmat3 axes = glm::mat3_cast(rotation_of({0.3, 0.1, -0.4}));
-    for (std::uint32_t t = 0; t < tool.bar.skin.triangles.size(); ++t)
+    for (std::uint32_t t = 0; t < tool.bar.collision_mesh.triangles.size(); ++t)
       state.gather({t, {0.25, 0.25, 0.5}, {}}, axes, 1.0, v, moved.middleRows<3>(3 * t));
     state.advance(tiny);
     for (std::size_t i = 0; i < before.size(); ++i)
-      ASSERT_LT(length((state.skin_position[i] - before[i]) / tiny - rate[i]), 1e-4 * (1 + length(rate[i])));
-    for (std::uint32_t t = 0; t < tool.bar.skin.triangles.size(); ++t) {
-      const uvec3 c = tool.bar.skin.triangles[t];
+      ASSERT_LT(length((state.surface_position[i] - before[i]) / tiny - rate[i]), 1e-4 * (1 + length(rate[i])));
+    for (std::uint32_t t = 0; t < tool.bar.collision_mesh.triangles.size(); ++t) {
+      const uvec3 c = tool.bar.collision_mesh.triangles[t];
       const dvec3 expected = glm::transpose(axes) * (0.25 * rate[c.x] + 0.25 * rate[c.y] + 0.5 * rate[c.z]);
       ASSERT_LT(length(expected - dvec3(moved(3 * t, 0), moved(3 * t + 1, 0), moved(3 * t + 2, 0))), 1e-12);
     }
@@ -196,7 +197,7 @@ TEST(Tool, AnImpulseOnASkinPointDoesTheWorkOfThatPointsMotion) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     const Rows x = Rows::NullaryExpr(state.size(), 1, [&] { return uniform(random); });
     const dmat3 axes = glm::mat3_cast(rotation_of({0.3, 0.1, -0.4}));
-    for (std::uint32_t t = 0; t < bar.skin.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < bar.collision_mesh.triangles.size(); ++t) {
       const SurfacePoint point{t, {0.1, 0.3, 0.6}, {}};
       Rows columns = Rows::Zero(state.size(), 3), out = Rows::Zero(3, 1);
       state.spread(point, axes, -1.0, columns, 0);
@@ -211,7 +212,7 @@ TEST(Tool, TheSamePathGivesTheSameBits) {
     AirTool tool(Attachment::kSpring);
     tool.state->set_device({{0.05, 0.02, 0}, rotation_of({0, 0.3, 1})}, join({1, 0, 0}, {0, 2, 0}));
     tool.run(10, T, kGravity);
-    return tool.state->flesh().position();
+    return tool.state->tissue().position();
   };
   const std::vector<dvec3> a = run(), b = run();
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(dvec3)), 0);
@@ -221,7 +222,7 @@ TEST(Tool, ShowsItsSkinItsNodesAndWhereItsObjectIs) {
   AirTool tool(Attachment::kSlave);
   SoftObjectSnapshot shown;
   tool.state->show(shown);
-  ASSERT_EQ(shown.position.size(), tool.bar.skin.vertex_count);
+  ASSERT_EQ(shown.position.size(), tool.bar.collision_mesh.vertex_count);
   ASSERT_EQ(shown.nodes.size(), tool.bar.tets.node_count());
   EXPECT_LT(length(shown.pose.position), 1e-15);
   const dvec3 middle{0.02, 0.005, 0.005};

@@ -124,7 +124,7 @@ World soft_block(std::uint32_t n) {
       tets.tets.push_back({node(0), node(path[0]), node(path[1]), node(7)});
     }
   SoftBody soft;
-  soft.skin = world.registry.get<Deformable>(entity).mesh;
+  soft.collision_mesh = world.registry.get<Deformable>(entity).mesh;
   soft.tets = world.tet_meshes.add(std::move(tets));
   world.registry.remove<Deformable>(entity);
   world.registry.add<SoftBody>(entity, soft);
@@ -134,7 +134,7 @@ World soft_block(std::uint32_t n) {
 SoftSnapshot soft_snapshot_of(const World& world, const Where& where) {
   SoftSnapshot snapshot;
   for (auto [entity, soft] : world.registry.view<SoftBody>()) {
-    const Mesh& mesh = world.meshes[soft.skin];
+    const Mesh& mesh = world.meshes[soft.collision_mesh];
     SoftObjectSnapshot object;
     object.object = entity;
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) object.position.push_back(where(mesh.position(v)));

@@ -1,5 +1,5 @@
 // Whatever contacts can push, as the soft step sees it: a linear system A v = b over its own degrees of freedom, solved
-// by a black box, and a skin whose points move with those degrees of freedom (J).
+// by a black box, and a collision mesh whose points move with those degrees of freedom (J).
 // Kinds: rigid (rigid_state.h), soft, with a handle (a tool) or without (soft_body_state.h), fixed (no degrees of
 // freedom), yielding (a P1 surface: none either, but compliance).
 #pragma once
@@ -16,7 +16,7 @@
 namespace pliant {
 
 struct SurfacePoint {
-  std::uint32_t triangle = 0;  // of the skin
+  std::uint32_t triangle = 0;  // of the collision mesh
   dvec3 barycentric{1, 0, 0};  // [1]
   dvec3 position{0};           // [m] world, at the beginning of the step
 };
@@ -49,17 +49,17 @@ class Body {
   }
 
   Entity entity;
-  const Mesh* skin = nullptr;        // topology and rest shape (object frame)
-  std::vector<dvec3> skin_position;  // [m] world, per skin vertex, now
-  std::vector<dvec3> skin_velocity;  // [m/s] world, of the free motion after free_step(); for predicting contacts
+  const Mesh* collision_mesh = nullptr;  // topology and rest shape (object frame)
+  std::vector<dvec3> surface_position;   // [m] world, per collision mesh vertex, now
+  std::vector<dvec3> surface_velocity;   // [m/s] world, of the free motion after free_step(); for predicting contacts
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   BodyKind kind = BodyKind::kBody;
   bool absent = false;         // meets nothing: nobody knows yet where it is
-  bool self_collides = false;  // its skin can touch itself
+  bool self_collides = false;  // its collision mesh can touch itself
 
   // Degrees of freedom; 0: contacts cannot move it.
   virtual int size() const = 0;
-  // Assembles and factorises A for a step of T [s], and finds v* without contacts. Updates skin_velocity.
+  // Assembles and factorises A for a step of T [s], and finds v* without contacts. Updates surface_velocity.
   virtual void free_step(double T, dvec3 gravity) = 0;
   // False: the step's A could not be factorised; solve() must not be called.
   virtual bool solvable() const { return true; }
@@ -83,9 +83,9 @@ class Body {
   virtual void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const;
   // v = v* + dv, dv = A^-1 J^T lambda (already solved).
   virtual void correct(const Vector& dv) = 0;
-  // [m/s] Per skin vertex, by velocity() as it is now.
-  virtual void move_skin(std::vector<dvec3>& out) const { out.assign(skin_position.size(), dvec3(0)); }
-  // x += T v; refreshes skin_position.
+  // [m/s] Per collision mesh vertex, by velocity() as it is now.
+  virtual void move_surface(std::vector<dvec3>& out) const { out.assign(surface_position.size(), dvec3(0)); }
+  // x += T v; refreshes surface_position.
   virtual void advance(double T) = 0;
   // Its contacts have a compliance of their own, though nothing of it moves.
   virtual bool yields() const { return false; }

@@ -15,58 +15,58 @@ Eigen::Vector3d to_eigen(dvec3 v) {
 
 }  // namespace
 
-HandleTie::HandleTie(Attachment attachment, const FleshMaterial& material, const Flesh& flesh, std::uint32_t first)
-    : attachment_(attachment), material_(material), first_(first), row_of_node_(flesh.moving(), kNone) {
-  ASSERT(attachment == Attachment::kSlave ? flesh.moving() == first : flesh.moving() > first);
+HandleTie::HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first)
+    : attachment_(attachment), material_(material), first_(first), row_of_node_(tissue.moving(), kNone) {
+  ASSERT(attachment == Attachment::kSlave ? tissue.moving() == first : tissue.moving() > first);
 }
 
-void HandleTie::assemble(Flesh& flesh, const RigidHandle& handle, double T, dvec3 gravity) {
-  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(flesh.moving());
+void HandleTie::assemble(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity) {
+  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(tissue.moving());
   right_.resize(rows + 6);
-  right_.head(rows) = flesh.right().head(rows);
+  right_.head(rows) = tissue.right().head(rows);
   right_.tail<6>().setZero();
   corner_.setZero();
   if (attachment_ == Attachment::kSlave)
-    slave(flesh, handle);
+    slave(tissue, handle);
   else
-    spring(flesh, handle, T, gravity);
+    spring(tissue, handle, T, gravity);
 }
 
-void HandleTie::slave(const Flesh& flesh, const RigidHandle& handle) {
+void HandleTie::slave(const Tissue& tissue, const RigidHandle& handle) {
   for (HandleRow& row : border_) row.value.setZero();
-  for (const Flesh::Entry& entry : flesh.outer()) {
+  for (const Tissue::Entry& entry : tissue.outer()) {
     if (row_of_node_[entry.row] == kNone) {
       row_of_node_[entry.row] = static_cast<std::uint32_t>(border_.size());
       border_.push_back({entry.row, Grip::Zero()});
     }
     border_[row_of_node_[entry.row]].value += entry.value * grip_matrix(handle.arm(entry.column - first_));
   }
-  for (const Flesh::Entry& entry : flesh.corner())
+  for (const Tissue::Entry& entry : tissue.corner())
     corner_ += grip_matrix(handle.arm(entry.row - first_)).transpose() *
                (entry.value * grip_matrix(handle.arm(entry.column - first_)));
   for (std::size_t i = 0; i < handle.node_count(); ++i)
     right_.tail<6>() +=
-        grip_matrix(handle.arm(i)).transpose() * flesh.right().segment<3>(3 * static_cast<Eigen::Index>(first_ + i));
+        grip_matrix(handle.arm(i)).transpose() * tissue.right().segment<3>(3 * static_cast<Eigen::Index>(first_ + i));
 
   const Matrix6 lent = handle.lent_mass();
   corner_ += lent;
   right_.tail<6>() += lent * handle.motion().velocity;
 }
 
-void HandleTie::spring(Flesh& flesh, const RigidHandle& handle, double T, dvec3 gravity) {
+void HandleTie::spring(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity) {
   const dvec3 centre = handle.motion().pose.position;
   const double damped = 1.0 + T * material_.alpha;
   border_.resize(handle.node_count());
   for (std::size_t i = 0; i < handle.node_count(); ++i) {
     const auto node = static_cast<std::uint32_t>(first_ + i);
-    const double mass = flesh.mass()[node], size = std::cbrt(mass / material_.density);
+    const double mass = tissue.mass()[node], size = std::cbrt(mass / material_.density);
     const double k = stiffness * material_.young * size, b = 2.0 * std::sqrt(k * mass), s = T * b + T * T * k;
-    const dvec3 arm = flesh.position()[node] - centre;
+    const dvec3 arm = tissue.position()[node] - centre;
     const Grip G = grip_matrix(arm);
     const Eigen::Vector3d pull = T * k * to_eigen(arm - handle.arm(i));
-    const Eigen::Vector3d carried = mass * to_eigen(flesh.velocity()[node] + T * gravity);
+    const Eigen::Vector3d carried = mass * to_eigen(tissue.velocity()[node] + T * gravity);
 
-    BlockMatrix& inner = flesh.inner();
+    BlockMatrix& inner = tissue.inner();
     inner.value[inner.diagonal[node]].diagonal().array() += s - damped * mass;
     right_.segment<3>(3 * static_cast<Eigen::Index>(node)) -= pull + carried;
     border_[i] = {node, -s * G};

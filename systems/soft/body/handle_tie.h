@@ -1,7 +1,7 @@
-// How flesh hangs on its handle (methods.md 2.2), either way as rows of one coupled system A [v; w] = b:
+// How tissue hangs on its handle (methods.md 2.2), either way as rows of one coupled system A [v; w] = b:
 //   slave   v_i = G_i w: the handle's nodes have no rows of their own;
 //           A_th = A_ij G_j, A_hh = G_i^T A_ij G_j, b_h = G_i^T b_i.
-//   spring  the handle's nodes are flesh, tied to where they ride by springs k, b, s = T b + T^2 k, with stretch e_i:
+//   spring  the handle's nodes are tissue, tied to where they ride by springs k, b, s = T b + T^2 k, with stretch e_i:
 //           A_ii += s I, A_th = -s G_i, A_hh += s G_i^T G_i, b_i -= T k e_i, b_h += T k G_i^T e_i.
 //           G_i at the node itself, not at where it rides: pulls and damping then have no torque of their own.
 // Both ways the nodes' mass is the handle's: with springs it is taken off the nodes, so that both are the same tool and
@@ -17,21 +17,21 @@
 #include "components/soft_body.h"
 #include "systems/soft/body/handle.h"
 #include "systems/soft/body/schur.h"
-#include "systems/soft/fem/flesh.h"
+#include "systems/soft/fem/tissue.h"
 
 namespace pliant {
 
-// Stiffness of a node's spring, in units of young * (size of the flesh around it): usual 100. More: a stiffer bond and
-// a worse condition number of A, which grows in proportion; less: the handle slips inside its flesh.
+// Stiffness of a node's spring, in units of young * (size of the tissue around it): usual 100. More: a stiffer bond and
+// a worse condition number of A, which grows in proportion; less: the handle slips inside its tissue.
 inline constexpr double kTieStiffness = 100.0;
 
 class HandleTie {
  public:
-  // The handle's nodes in `flesh` are [first, first + handle.node_count()).
-  HandleTie(Attachment attachment, const FleshMaterial& material, const Flesh& flesh, std::uint32_t first);
+  // The handle's nodes in `tissue` are [first, first + handle.node_count()).
+  HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first);
 
-  // After flesh.assemble(T, gravity): what the handle adds to flesh.inner(), and border(), corner(), right().
-  void assemble(Flesh& flesh, const RigidHandle& handle, double T, dvec3 gravity);
+  // After tissue.assemble(T, gravity): what the handle adds to tissue.inner(), and border(), corner(), right().
+  void assemble(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity);
   // What else acts on the handle: a diagonal of A_hh and its part of b_h.
   void add_to_handle(const Vector6& diagonal, const Vector6& right) {
     corner_.diagonal() += diagonal;
@@ -40,16 +40,16 @@ class HandleTie {
 
   const std::vector<HandleRow>& border() const { return border_; }  // A_th
   const Matrix6& corner() const { return corner_; }                 // A_hh
-  const Vector& right() const { return right_; }                    // b: flesh's rows, then the handle's six
+  const Vector& right() const { return right_; }                    // b: tissue's rows, then the handle's six
 
   double stiffness = kTieStiffness;  // [1]
 
  private:
-  void slave(const Flesh& flesh, const RigidHandle& handle);
-  void spring(Flesh& flesh, const RigidHandle& handle, double T, dvec3 gravity);
+  void slave(const Tissue& tissue, const RigidHandle& handle);
+  void spring(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity);
 
   Attachment attachment_;
-  FleshMaterial material_;
+  TissueMaterial material_;
   std::uint32_t first_ = 0;
   std::vector<std::uint32_t> row_of_node_;  // slave: which of border_ a node has, or 0xffffffff
   std::vector<HandleRow> border_;

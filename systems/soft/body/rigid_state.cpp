@@ -12,9 +12,10 @@ namespace {
 constexpr double kTurnPerPart = 0.1;  // [rad] a free turn is followed in parts no larger than this
 constexpr int kMostParts = 256;
 
-void place_skin(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& skin_position) {
+void place_surface(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& surface_position) {
   const dmat3 r = glm::mat3_cast(pose.rotation);
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) skin_position[v] = pose.position + r * dvec3(mesh.position(v));
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+    surface_position[v] = pose.position + r * dvec3(mesh.position(v));
 }
 
 // Velocities of points that turn with `angular` about `centre`, which moves with `linear`.
@@ -28,11 +29,11 @@ void move_points(const std::vector<dvec3>& points, dvec3 centre, dvec3 linear, d
 RigidState::RigidState(const Mesh& mesh, const Pose& pose, const RigidMass& mass)
     : mass_(mass), centre_(pose.to_world(mass.centre)), rotation_(normalize(pose.rotation)) {
   ASSERT(mass.mass > 0.0 && glm::determinant(mass.inertia) > 0.0);
-  skin = &mesh;
-  skin_position.resize(mesh.vertex_count);
-  skin_velocity.resize(mesh.vertex_count, dvec3(0));
+  collision_mesh = &mesh;
+  surface_position.resize(mesh.vertex_count);
+  surface_velocity.resize(mesh.vertex_count, dvec3(0));
   inverse_inertia_ = inverse_inertia(rotation_);
-  refresh_skin();
+  refresh_surface();
 }
 
 dmat3 RigidState::inertia(const dquat& rotation) const {
@@ -73,12 +74,12 @@ void RigidState::free_step(double T, dvec3 gravity) {
   start_ << linear_.x, linear_.y, linear_.z, spin.x, spin.y, spin.z;
   const dvec3 v = linear_ + T * gravity, w = free_turn(T);
   velocity_ << v.x, v.y, v.z, w.x, w.y, w.z;
-  move_skin(skin_velocity);
+  move_surface(surface_velocity);
 }
 
-void RigidState::move_skin(std::vector<dvec3>& out) const {
+void RigidState::move_surface(std::vector<dvec3>& out) const {
   const double* const v = velocity_.data();
-  move_points(skin_position, centre_, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, out);
+  move_points(surface_position, centre_, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, out);
 }
 
 void RigidState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
@@ -123,17 +124,17 @@ void RigidState::advance(double T) {
   linear_ = {velocity_[0], velocity_[1], velocity_[2]};
   centre_ += T * linear_;
   rotation_ = normalize(rotation_of(T * dvec3(velocity_[3], velocity_[4], velocity_[5])) * rotation_);
-  refresh_skin();
+  refresh_surface();
 }
 
 void RigidState::halt() {
   linear_ = angular_momentum_ = dvec3(0);
   velocity_.setZero();
-  std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
+  std::fill(surface_velocity.begin(), surface_velocity.end(), dvec3(0));
 }
 
-void RigidState::refresh_skin() {
-  place_skin(*skin, pose(), skin_position);
+void RigidState::refresh_surface() {
+  place_surface(*collision_mesh, pose(), surface_position);
 }
 
 void RigidState::show(SoftObjectSnapshot& out) const {
@@ -142,10 +143,10 @@ void RigidState::show(SoftObjectSnapshot& out) const {
 }
 
 FixedBody::FixedBody(const Mesh& mesh, const Pose& pose) : pose_{pose.position, normalize(pose.rotation)} {
-  skin = &mesh;
-  skin_position.resize(mesh.vertex_count);
-  skin_velocity.resize(mesh.vertex_count, dvec3(0));
-  refresh_skin();
+  collision_mesh = &mesh;
+  surface_position.resize(mesh.vertex_count);
+  surface_velocity.resize(mesh.vertex_count, dvec3(0));
+  refresh_surface();
 }
 
 void FixedBody::set_velocity(dvec3 linear, dvec3 angular) {
@@ -154,14 +155,14 @@ void FixedBody::set_velocity(dvec3 linear, dvec3 angular) {
 }
 
 void FixedBody::free_step(double, dvec3) {
-  move_points(skin_position, pose_.position, linear_, angular_, skin_velocity);
+  move_points(surface_position, pose_.position, linear_, angular_, surface_velocity);
 }
 
 void FixedBody::advance(double T) {
   if (linear_ == dvec3(0) && angular_ == dvec3(0)) return;
   pose_.position += T * linear_;
   pose_.rotation = normalize(rotation_of(T * angular_) * pose_.rotation);
-  refresh_skin();
+  refresh_surface();
 }
 
 // A spring under each contact: gap = g0 + T u + compliance lambda / T. Along the normal only: sideways it would need a
@@ -171,8 +172,8 @@ void FixedBody::add_compliance(std::span<const Side> sides, double T, Eigen::Mat
   for (const Side& side : sides) w(3 * side.contact, 3 * side.contact) += compliance / (T * T);
 }
 
-void FixedBody::refresh_skin() {
-  place_skin(*skin, pose_, skin_position);
+void FixedBody::refresh_surface() {
+  place_surface(*collision_mesh, pose_, surface_position);
 }
 
 void FixedBody::show(SoftObjectSnapshot& out) const {

@@ -19,7 +19,7 @@ struct RigidMass {
 // asks for. The step then has the mean angular velocity of that turn as its v*.
 class RigidState : public Body {
  public:
-  RigidState(const Mesh& skin, const Pose& pose, const RigidMass& mass);
+  RigidState(const Mesh& surface, const Pose& pose, const RigidMass& mass);
 
   int size() const override { return 6; }
   void free_step(double T, dvec3 gravity) override;
@@ -29,7 +29,7 @@ class RigidState : public Body {
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override;
   void correct(const Vector& dv) override;
-  void move_skin(std::vector<dvec3>& out) const override;
+  void move_surface(std::vector<dvec3>& out) const override;
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
   Vector starting_velocity() const override { return start_; }
@@ -49,7 +49,7 @@ class RigidState : public Body {
   dmat3 inertia(const dquat& rotation) const;          // [kg m2] world
   dmat3 inverse_inertia(const dquat& rotation) const;  // world
   dvec3 free_turn(double T) const;                     // [rad/s] mean angular velocity of the step without contacts
-  void refresh_skin();
+  void refresh_surface();
 
   RigidMass mass_;
   dvec3 centre_{0};
@@ -63,7 +63,7 @@ class RigidState : public Body {
 // Ground, walls, and fingers that follow a script: contacts cannot move it.
 class FixedBody : public ImmovableBody {
  public:
-  FixedBody(const Mesh& skin, const Pose& pose);
+  FixedBody(const Mesh& surface, const Pose& pose);
 
   // From now on it moves so: of its origin [m/s], and turning about it [rad/s], world.
   void set_velocity(dvec3 linear, dvec3 angular);
@@ -78,7 +78,7 @@ class FixedBody : public ImmovableBody {
   const Pose& pose() const { return pose_; }
 
  private:
-  void refresh_skin();
+  void refresh_surface();
 
   Pose pose_;
   dvec3 linear_{0}, angular_{0};

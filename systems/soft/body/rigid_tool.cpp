@@ -8,14 +8,14 @@ namespace pliant {
 
 RigidTool::RigidTool(const Mesh& mesh, const RigidMass& mass, const Handle6& handle, const Pose& placement) {
   ASSERT(mass.mass > 0.0 && glm::determinant(mass.inertia) > 0.0);
-  skin = &mesh;
+  collision_mesh = &mesh;
   settings_ = handle;
   handle_.emplace(mass.mass, mass.centre, mass.inertia, Pose{placement.position, normalize(placement.rotation)});
   mass_ = mass.mass;
   velocity_ = Vector::Zero(6);
-  skin_position.resize(mesh.vertex_count);
-  skin_velocity.assign(mesh.vertex_count, dvec3(0));
-  refresh_skin();
+  surface_position.resize(mesh.vertex_count);
+  surface_velocity.assign(mesh.vertex_count, dvec3(0));
+  refresh_surface();
 }
 
 void RigidTool::free_step(double T, dvec3 gravity) {
@@ -29,7 +29,7 @@ void RigidTool::free_step(double T, dvec3 gravity) {
     velocity_ = factor_.solve(handle_mass_ * start_ + T * handle_load_ + coupling_step_.right);
   else
     velocity_.setZero();
-  move_skin(skin_velocity);
+  move_surface(surface_velocity);
 }
 
 void RigidTool::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
@@ -56,30 +56,30 @@ void RigidTool::respond(std::span<const PushedSide> sides, Eigen::Index contacts
   out.lever = levered.transpose();
 }
 
-void RigidTool::move_skin(std::vector<dvec3>& out) const {
-  out.resize(skin_position.size());
+void RigidTool::move_surface(std::vector<dvec3>& out) const {
+  out.resize(surface_position.size());
   const dvec3 centre = handle_->motion().pose.position, v = linear(velocity_), w = angular(velocity_);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = v + cross(w, skin_position[i] - centre);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = v + cross(w, surface_position[i] - centre);
 }
 
 void RigidTool::advance(double T) {
   handle_->set_velocity(velocity_);
   handle_->advance(T);
   velocity_ = handle_->motion().velocity;
-  refresh_skin();
+  refresh_surface();
 }
 
 void RigidTool::halt() {
   velocity_.setZero();
-  std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
+  std::fill(surface_velocity.begin(), surface_velocity.end(), dvec3(0));
   handle_->set_velocity(Vector6::Zero());
 }
 
-void RigidTool::refresh_skin() {
+void RigidTool::refresh_surface() {
   const Pose pose = handle_->object_pose();
   const dmat3 r = glm::mat3_cast(pose.rotation);
-  for (std::uint32_t v = 0; v < skin->vertex_count; ++v)
-    skin_position[v] = pose.position + r * dvec3(skin->position(v));
+  for (std::uint32_t v = 0; v < collision_mesh->vertex_count; ++v)
+    surface_position[v] = pose.position + r * dvec3(collision_mesh->position(v));
 }
 
 void RigidTool::show(SoftObjectSnapshot& out) const {

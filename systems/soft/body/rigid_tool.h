@@ -1,5 +1,5 @@
 // A rigid instrument: a rigid body that is its own handle (a stylus, a probe, a scalpel's grip). The same coupling,
-// contacts and 1 kHz tick as a tool of flesh, with no flesh between handle and contact. Writer: the soft clock.
+// contacts and 1 kHz tick as a tool of tissue, with no tissue between handle and contact. Writer: the soft clock.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -11,8 +11,8 @@ namespace pliant {
 
 class RigidTool final : public ToolBody {
  public:
-  // `skin` outlives it. `placement`: object frame to world at the start.
-  RigidTool(const Mesh& skin, const RigidMass& mass, const Handle6& handle, const Pose& placement);
+  // `collision mesh` outlives it. `placement`: object frame to world at the start.
+  RigidTool(const Mesh& surface, const RigidMass& mass, const Handle6& handle, const Pose& placement);
 
   int size() const override { return 6; }
   void free_step(double T, dvec3 gravity) override;
@@ -22,18 +22,18 @@ class RigidTool final : public ToolBody {
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override;
   void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const override;
-  void move_skin(std::vector<dvec3>& out) const override;
+  void move_surface(std::vector<dvec3>& out) const override;
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override { out = handle_mass_ * x; }
   Vector starting_velocity() const override { return start_; }
   void halt() override;
   void show(SoftObjectSnapshot& out) const override;
-  void unsettle() override { refresh_skin(); }
+  void unsettle() override { refresh_surface(); }
   const Rows& follow() const override { return follow_; }
-  void solve_held(Eigen::Ref<Rows>) const override {}  // no flesh
+  void solve_held(Eigen::Ref<Rows>) const override {}  // no tissue
 
  private:
-  void refresh_skin();
+  void refresh_surface();
 
   Rows follow_ = Matrix6::Identity();
   Eigen::LLT<Matrix6> factor_;  // of M_h and coupling

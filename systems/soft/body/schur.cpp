@@ -4,10 +4,12 @@
 
 namespace pliant {
 
-CoupledSolver::CoupledSolver(std::unique_ptr<LinearSolver> flesh, const BlockMatrix& pattern, bool handle)
-    : flesh_(std::move(flesh)), flesh_rows_(3 * static_cast<Eigen::Index>(pattern.size)), handle_rows_(handle ? 6 : 0) {
-  ASSERT(flesh_ != nullptr);
-  flesh_->analyse(pattern);
+CoupledSolver::CoupledSolver(std::unique_ptr<LinearSolver> tissue, const BlockMatrix& pattern, bool handle)
+    : tissue_(std::move(tissue)),
+      tissue_rows_(3 * static_cast<Eigen::Index>(pattern.size)),
+      handle_rows_(handle ? 6 : 0) {
+  ASSERT(tissue_ != nullptr);
+  tissue_->analyse(pattern);
   follow_ = Rows::Zero(size(), handle_rows_);
   if (handle) follow_.bottomRows<6>().setIdentity();
 }
@@ -16,8 +18,8 @@ bool CoupledSolver::factorise(const BlockMatrix& tt, const std::vector<HandleRow
                               const Vector& b, Vector& x) {
   ASSERT(b.size() == size() && x.size() == size());
   border_ = th;
-  solvable_ = flesh_->factorise(tt) && b.allFinite();
-  if (solvable_) handle_rows_ == 0 ? flesh_->solve(b, x) : solve_seven(hh, b, x);
+  solvable_ = tissue_->factorise(tt) && b.allFinite();
+  if (solvable_) handle_rows_ == 0 ? tissue_->solve(b, x) : solve_seven(hh, b, x);
   solvable_ = solvable_ && x.allFinite();
   if (!solvable_) x.setZero();
   return solvable_;
@@ -25,12 +27,12 @@ bool CoupledSolver::factorise(const BlockMatrix& tt, const std::vector<HandleRow
 
 // y and Z in one pass, S and w.
 void CoupledSolver::solve_seven(const Matrix6& hh, const Vector& b, Vector& x) {
-  seven_.setZero(flesh_rows_, 7);
-  seven_.col(0) = b.head(flesh_rows_);
+  seven_.setZero(tissue_rows_, 7);
+  seven_.col(0) = b.head(tissue_rows_);
   for (const HandleRow& row : border_) seven_.block<3, 6>(3 * row.node, 1) = row.value;
-  flesh_->solve_many(seven_);
+  tissue_->solve_many(seven_);
 
-  follow_.topRows(flesh_rows_) = -seven_.rightCols<6>();
+  follow_.topRows(tissue_rows_) = -seven_.rightCols<6>();
   reduced_ = hh;
   reduced_right_ = b.tail<6>();
   for (const HandleRow& row : border_) {
@@ -42,7 +44,7 @@ void CoupledSolver::solve_seven(const Matrix6& hh, const Vector& b, Vector& x) {
   solvable_ = factor_.info() == Eigen::Success;
   if (!solvable_) return;
 
-  x.head(flesh_rows_) = seven_.col(0);
+  x.head(tissue_rows_) = seven_.col(0);
   x.tail<6>().setZero();
   x.noalias() += follow_ * factor_.solve(reduced_right_);
 }
@@ -50,7 +52,7 @@ void CoupledSolver::solve_seven(const Matrix6& hh, const Vector& b, Vector& x) {
 void CoupledSolver::solve(Rows& columns) const {
   ASSERT(columns.rows() == size());
   if (!solvable_) columns.setZero();
-  solve_held(columns.topRows(flesh_rows_));
+  solve_held(columns.topRows(tissue_rows_));
   if (handle_rows_ == 0 || !solvable_) return;
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> w = columns.bottomRows<6>();
   for (const HandleRow& row : border_) w.noalias() -= row.value.transpose() * columns.middleRows<3>(3 * row.node);
@@ -60,17 +62,17 @@ void CoupledSolver::solve(Rows& columns) const {
 }
 
 void CoupledSolver::solve_held(Eigen::Ref<Rows> columns) const {
-  ASSERT(columns.rows() == flesh_rows_);
+  ASSERT(columns.rows() == tissue_rows_);
   if (solvable_)
-    flesh_->solve_many(columns);
+    tissue_->solve_many(columns);
   else
     columns.setZero();
 }
 
 void CoupledSolver::gram_held(const BlockColumns& b, Eigen::MatrixXd& gram) const {
-  ASSERT(3 * static_cast<Eigen::Index>(b.size) == flesh_rows_);
+  ASSERT(3 * static_cast<Eigen::Index>(b.size) == tissue_rows_);
   if (solvable_)
-    flesh_->solve_gram(b, gram);
+    tissue_->solve_gram(b, gram);
   else
     gram.setZero(3 * b.count(), 3 * b.count());
 }

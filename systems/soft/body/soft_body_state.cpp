@@ -13,7 +13,7 @@ constexpr double kSettleStep = 0.1;  // [s]
 constexpr int kSettleSteps = 40;
 constexpr double kSettled = 1e-9;  // [1] of the body's size
 
-FleshMaterial material_of(const SoftBody& body) {
+TissueMaterial material_of(const SoftBody& body) {
   return {.young = body.young,
           .poisson = body.poisson,
           .density = body.density,
@@ -46,81 +46,81 @@ Block to_block(const dmat3& m) {
 
 }  // namespace
 
-SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const SoftBody& body, const Handle6* handle,
+SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const SoftBody& body, const Handle6* handle,
                              const Pose& placement, SolverKind solver)
-    : SoftBodyState(tets, skin_mesh, body, handle, placement, make_solver(solver, moving_nodes(tets, handle))) {}
+    : SoftBodyState(tets, surface, body, handle, placement, make_solver(solver, moving_nodes(tets, handle))) {}
 
-SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& skin_mesh, const SoftBody& body, const Handle6* handle,
+SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const SoftBody& body, const Handle6* handle,
                              const Pose& placement, std::unique_ptr<LinearSolver> solver)
     : tets_(tets),
       damping_{body.rayleigh[0], body.rayleigh[1]},
-      flesh_(tets, material_of(body), moving_nodes(tets, handle)),
-      solver_(std::move(solver), flesh_.inner(), has_handle_nodes(tets, handle)) {
-  ASSERT(tets.skin.size() == skin_mesh.vertex_count);
-  skin = &skin_mesh;
+      tissue_(tets, material_of(body), moving_nodes(tets, handle)),
+      solver_(std::move(solver), tissue_.inner(), has_handle_nodes(tets, handle)) {
+  ASSERT(tets.embedding.size() == surface.vertex_count);
+  collision_mesh = &surface;
   friction_static = body.friction_static;
   friction_sliding = body.friction_sliding;
 
   if (has_handle_nodes(tets, handle)) {
     const std::uint32_t first = tets.free_count, count = tets.handle_count;
     settings_ = *handle;
-    handle_.emplace(std::span(tets.nodes).subspan(first, count), std::span(flesh_.mass()).subspan(first, count),
+    handle_.emplace(std::span(tets.nodes).subspan(first, count), std::span(tissue_.mass()).subspan(first, count),
                     box_size(tets), placement);
-    tie_.emplace(handle->attachment, material_of(body), flesh_, first);
+    tie_.emplace(handle->attachment, material_of(body), tissue_, first);
     for (std::uint32_t i = 0; i < tets.pinned_begin(); ++i) {
-      mass_ += flesh_.mass()[i];
-      balance_ += flesh_.mass()[i] * (tets.nodes[i] - handle_->centre());
+      mass_ += tissue_.mass()[i];
+      balance_ += tissue_.mass()[i] * (tets.nodes[i] - handle_->centre());
     }
     balance_ /= mass_;
   }
   for (std::size_t i = 0; i < tets.nodes.size(); ++i) {
-    flesh_.position()[i] = placement.to_world(tets.nodes[i]);
-    flesh_.velocity()[i] = dvec3(0);
+    tissue_.position()[i] = placement.to_world(tets.nodes[i]);
+    tissue_.velocity()[i] = dvec3(0);
   }
   velocity_ = Vector::Zero(size());
-  refresh_skin(flesh_.position(), skin_position);
-  skin_velocity.assign(skin_position.size(), dvec3(0));
+  refresh_surface(tissue_.position(), surface_position);
+  surface_velocity.assign(surface_position.size(), dvec3(0));
 }
 
 void SoftBodyState::free_step(double T, dvec3 gravity) {
   T_ = T;
-  flesh_.assemble(T, gravity);
-  solver_.place(flesh_.position());
+  tissue_.assemble(T, gravity);
+  solver_.place(tissue_.position());
   if (handle_) {
-    tie_->assemble(flesh_, *handle_, T, gravity);
+    tie_->assemble(tissue_, *handle_, T, gravity);
     couple(T, gravity);
     tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right + T * carry_);
-    solvable_ = solver_.factorise(flesh_.inner(), tie_->border(), tie_->corner(), tie_->right(), velocity_);
-    separate_flesh(T);
+    solvable_ = solver_.factorise(tissue_.inner(), tie_->border(), tie_->corner(), tie_->right(), velocity_);
+    separate_tissue(T);
   } else {
-    solvable_ = solver_.factorise(flesh_.inner(), {}, Matrix6::Zero(), flesh_.right(), velocity_);
+    solvable_ = solver_.factorise(tissue_.inner(), {}, Matrix6::Zero(), tissue_.right(), velocity_);
   }
-  move_skin(skin_velocity);
+  move_surface(surface_velocity);
 }
 
-void SoftBodyState::move_skin(std::vector<dvec3>& out) const {
+void SoftBodyState::move_surface(std::vector<dvec3>& out) const {
   std::vector<dvec3> of_nodes(tets_.node_count());
   for (std::uint32_t i = 0; i < of_nodes.size(); ++i) of_nodes[i] = node_velocity(i);
-  refresh_skin(of_nodes, out);
+  refresh_surface(of_nodes, out);
 }
 
-// S and its right-hand side, less what is not flesh.
-void SoftBodyState::separate_flesh(double T) {
+// S and its right-hand side, less what is not tissue.
+void SoftBodyState::separate_tissue(double T) {
   if (!solvable_) {
-    flesh_matrix_.setZero();
-    flesh_wrench_.setZero();
+    tissue_matrix_.setZero();
+    tissue_wrench_.setZero();
     return;
   }
-  flesh_matrix_ = solver_.reduced() - handle_mass_;
-  flesh_matrix_.diagonal() -= coupling_step_.matrix;
-  flesh_wrench_ =
-      (solver_.reduced_right() - coupling_step_.right - (handle_mass_ + flesh_matrix_) * start_) / T - handle_load_;
+  tissue_matrix_ = solver_.reduced() - handle_mass_;
+  tissue_matrix_.diagonal() -= coupling_step_.matrix;
+  tissue_wrench_ =
+      (solver_.reduced_right() - coupling_step_.right - (handle_mass_ + tissue_matrix_) * start_) / T - handle_load_;
 }
 
 void SoftBodyState::halt() {
   velocity_.setZero();
-  std::fill(flesh_.velocity().begin(), flesh_.velocity().end(), dvec3(0));
-  std::fill(skin_velocity.begin(), skin_velocity.end(), dvec3(0));
+  std::fill(tissue_.velocity().begin(), tissue_.velocity().end(), dvec3(0));
+  std::fill(surface_velocity.begin(), surface_velocity.end(), dvec3(0));
   if (handle_) handle_->set_velocity(Vector6::Zero());
 }
 
@@ -143,13 +143,13 @@ void SoftBodyState::settle(dvec3 gravity) {
 
 void SoftBodyState::unsettle() {
   const Pose pose = handle_->object_pose();
-  for (std::size_t i = 0; i < tets_.nodes.size(); ++i) flesh_.position()[i] = pose.to_world(tets_.nodes[i]);
-  refresh_skin(flesh_.position(), skin_position);
+  for (std::size_t i = 0; i < tets_.nodes.size(); ++i) tissue_.position()[i] = pose.to_world(tets_.nodes[i]);
+  refresh_surface(tissue_.position(), surface_position);
 }
 
 void SoftBodyState::advance(double T) {
-  std::vector<dvec3>&x = flesh_.position(), &v = flesh_.velocity();
-  for (std::uint32_t i = 0; i < flesh_.moving(); ++i) {
+  std::vector<dvec3>&x = tissue_.position(), &v = tissue_.velocity();
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
     v[i] = node_velocity(i);
     x[i] += T * v[i];
   }
@@ -157,16 +157,16 @@ void SoftBodyState::advance(double T) {
     handle_->set_velocity(velocity_.tail<6>());
     handle_->advance(T);
     velocity_.tail<6>() = handle_->motion().velocity;
-    for (std::uint32_t i = flesh_.moving(); i < tets_.pinned_begin(); ++i) {
+    for (std::uint32_t i = tissue_.moving(); i < tets_.pinned_begin(); ++i) {
       x[i] = handle_->motion().pose.position + arm(i);
       v[i] = node_velocity(i);
     }
   }
-  refresh_skin(x, skin_position);
+  refresh_surface(x, surface_position);
 }
 
 dvec3 SoftBodyState::node_velocity(std::uint32_t node) const {
-  if (node < flesh_.moving()) {
+  if (node < tissue_.moving()) {
     const double* v = velocity_.data() + 3 * node;
     return {v[0], v[1], v[2]};
   }
@@ -175,13 +175,13 @@ dvec3 SoftBodyState::node_velocity(std::uint32_t node) const {
   return linear(w) + cross(angular(w), arm(node));
 }
 
-void SoftBodyState::refresh_skin(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_skin) const {
-  of_skin.resize(tets_.skin.size());
-  for (std::size_t s = 0; s < of_skin.size(); ++s) {
-    const Embedding& place = tets_.skin[s];
+void SoftBodyState::refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const {
+  of_surface.resize(tets_.embedding.size());
+  for (std::size_t s = 0; s < of_surface.size(); ++s) {
+    const Embedding& place = tets_.embedding[s];
     const Tet& tet = tets_.tets[place.tet];
-    of_skin[s] = place.weight[0] * of_nodes[tet[0]] + place.weight[1] * of_nodes[tet[1]] +
-                 place.weight[2] * of_nodes[tet[2]] + place.weight[3] * of_nodes[tet[3]];
+    of_surface[s] = place.weight[0] * of_nodes[tet[0]] + place.weight[1] * of_nodes[tet[1]] +
+                    place.weight[2] * of_nodes[tet[2]] + place.weight[3] * of_nodes[tet[3]];
   }
 }
 
@@ -189,7 +189,7 @@ template <class Use>
 void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
   for (int corner = 0; corner < 3; ++corner) {
     if (point.barycentric[corner] == 0.0) continue;
-    const Embedding& place = tets_.skin[skin->triangles[point.triangle][corner]];
+    const Embedding& place = tets_.embedding[collision_mesh->triangles[point.triangle][corner]];
     for (std::size_t k = 0; k < 4; ++k)
       if (place.weight[k] != 0.0) use(tets_.tets[place.tet][k], point.barycentric[corner] * place.weight[k]);
   }
@@ -198,7 +198,7 @@ void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
 void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
   for_each_node(point, [&](std::uint32_t node, double weight) {
     const dvec3 part = weight * impulse;
-    if (node < flesh_.moving())
+    if (node < tissue_.moving())
       for (int k = 0; k < 3; ++k) columns(3 * node + k, column) += part[k];
     else if (slaved(node))
       columns.block<6, 1>(handle_row(), column) += join(part, cross(arm(node), part));  // G^T
@@ -207,12 +207,12 @@ void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns
 
 // Half a solve instead of a whole one, and only where the contacts' nodes are (LinearSolver::solve_gram).
 void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
-  pushed_.clear(flesh_.moving());
+  pushed_.clear(tissue_.moving());
   for (const PushedSide& side : sides) {
     while (pushed_.count() < side.contact) pushed_.close();
     const Block axes = to_block(*side.axes);
     for_each_node(*side.point, [&](std::uint32_t node, double weight) {
-      if (node < flesh_.moving()) pushed_.entries.push_back({node, side.sign * weight * axes});
+      if (node < tissue_.moving()) pushed_.entries.push_back({node, side.sign * weight * axes});
     });
   }
   while (pushed_.count() < contacts) pushed_.close();
@@ -229,7 +229,7 @@ void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double 
                            Eigen::Ref<Rows> out) const {
   const Block along = to_block(axes).transpose();
   for_each_node(point, [&](std::uint32_t node, double weight) {
-    if (node < flesh_.moving())
+    if (node < tissue_.moving())
       out.noalias() += (sign * weight * along) * x.middleRows<3>(3 * node);
     else if (slaved(node))
       out.noalias() += (sign * weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
@@ -239,16 +239,16 @@ void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double 
 // Lumped masses; those of the handle's nodes are the handle's, however they are attached.
 void SoftBodyState::weigh(const Rows& x, Rows& out) const {
   out.resize(x.rows(), x.cols());
-  const std::uint32_t flesh_only = handle_ ? tets_.free_count : flesh_.moving();
-  for (std::uint32_t i = 0; i < flesh_.moving(); ++i)
-    out.middleRows<3>(3 * i) = (i < flesh_only ? flesh_.mass()[i] : 0.0) * x.middleRows<3>(3 * i);
+  const std::uint32_t tissue_only = handle_ ? tets_.free_count : tissue_.moving();
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i)
+    out.middleRows<3>(3 * i) = (i < tissue_only ? tissue_.mass()[i] : 0.0) * x.middleRows<3>(3 * i);
   if (handle_) out.bottomRows<6>().noalias() = handle_mass_ * x.bottomRows<6>();
 }
 
 Vector SoftBodyState::starting_velocity() const {
   Vector out(size());
-  for (std::uint32_t i = 0; i < flesh_.moving(); ++i)
-    for (int k = 0; k < 3; ++k) out[3 * i + k] = flesh_.velocity()[i][k];
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i)
+    for (int k = 0; k < 3; ++k) out[3 * i + k] = tissue_.velocity()[i][k];
   if (handle_) out.tail<6>() = start_;
   return out;
 }
@@ -256,16 +256,18 @@ Vector SoftBodyState::starting_velocity() const {
 void SoftBodyState::show(SoftObjectSnapshot& out) const {
   out.object = entity;
   out.pose = handle_ ? handle_->object_pose() : Pose{};
-  out.position.resize(skin_position.size());
-  out.normal.assign(skin_position.size(), vec3(0));
-  out.nodes.resize(flesh_.position().size());
-  std::transform(skin_position.begin(), skin_position.end(), out.position.begin(), [](dvec3 x) { return vec3(x); });
-  std::transform(flesh_.position().begin(), flesh_.position().end(), out.nodes.begin(),
+  out.position.resize(surface_position.size());
+  out.normal.assign(surface_position.size(), vec3(0));
+  out.nodes.resize(tissue_.position().size());
+  std::transform(surface_position.begin(), surface_position.end(), out.position.begin(),
+                 [](dvec3 x) { return vec3(x); });
+  std::transform(tissue_.position().begin(), tissue_.position().end(), out.nodes.begin(),
                  [](dvec3 x) { return vec3(x); });
 
   // Weighted by area; in double, for the cross product of a small triangle's edges.
-  for (const uvec3 t : skin->triangles) {
-    const dvec3 area = cross(skin_position[t.y] - skin_position[t.x], skin_position[t.z] - skin_position[t.x]);
+  for (const uvec3 t : collision_mesh->triangles) {
+    const dvec3 area =
+        cross(surface_position[t.y] - surface_position[t.x], surface_position[t.z] - surface_position[t.x]);
     for (int corner = 0; corner < 3; ++corner) out.normal[t[corner]] += vec3(area);
   }
   for (vec3& normal : out.normal) {

@@ -9,18 +9,18 @@
 #include "systems/soft/body/handle_tie.h"
 #include "systems/soft/body/schur.h"
 #include "systems/soft/body/tool_body.h"
-#include "systems/soft/fem/flesh.h"
+#include "systems/soft/fem/tissue.h"
 
 namespace pliant {
 
 class SoftBodyState final : public ToolBody {
  public:
-  // `tets` and `skin` outlive it. `handle`: null where none is (its nodes, if any, then move freely). `placement`:
-  // object frame to world at the start.
-  SoftBodyState(const TetMesh& tets, const Mesh& skin, const SoftBody& body, const Handle6* handle,
+  // `tets` and `collision mesh` outlive it. `handle`: null where none is (its nodes, if any, then move freely).
+  // `placement`: object frame to world at the start.
+  SoftBodyState(const TetMesh& tets, const Mesh& surface, const SoftBody& body, const Handle6* handle,
                 const Pose& placement, SolverKind solver = SolverKind::kAuto);
   // The same over a black box of the caller's.
-  SoftBodyState(const TetMesh& tets, const Mesh& skin, const SoftBody& body, const Handle6* handle,
+  SoftBodyState(const TetMesh& tets, const Mesh& surface, const SoftBody& body, const Handle6* handle,
                 const Pose& placement, std::unique_ptr<LinearSolver> solver);
 
   int size() const override { return static_cast<int>(solver_.size()); }
@@ -30,7 +30,7 @@ class SoftBodyState final : public ToolBody {
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override { solver_.solve(columns); }
   void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const override;
-  void move_skin(std::vector<dvec3>& out) const override;
+  void move_surface(std::vector<dvec3>& out) const override;
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
   RayleighDamping damping() const override { return damping_; }
@@ -38,34 +38,34 @@ class SoftBodyState final : public ToolBody {
   void halt() override;
   void show(SoftObjectSnapshot& out) const override;
 
-  const Flesh& flesh() const { return flesh_; }
+  const Tissue& tissue() const { return tissue_; }
   void set_tie_stiffness(double ratio) { tie_->stiffness = ratio; }  // [1] handle_tie.h; with spring attachment
   bool solvable() const override {
     return solvable_;
   }  // false: the last step's matrix could not be factorised; nothing moved
 
-  // A tool's flesh, left in its rest shape, would fall and sway, and the hand would be given that work.
+  // A tool's tissue, left in its rest shape, would fall and sway, and the hand would be given that work.
   void settle(dvec3 gravity) override;
   void unsettle() override;
   const Rows& follow() const override { return solver_.follow(); }
   void solve_held(Eigen::Ref<Rows> columns) const override { solver_.solve_held(columns); }
-  const Matrix6& reduced() const { return solver_.reduced(); }  // S = handle_mass + flesh_matrix + coupling [kg]
+  const Matrix6& reduced() const { return solver_.reduced(); }  // S = handle_mass + tissue_matrix + coupling [kg]
 
  private:
-  // Calls use(node, weight) for the nodes that a point of the skin rides on. Weights of zero are left out: most skins
-  // stand on nodes, and a vertex of such a skin rides on one node of twelve.
+  // Calls use(node, weight) for the nodes that a point of the collision mesh rides on. Weights of zero are left out:
+  // most collision meshes stand on nodes, and a vertex of such a collision mesh rides on one node of twelve.
   template <class Use>
   void for_each_node(const SurfacePoint& point, Use use) const;
-  bool slaved(std::uint32_t node) const { return node >= flesh_.moving() && node < tets_.pinned_begin(); }
-  Eigen::Index handle_row() const { return 3 * static_cast<Eigen::Index>(flesh_.moving()); }
+  bool slaved(std::uint32_t node) const { return node >= tissue_.moving() && node < tets_.pinned_begin(); }
+  Eigen::Index handle_row() const { return 3 * static_cast<Eigen::Index>(tissue_.moving()); }
   dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
   dvec3 node_velocity(std::uint32_t node) const;  // [m/s] by velocity()
-  void separate_flesh(double T);
-  void refresh_skin(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_skin) const;
+  void separate_tissue(double T);
+  void refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const;
 
   const TetMesh& tets_;
   RayleighDamping damping_;
-  Flesh flesh_;
+  Tissue tissue_;
   std::optional<HandleTie> tie_;
   CoupledSolver solver_;
   mutable BlockColumns pushed_;  // respond()'s

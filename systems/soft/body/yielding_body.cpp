@@ -22,30 +22,30 @@ double secant(const RestoringLaw& law, double depth) {
 }
 
 dvec3 point_on(const Body& body, const SurfacePoint& point) {
-  const uvec3 t = body.skin->triangles[point.triangle];
-  return point.barycentric.x * body.skin_position[t.x] + point.barycentric.y * body.skin_position[t.y] +
-         point.barycentric.z * body.skin_position[t.z];
+  const uvec3 t = body.collision_mesh->triangles[point.triangle];
+  return point.barycentric.x * body.surface_position[t.x] + point.barycentric.y * body.surface_position[t.y] +
+         point.barycentric.z * body.surface_position[t.z];
 }
 
 }  // namespace
 
 YieldingBody::YieldingBody(const Mesh& mesh, const Deformable& deformable, const Pose& pose, std::size_t slot)
     : deformable_(deformable), pose_(pose), slot_(slot) {
-  skin = &mesh;
+  collision_mesh = &mesh;
   friction_static = deformable.friction_static;
   friction_sliding = deformable.friction_sliding;
   damping_ = deformable.contact_damping_material ? motion(deformable, 1.0).damping * deformable.stiffness
                                                  : deformable.contact_damping;
-  skin_position.resize(mesh.vertex_count);
-  skin_velocity.assign(mesh.vertex_count, dvec3(0));
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) skin_position[v] = pose_.to_world(dvec3(mesh.position(v)));
+  surface_position.resize(mesh.vertex_count);
+  surface_velocity.assign(mesh.vertex_count, dvec3(0));
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) surface_position[v] = pose_.to_world(dvec3(mesh.position(v)));
 }
 
 bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {
   SurfacePoint& mine = is_a ? contact.a : contact.b;
   const dvec3 x = pose_.to_local((is_a ? contact.b : contact.a).position);
-  const SurfaceFoot last = surface_point(corners(*skin, mine.triangle), mine.triangle, mine.barycentric, 0.0);
-  const Tracked tracked = track(*skin, last, x);
+  const SurfaceFoot last = surface_point(corners(*collision_mesh, mine.triangle), mine.triangle, mine.barycentric, 0.0);
+  const Tracked tracked = track(*collision_mesh, last, x);
   if (tracked.left_border) return false;
   const SurfaceFoot& foot = tracked.point;
   mine = {foot.triangle, foot.barycentric, pose_.to_world(foot.foot)};
@@ -65,12 +65,13 @@ bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {
   as_probe.foot = foot.foot;
   as_probe.normal = foot.normal;
   as_probe.height = foot.height;
-  aim(dent.source, as_probe, deformable_, *skin, 0.0);
+  aim(dent.source, as_probe, deformable_, *collision_mesh, 0.0);
   dent.source.amplitude = 1.0f;
   dent.depth = std::max(0.0, -foot.height);
-  dent.stiffness = deformable_.stiffness * painted(skin->stiffness_factor, *skin, foot.triangle, foot.barycentric) *
+  dent.stiffness = deformable_.stiffness *
+                   painted(collision_mesh->stiffness_factor, *collision_mesh, foot.triangle, foot.barycentric) *
                    secant(restoring_law(deformable_), dent.depth);
-  const double grip = painted(skin->friction_factor, *skin, foot.triangle, foot.barycentric);
+  const double grip = painted(collision_mesh->friction_factor, *collision_mesh, foot.triangle, foot.barycentric);
   contact.mu_static *= grip;
   contact.mu_sliding *= grip;
   return true;
@@ -114,10 +115,11 @@ Eigen::MatrixXd YieldingBody::shares() const {
   for (Eigen::Index i = 0; i < n; ++i) {
     const Dent& at = dents_[static_cast<std::size_t>(i)];
     for (int b = 0; b < 3; ++b) {
-      const std::uint32_t v = skin->triangles[at.triangle][b];
+      const std::uint32_t v = collision_mesh->triangles[at.triangle][b];
       for (Eigen::Index j = 0; j < n; ++j)
-        A(i, j) += at.barycentric[b] * static_cast<double>(share_at(dents_[static_cast<std::size_t>(j)].source,
-                                                                    skin->position(v), skin->normal(v)));
+        A(i, j) +=
+            at.barycentric[b] * static_cast<double>(share_at(dents_[static_cast<std::size_t>(j)].source,
+                                                             collision_mesh->position(v), collision_mesh->normal(v)));
     }
     A(i, i) = std::max(A(i, i), kLeastShare);
   }
@@ -150,30 +152,30 @@ void YieldingBody::yield(const std::vector<ContactPoint>& contacts, double T) {
       dent.depth = depth[i];
     }
   }
-  dent_skin();
+  dent_surface();
 }
 
-void YieldingBody::dent_skin() {
+void YieldingBody::dent_surface() {
   for (const std::uint32_t zone : dented_)
-    for (std::uint32_t v = skin->zone_begin(zone); v < skin->zone_end(zone); ++v)
-      skin_position[v] = pose_.to_world(dvec3(skin->position(v)));
+    for (std::uint32_t v = collision_mesh->zone_begin(zone); v < collision_mesh->zone_end(zone); ++v)
+      surface_position[v] = pose_.to_world(dvec3(collision_mesh->position(v)));
   dented_.clear();
-  for (std::uint32_t zone = 0; zone < skin->zone_count() && !dents_.empty(); ++zone) {
+  for (std::uint32_t zone = 0; zone < collision_mesh->zone_count() && !dents_.empty(); ++zone) {
     ZoneTargets targets{};
     bool reached = false;
     for (const Dent& dent : dents_) {
-      const Box& box = skin->zone_box[zone];
+      const Box& box = collision_mesh->zone_box[zone];
       const vec3 d = glm::max(glm::max(box.min - dent.source.center, dent.source.center - box.max), vec3(0));
       if (dent.source.amplitude == 0.0f || dot(d, d) * dent.source.inv_reach2 > 1.0f) continue;
-      add_targets(*skin, zone, dent.source, false, targets);
+      add_targets(*collision_mesh, zone, dent.source, false, targets);
       reached = true;
     }
     if (!reached) continue;
     dented_.push_back(zone);
-    const std::uint32_t begin = skin->zone_begin(zone);
-    for (std::uint32_t v = begin; v < skin->zone_end(zone); ++v)
-      skin_position[v] =
-          pose_.to_world(dvec3(skin->position(v)) + double(targets.h[v - begin]) * dvec3(skin->normal(v)));
+    const std::uint32_t begin = collision_mesh->zone_begin(zone);
+    for (std::uint32_t v = begin; v < collision_mesh->zone_end(zone); ++v)
+      surface_position[v] = pose_.to_world(dvec3(collision_mesh->position(v)) +
+                                           double(targets.h[v - begin]) * dvec3(collision_mesh->normal(v)));
   }
 }
 
@@ -200,13 +202,13 @@ PressPoint YieldingBody::press_point(const Dent& dent, const std::vector<Contact
                                      const std::vector<std::unique_ptr<Body>>& bodies, double T) const {
   const ContactPoint& contact = contacts[dent.contact];
   const SurfacePoint& mine = dent.is_a ? contact.a : contact.b;
-  const SurfacePoint& flesh = dent.is_a ? contact.b : contact.a;
+  const SurfacePoint& tissue = dent.is_a ? contact.b : contact.a;
   PressPoint point;
   point.key = contact.key;
   point.triangle = mine.triangle;
   point.barycentric = mine.barycentric;
-  point.position = pose_.to_local(point_on(*bodies[dent.is_a ? contact.body_b : contact.body_a], flesh));
-  point.velocity = (point.position - pose_.to_local(flesh.position)) / T;
+  point.position = pose_.to_local(point_on(*bodies[dent.is_a ? contact.body_b : contact.body_a], tissue));
+  point.velocity = (point.position - pose_.to_local(tissue.position)) / T;
   return point;
 }
 

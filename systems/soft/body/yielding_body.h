@@ -4,12 +4,12 @@
 //   d = A alpha,   A_ij = f(|c_i - c_j|) of the object's shape function (as systems/touch/force_field.cpp has it),
 // and each pushes back with F_i = k_i alpha_i + c d_i' (k the law's secant at the depth so far, painted factor
 // included; c contact_damping). One contact is then P1's probe, F = law(d) + c d'; many that stand together share one
-// dent instead of adding up their forces, so that the force does not depend on how finely the flesh is meshed.
+// dent instead of adding up their forces, so that the force does not depend on how finely the tissue is meshed.
 // The step's law, implicit over T, with lambda = T F and C = K^(-1/2) A K^(-1/2) [m/N]:
 //   d1 = M (lambda + c d0),   M = (T + c C)^-1 C,   so  u_n >= 0 becomes  J v + (g0 + M c d0) / T + (M / T) lambda >=
 //   0.
 // C is cut to its positive part: a shape with a rim is not positive definite for every layout of contacts.
-// The slow arm of the standard linear solid is left out: flesh feels the lasting stiffness.
+// The slow arm of the standard linear solid is left out: tissue feels the lasting stiffness.
 // Writer: the soft clock.
 #pragma once
 
@@ -28,9 +28,9 @@ class YieldingBody final : public ImmovableBody {
   // `slot`: its place in TouchState::objects. `mesh` outlives it.
   YieldingBody(const Mesh& mesh, const Deformable& deformable, const Pose& pose, std::size_t slot);
 
-  // Puts its contacts where P1's collision would find the flesh's points: foot, interpolated normal and height over the
-  // rest surface; drops those beside an open surface's rim. `self`: its place among the bodies. Prepares the law for a
-  // step of T [s]. Call on the contacts of a step, before the problem is built from them.
+  // Puts its contacts where P1's collision would find the tissue's points: foot, interpolated normal and height over
+  // the rest surface; drops those beside an open surface's rim. `self`: its place among the bodies. Prepares the law
+  // for a step of T [s]. Call on the contacts of a step, before the problem is built from them.
   void place(std::vector<ContactPoint>& contacts, std::uint32_t self, double T);
   // Takes the solved impulses: from now on the surface is dented so.
   void yield(const std::vector<ContactPoint>& contacts, double T);
@@ -58,7 +58,7 @@ class YieldingBody final : public ImmovableBody {
   };
   bool place(ContactPoint& contact, bool is_a, Dent& dent) const;
   Eigen::MatrixXd shares() const;  // A
-  void dent_skin();
+  void dent_surface();
   PressPoint press_point(const Dent& dent, const std::vector<ContactPoint>& contacts,
                          const std::vector<std::unique_ptr<Body>>& bodies, double T) const;
 
@@ -68,7 +68,7 @@ class YieldingBody final : public ImmovableBody {
   double damping_ = 0.0;  // [N s/m] c
   std::vector<Dent> dents_;
   Eigen::MatrixXd mobility_;           // M [m/(N s)]
-  std::vector<std::uint32_t> dented_;  // zones whose skin is not at rest
+  std::vector<std::uint32_t> dented_;  // zones whose collision mesh is not at rest
 };
 
 }  // namespace pliant

@@ -31,14 +31,19 @@ double edge_of(const FeaturePair& pair) {
 // A surface as it is where the step ends; or as it rests, turned to where one of its triangles is.
 class Surface {
  public:
-  explicit Surface(const Skin& skin) : skin_(skin) {}
-  Surface(const Skin& skin, std::uint32_t triangle) : skin_(skin), resting_(true), turn_(skin.turn(triangle)) {}
-  const Skin& skin() const { return skin_; }
-  bool smooth(std::uint32_t v) const { return resting_ ? skin_.rest().smooth[v] != 0 : skin_.smooth(v); }
-  double curvature(std::uint32_t v) const { return resting_ ? skin_.rest().curvature[v] : skin_.curvature(v); }
+  explicit Surface(const CollisionMesh& collision_mesh) : collision_mesh_(collision_mesh) {}
+  Surface(const CollisionMesh& collision_mesh, std::uint32_t triangle)
+      : collision_mesh_(collision_mesh), resting_(true), turn_(collision_mesh.turn(triangle)) {}
+  const CollisionMesh& collision_mesh() const { return collision_mesh_; }
+  bool smooth(std::uint32_t v) const {
+    return resting_ ? collision_mesh_.rest().smooth[v] != 0 : collision_mesh_.smooth(v);
+  }
+  double curvature(std::uint32_t v) const {
+    return resting_ ? collision_mesh_.rest().curvature[v] : collision_mesh_.curvature(v);
+  }
   // Corners blended, but where a crease meets a corner the facet's own.
   dvec3 normal(const SurfacePoint& point) const {
-    const uvec3 corners = skin_.mesh().triangles[point.triangle];
+    const uvec3 corners = collision_mesh_.mesh().triangles[point.triangle];
     dvec3 n(0.0);
     for (int i = 0; i < 3; ++i)
       n += point.barycentric[i] * (smooth(corners[i]) ? vertex_normal(corners[i]) : facet(point.triangle));
@@ -47,11 +52,11 @@ class Surface {
 
  private:
   dvec3 vertex_normal(std::uint32_t v) const {
-    return resting_ ? skin_.rest().vertex_normal[v] : skin_.vertex_normal(v);
+    return resting_ ? collision_mesh_.rest().vertex_normal[v] : collision_mesh_.vertex_normal(v);
   }
-  dvec3 facet(std::uint32_t t) const { return resting_ ? skin_.rest().normal[t] : skin_.normal(t); }
+  dvec3 facet(std::uint32_t t) const { return resting_ ? collision_mesh_.rest().normal[t] : collision_mesh_.normal(t); }
 
-  const Skin& skin_;
+  const CollisionMesh& collision_mesh_;
   bool resting_ = false;
   dmat3 turn_{1};
 };
@@ -64,7 +69,7 @@ struct Lean {
 };
 
 Lean lean_at(const Surface& surface, const SurfacePoint& point, bool face) {
-  const uvec3 corners = surface.skin().mesh().triangles[point.triangle];
+  const uvec3 corners = surface.collision_mesh().mesh().triangles[point.triangle];
   Lean lean;
   lean.sharp = false;
   for (int i = 0; i < 3; ++i) {
@@ -91,7 +96,7 @@ dvec3 without(dvec3 v, dvec3 along) {
 
 // `offset` [m]: a stands so far aside from where it is predicted.
 std::optional<Touch> vertex_touch(const FeaturePair& pair, const Surface& of_a, const Surface& of_b, dvec3 offset) {
-  const Skin& b = pair.b;
+  const CollisionMesh& b = pair.b;
   const dvec3 p = pair.a.ahead(pair.feature_a) + offset;
   std::uint32_t t = pair.feature_b, from = kBorder;
   for (int walked = 0; walked < kMostTriangles; ++walked) {
@@ -119,7 +124,7 @@ std::optional<Touch> vertex_touch(const FeaturePair& pair, const Surface& of_a, 
 }
 
 std::optional<Touch> edge_touch(const FeaturePair& pair, const Surface& of_a, const Surface& of_b, dvec3 offset) {
-  const SkinEdge &on_a = pair.a.edges()[pair.feature_a], &on_b = pair.b.edges()[pair.feature_b];
+  const CollisionEdge &on_a = pair.a.edges()[pair.feature_a], &on_b = pair.b.edges()[pair.feature_b];
   const dvec3 a0 = pair.a.ahead(on_a.from) + offset, b0 = pair.b.ahead(on_b.from);
   const dvec3 e = pair.a.ahead(on_a.to) + offset - a0, f = pair.b.ahead(on_b.to) - b0, r = a0 - b0, n = cross(e, f);
   const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r), det = ee * ff - ef * ef;
@@ -160,16 +165,16 @@ struct Bend {
   bool sharp = false;
 };
 
-Bend bend_at(const Skin& skin, const SurfacePoint& point, bool face, const dmat3& axes) {
-  const uvec3 corners = skin.mesh().triangles[point.triangle];
+Bend bend_at(const CollisionMesh& collision_mesh, const SurfacePoint& point, bool face, const dmat3& axes) {
+  const uvec3 corners = collision_mesh.mesh().triangles[point.triangle];
   Bend out;
   dmat3 bend(0.0);
   for (int i = 0; i < 3; ++i) {
     if (point.barycentric[i] == 0.0) continue;
-    out.sharp |= !face && !skin.rest().smooth[corners[i]];
-    bend += point.barycentric[i] * skin.rest().bend[corners[i]];
+    out.sharp |= !face && !collision_mesh.rest().smooth[corners[i]];
+    bend += point.barycentric[i] * collision_mesh.rest().bend[corners[i]];
   }
-  const dmat3 turned = glm::transpose(axes) * skin.turn(point.triangle);
+  const dmat3 turned = glm::transpose(axes) * collision_mesh.turn(point.triangle);
   const dmat3 local = turned * bend * glm::transpose(turned);
   out.form = dmat2(local[1][1], local[1][2], local[2][1], local[2][2]);
   return out;

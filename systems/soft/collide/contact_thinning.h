@@ -15,7 +15,7 @@ struct Candidate {
   dvec3 normal{0, 1, 0};                      // [1] out of body_low, whoever is side a
   double gap = 0.0;                           // [m] now
   double end_gap = 0.0;                       // [m] predicted: deepest first
-  double edge = 0.0;                          // [m] how long the skins' edges are there
+  double edge = 0.0;                          // [m] how long the collision meshes' edges are there
   bool known = false;                         // had a contact in the last step
   std::uint64_t key = 0;
   std::uint32_t source = 0;  // whatever the caller finds it by

@@ -1,5 +1,5 @@
-// Where two features of skins - a vertex and a triangle, two edges - meet or may meet within a step. Everything moves
-// in straight lines over the step: x + t d, t in [0, 1].
+// Where two features of collision meshes - a vertex and a triangle, two edges - meet or may meet within a step.
+// Everything moves in straight lines over the step: x + t d, t in [0, 1].
 #pragma once
 
 #include <array>

@@ -27,8 +27,8 @@ struct MeetingFilter {
     const bool met = came_from(pair.sides.find(key), m);
     // Edges deep below each other that never met: others hold those bodies.
     if (m.gap < -pair.margin && !met && !(began_inside() && leads_out(a, b, m))) return;
-    if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, met)) return;
-    if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, met)) return;
+    if (a.sheet() && !meets_front(a.collision_mesh.edge_normal(edge_a), -m.normal, m, met)) return;
+    if (b.sheet() && !meets_front(b.collision_mesh.edge_normal(edge_b), m.normal, m, met)) return;
     out.push_back({a.index, b.index, true, edge_a, edge_b, m, last, key});
   }
 
@@ -133,10 +133,10 @@ struct MeetingFilter {
 
   bool inside(const Side& a, const Side& b, const VertexMeeting& m) const {
     const double depth = -m.meeting.gap;
-    if (a.index == b.index) return depth <= pair.margin && in_front_at_rest(b.skin.mesh(), m);
+    if (a.index == b.index) return depth <= pair.margin && in_front_at_rest(b.collision_mesh.mesh(), m);
     if ((a.sheet() || b.sheet()) && !enters(m.meeting)) return false;
-    if (!b.skin.mesh().closed) return depth <= pair.margin;  // far behind it is the open
-    return b.skin.contains(a.skin.vertex(m.vertex).x, pair.reach.behind);
+    if (!b.collision_mesh.mesh().closed) return depth <= pair.margin;  // far behind it is the open
+    return b.collision_mesh.contains(a.collision_mesh.vertex(m.vertex).x, pair.reach.behind);
   }
   // Through a thin part of a body its own far side looks like something that was entered.
   static bool in_front_at_rest(const Mesh& mesh, const VertexMeeting& m) {
@@ -158,8 +158,8 @@ struct MeetingFilter {
       if (slips(m)) count(m);
       return;
     }
-    if (a.sheet() && !meets_front(a.skin.edge_normal(edge_a), -m.normal, m, false)) return;
-    if (b.sheet() && !meets_front(b.skin.edge_normal(edge_b), m.normal, m, false)) return;
+    if (a.sheet() && !meets_front(a.collision_mesh.edge_normal(edge_a), -m.normal, m, false)) return;
+    if (b.sheet() && !meets_front(b.collision_mesh.edge_normal(edge_b), m.normal, m, false)) return;
     count(m);
     out.push_back({a.index, b.index, true, edge_a, edge_b, m, pair.memory.find(key), key});
   }

@@ -1,5 +1,6 @@
-// Which of the meetings of two skins' features are contacts. In front of each other they are; behind, a feature touches
-// what it came from, as the last step remembers, or, where it has no past, the nearest if it really is inside.
+// Which of the meetings of two collision meshes' features are contacts. In front of each other they are; behind, a
+// feature touches what it came from, as the last step remembers, or, where it has no past, the nearest if it really is
+// inside.
 #pragma once
 
 #include <vector>

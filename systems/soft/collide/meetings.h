@@ -1,27 +1,27 @@
-// Which features of two skins meet within a step, or of one skin with itself: vertices and triangles, edges and edges.
-// Which of these meetings are contacts is decided elsewhere (meeting_filter.h).
+// Which features of two collision meshes meet within a step, or of one collision mesh with itself: vertices and
+// triangles, edges and edges. Which of these meetings are contacts is decided elsewhere (meeting_filter.h).
 #pragma once
 
 #include <vector>
 
-#include "systems/soft/collide/skin.h"
+#include "systems/soft/collide/collision_mesh.h"
 
 namespace pliant {
 
 struct Side {
   std::uint32_t index;  // of the body
   const Body& body;
-  const Skin& skin;
+  const CollisionMesh& collision_mesh;
   // A fixed surface that encloses nothing: it stops what comes from its front and lets pass what comes from behind.
-  bool sheet() const { return body.size() == 0 && !skin.mesh().closed; }
+  bool sheet() const { return body.size() == 0 && !collision_mesh.mesh().closed; }
 };
 
-// A vertex of one skin that meets a triangle of another (or of its own).
+// A vertex of one collision mesh that meets a triangle of another (or of its own).
 struct VertexMeeting {
   std::uint32_t vertex, triangle;
   Meeting meeting;
 };
-// An edge of one skin that meets an edge of another (or of its own).
+// An edge of one collision mesh that meets an edge of another (or of its own).
 struct EdgeMeeting {
   std::uint32_t edge_a, edge_b;
   Meeting meeting;
@@ -33,7 +33,7 @@ struct Meetings {
 };
 
 // Fills `out`; a and b may be the same body. Triangles that have strayed by no more than `strayed` [m] together are
-// left out (Skin::strayed).
+// left out (CollisionMesh::strayed).
 void find_meetings(const Side& a, const Side& b, const Reach& reach, float strayed, Meetings& out);
 
 }  // namespace pliant

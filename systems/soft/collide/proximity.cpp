@@ -1,6 +1,6 @@
-// From skins to contacts: the features that meet (meetings.h), which of them are contacts (meeting_filter.h), and how
-// few are enough (contact_thinning.h); pair by pair over all bodies. Their boxes are compared all with all, n^2 / 2
-// tests: for hundreds of bodies, not for thousands.
+// From collision meshes to contacts: the features that meet (meetings.h), which of them are contacts
+// (meeting_filter.h), and how few are enough (contact_thinning.h); pair by pair over all bodies. Their boxes are
+// compared all with all, n^2 / 2 tests: for hundreds of bodies, not for thousands.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -32,7 +32,7 @@ constexpr double kMarginOfBody = 0.01;  // [1] of a body's diagonal, for meshes 
 // [m] What cannot move has none of its own: a ground of two triangles says nothing of what lies on it.
 double margin_of(const Body& body) {
   if (body.size() == 0) return std::numeric_limits<double>::infinity();
-  const Mesh& mesh = *body.skin;
+  const Mesh& mesh = *body.collision_mesh;
   return std::min(kMarginOfEdge * static_cast<double>(mesh.mean_edge),
                   kMarginOfBody * static_cast<double>(mesh.box.diagonal()));
 }
@@ -57,7 +57,7 @@ std::uint64_t pair_key(std::uint32_t i, std::uint32_t k) {
 }  // namespace
 
 struct Proximity::Parts {
-  std::vector<Skin> skins;
+  std::vector<CollisionMesh> collision_meshes;
   std::vector<double> mean_edge, own_margin;   // [m] per body
   std::vector<bool> yields;                    // per body
   std::vector<bool> seen;                      // per body: an earlier step looked at it
@@ -77,8 +77,8 @@ struct Proximity::Parts {
     for (std::size_t i = first; i < found.size(); ++i) {
       const Found f = found[i];
       const Meeting& m = f.meeting;
-      const dvec3 position = f.edges ? skins[f.body_a].point_on_edge(f.feature_a, m.along_a).position
-                                     : skins[f.body_a].vertex(f.feature_a).x;
+      const dvec3 position = f.edges ? collision_meshes[f.body_a].point_on_edge(f.feature_a, m.along_a).position
+                                     : collision_meshes[f.body_a].vertex(f.feature_a).x;
       if (!std::isfinite(m.gap + m.end_gap + dot(m.normal, position))) continue;
       past.deepest = std::max({past.deepest, -m.gap, late ? -m.end_gap : 0.0});
       Candidate c{std::min(f.body_a, f.body_b), std::max(f.body_a, f.body_b), position};
@@ -95,23 +95,24 @@ struct Proximity::Parts {
     found.resize(kept);
   }
 
-  // [m] The mean edges tell how finely a skin is meshed; those of a slender bar are longer than it is wide.
+  // [m] The mean edges tell how finely a collision mesh is meshed; those of a slender bar are longer than it is wide.
   double edge_there(const Found& f) const {
-    const Skin &a = skins[f.body_a], &b = skins[f.body_b];
+    const CollisionMesh &a = collision_meshes[f.body_a], &b = collision_meshes[f.body_b];
     const double shortest = f.edges ? std::min(a.shortest_at_edge(f.feature_a), b.shortest_at_edge(f.feature_b))
                                     : std::min(a.shortest_at_vertex(f.feature_a), b.shortest_of_triangle(f.feature_b));
     return std::min({mean_edge[f.body_a], mean_edge[f.body_b], kSlender * shortest});
   }
 
   std::pair<SurfacePoint, SurfacePoint> points_of(const Found& f) const {
-    const Skin &a = skins[f.body_a], &b = skins[f.body_b];
+    const CollisionMesh &a = collision_meshes[f.body_a], &b = collision_meshes[f.body_b];
     if (f.edges)
       return {a.point_on_edge(f.feature_a, f.meeting.along_a), b.point_on_edge(f.feature_b, f.meeting.along_b)};
     return {a.point_at_vertex(f.feature_a), b.point_on_triangle(f.feature_b, f.meeting.barycentric)};
   }
 
   FeaturePair pair_of(const Found& f) const {
-    return {skins[f.body_a], skins[f.body_b], f.edges, f.feature_a, f.feature_b, f.meeting.normal};
+    return {
+        collision_meshes[f.body_a], collision_meshes[f.body_b], f.edges, f.feature_a, f.feature_b, f.meeting.normal};
   }
 
   ContactPoint contact_of(const std::vector<std::unique_ptr<Body>>& bodies, const Candidate& candidate) const {
@@ -144,9 +145,10 @@ struct Proximity::Parts {
     PairView pair{margin_between(i, k), {0.0, 0.0}, past.way, memory, sides};
     if (late) return pair;
     const double margin = pair.margin;
-    double most = i == k ? kDeepestWithin * margin : overlap(skins[i].whole(), skins[k].whole()) + margin;
+    double most =
+        i == k ? kDeepestWithin * margin : overlap(collision_meshes[i].whole(), collision_meshes[k].whole()) + margin;
     if (i != k && std::isinf(past.deepest) && most > margin) {
-      pair.way = shortest_way(skins[i], skins[k]).value_or(dvec3(0.0));
+      pair.way = shortest_way(collision_meshes[i], collision_meshes[k]).value_or(dvec3(0.0));
       if (pair.way == dvec3(0.0)) most = std::min(most, kDeepestWithin * margin);
     }
     if (past.deepest <= margin) pair.way = dvec3(0.0);
@@ -159,7 +161,7 @@ struct Proximity::Parts {
     PairPast past = known != touching.end() ? known->second : PairPast{};
     if (!late && !(seen[i] && seen[k])) past.deepest = std::numeric_limits<double>::infinity();
     const PairView pair = view_of(i, k, past);
-    const Side a{i, *bodies[i], skins[i]}, b{k, *bodies[k], skins[k]};
+    const Side a{i, *bodies[i], collision_meshes[i]}, b{k, *bodies[k], collision_meshes[k]};
     const std::size_t first = found.size();
     // What find() saw moving within a margin of where it does now it has not missed.
     find_meetings(a, b, pair.reach, late ? static_cast<float>(pair.margin) : -1.0f, meetings);
@@ -177,13 +179,13 @@ struct Proximity::Parts {
 
   void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::optional<double> given,
             std::vector<ContactPoint>& out) {
-    ASSERT(bodies.size() == skins.size());
+    ASSERT(bodies.size() == collision_meshes.size());
     late = false;
     margin_given = given;
     memory.take(out);
     found.clear();
     candidates.clear();
-    for (std::size_t i = 0; i < bodies.size(); ++i) skins[i].refit(*bodies[i], T, 0.0);
+    for (std::size_t i = 0; i < bodies.size(); ++i) collision_meshes[i].refit(*bodies[i], T, 0.0);
     const auto count = static_cast<std::uint32_t>(bodies.size());
     for (std::uint32_t i = 0; i < count; ++i) {
       if (bodies[i]->self_collides) find_between(bodies, i, i);
@@ -222,14 +224,16 @@ struct Proximity::Parts {
     sides.sort();
   }
 
-  // [m] Where the contact will be at the step's end, by its normal and the motion that the skins were swept with.
+  // [m] Where the contact will be at the step's end, by its normal and the motion that the collision meshes were swept
+  // with.
   double end_gap(const Found& f) const {
-    const auto displacement = [](const Skin& skin, const SurfacePoint& point) {
-      const std::array<Moving, 3> corner = skin.triangle(point.triangle);
+    const auto displacement = [](const CollisionMesh& collision_mesh, const SurfacePoint& point) {
+      const std::array<Moving, 3> corner = collision_mesh.triangle(point.triangle);
       return point.barycentric.x * corner[0].d + point.barycentric.y * corner[1].d + point.barycentric.z * corner[2].d;
     };
     const auto [a, b] = points_of(f);
-    return f.meeting.gap + dot(f.meeting.normal, displacement(skins[f.body_a], a) - displacement(skins[f.body_b], b));
+    return f.meeting.gap + dot(f.meeting.normal, displacement(collision_meshes[f.body_a], a) -
+                                                     displacement(collision_meshes[f.body_b], b));
   }
 
   // Candidates that thinning left out although those that it kept do not hold them: they sink in.
@@ -249,8 +253,10 @@ struct Proximity::Parts {
   // Whether what the bodies do now may bring together what find() saw apart: not where they move as they did then, or
   // hardly relative to each other.
   bool may_miss(std::uint32_t i, std::uint32_t k) const {
-    const double changed = i == k ? 2.0 * skins[i].strayed_apart() : skins[i].strayed() + skins[k].strayed();
-    const double moved = length(skins[i].drift() - skins[k].drift()) + skins[i].spread() + skins[k].spread();
+    const double changed = i == k ? 2.0 * collision_meshes[i].strayed_apart()
+                                  : collision_meshes[i].strayed() + collision_meshes[k].strayed();
+    const double moved = length(collision_meshes[i].drift() - collision_meshes[k].drift()) +
+                         collision_meshes[i].spread() + collision_meshes[k].spread();
     return std::min(changed, moved) > margin_between(i, k);
   }
 
@@ -262,17 +268,17 @@ struct Proximity::Parts {
     std::vector<dvec3> velocity;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       if (bodies[i]->size() == 0) continue;
-      bodies[i]->move_skin(velocity);
-      skins[i].sweep(*bodies[i], velocity, T);
+      bodies[i]->move_surface(velocity);
+      collision_meshes[i].sweep(*bodies[i], velocity, T);
     }
     const auto count = static_cast<std::uint32_t>(bodies.size());
     const auto takes_part = [&](std::uint32_t i) { return bodies[i]->solvable() && !yields[i]; };
     for (std::uint32_t i = 0; i < count; ++i) {
       if (!takes_part(i)) continue;
-      if (bodies[i]->self_collides && may_miss(i, i)) skins[i].fit_swept(), find_between(bodies, i, i);
+      if (bodies[i]->self_collides && may_miss(i, i)) collision_meshes[i].fit_swept(), find_between(bodies, i, i);
       for (std::uint32_t k = i + 1; k < count; ++k) {
         if (!bodies[i]->meets(*bodies[k]) || !takes_part(k) || !may_miss(i, k)) continue;
-        skins[i].fit_swept(), skins[k].fit_swept();
+        collision_meshes[i].fit_swept(), collision_meshes[k].fit_swept();
         find_between(bodies, i, k);
       }
     }
@@ -288,8 +294,8 @@ struct Proximity::Parts {
 
 Proximity::Proximity(const std::vector<std::unique_ptr<Body>>& bodies) : parts_(std::make_unique<Parts>()) {
   for (const auto& body : bodies) {
-    parts_->skins.emplace_back(*body);
-    parts_->mean_edge.push_back(static_cast<double>(body->skin->mean_edge));
+    parts_->collision_meshes.emplace_back(*body);
+    parts_->mean_edge.push_back(static_cast<double>(body->collision_mesh->mean_edge));
     parts_->own_margin.push_back(margin_of(*body));
     parts_->yields.push_back(dynamic_cast<const YieldingBody*>(body.get()) != nullptr);
   }
@@ -319,8 +325,8 @@ bool Proximity::look_again(const std::vector<std::unique_ptr<Body>>& bodies, dou
   std::vector<dvec3> velocity;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i]->size() == 0) continue;
-    bodies[i]->move_skin(velocity);
-    p.skins[i].predict(velocity, T);
+    bodies[i]->move_surface(velocity);
+    p.collision_meshes[i].predict(velocity, T);
   }
   bool any = false;
   for (ContactPoint& contact : contacts) {

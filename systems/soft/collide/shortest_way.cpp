@@ -16,30 +16,32 @@ struct Extent {
   double low = 1e300, high = -1e300;  // [m]
 };
 
-Extent extent(const Skin& skin, dvec3 axis) {
+Extent extent(const CollisionMesh& collision_mesh, dvec3 axis) {
   Extent out;
-  for (std::uint32_t v = 0; v < skin.mesh().vertex_count; ++v) {
-    const double at = dot(axis, skin.vertex(v).x);
+  for (std::uint32_t v = 0; v < collision_mesh.mesh().vertex_count; ++v) {
+    const double at = dot(axis, collision_mesh.vertex(v).x);
     out.low = std::min(out.low, at), out.high = std::max(out.high, at);
   }
   return out;
 }
 
-bool convex(const Skin& skin) {
-  const Mesh& mesh = skin.mesh();
+bool convex(const CollisionMesh& collision_mesh) {
+  const Mesh& mesh = collision_mesh.mesh();
   if (!mesh.closed || double(mesh.triangles.size()) * double(mesh.vertex_count) > kMostTests) return false;
   const double bulge = kBulge * static_cast<double>(mesh.box.diagonal());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const dvec3 n = skin.normal(t);
-    if (n != dvec3(0.0) && extent(skin, n).high > dot(n, skin.vertex(mesh.triangles[t].x).x) + bulge) return false;
+    const dvec3 n = collision_mesh.normal(t);
+    if (n != dvec3(0.0) &&
+        extent(collision_mesh, n).high > dot(n, collision_mesh.vertex(mesh.triangles[t].x).x) + bulge)
+      return false;
   }
   return true;
 }
 
 // The shortest way so far.
 struct Way {
-  const Skin& a;
-  const Skin& b;
+  const CollisionMesh& a;
+  const CollisionMesh& b;
   double length = 1e300;  // [m]
   dvec3 direction{0};
   void consider(dvec3 axis) {  // of a, out of b
@@ -48,14 +50,14 @@ struct Way {
   }
 };
 
-dvec3 along(const Skin& skin, const SkinEdge& edge) {
-  return skin.vertex(edge.to).x - skin.vertex(edge.from).x;
+dvec3 along(const CollisionMesh& collision_mesh, const CollisionEdge& edge) {
+  return collision_mesh.vertex(edge.to).x - collision_mesh.vertex(edge.from).x;
 }
 
 void consider_edges(Way& way) {
   if (double(way.a.edges().size()) * double(way.b.edges().size()) > kMostEdgePairs) return;
-  for (const SkinEdge& of_a : way.a.edges())
-    for (const SkinEdge& of_b : way.b.edges()) {
+  for (const CollisionEdge& of_a : way.a.edges())
+    for (const CollisionEdge& of_b : way.b.edges()) {
       const dvec3 e = along(way.a, of_a), f = along(way.b, of_b), n = cross(e, f);
       if (!(dot(n, n) > kParallel * dot(e, e) * dot(f, f))) continue;
       way.consider(normalize(n));
@@ -65,7 +67,7 @@ void consider_edges(Way& way) {
 
 }  // namespace
 
-std::optional<dvec3> shortest_way(const Skin& a, const Skin& b) {
+std::optional<dvec3> shortest_way(const CollisionMesh& a, const CollisionMesh& b) {
   const double tests = double(a.mesh().triangles.size() + b.mesh().triangles.size()) *
                        double(a.mesh().vertex_count + b.mesh().vertex_count);
   if (tests > kMostTests || !convex(a) || !convex(b)) return {};

@@ -14,8 +14,8 @@ struct Facet {
 };
 
 Facet facet_at(const Body& body, std::uint32_t triangle) {
-  const uvec3 c = body.skin->triangles[triangle];
-  const std::vector<dvec3>& x = body.skin_position;
+  const uvec3 c = body.collision_mesh->triangles[triangle];
+  const std::vector<dvec3>& x = body.surface_position;
   const dvec3 e = x[c.y] - x[c.x], f = x[c.z] - x[c.x];
   return {c, e, f, cross(e, f)};
 }
@@ -48,7 +48,7 @@ std::optional<SurfacePoint> walk(const Body& body, SurfacePoint p, dvec3 by) {
     p.position += share * by;
     if (left_behind < 0) return p;
 
-    const std::uint32_t next = body.skin->across[p.triangle][(left_behind + 1) % 3];
+    const std::uint32_t next = body.collision_mesh->across[p.triangle][(left_behind + 1) % 3];
     if (next == kBorder) return {};
     const Facet beyond = facet_at(body, next);
     if (!(dot(facet.normal, beyond.normal) > kCrease * length(facet.normal) * length(beyond.normal))) return {};

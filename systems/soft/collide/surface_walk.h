@@ -1,4 +1,4 @@
-// A point that goes over a body's skin, from triangle to triangle.
+// A point that goes over a body's collision mesh, from triangle to triangle.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-// Where `from` is after a way of `by` [m], which bends with the skin as it is at the step's beginning. Nothing where
-// the way leads over a border or an edge sharper than 60 degrees.
+// Where `from` is after a way of `by` [m], which bends with the collision mesh as it is at the step's beginning.
+// Nothing where the way leads over a border or an edge sharper than 60 degrees.
 std::optional<SurfacePoint> walk(const Body& body, SurfacePoint from, dvec3 by);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// A pair of skin points that may touch during the step.
+// A pair of collision mesh points that may touch during the step.
 #pragma once
 
 #include <algorithm>
@@ -43,9 +43,9 @@ struct Crossings {
 };
 
 // `out` comes in with the last contacts and their impulses: side, axes, impulse and sliding carry over by key.
-// Pairs whose gap may close within a step T [s], by the bodies' skin_velocity, at most a margin apart at the end: broad
-// phase over bodies and over each skin's boxes, then vertex-triangle and edge-edge pairs. Normals do not flip.
-// Penetrations are followed as deep as the smaller of two bodies is large.
+// Pairs whose gap may close within a step T [s], by the bodies' surface_velocity, at most a margin apart at the end:
+// broad phase over bodies and over each collision mesh's boxes, then vertex-triangle and edge-edge pairs. Normals do
+// not flip. Penetrations are followed as deep as the smaller of two bodies is large.
 class Proximity {
  public:
   explicit Proximity(const std::vector<std::unique_ptr<Body>>& bodies);

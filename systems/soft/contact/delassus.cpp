@@ -206,11 +206,11 @@ class OperatorFiller {
   std::vector<int> everyone_;
 };
 
-// [m/s] J v* of one side: the skin is interpolated linearly by every body.
+// [m/s] J v* of one side: the collision mesh is interpolated linearly by every body.
 dvec3 free_velocity(const Body& body, const SurfacePoint& point) {
-  const uvec3 t = body.skin->triangles[point.triangle];
-  return point.barycentric.x * body.skin_velocity[t.x] + point.barycentric.y * body.skin_velocity[t.y] +
-         point.barycentric.z * body.skin_velocity[t.z];
+  const uvec3 t = body.collision_mesh->triangles[point.triangle];
+  return point.barycentric.x * body.surface_velocity[t.x] + point.barycentric.y * body.surface_velocity[t.y] +
+         point.barycentric.z * body.surface_velocity[t.z];
 }
 
 // [m] How much less than its gap a contact is to close: what of a penetration this step does not undo, if nothing

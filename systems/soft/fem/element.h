@@ -1,5 +1,5 @@
 // Co-rotational linear tetrahedra, eight at a time: plain loops over lanes that the compiler turns into SIMD, without a
-// word of meshes and matrices. The law is in flesh.h. Corner 0 is where differences start: b_0 = -(b_1 + b_2 + b_3),
+// word of meshes and matrices. The law is in tissue.h. Corner 0 is where differences start: b_0 = -(b_1 + b_2 + b_3),
 // and what depends on positions is computed from the edges x_k - x_0, which keeps digits far from the origin.
 #pragma once
 

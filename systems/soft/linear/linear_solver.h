@@ -34,7 +34,7 @@ class LinearSolver {
   // x = A^-1 b. x comes in as a guess (iterative methods start there; others ignore it).
   virtual void solve(const Vector& b, Vector& x) const = 0;
   // columns = A^-1 columns, in place, all right-hand sides at once. The upper rows of a larger matrix will do: a
-  // coupled solve hands over the flesh's part of its columns without copying them.
+  // coupled solve hands over the tissue's part of its columns without copying them.
   virtual void solve_many(Eigen::Ref<Rows> columns) const = 0;
   // gram = B^T A^-1 B, symmetric: how B's columns move what they themselves push. Solves for all of them, unless a
   // method has something shorter.

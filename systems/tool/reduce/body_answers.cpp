@@ -6,12 +6,12 @@
 namespace pliant {
 namespace {
 
-// What the flesh does by its own inertia when the handle shakes it: A^-1 M Phi, A^-1 M A^-1 M Phi, ... Scaled to count
+// What the tissue does by its own inertia when the handle shakes it: A^-1 M Phi, A^-1 M A^-1 M Phi, ... Scaled to count
 // as much as the softest contact.
 void shake(const ToolContacts& contacts, BodyAnswers& out) {
   const ToolBody& tool = contacts.tool();
   const ContactProblem& problem = contacts.step().problem;
-  const Eigen::Index flesh = tool.size() - 6;
+  const Eigen::Index tissue = tool.size() - 6;
   double softest = 0.0;
   for (const int i : out.local) {
     const int row = 3 * contacts.in_step(i);
@@ -23,16 +23,16 @@ void shake(const ToolContacts& contacts, BodyAnswers& out) {
   for (int round = 0; round < kShakes; ++round) {
     tool.weigh(shape, pull);
     pull.bottomRows<6>().setZero();
-    Rows answer = pull.topRows(flesh);
+    Rows answer = pull.topRows(tissue);
     tool.solve_held(answer);
     for (int k = 0; k < 6; ++k) {
-      const double size = pull.col(k).head(flesh).dot(answer.col(k));
+      const double size = pull.col(k).head(tissue).dot(answer.col(k));
       const double scale = size > 0.0 ? std::sqrt((softest > 0.0 ? softest : 1.0) / size) : 0.0;
       const Eigen::Index at = 6 * round + k;
       out.shaken.col(at) = scale * pull.col(k);
-      out.shaken_answers.col(at).head(flesh) = scale * answer.col(k);
+      out.shaken_answers.col(at).head(tissue) = scale * answer.col(k);
     }
-    shape.topRows(flesh) = answer;
+    shape.topRows(tissue) = answer;
     shape.bottomRows<6>().setZero();
   }
 }

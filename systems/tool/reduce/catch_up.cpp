@@ -46,7 +46,7 @@ void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const
   }
 }
 
-// Modes and flesh go along with the handle's way and with what the contacts do otherwise; the model's displacements
+// Modes and tissue go along with the handle's way and with what the contacts do otherwise; the model's displacements
 // stay zero where it now stands.
 void move_along(const Vector6& left, const Vector& change, double T, HandleModel& model) {
   CondensedContacts& c = model.contacts;
@@ -55,7 +55,7 @@ void move_along(const Vector6& left, const Vector& change, double T, HandleModel
   const Vector rate = share.matrix().cwiseProduct(c.from_modes.topLeftCorner(rows, modes).transpose() * change);
   const Vector q = T * rate;
   c.rate.head(modes) += rate;
-  c.flesh_force -= c.flesh_stiffness * left + c.modal_stiffness.topRows(modes).transpose() * q;
+  c.tissue_force -= c.tissue_stiffness * left + c.modal_stiffness.topRows(modes).transpose() * q;
   c.load.head(modes) -= c.frequency2.head(modes).cwiseProduct(q) + c.modal_stiffness.topRows(modes) * left;
 }
 
@@ -79,7 +79,7 @@ void catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::Ma
     const double *l = &impulse[3 * i], *u = &velocity[3 * i];
     set_solution(contacts, i, dvec3(l[0], l[1], l[2]), dvec3(u[0], u[1], u[2]), c);
   }
-  model.force += (c.from_handle.topRows(rows).transpose() * change - contacts.tool().flesh_matrix() * left / T) / T;
+  model.force += (c.from_handle.topRows(rows).transpose() * change - contacts.tool().tissue_matrix() * left / T) / T;
   model.handle.velocity += left / T;
   model.handle.pose.position += linear(left);
   model.handle.pose.rotation = glm::normalize(rotation_of(angular(left)) * model.handle.pose.rotation);

@@ -1,7 +1,7 @@
 // From where the soft step has left the handle to where the touch clock has it. The hand's impedance lets the step's
 // handle fall a little short of its lead (tool_body.h); the model must stand where the touch clock's handle stands. So
 // the step is taken again in reduced form, its handle going the whole way: contacts are solved anew with the handle
-// held on it, and flesh, modes and objects follow.
+// held on it, and tissue, modes and objects follow.
 #pragma once
 
 #include "systems/tool/reduce/tool_contacts.h"

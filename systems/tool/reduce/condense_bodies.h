@@ -13,7 +13,7 @@ inline constexpr double kHighestPerTick = 1.0;  // [rad] frequency x tick: faste
 
 // After describe_contacts, whose flexibility it adds to. `tick` [s]: of the touch clock. Fills the modes (all that has
 // as many rows or columns), flexibility and flexibility_lag.
-// Returns W_a [1/kg]: the Delassus operator of tool flesh, objects and yielding surfaces, the handle held.
+// Returns W_a [1/kg]: the Delassus operator of tool tissue, objects and yielding surfaces, the handle held.
 Eigen::MatrixXd condense_bodies(const ToolContacts& contacts, double tick, CondensedContacts& out);
 
 }  // namespace pliant

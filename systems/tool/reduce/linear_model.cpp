@@ -83,11 +83,12 @@ ModeRates mode_rates(const ActiveSet& active, const Answer& answer, const Conden
           share.asDiagonal() * (from_modes.transpose() * (active.D * answer.phi))};
 }
 
-// A bilinear form of flesh and modes, seen by the handle: the flesh's own, the modes' (diagonal), and between the two.
-Matrix6 coupled(const ModeRates& rates, const Matrix6& of_flesh, const Rows6& between, const Vector& of_modes) {
+// A bilinear form of tissue and modes, seen by the handle: the tissue's own, the modes' (diagonal), and between the
+// two.
+Matrix6 coupled(const ModeRates& rates, const Matrix6& of_tissue, const Rows6& between, const Vector& of_modes) {
   const Eigen::Index modes = rates.right.rows();
   const auto border = between.topRows(modes);
-  return of_flesh + border.transpose() * rates.right + rates.left.transpose() * border +
+  return of_tissue + border.transpose() * rates.right + rates.left.transpose() * border +
          rates.left.transpose() * of_modes.head(modes).asDiagonal() * rates.right;
 }
 
@@ -96,14 +97,14 @@ Matrix6 coupled(const ModeRates& rates, const Matrix6& of_flesh, const Rows6& be
 LinearModel linear_model(const ToolBody& tool, const HandleModel& model, const Eigen::MatrixXd& W) {
   const CondensedContacts& c = model.contacts;
   const double T = model.soft_step;
-  Matrix6 C = tool.flesh_matrix(), M = c.flesh_mass, B = c.flesh_damping;
+  Matrix6 C = tool.tissue_matrix(), M = c.tissue_mass, B = c.tissue_damping;
   const ActiveSet active = active_set(c);
   if (active.size() > 0) {
     const Answer held = answer(active, c, W);
     C -= held.DJ.transpose() * held.phi;
     const ModeRates rates = mode_rates(active, held, c, T);
-    M = coupled(rates, c.flesh_mass, c.modal_mass, Vector::Ones(c.modes));
-    B = coupled(rates, c.flesh_damping, c.modal_damping, c.damping);
+    M = coupled(rates, c.tissue_mass, c.modal_mass, Vector::Ones(c.modes));
+    B = coupled(rates, c.tissue_damping, c.modal_damping, c.damping);
   }
   // C = M + T B + T^2 K.
   LinearModel out;

@@ -1,5 +1,5 @@
 // The wrench on the handle as a linear function of its motion: the set of touching contacts stays as the step left it
-// (methods.md 2.6). Takes the condensed contacts, their Delassus operator and what the tool's flesh does by itself;
+// (methods.md 2.6). Takes the condensed contacts, their Delassus operator and what the tool's tissue does by itself;
 // gives mass, damping, stiffness and force.
 #pragma once
 

@@ -2,7 +2,7 @@
 
 #include "systems/tool/reduce/catch_up.h"
 #include "systems/tool/reduce/condense_bodies.h"
-#include "systems/tool/reduce/handle_and_flesh.h"
+#include "systems/tool/reduce/handle_and_tissue.h"
 #include "systems/tool/reduce/linear_model.h"
 #include "systems/tool/reduce/stiff_contacts.h"
 
@@ -11,7 +11,7 @@ namespace pliant {
 void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out) {
   const ToolContacts contacts(step, tool);
   describe_contacts(contacts, out.contacts);
-  describe_handle_and_flesh(contacts, out);
+  describe_handle_and_tissue(contacts, out);
   const Eigen::MatrixXd W = condense_bodies(contacts, tick, out.contacts);
   mark_stiff(W, out.contacts);
   const Vector6 left = contacts.tool().short_of_lead(out.handle);

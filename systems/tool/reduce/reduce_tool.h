@@ -1,6 +1,6 @@
 // What one soft step says about a tool's handle, as a HandleModel (methods.md 2.6, 2.8): the linear model over the
-// active set, and flesh, objects and contacts condensed for the touch tick. Pure arithmetic on a finished step; its
-// parts, in order of the data: reduce/tool_contacts.h, handle_and_flesh.h, body_answers.h, condense_bodies.h and
+// active set, and tissue, objects and contacts condensed for the touch tick. Pure arithmetic on a finished step; its
+// parts, in order of the data: reduce/tool_contacts.h, handle_and_tissue.h, body_answers.h, condense_bodies.h and
 // linear_model.h.
 #pragma once
 

@@ -14,7 +14,7 @@ constexpr double kStiffShare = 0.1;
 // A handle that nothing but an inertia of 1 / kRigidCompliance at every contact would lead pushes with
 //   (W + kRigidCompliance)^-1 J v;
 // the inertia's share of it, kRigidCompliance (W + kRigidCompliance)^-1 J, is 1 where nothing gives way, and next to
-// nothing where flesh does.
+// nothing where tissue does.
 void mark_stiff(const Eigen::MatrixXd& W, CondensedContacts& out) {
   const Eigen::Index rows = 3 * out.count;
   Eigen::MatrixXd sum = W;

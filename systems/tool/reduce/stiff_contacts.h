@@ -1,5 +1,5 @@
-// Contacts that flesh and objects cannot give way to: a rigid part of the tool on a fixed body, a rigid object between
-// the two, very hard flesh. While the soft step leads the handle, the force of such a contact is what the lead's
+// Contacts that tissue and objects cannot give way to: a rigid part of the tool on a fixed body, a rigid object between
+// the two, very hard tissue. While the soft step leads the handle, the force of such a contact is what the lead's
 // inertia makes of it, thousands of newtons; no hand gives that. It is left to the touch tick, where the handle has its
 // own inertia and is held by its device.
 #pragma once

@@ -26,9 +26,10 @@ std::vector<std::uint32_t> distances(const FinishedStep& step, std::uint32_t too
   return distance;
 }
 
-// [m] An edge of the finer skin: what is between its vertices says nothing of how a surface gives way.
+// [m] An edge of the finer collision mesh: what is between its vertices says nothing of how a surface gives way.
 double farthest(const FinishedStep& step, const ContactPoint& p) {
-  return static_cast<double>(std::min(step.bodies[p.body_a]->skin->mean_edge, step.bodies[p.body_b]->skin->mean_edge));
+  return static_cast<double>(
+      std::min(step.bodies[p.body_a]->collision_mesh->mean_edge, step.bodies[p.body_b]->collision_mesh->mean_edge));
 }
 
 // A P1 surface gives way at the contact by its own law.

@@ -46,7 +46,8 @@ class ToolContacts {
   bool takes_part(std::uint32_t body) const;
   // out (3 x columns of x) += J x of contact i, of the sides that are body number `body`.
   void gather(std::uint32_t body, int i, const Rows& x, Eigen::Ref<Rows> out) const;
-  // The same with J's change per slip along tangent `k` (0, 1) [1/m], by differences over two edges of the finer skin.
+  // The same with J's change per slip along tangent `k` (0, 1) [1/m], by differences over two edges of the finer
+  // collision_mesh.
   void gather_slip(std::uint32_t body, int i, int k, const Rows& x, Eigen::Ref<Rows> out) const;
 
  private:

@@ -1,4 +1,4 @@
-#include "systems/soft/collide/skin_neighbours.h"
+#include "systems/soft/collide/mesh_neighbours.h"
 
 #include <algorithm>
 #include <queue>
@@ -6,14 +6,14 @@
 
 namespace pliant {
 
-SkinNeighbours::SkinNeighbours(const Mesh& mesh, double distance, const std::vector<std::uint32_t>& first,
+MeshNeighbours::MeshNeighbours(const Mesh& mesh, double distance, const std::vector<std::uint32_t>& first,
                                const std::vector<std::uint32_t>& triangles) {
   find_near(mesh, distance, first, triangles);
   find_settled(mesh, first, triangles);
 }
 
 // Dijkstra along edges from every vertex, at rest.
-void SkinNeighbours::find_near(const Mesh& mesh, double distance, const std::vector<std::uint32_t>& first,
+void MeshNeighbours::find_near(const Mesh& mesh, double distance, const std::vector<std::uint32_t>& first,
                                const std::vector<std::uint32_t>& triangles) {
   std::vector<double> best(mesh.vertex_count, 1e300);
   std::vector<std::uint32_t> reached;
@@ -49,7 +49,7 @@ void SkinNeighbours::find_near(const Mesh& mesh, double distance, const std::vec
   }
 }
 
-void SkinNeighbours::find_settled(const Mesh& mesh, const std::vector<std::uint32_t>& first,
+void MeshNeighbours::find_settled(const Mesh& mesh, const std::vector<std::uint32_t>& first,
                                   const std::vector<std::uint32_t>& triangles) {
   static_assert(kLeafSize * kLeafSize <= 16);
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -93,11 +93,11 @@ void SkinNeighbours::find_settled(const Mesh& mesh, const std::vector<std::uint3
   }
 }
 
-bool SkinNeighbours::near(std::uint32_t a, std::uint32_t b) const {
+bool MeshNeighbours::near(std::uint32_t a, std::uint32_t b) const {
   return std::binary_search(near_.begin() + near_first_[a], near_.begin() + near_first_[a + 1], b);
 }
 
-std::uint16_t SkinNeighbours::settled(std::uint32_t a, std::uint32_t b) const {
+std::uint16_t MeshNeighbours::settled(std::uint32_t a, std::uint32_t b) const {
   const auto begin = leaves_.begin() + leaves_first_[a], end = leaves_.begin() + leaves_first_[a + 1];
   const auto at = std::lower_bound(begin, end, b, [](const Leaves& l, std::uint32_t other) { return l.other < other; });
   return at != end && at->other == b ? at->settled : std::uint16_t{0};

@@ -7,23 +7,23 @@
 #include <utility>
 
 #include "systems/soft/body/rotation_vector.h"
-#include "systems/soft/fem/flesh_step.h"
+#include "systems/soft/fem/tissue_step.h"
 #include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {
 
-const FleshMaterial kTissue{.young = 1e4, .poisson = 0.3, .density = 1000};
+const TissueMaterial kTissue{.young = 1e4, .poisson = 0.3, .density = 1000};
 constexpr dvec3 kNoGravity{0};
 
-std::unique_ptr<LinearSolver> solver_for(const Flesh& flesh) {
-  auto solver = make_solver(SolverKind::kEigenCholesky, flesh.moving());
-  solver->analyse(flesh.inner());
+std::unique_ptr<LinearSolver> solver_for(const Tissue& tissue) {
+  auto solver = make_solver(SolverKind::kEigenCholesky, tissue.moving());
+  solver->analyse(tissue.inner());
   return solver;
 }
 
-dvec3 force_on(const Flesh& flesh, std::size_t node) {
-  const auto f = flesh.elastic_force().segment<3>(3 * static_cast<Eigen::Index>(node));
+dvec3 force_on(const Tissue& tissue, std::size_t node) {
+  const auto f = tissue.elastic_force().segment<3>(3 * static_cast<Eigen::Index>(node));
   return {f[0], f[1], f[2]};
 }
 
@@ -34,11 +34,11 @@ TetMesh shaken_block(int n) {
   return mesh;
 }
 
-void deform(Flesh& flesh, double part) {
-  for (std::uint32_t i = 0; i < flesh.position().size(); ++i) flesh.position()[i] += part * tets::scatter(1000 + i);
+void deform(Tissue& tissue, double part) {
+  for (std::uint32_t i = 0; i < tissue.position().size(); ++i) tissue.position()[i] += part * tets::scatter(1000 + i);
 }
 
-TEST(Flesh, PatchUnderUniformStrainIsSolvedExactly) {
+TEST(Tissue, PatchUnderUniformStrainIsSolvedExactly) {
   TetMesh mesh = shaken_block(4);
   const auto surface = [](dvec3 p) {
     const dvec3 d = glm::abs(p - dvec3(0.05));
@@ -47,102 +47,102 @@ TEST(Flesh, PatchUnderUniformStrainIsSolvedExactly) {
   tets::hold(mesh, surface);
   ASSERT_GT(mesh.free_count, 20u);
   const dmat3 A = dmat3(1) + 1e-3 * dmat3(3, 1, -2, 0.5, -1, 2, 1, 4, 2);
-  Flesh flesh(mesh, kTissue, mesh.free_count);
-  auto solver = solver_for(flesh);
-  for (std::uint32_t i = mesh.free_count; i < mesh.node_count(); ++i) flesh.position()[i] = A * mesh.nodes[i];
-  settle_flesh(flesh, *solver, kNoGravity, {.iterations = 20, .tolerance = 1e-14});
+  Tissue tissue(mesh, kTissue, mesh.free_count);
+  auto solver = solver_for(tissue);
+  for (std::uint32_t i = mesh.free_count; i < mesh.node_count(); ++i) tissue.position()[i] = A * mesh.nodes[i];
+  settle_tissue(tissue, *solver, kNoGravity, {.iterations = 20, .tolerance = 1e-14});
   for (std::uint32_t i = 0; i < mesh.free_count; ++i)
-    EXPECT_LT(length(flesh.position()[i] - A * mesh.nodes[i]), 1e-10 * 0.1) << i;
+    EXPECT_LT(length(tissue.position()[i] - A * mesh.nodes[i]), 1e-10 * 0.1) << i;
 }
 
-TEST(Flesh, RigidMotionsGiveNoForceAndNoEnergy) {
+TEST(Tissue, RigidMotionsGiveNoForceAndNoEnergy) {
   const TetMesh mesh = shaken_block(3);
-  Flesh flesh(mesh, kTissue, mesh.node_count());
+  Tissue tissue(mesh, kTissue, mesh.node_count());
   const double scale = kTissue.young * 0.1 * 0.1;  // [N] of strains of order one
   for (std::uint32_t k = 0; k < 20; ++k) {
     const dmat3 R = mat3_cast(rotation_of(3.1 * tets::scatter(k)));
     for (std::uint32_t i = 0; i < mesh.node_count(); ++i)
-      flesh.position()[i] = R * mesh.nodes[i] + tets::scatter(50 + k);
-    flesh.assemble(1e-2, kNoGravity);
-    EXPECT_LT(flesh.elastic_force().lpNorm<Eigen::Infinity>(), 1e-12 * scale) << k;
-    EXPECT_LT(flesh.elastic_energy(), 1e-20 * scale) << k;
+      tissue.position()[i] = R * mesh.nodes[i] + tets::scatter(50 + k);
+    tissue.assemble(1e-2, kNoGravity);
+    EXPECT_LT(tissue.elastic_force().lpNorm<Eigen::Infinity>(), 1e-12 * scale) << k;
+    EXPECT_LT(tissue.elastic_energy(), 1e-20 * scale) << k;
   }
 }
 
-TEST(Flesh, ForceIsMinusTheGradientOfTheEnergyHoweverItIsBent) {
+TEST(Tissue, ForceIsMinusTheGradientOfTheEnergyHoweverItIsBent) {
   const TetMesh mesh = shaken_block(2);
-  Flesh flesh(mesh, kTissue, mesh.node_count());
+  Tissue tissue(mesh, kTissue, mesh.node_count());
   for (const double part : {0.001, 0.01, 0.05}) {  // the last inverts elements
-    flesh.position() = mesh.nodes;
-    deform(flesh, part);
+    tissue.position() = mesh.nodes;
+    deform(tissue, part);
     const dmat3 R = mat3_cast(rotation_of({0.4, 1.9, -0.8}));
-    for (dvec3& x : flesh.position()) x = R * x;
-    flesh.assemble(1e-2, kNoGravity);
-    const double step = 1e-7, size = flesh.elastic_force().lpNorm<Eigen::Infinity>();
+    for (dvec3& x : tissue.position()) x = R * x;
+    tissue.assemble(1e-2, kNoGravity);
+    const double step = 1e-7, size = tissue.elastic_force().lpNorm<Eigen::Infinity>();
     for (std::uint32_t i = 0; i < mesh.node_count(); i += 2)
       for (int d = 0; d < 3; ++d) {
-        const double at = flesh.position()[i][d];
-        flesh.position()[i][d] = at + step;
-        const double above = flesh.elastic_energy();
-        flesh.position()[i][d] = at - step;
-        const double below = flesh.elastic_energy();
-        flesh.position()[i][d] = at;
-        EXPECT_NEAR(force_on(flesh, i)[d], -(above - below) / (2 * step), 1e-5 * size) << part << ' ' << i;
+        const double at = tissue.position()[i][d];
+        tissue.position()[i][d] = at + step;
+        const double above = tissue.elastic_energy();
+        tissue.position()[i][d] = at - step;
+        const double below = tissue.elastic_energy();
+        tissue.position()[i][d] = at;
+        EXPECT_NEAR(force_on(tissue, i)[d], -(above - below) / (2 * step), 1e-5 * size) << part << ' ' << i;
       }
   }
 }
 
-TEST(Flesh, MatrixIsTheGradientOfTheForceAtRestAndSymmetricEverywhere) {
+TEST(Tissue, MatrixIsTheGradientOfTheForceAtRestAndSymmetricEverywhere) {
   const TetMesh mesh = shaken_block(2);
-  Flesh flesh(mesh, kTissue, mesh.node_count());
+  Tissue tissue(mesh, kTissue, mesh.node_count());
   const double T = 1.0, step = 1e-8;
-  flesh.assemble(T, kNoGravity);
-  const Eigen::MatrixXd K = flesh.inner().dense();
+  tissue.assemble(T, kNoGravity);
+  const Eigen::MatrixXd K = tissue.inner().dense();
   for (std::uint32_t i = 0; i < mesh.node_count(); i += 3) {
     for (int d = 0; d < 3; ++d) {
-      flesh.position()[i][d] += step;
-      flesh.assemble(T, kNoGravity);
-      Vector column = -flesh.elastic_force() / step;
-      flesh.position()[i][d] -= step;
-      column[3 * i + d] += flesh.mass()[i];
+      tissue.position()[i][d] += step;
+      tissue.assemble(T, kNoGravity);
+      Vector column = -tissue.elastic_force() / step;
+      tissue.position()[i][d] -= step;
+      column[3 * i + d] += tissue.mass()[i];
       EXPECT_LT((K.col(3 * i + d) - column).norm(), 1e-5 * column.norm()) << i;
     }
   }
-  deform(flesh, 0.03);
-  flesh.assemble(T, kNoGravity);
-  const Eigen::MatrixXd bent = flesh.inner().dense();
+  deform(tissue, 0.03);
+  tissue.assemble(T, kNoGravity);
+  const Eigen::MatrixXd bent = tissue.inner().dense();
   EXPECT_EQ((bent - bent.transpose()).norm(), 0.0);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(bent);
   EXPECT_GT(spectrum.eigenvalues().minCoeff(), 0.0);
 }
 
-// The whole of A with every node moving, against what a flesh hands out that has handle nodes and pinned ones.
-TEST(Flesh, InnerOuterAndCornerAreTheWholeMatrixCutInPieces) {
+// The whole of A with every node moving, against what a tissue hands out that has handle nodes and pinned ones.
+TEST(Tissue, InnerOuterAndCornerAreTheWholeMatrixCutInPieces) {
   TetMesh mesh = shaken_block(3);
   tets::hold(
       mesh, [](dvec3 p) { return p.x < 0.03; }, [](dvec3 p) { return p.x > 0.06; });
-  FleshMaterial damped = kTissue;
+  TissueMaterial damped = kTissue;
   damped.alpha = 3, damped.beta = 0.02;
   ASSERT_GT(mesh.free_count, 0u);
   ASSERT_GT(mesh.handle_count, 0u);
   TetMesh loose = mesh;
   loose.free_count = mesh.node_count(), loose.handle_count = 0;
-  Flesh part(mesh, damped, mesh.free_count), whole(loose, damped, mesh.node_count());
-  for (Flesh* flesh : {&part, &whole}) {
-    deform(*flesh, 0.004);
-    for (std::uint32_t i = 0; i < mesh.node_count(); ++i) flesh->velocity()[i] = tets::scatter(77 + i);
-    flesh->assemble(0.02, {0, -9.81, 0});
+  Tissue part(mesh, damped, mesh.free_count), whole(loose, damped, mesh.node_count());
+  for (Tissue* tissue : {&part, &whole}) {
+    deform(*tissue, 0.004);
+    for (std::uint32_t i = 0; i < mesh.node_count(); ++i) tissue->velocity()[i] = tets::scatter(77 + i);
+    tissue->assemble(0.02, {0, -9.81, 0});
   }
   const Eigen::MatrixXd A = whole.inner().dense();
   Eigen::MatrixXd B = Eigen::MatrixXd::Zero(A.rows(), A.cols());
   const Eigen::Index free = 3 * mesh.free_count, end = 3 * mesh.pinned_begin(), pinned = A.rows() - end;
   B.topLeftCorner(free, free) = part.inner().dense();
-  for (const Flesh::Entry& entry : part.outer()) {
+  for (const Tissue::Entry& entry : part.outer()) {
     ASSERT_TRUE(entry.row < part.moving() && entry.column >= part.moving() && entry.column < mesh.pinned_begin());
     B.block<3, 3>(3 * entry.row, 3 * entry.column) += entry.value;
     B.block<3, 3>(3 * entry.column, 3 * entry.row) += entry.value.transpose();
   }
-  for (const Flesh::Entry& entry : part.corner()) B.block<3, 3>(3 * entry.row, 3 * entry.column) += entry.value;
+  for (const Tissue::Entry& entry : part.corner()) B.block<3, 3>(3 * entry.row, 3 * entry.column) += entry.value;
   const Eigen::MatrixXd kept = A.topLeftCorner(end, end);
   EXPECT_LT((B.topLeftCorner(end, end) - kept).norm(), 1e-14 * kept.norm());
   Vector told(pinned);
@@ -156,64 +156,64 @@ struct Momentum {
   dvec3 linear{0}, angular{0};
   double size = 0.0, arm_size = 0.0;  // sums of magnitudes, what rounding is measured by
 };
-Momentum momentum(const Flesh& flesh) {
+Momentum momentum(const Tissue& tissue) {
   Momentum out;
-  for (std::size_t i = 0; i < flesh.mass().size(); ++i) {
-    const dvec3 p = flesh.mass()[i] * flesh.velocity()[i];
+  for (std::size_t i = 0; i < tissue.mass().size(); ++i) {
+    const dvec3 p = tissue.mass()[i] * tissue.velocity()[i];
     out.linear += p;
-    out.angular += cross(flesh.position()[i], p);
+    out.angular += cross(tissue.position()[i], p);
     out.size += length(p);
-    out.arm_size += length(flesh.position()[i]) * length(p);
+    out.arm_size += length(tissue.position()[i]) * length(p);
   }
   return out;
 }
 
-void throw_spinning(Flesh& flesh, double wobble) {
-  for (std::uint32_t i = 0; i < flesh.position().size(); ++i)
-    flesh.velocity()[i] =
-        dvec3(0.3, 0.1, -0.2) + cross(dvec3(4, -6, 5), flesh.position()[i] - dvec3(0.05)) + wobble * tets::scatter(i);
+void throw_spinning(Tissue& tissue, double wobble) {
+  for (std::uint32_t i = 0; i < tissue.position().size(); ++i)
+    tissue.velocity()[i] =
+        dvec3(0.3, 0.1, -0.2) + cross(dvec3(4, -6, 5), tissue.position()[i] - dvec3(0.05)) + wobble * tets::scatter(i);
 }
 
-TEST(Flesh, InternalForcesHaveNeitherSumNorMoment) {
+TEST(Tissue, InternalForcesHaveNeitherSumNorMoment) {
   const TetMesh mesh = shaken_block(3);
-  Flesh flesh(mesh, kTissue, mesh.node_count());
-  deform(flesh, 0.03);
-  flesh.assemble(1e-2, kNoGravity);
+  Tissue tissue(mesh, kTissue, mesh.node_count());
+  deform(tissue, 0.03);
+  tissue.assemble(1e-2, kNoGravity);
   dvec3 sum(0), moment(0);
   double size = 0, arm_size = 0;
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    const dvec3 f = force_on(flesh, i);
-    sum += f, moment += cross(flesh.position()[i], f);
-    size += length(f), arm_size += length(f) * length(flesh.position()[i]);
+    const dvec3 f = force_on(tissue, i);
+    sum += f, moment += cross(tissue.position()[i], f);
+    size += length(f), arm_size += length(f) * length(tissue.position()[i]);
   }
   EXPECT_LT(length(sum), 1e-12 * size);
   EXPECT_LT(length(moment), 1e-12 * arm_size);
 }
 
-TEST(Flesh, LinearMomentumOfAFreeBodyIsKeptByEveryScheme) {
+TEST(Tissue, LinearMomentumOfAFreeBodyIsKeptByEveryScheme) {
   const TetMesh mesh = shaken_block(2);
-  FleshMaterial damped = kTissue;
+  TissueMaterial damped = kTissue;
   damped.beta = 0.01;
   for (const Scheme scheme : {Scheme::kEuler, Scheme::kMidpoint}) {
-    Flesh flesh(mesh, damped, mesh.node_count());
-    auto solver = solver_for(flesh);
-    throw_spinning(flesh, 0.2);
-    const Momentum before = momentum(flesh);
-    for (int i = 0; i < 200; ++i) step_flesh(flesh, *solver, 0.01, kNoGravity, {.scheme = scheme});
-    EXPECT_LT(length(momentum(flesh).linear - before.linear), 1e-12 * before.size);
+    Tissue tissue(mesh, damped, mesh.node_count());
+    auto solver = solver_for(tissue);
+    throw_spinning(tissue, 0.2);
+    const Momentum before = momentum(tissue);
+    for (int i = 0; i < 200; ++i) step_tissue(tissue, *solver, 0.01, kNoGravity, {.scheme = scheme});
+    EXPECT_LT(length(momentum(tissue).linear - before.linear), 1e-12 * before.size);
   }
 }
 
-TEST(Flesh, AngularMomentumOfAFreeBodyIsKeptByTheIteratedMidpoint) {
+TEST(Tissue, AngularMomentumOfAFreeBodyIsKeptByTheIteratedMidpoint) {
   const TetMesh mesh = shaken_block(2);
-  Flesh flesh(mesh, kTissue, mesh.node_count());
-  auto solver = solver_for(flesh);
-  throw_spinning(flesh, 0.2);
-  const Momentum before = momentum(flesh);
+  Tissue tissue(mesh, kTissue, mesh.node_count());
+  auto solver = solver_for(tissue);
+  throw_spinning(tissue, 0.2);
+  const Momentum before = momentum(tissue);
   for (int i = 0; i < 100; ++i)
-    step_flesh(flesh, *solver, 2e-3, kNoGravity, {.scheme = Scheme::kMidpoint, .iterations = 50, .tolerance = 1e-14});
-  EXPECT_LT(length(momentum(flesh).linear - before.linear), 1e-12 * before.size);
-  EXPECT_LT(length(momentum(flesh).angular - before.angular), 1e-12 * before.arm_size);
+    step_tissue(tissue, *solver, 2e-3, kNoGravity, {.scheme = Scheme::kMidpoint, .iterations = 50, .tolerance = 1e-14});
+  EXPECT_LT(length(momentum(tissue).linear - before.linear), 1e-12 * before.size);
+  EXPECT_LT(length(momentum(tissue).angular - before.angular), 1e-12 * before.arm_size);
 }
 
 // u = d sin(pi x) sin(pi y) sin(pi z) on the unit cube, held exactly on the surface, with the load it needs:
@@ -221,7 +221,7 @@ TEST(Flesh, AngularMomentumOfAFreeBodyIsKeptByTheIteratedMidpoint) {
 double manufactured_error(int n) {
   TetMesh mesh = tets::box(n, n, n, dvec3(0), dvec3(1));
   tets::hold(mesh, [](dvec3 p) { return std::min({p.x, p.y, p.z, 1 - p.x, 1 - p.y, 1 - p.z}) < 1e-9; });
-  FleshMaterial material{.young = 1e4, .poisson = 0.3, .density = 1, .strain = Strain::kLinear};
+  TissueMaterial material{.young = 1e4, .poisson = 0.3, .density = 1, .strain = Strain::kLinear};
   const double mu = 1e4 / 2.6, lambda = 1e4 * 0.3 / (1.3 * 0.4), pi = std::acos(-1.0);
   const dvec3 d(1, 0.5, -0.3);
   const auto u = [&](dvec3 p) { return d * (std::sin(pi * p.x) * std::sin(pi * p.y) * std::sin(pi * p.z)); };
@@ -233,11 +233,11 @@ double manufactured_error(int n) {
                         s.x * c.y * c.z, -sss);
     return pi * pi * (3 * mu * sss * d - (lambda + mu) * (hessian * d));
   };
-  Flesh flesh(mesh, material, mesh.free_count);
+  Tissue tissue(mesh, material, mesh.free_count);
   std::vector<dvec3> push(mesh.nodes.size());
-  for (std::size_t i = 0; i < push.size(); ++i) push[i] = load(mesh.nodes[i]) * flesh.mass()[i];  // density 1
-  auto solver = solver_for(flesh);
-  settle_flesh(flesh, *solver, kNoGravity, {.push = &push});
+  for (std::size_t i = 0; i < push.size(); ++i) push[i] = load(mesh.nodes[i]) * tissue.mass()[i];  // density 1
+  auto solver = solver_for(tissue);
+  settle_tissue(tissue, *solver, kNoGravity, {.push = &push});
   double error2 = 0;  // over each element's volume, a quadrature of order 2
   for (const Tet& t : mesh.tets)
     for (int q = 0; q < 4; ++q) {
@@ -245,22 +245,22 @@ double manufactured_error(int n) {
       for (int i = 0; i < 4; ++i) {
         const double w = i == q ? 0.5854101966249685 : 0.1381966011250105;
         at += w * mesh.nodes[t[i]];
-        got += w * (flesh.position()[t[i]] - mesh.nodes[t[i]]);
+        got += w * (tissue.position()[t[i]] - mesh.nodes[t[i]]);
       }
       error2 += dot(got - u(at), got - u(at)) / (24.0 * n * n * n);
     }
   return std::sqrt(error2);
 }
 
-TEST(Flesh, ManufacturedSolutionConvergesWithOrderTwo) {
+TEST(Tissue, ManufacturedSolutionConvergesWithOrderTwo) {
   const double coarse = manufactured_error(3), middle = manufactured_error(6), fine = manufactured_error(12);
   EXPECT_GT(std::log2(coarse / middle), 1.5);
   EXPECT_GT(std::log2(middle / fine), 1.85);
   EXPECT_LT(fine, 0.02);
 }
 
-double energy(const Flesh& flesh) {
-  return flesh.elastic_energy() + kinetic_energy(flesh);
+double energy(const Tissue& tissue) {
+  return tissue.elastic_energy() + kinetic_energy(tissue);
 }
 
 // A little bar, held at one end, bent sideways and let go.
@@ -269,43 +269,43 @@ TetMesh bar() {
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
   return mesh;
 }
-void bend(Flesh& flesh, double angle) {
-  for (dvec3& x : flesh.position()) {
+void bend(Tissue& tissue, double angle) {
+  for (dvec3& x : tissue.position()) {
     const double a = angle * x.x / 0.08;
     x.y += 0.5 * a * x.x;
   }
 }
 
-TEST(Flesh, MidpointKeepsTheEnergyOfALinearVibration) {
+TEST(Tissue, MidpointKeepsTheEnergyOfALinearVibration) {
   const TetMesh mesh = bar();
-  FleshMaterial material = kTissue;
+  TissueMaterial material = kTissue;
   material.strain = Strain::kLinear;
-  Flesh flesh(mesh, material, mesh.free_count);
-  auto solver = solver_for(flesh);
-  bend(flesh, 0.5);
-  const double before = energy(flesh);
+  Tissue tissue(mesh, material, mesh.free_count);
+  auto solver = solver_for(tissue);
+  bend(tissue, 0.5);
+  const double before = energy(tissue);
   for (int i = 0; i < 2000; ++i) {
-    step_flesh(flesh, *solver, 5e-3, kNoGravity, {.scheme = Scheme::kMidpoint});
-    ASSERT_NEAR(energy(flesh), before, 1e-10 * before) << i;
+    step_tissue(tissue, *solver, 5e-3, kNoGravity, {.scheme = Scheme::kMidpoint});
+    ASSERT_NEAR(energy(tissue), before, 1e-10 * before) << i;
   }
 }
 
 // The largest change of energy on the way, in the energy's own size.
 double midpoint_drift(double T) {
   const TetMesh mesh = bar();
-  Flesh flesh(mesh, kTissue, mesh.free_count);
-  auto solver = solver_for(flesh);
-  bend(flesh, 0.8);
-  const double before = energy(flesh);
+  Tissue tissue(mesh, kTissue, mesh.free_count);
+  auto solver = solver_for(tissue);
+  bend(tissue, 0.8);
+  const double before = energy(tissue);
   double worst = 0;
   for (int i = 0; i < static_cast<int>(0.5 / T + 0.5); ++i) {
-    step_flesh(flesh, *solver, T, kNoGravity, {.scheme = Scheme::kMidpoint, .iterations = 30, .tolerance = 1e-12});
-    worst = std::max(worst, std::abs(energy(flesh) - before) / before);
+    step_tissue(tissue, *solver, T, kNoGravity, {.scheme = Scheme::kMidpoint, .iterations = 30, .tolerance = 1e-12});
+    worst = std::max(worst, std::abs(energy(tissue) - before) / before);
   }
   return worst;
 }
 
-TEST(Flesh, MidpointDriftsInACorotationalVibrationByTheSquareOfTheStep) {
+TEST(Tissue, MidpointDriftsInACorotationalVibrationByTheSquareOfTheStep) {
   const double coarse = midpoint_drift(2e-3), middle = midpoint_drift(1e-3), fine = midpoint_drift(5e-4);
   EXPECT_GT(coarse / middle, 3.0);
   EXPECT_GT(middle / fine, 3.0);
@@ -318,17 +318,17 @@ struct Gain {
 };
 Gain largest_gain(Strain strain, double T, int iterations) {
   const TetMesh mesh = tets::box(2, 1, 1, dvec3(0), dvec3(0.1, 0.05, 0.05));
-  FleshMaterial material = kTissue;
+  TissueMaterial material = kTissue;
   material.strain = strain;
-  Flesh flesh(mesh, material, mesh.node_count());
-  auto solver = solver_for(flesh);
-  throw_spinning(flesh, 0.5);
-  const double start = energy(flesh);
+  Tissue tissue(mesh, material, mesh.node_count());
+  auto solver = solver_for(tissue);
+  throw_spinning(tissue, 0.5);
+  const double start = energy(tissue);
   double last = start;
   Gain gain;
   for (int i = 0; i < 10000; ++i) {
-    step_flesh(flesh, *solver, T, kNoGravity, {.iterations = iterations});
-    const double now = energy(flesh);
+    step_tissue(tissue, *solver, T, kNoGravity, {.iterations = iterations});
+    const double now = energy(tissue);
     gain.step = std::max(gain.step, now / last - 1);
     gain.total = std::max(gain.total, now / start - 1);
     last = now;
@@ -336,7 +336,7 @@ Gain largest_gain(Strain strain, double T, int iterations) {
   return gain;
 }
 
-TEST(Flesh, EulerNeverGainsEnergyInTenThousandSteps) {
+TEST(Tissue, EulerNeverGainsEnergyInTenThousandSteps) {
   for (const double T : {1e-3, 1e-2}) {
     EXPECT_LT(largest_gain(Strain::kLinear, T, 1).step, 1e-13) << T;
     EXPECT_LT(largest_gain(Strain::kCorotational, T, 2).step, 1e-13) << T;
@@ -352,7 +352,7 @@ struct Wreck {
   std::function<dvec3(std::uint32_t, dvec3)> place;
 };
 
-TEST(Flesh, InvertedFlatAndCollapsedFleshStaysFiniteAndUninverts) {
+TEST(Tissue, InvertedFlatAndCollapsedTissueStaysFiniteAndUninverts) {
   TetMesh mesh = tets::box(3, 2, 2, dvec3(0), dvec3(0.15, 0.1, 0.1));
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
   const std::array<Wreck, 6> wrecks{
@@ -364,18 +364,18 @@ TEST(Flesh, InvertedFlatAndCollapsedFleshStaysFiniteAndUninverts) {
        {"inside out", [](std::uint32_t, dvec3 p) { return dvec3(-p.x, p.y, p.z); }},
        {"anything", [](std::uint32_t n, dvec3) { return 0.2 * tets::scatter(n); }}}};
   for (const Wreck& wreck : wrecks) {
-    Flesh flesh(mesh, kTissue, mesh.free_count);
-    auto solver = solver_for(flesh);
-    for (std::uint32_t i = 0; i < mesh.free_count; ++i) flesh.position()[i] = wreck.place(i, mesh.nodes[i]);
-    const double start = energy(flesh);
+    Tissue tissue(mesh, kTissue, mesh.free_count);
+    auto solver = solver_for(tissue);
+    for (std::uint32_t i = 0; i < mesh.free_count; ++i) tissue.position()[i] = wreck.place(i, mesh.nodes[i]);
+    const double start = energy(tissue);
     for (int i = 0; i < 1000; ++i) {
-      ASSERT_TRUE(step_flesh(flesh, *solver, 5e-3, kNoGravity).solved) << wreck.name;
-      ASSERT_TRUE(std::isfinite(energy(flesh))) << wreck.name;
-      ASSERT_LE(energy(flesh), 1.5 * start) << wreck.name << ' ' << i;
+      ASSERT_TRUE(step_tissue(tissue, *solver, 5e-3, kNoGravity).solved) << wreck.name;
+      ASSERT_TRUE(std::isfinite(energy(tissue))) << wreck.name;
+      ASSERT_LE(energy(tissue), 1.5 * start) << wreck.name << ' ' << i;
     }
     int inverted = 0;
     for (const Tet& t : mesh.tets) {
-      const auto& x = flesh.position();
+      const auto& x = tissue.position();
       inverted += dot(cross(x[t[1]] - x[t[0]], x[t[2]] - x[t[0]]), x[t[3]] - x[t[0]]) <= 0;
     }
     EXPECT_EQ(inverted, 0) << wreck.name;
@@ -384,7 +384,7 @@ TEST(Flesh, InvertedFlatAndCollapsedFleshStaysFiniteAndUninverts) {
 
 // What a careless file holds: elements listed inside out, without volume, almost without, nodes that nothing holds.
 // The sound part must move as if they were not there.
-TEST(Flesh, BrokenRestShapesSurviveAThousandStepsAndDisturbNobody) {
+TEST(Tissue, BrokenRestShapesSurviveAThousandStepsAndDisturbNobody) {
   TetMesh sound = tets::box(2, 2, 2, dvec3(0), dvec3(0.1));
   tets::hold(sound, [](dvec3 p) { return p.y < 1e-9; });
   TetMesh broken = sound;
@@ -398,37 +398,37 @@ TEST(Flesh, BrokenRestShapesSurviveAThousandStepsAndDisturbNobody) {
   broken.tets.push_back({3, 3, 3, 3});              // a point
   broken.tets.push_back({0, 1, 4, twin});           // a sliver
   broken.tets.push_back({loose, 0, 1, 1});
-  Flesh flesh(broken, kTissue, broken.free_count), truth(sound, kTissue, sound.free_count);
-  auto solver = solver_for(flesh), true_solver = solver_for(truth);
+  Tissue tissue(broken, kTissue, broken.free_count), truth(sound, kTissue, sound.free_count);
+  auto solver = solver_for(tissue), true_solver = solver_for(truth);
   for (int i = 0; i < 1000; ++i) {
-    ASSERT_TRUE(step_flesh(flesh, *solver, 5e-3, {0, -9.81, 0}).solved);
-    ASSERT_TRUE(step_flesh(truth, *true_solver, 5e-3, {0, -9.81, 0}).solved);
-    ASSERT_TRUE(std::isfinite(energy(flesh))) << i;
+    ASSERT_TRUE(step_tissue(tissue, *solver, 5e-3, {0, -9.81, 0}).solved);
+    ASSERT_TRUE(step_tissue(truth, *true_solver, 5e-3, {0, -9.81, 0}).solved);
+    ASSERT_TRUE(std::isfinite(energy(tissue))) << i;
     for (std::uint32_t n = 0; n < loose; ++n)
-      ASSERT_LT(length(flesh.position()[n] - truth.position()[n]), 1e-5) << i << ' ' << n;
+      ASSERT_LT(length(tissue.position()[n] - truth.position()[n]), 1e-5) << i << ' ' << n;
   }
-  EXPECT_LT(length(flesh.position()[twin] - flesh.position()[0]), 1e-3);
+  EXPECT_LT(length(tissue.position()[twin] - tissue.position()[0]), 1e-3);
 }
 
-TEST(Flesh, FallsFreelyUnderGravity) {
+TEST(Tissue, FallsFreelyUnderGravity) {
   const TetMesh mesh = shaken_block(2);
-  Flesh flesh(mesh, kTissue, mesh.node_count());
-  auto solver = solver_for(flesh);
-  for (int i = 0; i < 100; ++i) step_flesh(flesh, *solver, 0.01, {0, -10, 0});
+  Tissue tissue(mesh, kTissue, mesh.node_count());
+  auto solver = solver_for(tissue);
+  for (int i = 0; i < 100; ++i) step_tissue(tissue, *solver, 0.01, {0, -10, 0});
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    EXPECT_NEAR(flesh.velocity()[i].y, -10, 1e-9);
-    EXPECT_NEAR(flesh.position()[i].y - mesh.nodes[i].y, -10 * 0.01 * 0.01 * 100 * 101 / 2, 1e-9);
+    EXPECT_NEAR(tissue.velocity()[i].y, -10, 1e-9);
+    EXPECT_NEAR(tissue.position()[i].y - mesh.nodes[i].y, -10 * 0.01 * 0.01 * 100 * 101 / 2, 1e-9);
   }
 }
 
-TEST(Flesh, SameInputSameBits) {
+TEST(Tissue, SameInputSameBits) {
   const TetMesh mesh = shaken_block(3);
   const auto run = [&] {
-    Flesh flesh(mesh, kTissue, mesh.node_count());
-    auto solver = solver_for(flesh);
-    throw_spinning(flesh, 0.5);
-    for (int i = 0; i < 20; ++i) step_flesh(flesh, *solver, 0.01, kNoGravity);
-    return flesh.position();
+    Tissue tissue(mesh, kTissue, mesh.node_count());
+    auto solver = solver_for(tissue);
+    throw_spinning(tissue, 0.5);
+    for (int i = 0; i < 20; ++i) step_tissue(tissue, *solver, 0.01, kNoGravity);
+    return tissue.position();
   };
   EXPECT_EQ(run(), run());
 }

@@ -1,5 +1,5 @@
-// What of a skin lies so near to each other along the surface, at rest, that it never collides: a skin that collides
-// with itself would otherwise be compared with its own neighbourhood in every step.
+// What of a collision mesh lies so near to each other along the surface, at rest, that it never collides: a collision
+// mesh that collides with itself would otherwise be compared with its own neighbourhood in every step.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace pliant {
 
-class SkinNeighbours {
+class MeshNeighbours {
  public:
-  SkinNeighbours() = default;  // nothing is near to anything
+  MeshNeighbours() = default;  // nothing is near to anything
   // Vertices are near up to `distance` [m] along edges, and where they share a triangle. `first`, `triangles`: those
   // around vertex v are triangles[first[v]] to triangles[first[v + 1]].
-  SkinNeighbours(const Mesh& mesh, double distance, const std::vector<std::uint32_t>& first,
+  MeshNeighbours(const Mesh& mesh, double distance, const std::vector<std::uint32_t>& first,
                  const std::vector<std::uint32_t>& triangles);
 
   bool near(std::uint32_t vertex_a, std::uint32_t vertex_b) const;

@@ -1,7 +1,7 @@
-// Flesh by itself: what assembling and stepping blocks of 500 to 40,000 tetrahedra costs, and what scheme, step and
+// Tissue by itself: what assembling and stepping blocks of 500 to 40,000 tetrahedra costs, and what scheme, step and
 // iterations buy, as the error of a falling beam's tip against a converged reference beside the time. Times are the
 // processor's, of the one thread there is, so that what else runs on the machine counts little.
-//   bench_flesh [--out FILE.json]
+//   bench_tissue [--out FILE.json]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "systems/soft/fem/flesh_step.h"
+#include "systems/soft/fem/tissue_step.h"
 #include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
@@ -28,30 +28,30 @@ struct Cost {
 Cost cost(int along, int across) {
   TetMesh mesh = tets::box(along, across, across, dvec3(0), {0.1, 0.1 * across / along, 0.1 * across / along});
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
-  Flesh flesh(mesh, {.young = 1e5, .poisson = 0.45}, mesh.free_count);
-  auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
-  solver->analyse(flesh.inner());
+  Tissue tissue(mesh, {.young = 1e5, .poisson = 0.45}, mesh.free_count);
+  auto solver = make_solver(SolverKind::kBlockCholesky, tissue.moving());
+  solver->analyse(tissue.inner());
   Cost out;
   out.tets = mesh.tets.size();
   std::vector<double> assemble, factorise, solve;
-  Vector v(3 * flesh.moving()), back;
+  Vector v(3 * tissue.moving()), back;
   const double T = 0.01;
   for (int i = 0; i < 21; ++i) {
     double begin = processor_ms();
-    flesh.assemble(T, kGravity);
+    tissue.assemble(T, kGravity);
     assemble.push_back(processor_ms() - begin);
     begin = processor_ms();
-    if (!solver->factorise(flesh.inner())) return out;
+    if (!solver->factorise(tissue.inner())) return out;
     factorise.push_back(processor_ms() - begin);
     begin = processor_ms();
-    const Vector b = flesh.right().head(3 * flesh.moving());
+    const Vector b = tissue.right().head(3 * tissue.moving());
     solver->solve(b, v);
     solve.push_back(processor_ms() - begin);
-    flesh.inner().multiply(v, back);
+    tissue.inner().multiply(v, back);
     out.residual = std::max(out.residual, (back - b).norm() / b.norm());
-    for (std::uint32_t n = 0; n < flesh.moving(); ++n) {
-      flesh.velocity()[n] = {v[3 * n], v[3 * n + 1], v[3 * n + 2]};
-      flesh.position()[n] += T * flesh.velocity()[n];
+    for (std::uint32_t n = 0; n < tissue.moving(); ++n) {
+      tissue.velocity()[n] = {v[3 * n], v[3 * n + 1], v[3 * n + 2]};
+      tissue.position()[n] += T * tissue.velocity()[n];
     }
   }
   out.assemble_ms = median(assemble), out.factorise_ms = median(factorise), out.solve_ms = median(solve);
@@ -76,13 +76,13 @@ struct Swing {
 Swing swing(const Way& way) {
   TetMesh mesh = tets::box(12, 2, 2, dvec3(0), {0.12, 0.02, 0.02});
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
-  Flesh flesh(mesh, {.young = 2e4, .poisson = 0.45}, mesh.free_count);
-  auto solver = make_solver(SolverKind::kBlockCholesky, flesh.moving());
-  solver->analyse(flesh.inner());
+  Tissue tissue(mesh, {.young = 2e4, .poisson = 0.45}, mesh.free_count);
+  auto solver = make_solver(SolverKind::kBlockCholesky, tissue.moving());
+  solver->analyse(tissue.inner());
   const auto work = [&] {
     double sum = 0;
     for (std::uint32_t n = 0; n < mesh.free_count; ++n)
-      sum += flesh.mass()[n] * dot(kGravity, flesh.position()[n] - mesh.nodes[n]);
+      sum += tissue.mass()[n] * dot(kGravity, tissue.position()[n] - mesh.nodes[n]);
     return sum;
   };
   Swing out;
@@ -91,18 +91,18 @@ Swing swing(const Way& way) {
   for (int frame = 0; frame < kFrames; ++frame) {
     for (int i = 0; i < way.steps; ++i) {
       const double begin = processor_ms();
-      out.iterations += step_flesh(flesh, *solver, 1.0 / 60 / way.steps, kGravity,
-                                   {.scheme = way.scheme, .iterations = way.iterations, .tolerance = way.tolerance})
+      out.iterations += step_tissue(tissue, *solver, 1.0 / 60 / way.steps, kGravity,
+                                    {.scheme = way.scheme, .iterations = way.iterations, .tolerance = way.tolerance})
                             .iterations;
       spent += processor_ms() - begin;
     }
     dvec3 tip(0);
     int count = 0;
     for (std::uint32_t n = 0; n < mesh.free_count; ++n)
-      if (mesh.nodes[n].x > 0.1199) tip += flesh.position()[n], ++count;
+      if (mesh.nodes[n].x > 0.1199) tip += tissue.position()[n], ++count;
     out.tip.push_back(tip / static_cast<double>(count));
     most_work = std::max(most_work, work());
-    worst = std::max(worst, std::abs(kinetic_energy(flesh) + flesh.elastic_energy() - work()));
+    worst = std::max(worst, std::abs(kinetic_energy(tissue) + tissue.elastic_energy() - work()));
   }
   const double steps = static_cast<double>(kFrames) * way.steps;
   out.ms = spent / steps;

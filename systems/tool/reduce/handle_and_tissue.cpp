@@ -1,4 +1,4 @@
-#include "systems/tool/reduce/handle_and_flesh.h"
+#include "systems/tool/reduce/handle_and_tissue.h"
 
 #include "systems/tool/reduce/passive.h"
 
@@ -37,38 +37,38 @@ Vector6 wrench_of_others(const ToolContacts& contacts) {
   return out;
 }
 
-// The flesh moves as Phi w. `wrench`: on the handle, of all that is not inertia, damping or a chosen contact.
-void describe_flesh(const ToolBody& tool, double T, const Vector6& wrench, CondensedContacts& out) {
+// The tissue moves as Phi w. `wrench`: on the handle, of all that is not inertia, damping or a chosen contact.
+void describe_tissue(const ToolBody& tool, double T, const Vector6& wrench, CondensedContacts& out) {
   const StepSplit split{T, tool.damping()};
   const auto [alpha, beta] = split.damping;
-  const Eigen::Index flesh = tool.size() - 6;
+  const Eigen::Index tissue = tool.size() - 6;
   Rows weighed;
   tool.weigh(tool.follow(), weighed);
-  const auto moved = weighed.topRows(flesh);
-  out.flesh_mass = passive(tool.follow().topRows(flesh).transpose() * moved);
-  out.flesh_stiffness = passive((tool.flesh_matrix() - split.inertia() * out.flesh_mass) / split.elastic());
-  out.flesh_damping = alpha * out.flesh_mass + beta * out.flesh_stiffness;
+  const auto moved = weighed.topRows(tissue);
+  out.tissue_mass = passive(tool.follow().topRows(tissue).transpose() * moved);
+  out.tissue_stiffness = passive((tool.tissue_matrix() - split.inertia() * out.tissue_mass) / split.elastic());
+  out.tissue_damping = alpha * out.tissue_mass + beta * out.tissue_stiffness;
 
   const Vector6 w = tool.velocity().tail<6>();
-  const Vector6 m_v = moved.transpose() * tool.velocity().head(flesh);
-  const Vector6 m_v0 = moved.transpose() * tool.starting_velocity().head(flesh);
-  const Vector6 k_v = (tool.flesh_matrix() * w - split.inertia() * m_v) / split.elastic();
-  out.flesh_force = wrench + (m_v - m_v0) / T + alpha * m_v + beta * k_v;
+  const Vector6 m_v = moved.transpose() * tool.velocity().head(tissue);
+  const Vector6 m_v0 = moved.transpose() * tool.starting_velocity().head(tissue);
+  const Vector6 k_v = (tool.tissue_matrix() * w - split.inertia() * m_v) / split.elastic();
+  out.tissue_force = wrench + (m_v - m_v0) / T + alpha * m_v + beta * k_v;
 }
 
 }  // namespace
 
-void describe_handle_and_flesh(const ToolContacts& contacts, HandleModel& out) {
+void describe_handle_and_tissue(const ToolContacts& contacts, HandleModel& out) {
   const ToolBody& tool = contacts.tool();
   const double T = contacts.step().T;
   const Eigen::Index rows = contacts.rows();
   describe_handle(tool, T, out);
   const Vector6 start = tool.starting_velocity().tail<6>();
-  const Vector6 flesh = tool.flesh_wrench() - tool.flesh_matrix() * (out.handle.velocity - start) / T;
+  const Vector6 tissue = tool.tissue_wrench() - tool.tissue_matrix() * (out.handle.velocity - start) / T;
   const Vector6 from_contacts = out.contacts.from_handle.topRows(rows).transpose() * out.contacts.force.head(rows);
   const Vector6 elsewhere = wrench_of_others(contacts);
-  out.force = flesh + from_contacts + elsewhere;
-  describe_flesh(tool, T, flesh + elsewhere, out.contacts);
+  out.force = tissue + from_contacts + elsewhere;
+  describe_tissue(tool, T, tissue + elsewhere, out.contacts);
 }
 
 }  // namespace pliant

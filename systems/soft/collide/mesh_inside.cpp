@@ -1,9 +1,9 @@
-// Whether a point is inside a skin: its nearest feature, and the side of that feature's pseudonormal (Baerentzen &
-// Aanaes 2005, angle-weighted: the only weights that are right at every vertex).
+// Whether a point is inside a collision mesh: its nearest feature, and the side of that feature's pseudonormal
+// (Baerentzen & Aanaes 2005, angle-weighted: the only weights that are right at every vertex).
 #include <algorithm>
 #include <cmath>
 
-#include "systems/soft/collide/skin.h"
+#include "systems/soft/collide/collision_mesh.h"
 
 namespace pliant {
 namespace {
@@ -44,7 +44,7 @@ double angle_at(dvec3 a, dvec3 b, dvec3 c) {
 
 }  // namespace
 
-bool Skin::contains(dvec3 p, double reach) const {
+bool CollisionMesh::contains(dvec3 p, double reach) const {
   if (boxes_.empty()) return false;
   Nearest best{reach * reach};
   const vec3 pf(p);
@@ -89,7 +89,7 @@ bool Skin::contains(dvec3 p, double reach) const {
       break;
     }
     if (w[i] == 0.0 && w[(i + 1) % 3] != 1.0 && w[(i + 2) % 3] != 1.0) {
-      const SkinEdge& edge = edges_[edge_of_[best.triangle][(i + 1) % 3]];
+      const CollisionEdge& edge = edges_[edge_of_[best.triangle][(i + 1) % 3]];
       outward = normal_[edge.triangle[0]] + normal_[edge.triangle[1]];
       break;
     }

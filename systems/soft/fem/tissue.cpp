@@ -1,4 +1,4 @@
-#include "systems/soft/fem/flesh.h"
+#include "systems/soft/fem/tissue.h"
 
 #include <algorithm>
 #include <cstring>
@@ -36,11 +36,11 @@ void add(Vector& to, std::uint32_t node, dvec3 f) {
 }  // namespace
 
 // K' enters A with T^2 + T beta, f_el the right-hand side with T.
-struct Flesh::Scale {
+struct Tissue::Scale {
   double T, stiffness;
 };
 
-Flesh::Flesh(const TetMesh& mesh, const FleshMaterial& material, std::uint32_t moving)
+Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving)
     : mesh_(mesh), material_(material), moving_(moving), x_(mesh.nodes), v_(mesh.nodes.size(), dvec3(0)) {
   ASSERT(moving >= mesh.free_count && moving <= mesh.pinned_begin());
   ASSERT(mesh.pinned_begin() <= mesh.node_count());
@@ -53,7 +53,7 @@ Flesh::Flesh(const TetMesh& mesh, const FleshMaterial& material, std::uint32_t m
   force_.setZero(3 * mesh.node_count());
 }
 
-void Flesh::take_elements() {
+void Tissue::take_elements() {
   mass_.assign(mesh_.nodes.size(), 0.0);
   std::vector<Tet> tets = mesh_.tets;
   for (Tet& tet : tets) std::sort(tet.begin(), tet.end());  // a pair then always stands in the upper triangle
@@ -81,7 +81,7 @@ void Flesh::take_elements() {
     if (m == 0.0) m = feather;
 }
 
-void Flesh::lay_out() {
+void Tissue::lay_out() {
   std::vector<Tet> stiff;
   for (const ElementPack& pack : packs_)
     stiff.insert(stiff.end(), pack.node.begin(), pack.node.begin() + static_cast<std::ptrdiff_t>(pack.count));
@@ -129,14 +129,14 @@ void Flesh::lay_out() {
   }
 }
 
-double* Flesh::block(std::uint32_t row, std::uint32_t column, std::uint32_t slot) {
+double* Tissue::block(std::uint32_t row, std::uint32_t column, std::uint32_t slot) {
   if (slot == kNone) return nullptr;
   return column < moving_ ? inner_.value[slot].data()
          : row < moving_  ? outer_[slot].value.data()
                           : corner_[slot].value.data();
 }
 
-void Flesh::visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const {
+void Tissue::visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const {
   take_edges(pack, x, out);
   if (material_.strain == Strain::kCorotational)
     take_rotations(pack, out);
@@ -146,7 +146,7 @@ void Flesh::visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementV
   take_forces(pack, lambda_, mu_, out);
 }
 
-void Flesh::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) {
+void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) {
   for (Block& value : inner_.value) value.setZero();
   for (Entry& entry : outer_) entry.value.setZero();
   for (Entry& entry : corner_) entry.value.setZero();
@@ -177,8 +177,8 @@ void Flesh::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) {
   add_masses(T, gravity);
 }
 
-void Flesh::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
-                       const ElementVisit& visit) {
+void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
+                        const ElementVisit& visit) {
   const double l = scale.stiffness * pack.volume[lane] * lambda_, m = scale.stiffness * pack.volume[lane] * mu_;
   const Tet& tet = pack.node[lane];
   std::array<dvec3, 4> c;
@@ -195,7 +195,7 @@ void Flesh::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& s
 
 // Pinned nodes have no rows: what A says of their velocities v goes to the right. sum_p K'_ip v_p is V sigma c_i of the
 // strain sym(sum_p v_p c_p^T).
-void Flesh::add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit) {
+void Tissue::add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit) {
   const Tet& tet = pack.node[lane];
   dmat3 L(0);
   for (int i = 0; i < 4; ++i)
@@ -207,7 +207,7 @@ void Flesh::add_told(const ElementPack& pack, std::size_t lane, const Scale& sca
 }
 
 // Only upper blocks were added to. Diagonal ones are symmetric but for rounding; a solver may read either half.
-void Flesh::mirror() {
+void Tissue::mirror() {
   const auto even = [](Block& b) { b(1, 0) = b(0, 1), b(2, 0) = b(0, 2), b(2, 1) = b(1, 2); };
   for (const std::uint32_t k : inner_.diagonal) even(inner_.value[k]);
   for (Entry& entry : corner_)
@@ -216,7 +216,7 @@ void Flesh::mirror() {
   for (const auto& [upper, lower] : corner_mirror_) corner_[lower].value = corner_[upper].value.transpose();
 }
 
-void Flesh::add_masses(double T, dvec3 gravity) {
+void Tissue::add_masses(double T, dvec3 gravity) {
   const double damped = 1 + T * material_.alpha;
   for (std::uint32_t i = 0; i < mesh_.pinned_begin(); ++i) add(right_, i, mass_[i] * (v_[i] + T * gravity));
   for (std::uint32_t i = 0; i < moving_; ++i) inner_.value[inner_.diagonal[i]].diagonal().array() += mass_[i] * damped;
@@ -224,7 +224,7 @@ void Flesh::add_masses(double T, dvec3 gravity) {
     if (entry.row == entry.column) entry.value.diagonal().array() += mass_[entry.row] * damped;
 }
 
-double Flesh::elastic_energy() const {
+double Tissue::elastic_energy() const {
   double energy = 0.0;
   ElementVisit now;
   for (const ElementPack& pack : packs_) {

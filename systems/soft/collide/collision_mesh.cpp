@@ -1,4 +1,4 @@
-#include "systems/soft/collide/skin.h"
+#include "systems/soft/collide/collision_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,13 +32,13 @@ dvec3 unit_or_zero(dvec3 n) {
 
 }  // namespace
 
-Skin::Skin(const Body& body) : mesh_(body.skin), deforms_(body.size() > kRigid) {
-  ASSERT(body.skin && body.skin_position.size() >= body.skin->vertex_count);
+CollisionMesh::CollisionMesh(const Body& body) : mesh_(body.collision_mesh), deforms_(body.size() > kRigid) {
+  ASSERT(body.collision_mesh && body.surface_position.size() >= body.collision_mesh->vertex_count);
   find_edges();
   find_shortest();
   if (body.self_collides)
     neighbours_ =
-        SkinNeighbours(*mesh_, kNearEdges * static_cast<double>(mesh_->mean_edge), triangles_first_, triangles_of_);
+        MeshNeighbours(*mesh_, kNearEdges * static_cast<double>(mesh_->mean_edge), triangles_first_, triangles_of_);
   position_.resize(mesh_->vertex_count, dvec3(0));
   displacement_.resize(mesh_->vertex_count, dvec3(0));
   ahead_.resize(mesh_->vertex_count, dvec3(0));
@@ -62,7 +62,7 @@ Skin::Skin(const Body& body) : mesh_(body.skin), deforms_(body.size() > kRigid) 
   normal_boxes_ = boxes_;
 }
 
-void Skin::find_edges() {
+void CollisionMesh::find_edges() {
   const std::vector<uvec3>& triangles = mesh_->triangles;
   edge_of_.assign(triangles.size(), {});
   owned_.assign(triangles.size(), 0);
@@ -93,18 +93,18 @@ void Skin::find_edges() {
     }
   }
   at_border_.assign(mesh_->vertex_count, false);
-  for (const SkinEdge& edge : edges_)
+  for (const CollisionEdge& edge : edges_)
     if (edge.triangle[0] == edge.triangle[1]) at_border_[edge.from] = at_border_[edge.to] = true;
   for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) triangles_first_[v + 1] += triangles_first_[v];
   edge_count_.assign(mesh_->vertex_count, 0.0);
-  for (const SkinEdge& edge : edges_) ++edge_count_[edge.from], ++edge_count_[edge.to];
+  for (const CollisionEdge& edge : edges_) ++edge_count_[edge.from], ++edge_count_[edge.to];
   triangles_of_.resize(3 * triangles.size());
   std::vector<std::uint32_t> next(triangles_first_.begin(), triangles_first_.end() - 1);
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     for (int i = 0; i < 3; ++i) triangles_of_[next[triangles[t][i]]++] = t;
 }
 
-void Skin::find_shortest() {
+void CollisionMesh::find_shortest() {
   shortest_at_vertex_.assign(mesh_->vertex_count, 1e300);
   for (const uvec3& t : mesh_->triangles) {
     double shortest = 1e300;
@@ -115,14 +115,14 @@ void Skin::find_shortest() {
   }
 }
 
-SurfacePoint Skin::point_at_vertex(std::uint32_t v) const {
+SurfacePoint CollisionMesh::point_at_vertex(std::uint32_t v) const {
   SurfacePoint p{owner_[v], dvec3(0), position_[v]};
   for (int i = 0; i < 3; ++i)
     if (mesh_->triangles[p.triangle][i] == v) p.barycentric[i] = 1.0;
   return p;
 }
-SurfacePoint Skin::point_on_edge(std::uint32_t e, double along) const {
-  const SkinEdge& edge = edges_[e];
+SurfacePoint CollisionMesh::point_on_edge(std::uint32_t e, double along) const {
+  const CollisionEdge& edge = edges_[e];
   SurfacePoint p{edge.triangle[0], dvec3(0), (1.0 - along) * position_[edge.from] + along * position_[edge.to]};
   for (int i = 0; i < 3; ++i) {
     if (mesh_->triangles[p.triangle][i] == edge.from) p.barycentric[i] = 1.0 - along;
@@ -130,18 +130,18 @@ SurfacePoint Skin::point_on_edge(std::uint32_t e, double along) const {
   }
   return p;
 }
-SurfacePoint Skin::point_on_triangle(std::uint32_t t, dvec3 w) const {
+SurfacePoint CollisionMesh::point_on_triangle(std::uint32_t t, dvec3 w) const {
   const uvec3 c = mesh_->triangles[t];
   return {t, w, w.x * position_[c.x] + w.y * position_[c.y] + w.z * position_[c.z]};
 }
 
-std::array<Moving, 3> Skin::triangle(std::uint32_t t) const {
+std::array<Moving, 3> CollisionMesh::triangle(std::uint32_t t) const {
   const uvec3 c = mesh_->triangles[t];
   return {vertex(c.x), vertex(c.y), vertex(c.z)};
 }
 
-EdgeShape Skin::edge_shape(std::uint32_t e) const {
-  const SkinEdge& edge = edges_[e];
+EdgeShape CollisionMesh::edge_shape(std::uint32_t e) const {
+  const CollisionEdge& edge = edges_[e];
   const auto inward = [&](int i, double time) {
     const dvec3 from = vertex(edge.from).at(time), side = vertex(edge.opposite[i]).at(time) - from;
     const dvec3 along = unit_or_zero(vertex(edge.to).at(time) - from);
@@ -156,7 +156,7 @@ EdgeShape Skin::edge_shape(std::uint32_t e) const {
   return shape;
 }
 
-dmat3 Skin::turn(std::uint32_t t) const {
+dmat3 CollisionMesh::turn(std::uint32_t t) const {
   const uvec3 c = mesh_->triangles[t];
   const auto frame = [](dvec3 along, dvec3 normal) {
     const dvec3 x = unit_or_zero(along);
@@ -166,7 +166,7 @@ dmat3 Skin::turn(std::uint32_t t) const {
   return frame(position_[c.y] - position_[c.x], normal_[t]) * glm::transpose(frame(rest, rest_.normal[t]));
 }
 
-void Skin::predict(const std::vector<dvec3>& velocity, double T) {
+void CollisionMesh::predict(const std::vector<dvec3>& velocity, double T) {
   for (std::size_t v = 0; v < ahead_.size(); ++v) ahead_[v] = position_[v] + T * velocity[v];
   position_.swap(ahead_);
   find_normals();
@@ -175,21 +175,21 @@ void Skin::predict(const std::vector<dvec3>& velocity, double T) {
   predicted_ = true;
 }
 
-void Skin::refit(const Body& body, double T, double reach) {
+void CollisionMesh::refit(const Body& body, double T, double reach) {
   const std::uint32_t count = mesh_->vertex_count;
-  const bool still = body.size() == 0 && std::all_of(body.skin_velocity.begin(), body.skin_velocity.end(),
+  const bool still = body.size() == 0 && std::all_of(body.surface_velocity.begin(), body.surface_velocity.end(),
                                                      [](const dvec3& v) { return v == dvec3(0); });
-  const bool same = std::equal(position_.begin(), position_.end(), body.skin_position.begin());
+  const bool same = std::equal(position_.begin(), position_.end(), body.surface_position.begin());
   if (still && still_ && same && reach == reach_ && !predicted_) return;
   swept_ = false;
   still_ = still && same, predicted_ = false;  // a body that has just stopped is predicted to go on, once
   const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
   last_step_ = T;
   for (std::uint32_t v = 0; v < count; ++v) {
-    const dvec3 went = body.skin_position[v] - position_[v];
-    position_[v] = body.skin_position[v];
+    const dvec3 went = body.surface_position[v] - position_[v];
+    position_[v] = body.surface_position[v];
     ahead_[v] = position_[v] + again * went;
-    displacement_[v] = T * body.skin_velocity[v];
+    displacement_[v] = T * body.surface_velocity[v];
   }
   find_drift();
   find_normals();
@@ -198,13 +198,13 @@ void Skin::refit(const Body& body, double T, double reach) {
   fit_boxes(reach);
 }
 
-void Skin::sweep(const Body& body, const std::vector<dvec3>& velocity, double T) {
+void CollisionMesh::sweep(const Body& body, const std::vector<dvec3>& velocity, double T) {
   dvec3 mean(0.0);
-  for (std::size_t v = 0; v < displacement_.size(); ++v) mean += T * (velocity[v] - body.skin_velocity[v]);
+  for (std::size_t v = 0; v < displacement_.size(); ++v) mean += T * (velocity[v] - body.surface_velocity[v]);
   mean /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
   strayed_ = strayed_apart_ = 0.0;
   for (std::size_t v = 0; v < displacement_.size(); ++v) {
-    const dvec3 strayed = T * (velocity[v] - body.skin_velocity[v]);
+    const dvec3 strayed = T * (velocity[v] - body.surface_velocity[v]);
     vertex_strayed_[v] = static_cast<float>(length(strayed));
     strayed_ = std::max(strayed_, length(strayed));
     strayed_apart_ = std::max(strayed_apart_, length(strayed - mean));
@@ -214,7 +214,7 @@ void Skin::sweep(const Body& body, const std::vector<dvec3>& velocity, double T)
   find_drift();
 }
 
-void Skin::fit_swept() {
+void CollisionMesh::fit_swept() {
   if (!swept_) return;
   swept_ = false;
   fit_boxes(reach_);
@@ -232,7 +232,7 @@ void Skin::fit_swept() {
   }
 }
 
-void Skin::find_drift() {
+void CollisionMesh::find_drift() {
   drift_ = dvec3(0.0);
   for (const dvec3& d : displacement_) drift_ += d;
   drift_ /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
@@ -241,7 +241,7 @@ void Skin::find_drift() {
   spread_ = std::sqrt(most);
 }
 
-void Skin::find_normals() {
+void CollisionMesh::find_normals() {
   std::fill(vertex_normal_.begin(), vertex_normal_.end(), dvec3(0.0));
   for (std::uint32_t t = 0; t < normal_.size(); ++t) {
     const uvec3 c = mesh_->triangles[t];
@@ -256,7 +256,7 @@ void Skin::find_normals() {
       const std::uint32_t v = mesh_->triangles[t][i];
       if (dot(vertex_normal_[v], normal_[t]) < kSmooth) smooth_[v] = 0;
     }
-  for (const SkinEdge& edge : edges_) {
+  for (const CollisionEdge& edge : edges_) {
     const dvec3 across = position_[edge.opposite[1]] - position_[edge.from];
     const bool hollow = dot(normal_[edge.triangle[0]], across) > 0.0;
     if (hollow && dot(normal_[edge.triangle[0]], normal_[edge.triangle[1]]) < kHollow)
@@ -265,9 +265,9 @@ void Skin::find_normals() {
 }
 
 // Normal curvature along every edge that leaves it, dn . dx / dx^2, on average.
-void Skin::find_curvatures() {
+void CollisionMesh::find_curvatures() {
   std::fill(curvature_.begin(), curvature_.end(), 0.0);
-  for (const SkinEdge& edge : edges_) {
+  for (const CollisionEdge& edge : edges_) {
     const dvec3 d = position_[edge.to] - position_[edge.from];
     const double dd = dot(d, d);
     const double k = dd > 0.0 ? dot(vertex_normal_[edge.to] - vertex_normal_[edge.from], d) / dd : 0.0;
@@ -288,7 +288,7 @@ dmat3 frame_of(dvec3 n) {
 }  // namespace
 
 // Least squares over the edges that leave a vertex, each as heavy as any; then the mean with its neighbours'.
-void Skin::find_rest_bend() {
+void CollisionMesh::find_rest_bend() {
   struct Sums {
     dmat2 steps{0}, turns{0};  // of tangential steps times steps, turns times steps
   };
@@ -296,7 +296,7 @@ void Skin::find_rest_bend() {
   std::vector<Sums> sums(count);
   std::vector<dmat3> frame(count), own(count, dmat3(0.0));
   for (std::uint32_t v = 0; v < count; ++v) frame[v] = frame_of(rest_.vertex_normal[v]);
-  for (const SkinEdge& edge : edges_)
+  for (const CollisionEdge& edge : edges_)
     for (const auto& [from, to] : {std::pair(edge.from, edge.to), std::pair(edge.to, edge.from)}) {
       const dvec3 d = (position_[to] - position_[from]) * frame[from];
       const dvec3 n = (rest_.vertex_normal[to] - rest_.vertex_normal[from]) * frame[from];
@@ -316,7 +316,7 @@ void Skin::find_rest_bend() {
   }
   rest_.bend = own;
   std::vector<double> weight(count, 1.0);
-  for (const SkinEdge& edge : edges_) {
+  for (const CollisionEdge& edge : edges_) {
     if (!rest_.smooth[edge.from] || !rest_.smooth[edge.to]) continue;
     rest_.bend[edge.from] += own[edge.to], rest_.bend[edge.to] += own[edge.from];
     ++weight[edge.from], ++weight[edge.to];
@@ -325,14 +325,14 @@ void Skin::find_rest_bend() {
 }
 
 // Depth lost to a flat edge that is left out: at most kFlat / 4 of its length.
-void Skin::find_live_edges() {
+void CollisionMesh::find_live_edges() {
   live_ = owned_;
   sharp_.assign(live_.size(), 0), supple_.assign(live_.size(), 0);
   const double flat = std::cos(kFlat);
   for (std::uint32_t t = 0; t < live_.size(); ++t)
     for (int i = 0; i < 3; ++i) {
       if (!(owned_[t] & 8u << i)) continue;
-      const SkinEdge& edge = edges_[edge_of_[t][i]];
+      const CollisionEdge& edge = edges_[edge_of_[t][i]];
       if (edge.triangle[0] == edge.triangle[1]) continue;
       const dvec3 across = position_[edge.opposite[1]] - position_[edge.from];
       const bool convex = dot(normal_[edge.triangle[0]], across) < 0.0;
@@ -345,7 +345,7 @@ void Skin::find_live_edges() {
     }
 }
 
-void Skin::fit_boxes(double reach) {
+void CollisionMesh::fit_boxes(double reach) {
   reach_ = reach;
   if (boxes_.empty()) return;
   for (std::uint32_t v = 0; v < vertex_box_.size(); ++v) {

@@ -1,9 +1,9 @@
 // Pairs of triangles whose swept boxes meet and that do not all look the same way: both trees descended together
 // (Gottschalk, Lin & Manocha 1996), the larger level first, in an order that depends on nothing but the boxes. The look
-// at normals keeps a smooth skin from being compared with its own neighbourhood.
+// at normals keeps a smooth collision mesh from being compared with its own neighbourhood.
 #pragma once
 
-#include "systems/soft/collide/skin.h"
+#include "systems/soft/collide/collision_mesh.h"
 
 namespace pliant {
 
@@ -13,7 +13,7 @@ struct RelativeSweep {
   RelativeSweep() = default;
   explicit RelativeSweep(float reach) : low(-reach), high(reach) {}
   // `reach` [m]: boxes that come so near to each other meet.
-  RelativeSweep(const Skin& a, const Skin& b, float reach = 0.0f) {
+  RelativeSweep(const CollisionMesh& a, const CollisionMesh& b, float reach = 0.0f) {
     const vec3 d(a.drift() - b.drift());
     low = glm::min(d, vec3(0.0f)) - reach;
     high = glm::max(d, vec3(0.0f)) + reach;
@@ -42,20 +42,23 @@ inline float least_dot(const Box& a, const Box& b) {
 
 template <class Use>
 struct PairWalk {
-  const Skin& a;
-  const Skin& b;
+  const CollisionMesh& a;
+  const CollisionMesh& b;
   const RelativeSweep sweep;
-  const float strayed;  // [m] two runs must have strayed by more than this together (Skin::strayed)
+  const float strayed;  // [m] two runs must have strayed by more than this together (CollisionMesh::strayed)
   Use& use;
 
   static std::uint32_t width(std::size_t level) { return level == 0 ? kLeafSize : kTreeWidth; }
-  static std::uint32_t size(const Skin& skin, std::size_t level) {  // of what stands below `level`
-    return static_cast<std::uint32_t>(level == 0 ? skin.mesh().triangles.size() : skin.boxes()[level - 1].size());
+  static std::uint32_t size(const CollisionMesh& collision_mesh, std::size_t level) {  // of what stands below `level`
+    return static_cast<std::uint32_t>(level == 0 ? collision_mesh.mesh().triangles.size()
+                                                 : collision_mesh.boxes()[level - 1].size());
   }
-  static std::uint32_t end(const Skin& skin, std::size_t level, std::uint32_t i) {
-    return std::min((i + 1) * width(level), size(skin, level));
+  static std::uint32_t end(const CollisionMesh& collision_mesh, std::size_t level, std::uint32_t i) {
+    return std::min((i + 1) * width(level), size(collision_mesh, level));
   }
-  const Box& box(const Skin& skin, std::size_t level, std::uint32_t i) const { return skin.boxes()[level][i]; }
+  const Box& box(const CollisionMesh& collision_mesh, std::size_t level, std::uint32_t i) const {
+    return collision_mesh.boxes()[level][i];
+  }
   bool facing(std::size_t la, std::uint32_t ia, std::size_t lb, std::uint32_t ib) const {
     return least_dot(a.normal_boxes()[la][ia], b.normal_boxes()[lb][ib]) <= static_cast<float>(kFacing) + 1e-5f;
   }
@@ -75,7 +78,7 @@ struct PairWalk {
       for (std::uint32_t t = ib * kLeafSize; t < end(b, 0, ib); ++t)
         if (a.strayed(s) + b.strayed(t) > strayed && sweep.meet(a.box(s), b.box(t))) use(s, t);
   }
-  // Of one skin with itself, without what its neighbours settle.
+  // Of one collision mesh with itself, without what its neighbours settle.
   void own_leaves(std::uint32_t ia, std::uint32_t ib) const {
     const unsigned settled = a.neighbours().settled(ia, ib);
     if (settled == (1u << kLeafSize * kLeafSize) - 1u) return;
@@ -103,17 +106,17 @@ struct PairWalk {
 // use(triangle of a, triangle of b). Boxes meet from `reach` [m] on, besides what they were grown by;
 // triangles that have strayed by no more than `strayed` [m] together are left out.
 template <class Use>
-void for_each_pair(const Skin& a, const Skin& b, Use use, float reach = 0.0f, float strayed = -1.0f) {
+void for_each_pair(const CollisionMesh& a, const CollisionMesh& b, Use use, float reach = 0.0f, float strayed = -1.0f) {
   if (a.boxes().empty() || b.boxes().empty()) return;
   const detail::PairWalk<Use> walk{a, b, RelativeSweep(a, b, reach), strayed, use};
   walk.across(a.boxes().size() - 1, 0, b.boxes().size() - 1, 0);
 }
 // use(triangle, other triangle), each unordered pair once
 template <class Use>
-void for_each_pair_within(const Skin& skin, Use use, float reach = 0.0f, float strayed = -1.0f) {
-  if (skin.boxes().empty()) return;
-  const detail::PairWalk<Use> walk{skin, skin, RelativeSweep(reach), strayed, use};
-  walk.within(skin.boxes().size() - 1, 0);
+void for_each_pair_within(const CollisionMesh& collision_mesh, Use use, float reach = 0.0f, float strayed = -1.0f) {
+  if (collision_mesh.boxes().empty()) return;
+  const detail::PairWalk<Use> walk{collision_mesh, collision_mesh, RelativeSweep(reach), strayed, use};
+  walk.within(collision_mesh.boxes().size() - 1, 0);
 }
 
 }  // namespace pliant

@@ -24,7 +24,7 @@ enum class Strain : std::uint8_t {
   kLinear,  // R = I: for studies; right only while nothing turns
 };
 
-struct FleshMaterial {
+struct TissueMaterial {
   double young = 5e3;       // [Pa]
   double poisson = 0.45;    // [1] < 0.5
   double density = 1000.0;  // [kg/m3]
@@ -33,15 +33,15 @@ struct FleshMaterial {
   Strain strain = Strain::kCorotational;
 };
 
-class Flesh {
+class Tissue {
  public:
   // `moving`: leading nodes that have their own rows in the step (free ones; with spring attachment also the handle's).
   // Nodes from there on move as they are told (position() and velocity() are written by their owner).
   // A tetrahedron that is flat at rest (volume < 1e-9 of its longest edge cubed) has no stiffness: it would be
   // infinite.
-  Flesh(const TetMesh& mesh, const FleshMaterial& material, std::uint32_t moving);
+  Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving);
 
-  // [m], [m/s], world, per node. Writer: whoever steps this flesh.
+  // [m], [m/s], world, per node. Writer: whoever steps this tissue.
   std::vector<dvec3>& position() { return x_; }
   std::vector<dvec3>& velocity() { return v_; }
   const std::vector<dvec3>& position() const { return x_; }
@@ -89,7 +89,7 @@ class Flesh {
   double* block(std::uint32_t row, std::uint32_t column, std::uint32_t slot);
 
   const TetMesh& mesh_;
-  FleshMaterial material_;
+  TissueMaterial material_;
   double lambda_ = 0.0, mu_ = 0.0;  // [Pa] Lame's
   std::uint32_t moving_ = 0;
   std::vector<dvec3> x_, v_;

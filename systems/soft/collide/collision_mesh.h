@@ -9,25 +9,25 @@
 
 #include "systems/soft/body/body.h"
 #include "systems/soft/collide/meeting.h"
-#include "systems/soft/collide/skin_neighbours.h"
+#include "systems/soft/collide/mesh_neighbours.h"
 
 namespace pliant {
 
 // [1] cosine: outward normals of two features that touch are opposed, or nearly.
 inline constexpr double kFacing = 0.3;
 
-struct SkinEdge {
+struct CollisionEdge {
   std::uint32_t from = 0, to = 0;           // vertices
   std::array<std::uint32_t, 2> triangle{};  // beside it; the same twice at a border
   std::array<std::uint32_t, 2> opposite{};  // their third vertices
 };
 
-class Skin {
+class CollisionMesh {
  public:
-  explicit Skin(const Body& body);
+  explicit CollisionMesh(const Body& body);
 
-  // Takes over the body's skin for a step of T [s]; boxes grow by `reach` [m]. Fixed skins that have not moved keep
-  // what they have.
+  // Takes over the body's collision mesh for a step of T [s]; boxes grow by `reach` [m]. Fixed collision meshes that
+  // have not moved keep what they have.
   void refit(const Body& body, double T, double reach);
 
   // The same step once more, with `velocity` [m/s, per vertex] instead of the body's free one: displacements. Boxes
@@ -37,7 +37,7 @@ class Skin {
 
   // --- Topology
   const Mesh& mesh() const { return *mesh_; }
-  const std::vector<SkinEdge>& edges() const { return edges_; }
+  const std::vector<CollisionEdge>& edges() const { return edges_; }
   // Every vertex and every edge is looked at with one triangle only: bits 0-2 of its corners, 3-5 of its edges (edge i
   // goes from corner i to corner i+1).
   std::uint8_t owned(std::uint32_t triangle) const { return owned_[triangle]; }
@@ -46,7 +46,7 @@ class Skin {
   // valley nothing does.
   std::uint8_t live(std::uint32_t triangle) const { return live_[triangle]; }
   // Edges as in live(), of the same triangles. `sharp`: live, and sharper than 37 degrees. `supple`: not live, but of a
-  // skin that bends round a sharp edge that is pressed into it between its vertices.
+  // collision mesh that bends round a sharp edge that is pressed into it between its vertices.
   std::uint8_t sharp(std::uint32_t triangle) const { return sharp_[triangle]; }
   std::uint8_t supple(std::uint32_t triangle) const { return supple_[triangle]; }
   // [m] at rest: the shortest edge of the triangles around a vertex, beside an edge, of a triangle.
@@ -59,7 +59,9 @@ class Skin {
   SurfacePoint point_at_vertex(std::uint32_t vertex) const;
   SurfacePoint point_on_edge(std::uint32_t edge, double along) const;
   SurfacePoint point_on_triangle(std::uint32_t triangle, dvec3 barycentric) const;
-  const SkinNeighbours& neighbours() const { return neighbours_; }  // only of skins that collide with themselves
+  const MeshNeighbours& neighbours() const {
+    return neighbours_;
+  }  // only of collision meshes that collide with themselves
 
   // --- This step
   Moving vertex(std::uint32_t v) const { return {position_[v], displacement_[v]}; }
@@ -117,7 +119,7 @@ class Skin {
   void find_live_edges();
 
   const Mesh* mesh_;
-  std::vector<SkinEdge> edges_;
+  std::vector<CollisionEdge> edges_;
   std::vector<std::array<std::uint32_t, 3>> edge_of_;
   std::vector<std::uint8_t> owned_, live_, sharp_, supple_;
   bool deforms_ = false;
@@ -125,7 +127,7 @@ class Skin {
   std::vector<double> shortest_, shortest_at_vertex_;
   std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
-  SkinNeighbours neighbours_;
+  MeshNeighbours neighbours_;
   std::vector<dvec3> position_, displacement_, ahead_;
   Shape rest_;
   std::vector<dvec3> normal_, vertex_normal_;

@@ -1,0 +1,78 @@
+#include "systems/soft/fem/tissue_step.h"
+
+#include <algorithm>
+
+namespace pliant {
+namespace {
+
+constexpr double kForever = 1e6;  // [s] against periods of less than a second: inertia is 1e-12 of stiffness
+
+dvec3 node_of(const Vector& v, std::size_t node) {
+  const Eigen::Index i = 3 * static_cast<Eigen::Index>(node);
+  return {v[i], v[i + 1], v[i + 2]};
+}
+
+// What the system has on the right: handle nodes without rows are told where to go, so their terms move over.
+Vector right_side(const Tissue& tissue, double h, const std::vector<dvec3>* push) {
+  Vector right = tissue.right().head(3 * tissue.moving());
+  for (const Tissue::Entry& entry : tissue.outer()) {
+    const dvec3 v = tissue.velocity()[entry.column];
+    right.segment<3>(3 * entry.row) -= entry.value * Eigen::Vector3d(v.x, v.y, v.z);
+  }
+  if (push)
+    for (std::uint32_t i = 0; i < tissue.moving(); ++i)
+      right.segment<3>(3 * i) += h * Eigen::Vector3d((*push)[i].x, (*push)[i].y, (*push)[i].z);
+  return right;
+}
+
+}  // namespace
+
+TissueReport step_tissue(Tissue& tissue, LinearSolver& solver, double T, dvec3 gravity, const TissueStep& step) {
+  // The midpoint rule is an implicit Euler step of half the length and the same again without asking.
+  const bool midpoint = step.scheme == Scheme::kMidpoint;
+  const double h = midpoint ? T / 2 : T;
+  const std::vector<dvec3> begin = tissue.position();
+  std::vector<dvec3>& x = tissue.position();
+  std::vector<dvec3>& v = tissue.velocity();
+  Vector now = Vector::Zero(3 * tissue.moving()), last = now;
+  TissueReport report;
+  while (report.iterations < step.iterations) {
+    tissue.assemble(h, gravity, report.iterations > 0 ? &begin : nullptr);
+    solver.place(tissue.position());
+    report.solved = solver.factorise(tissue.inner());
+    if (!report.solved) {
+      x = begin;
+      return report;
+    }
+    last = now;
+    solver.solve(right_side(tissue, h, step.push), now);
+    ++report.iterations;
+    const double size = now.norm();
+    report.change = size > 0 ? (now - last).norm() / size : 0.0;
+    if (report.change <= step.tolerance) break;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = begin[i] + h * (i < tissue.moving() ? node_of(now, i) : v[i]);
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const dvec3 mean = i < tissue.moving() ? node_of(now, i) : v[i];
+    x[i] = begin[i] + T * mean;
+    v[i] = midpoint && i < tissue.moving() ? 2.0 * mean - v[i] : mean;
+  }
+  return report;
+}
+
+TissueReport settle_tissue(Tissue& tissue, LinearSolver& solver, dvec3 gravity, TissueStep step) {
+  step.scheme = Scheme::kEuler;
+  std::fill(tissue.velocity().begin(), tissue.velocity().end(), dvec3(0));
+  const TissueReport report = step_tissue(tissue, solver, kForever, gravity, step);
+  std::fill(tissue.velocity().begin(), tissue.velocity().end(), dvec3(0));
+  return report;
+}
+
+double kinetic_energy(const Tissue& tissue) {
+  double energy = 0.0;
+  for (std::size_t i = 0; i < tissue.mass().size(); ++i)
+    energy += 0.5 * tissue.mass()[i] * dot(tissue.velocity()[i], tissue.velocity()[i]);
+  return energy;
+}
+
+}  // namespace pliant
