@@ -37,4 +37,8 @@ double default_reach(const Mesh& mesh);
 // else it takes every step (components/field_feed.h).
 bool has_closed_form(const Deformable& deformable, const Mesh& mesh);
 
+// Whether the GPU has its law and its shape. Registered ones are functions of the program (pliant/surface_law.h): their
+// fields are stepped on the CPU, whatever is asked for.
+bool gpu_knows(const Deformable& deformable);
+
 }  // namespace pliant

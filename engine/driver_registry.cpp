@@ -1,4 +1,5 @@
 // Drivers by name (pliant/driver.h).
+#include <exception>
 #include <map>
 #include <mutex>
 
@@ -40,17 +41,27 @@ std::vector<std::string> driver_names() {
 }
 
 Result<std::unique_ptr<Driver>> make_driver(const std::string& name) {
-  Registered& all = registered();
-  const std::lock_guard lock(all.mutex);
-  const auto found = all.factories.find(name);
-  if (found != all.factories.end()) {
-    if (std::unique_ptr<Driver> driver = found->second()) return driver;
-    return Error{"driver `" + name + "`", "its factory made nothing; return a driver from it"};
+  const std::string where = "driver `" + name + "`";
+  DriverFactory factory;
+  {
+    Registered& all = registered();
+    const std::lock_guard lock(all.mutex);
+    if (const auto found = all.factories.find(name); found != all.factories.end()) factory = found->second;
+  }
+  if (factory) {
+    try {
+      if (std::unique_ptr<Driver> driver = factory()) return driver;
+    } catch (const std::exception& thrown) {
+      return Error{where, std::string("its factory threw: ") + thrown.what()};
+    } catch (...) {
+      return Error{where, "its factory threw something unknown"};
+    }
+    return Error{where, "its factory made nothing; return a driver from it"};
   }
   std::string names;
-  for (const auto& [known, factory] : all.factories) names += (names.empty() ? "" : ", ") + known;
-  return Error{"driver `" + name + "`", names.empty() ? "no driver is registered; call register_driver first"
-                                                      : "unknown; drivers are: " + names};
+  for (const std::string& known : driver_names()) names += (names.empty() ? "" : ", ") + known;
+  return Error{
+      where, names.empty() ? "no driver is registered; call register_driver first" : "unknown; drivers are: " + names};
 }
 
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -15,8 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kMagic[8] = {'p', 'l', 'i', 'a', 'n', 't', 'r', 'c'};
-constexpr std::uint32_t kVersion = 1;
-constexpr std::uint32_t kMaxProbes = 4096, kMaxName = 4096;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kMaxProbes = 4096, kMaxName = 4096, kMaxSettings = 4096;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kPoseBytes = 7 * sizeof(double) + 1;
 
@@ -80,7 +81,8 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
   if (bytes.size() < sizeof kMagic || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
     return Error{name, "is not a recording; give a file that --record wrote"};
   HashingReader in{{bytes, sizeof kMagic}};
-  if (const std::uint32_t version = in.get<std::uint32_t>(); version != kVersion)
+  const std::uint32_t version = in.get<std::uint32_t>();
+  if (version != 1 && version != kVersion)
     return Error{name, "has format version " + std::to_string(version) + ", this is " + std::to_string(kVersion) +
                            "; record it again"};
 
@@ -92,6 +94,12 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
     return short_file;
   recording.header.level = in.text();
   for (std::uint32_t i = 0; i < probes && in.ok; ++i) recording.header.probes.push_back(in.text());
+  if (version > 1) {
+    recording.header.scene = in.get<std::uint64_t>();
+    const std::uint32_t settings = in.get<std::uint32_t>();
+    if (settings > kMaxSettings) return short_file;
+    for (std::uint32_t i = 0; i < settings && in.ok; ++i) recording.header.settings.push_back(in.text());
+  }
   if (!in.ok || bytes.size() - in.at < sizeof(std::uint64_t)) return short_file;
 
   // What is left must be whole ticks and the hash.
@@ -135,6 +143,9 @@ Result<Recording> read_recording(const fs::path& file) {
 }
 
 Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const RecordingHeader& header, bool replace) {
+  for (const std::string& setting : header.settings)
+    if (setting.size() > kMaxName || header.settings.size() > kMaxSettings)
+      return Error{file.string(), "has no room for the settings; write them into the level instead"};
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) return Error{file.string(), "is a folder; name a file in it"};
   if (fs::exists(file, ignored)) {
@@ -150,7 +161,8 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
   writer.replace_ = replace;
   writer.probes_ = header.probes.size();
   writer.aside_ = file;
-  writer.aside_ += ".partial-" + std::to_string(::getpid());
+  static std::atomic<int> writers{0};
+  writer.aside_ += ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(writers++);
   auto out = GrowingFile::create(writer.aside_);
   if (!out) return Error{file.string(), out.error().what};
   writer.out_.emplace(std::move(out).value());
@@ -160,6 +172,9 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
   writer.put(header.rate);
   writer.put_text(header.level.substr(0, kMaxName));
   for (const std::string& name : header.probes) writer.put_text(name.substr(0, kMaxName));
+  writer.put(header.scene);
+  writer.put(static_cast<std::uint32_t>(header.settings.size()));
+  for (const std::string& setting : header.settings) writer.put_text(setting);
   writer.add_record();
   writer.out_->flush();
   writer.hashes_ = {writer.hash_.value()};

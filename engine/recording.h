@@ -1,8 +1,9 @@
 // A recording: the pose of every probe at every tick, so that a run can be repeated to the bit on the same level.
 //
 // The file, little-endian: 8 bytes "pliantrc", u32 version, u32 probes, f64 rate [Hz], level name, a name per probe
-// (u32 length and bytes each); then per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1:
-// the device was ready); last a u64 hash of all before it.
+// (u32 length and bytes each), u64 scene_hash() of the scene it was made with, u32 settings and a text for each; then
+// per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the device was ready); last a u64
+// hash of all before it. Format 1, which is read as well, has neither scene nor settings.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +29,8 @@ struct RecordingHeader {
   std::string level;
   double rate = 1000.0;  // [Hz]
   std::vector<std::string> probes;
+  std::uint64_t scene = 0;            // scene_hash() (engine/scene_check.h); 0: not known, of format 1
+  std::vector<std::string> settings;  // NODE.EXT.KEY=VALUE that were set on top of the level
 };
 
 struct Recording {

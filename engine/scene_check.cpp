@@ -2,27 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "components/range.h"
+#include "content/keys/extension_table.h"
+#include "runtime/hash.h"
 
 namespace pliant {
 namespace {
-
-struct Bound {
-  const char* what;
-  double value;
-  Range range;
-};
-
-Status within(const std::string& node, std::initializer_list<Bound> bounds) {
-  for (const Bound& bound : bounds)
-    if (!bound.range.holds(bound.value))
-      return Error{"`" + node + "`: " + bound.what,
-                   fmt::format("is {}; give a number {} {} and at most {}", bound.value,
-                               bound.range.above_min ? "above" : "of at least", bound.range.min, bound.range.max)};
-  return Done{};
-}
 
 bool finite(dvec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -49,88 +36,90 @@ Status check_mesh(const LevelMesh& mesh) {
 
 Status check_placement(const LevelNode& node) {
   const LocalTransform& at = node.local;
-  const float turn = glm::length(at.rotation);
-  if (finite(at.translation) && finite(at.scale) && std::abs(turn - 1.0f) < 0.01f &&
-      at.scale.x * at.scale.y * at.scale.z != 0.0f)
-    return Done{};
-  return Error{"`" + node.name + "`",
-               "its placement is not finite, its rotation not of unit length, or its scale zero"};
+  if (!finite(at.translation) || !finite(at.scale) || at.scale.x * at.scale.y * at.scale.z == 0.0f)
+    return Error{"`" + node.name + "`", "its placement is not finite, or its scale is zero; check Placement"};
+  if (!(std::abs(glm::length(at.rotation) - 1.0f) < 0.01f))
+    return Error{"`" + node.name + "`", "its rotation is not of unit length; normalise it"};
+  return Done{};
 }
 
-Status check_probe(const std::string& name, const Probe& probe) {
-  for (const vec3 p : probe.points)
-    if (!finite(p) || std::abs(p.x) + std::abs(p.y) + std::abs(p.z) > 3.0 * kProbeLengths.max)
-      return Error{"`" + name + "`: points", "one of them is not finite or too far away"};
-  return within(name, {{"radius", probe.radius, kProbeLengths},
-                       {"length", probe.length, kProbeLengths},
-                       {"coupling", probe.coupling[0], kPairRange},
-                       {"coupling", probe.coupling[1], kPairRange}});
+// `owner`: a LevelNode or the Level.
+Status check_keys(const std::string& name, const Extension& extension, void* owner) {
+  if (!extension.present(owner)) return Done{};
+  for (const Key& key : extension.keys) {
+    if (key.alias) continue;
+    const Json value = key.get(owner);
+    if (value.is_null()) continue;  // says nothing
+    if (const std::string fault = check_value(key, value); !fault.empty())
+      return Error{"`" + name + "`: " + key.name, fault};
+  }
+  if (const std::string fault = extension.settle(owner); !fault.empty()) return Error{"`" + name + "`", fault};
+  return Done{};
 }
 
-Status check_bodies(const LevelNode& node) {
-  using R = SoftBodyRange;
-  if (node.soft_body) {
-    const SoftBody& body = *node.soft_body;
-    if (Status s = within(node.name, {{"young", body.young, R::kYoung},
-                                      {"poisson", body.poisson, R::kPoisson},
-                                      {"density", body.density, R::kDensity},
-                                      {"rayleigh", body.rayleigh[0], kPairRange},
-                                      {"rayleigh", body.rayleigh[1], kPairRange},
-                                      {"cell", body.cell, R::kCell},
-                                      {"friction_static", body.friction_static, kFrictionRange},
-                                      {"friction_sliding", body.friction_sliding, kFrictionRange}});
-        !s)
-      return s;
-  }
-  if (node.rigid_body) {
-    const RigidBody& body = *node.rigid_body;
-    if (Status s = within(node.name, {{"mass", body.mass, R::kMass},
-                                      {"density", body.density, R::kDensity},
-                                      {"friction_static", body.friction_static, kFrictionRange},
-                                      {"friction_sliding", body.friction_sliding, kFrictionRange}});
-        !s)
-      return s;
-  }
-  if (!node.handle) return Done{};
-  const Handle6& handle = *node.handle;
-  return within(node.name, {{"coupling.translation", handle.translation[0], kPairRange},
-                            {"coupling.translation", handle.translation[1], kPairRange},
-                            {"coupling.rotation", handle.rotation[0], kPairRange},
-                            {"coupling.rotation", handle.rotation[1], kPairRange},
-                            {"coupling.max_force", handle.max_force, kSaturationRange},
-                            {"coupling.max_torque", handle.max_torque, kSaturationRange}});
+void add_text(Hash& hash, const std::string& text) {
+  hash.add(text.size());
+  hash.add_bytes(text.data(), text.size());
+}
+
+void add_keys(Hash& hash, const Extension& extension, const void* owner) {
+  if (!extension.present(owner)) return;
+  add_text(hash, extension.name);
+  for (const Key& key : extension.keys)
+    if (!key.alias) add_text(hash, key.get(owner).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace
 
 Status check_device(const std::string& name, const DeviceParameters& device) {
-  using R = DeviceRange;
-  return within(name, {{"scale", device.scale, R::kScale},
-                       {"max_force", device.max_force, R::kMaxForce},
-                       {"max_stiffness", device.max_stiffness, R::kMaxStiffness},
-                       {"max_slew", device.max_slew, R::kMaxSlew}});
+  LevelNode node;
+  node.device.emplace();
+  static_cast<DeviceParameters&>(*node.device) = device;
+  return check_keys(name, *find_extension("haptic_device"), &node);
 }
 
-Status check_scene(const Level& level) {
-  const Simulation& s = level.simulation;
-  if (Status ok = within("scene", {{"touch_rate", s.touch_rate, kTouchRateRange},
-                                   {"soft_step", s.soft_step, kSoftStepRange},
-                                   {"gravity", s.gravity.x, kGravityRange},
-                                   {"gravity", s.gravity.y, kGravityRange},
-                                   {"gravity", s.gravity.z, kGravityRange}});
-      !ok)
-    return ok;
+Status check_scene(Level& level) {
   for (const LevelMesh& mesh : level.meshes)
     if (Status ok = check_mesh(mesh); !ok) return ok;
-  for (const LevelNode& node : level.nodes) {
+  for (LevelNode& node : level.nodes)
     if (Status ok = check_placement(node); !ok) return ok;
-    if (node.probe)
-      if (Status ok = check_probe(node.name, *node.probe); !ok) return ok;
-    if (node.device)
-      if (Status ok = check_device(node.name, *node.device); !ok) return ok;
-    if (Status ok = check_bodies(node); !ok) return ok;
+  for (const Extension& extension : extension_table()) {
+    if (extension.on_scene) {
+      if (Status ok = check_keys("scene", extension, &level); !ok) return ok;
+      continue;
+    }
+    for (LevelNode& node : level.nodes)
+      if (Status ok = check_keys(node.name, extension, &node); !ok) return ok;
   }
   return Done{};
+}
+
+std::uint64_t scene_hash(const Level& level) {
+  Hash hash;
+  for (const LevelMesh& mesh : level.meshes)
+    for (const Primitive& p : mesh.primitives) {
+      hash.add_bytes(p.position.data(), p.position.size() * sizeof(vec3));
+      hash.add_bytes(p.index.data(), p.index.size() * sizeof(std::uint32_t));
+      for (const std::vector<float>* painted :
+           {&p.stiffness, &p.friction, &p.damping, &p.relaxation, &p.pinned, &p.handle})
+        hash.add_bytes(painted->data(), painted->size() * sizeof(float));
+    }
+  for (const LevelNode& node : level.nodes) {
+    add_text(hash, node.name);
+    for (const float number : {node.local.translation.x, node.local.translation.y, node.local.translation.z,
+                               node.local.rotation.x, node.local.rotation.y, node.local.rotation.z,
+                               node.local.rotation.w, node.local.scale.x, node.local.scale.y, node.local.scale.z})
+      hash.add(number);
+  }
+  for (const Extension& extension : extension_table()) {
+    if (extension.name == "environment") continue;  // is seen, not felt
+    if (extension.on_scene) {
+      add_keys(hash, extension, &level);
+      continue;
+    }
+    for (const LevelNode& node : level.nodes) add_keys(hash, extension, &node);
+  }
+  return std::max<std::uint64_t>(hash.value(), 1);
 }
 
 }  // namespace pliant

@@ -8,7 +8,9 @@
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "engine/sources.h"
+#include "systems/soft/soft_state.h"
 #include "systems/tool/prepare_tools.h"
+#include "systems/touch/touch_state.h"
 
 namespace pliant {
 namespace {
@@ -36,52 +38,59 @@ const std::vector<std::string>& Session::notes() const {
 const std::vector<std::string>& Session::objects() const {
   return parts_->objects;
 }
-std::vector<std::string> Session::hands() const {
+std::vector<std::string> Session::effectors() const {
   std::vector<std::string> names;
-  for (const SessionHand& hand : parts_->hands) names.push_back(hand.name);
+  for (const SessionEffector& effector : parts_->effectors) names.push_back(effector.name);
   return names;
 }
 
 Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
-  SessionHand* const hand = parts_->find_hand(name);
-  if (!hand) return parts_->unknown_hand(name);
+  SessionEffector* const effector = parts_->find_effector(name);
+  if (!effector) return parts_->unknown_effector(name);
   const double size = glm::length(rotation);
-  if (!finite(position) || !(std::abs(size - 1.0) < 0.01))
+  if (!finite(position) || !(std::abs(size - 1.0) < kUnitWithin))
     return Error{"Session::move `" + name + "`", "the pose is not finite or its rotation is not of unit length"};
-  if (hand->source != HandSource::kPose) {
+  if (effector->source != EffectorSource::kPose) {
     if (Status s = parts_->stand_still("Session::move"); !s)
       return Error{"Session::move `" + name + "`", "it had no pose before start(); give it one first"};
-    if (Status s = parts_->give(*hand, HandSource::kPose); !s) return s;
+    if (Status s = parts_->give(*effector, EffectorSource::kPose); !s) return s;
   }
-  hand->told->write() = {position, rotation};
-  hand->told->publish();
+  effector->prescribed->write() = {position, rotation / size};
+  effector->prescribed->publish();
   return Done{};
 }
 
 Status Session::follow(const std::string& name, Path path) {
-  SessionHand* const hand = parts_->find_hand(name);
-  if (!hand) return parts_->unknown_hand(name);
+  SessionEffector* const effector = parts_->find_effector(name);
+  if (!effector) return parts_->unknown_effector(name);
   if (Status s = parts_->stand_still("Session::follow"); !s) return s;
   if (path.rows.empty()) return Error{"Session::follow `" + name + "`", "the path has no rows; give it one at least"};
   double before = -std::numeric_limits<double>::infinity();
-  for (const PathRow& row : path.rows) {
+  for (PathRow& row : path.rows) {
     if (!finite(row.position) || !(row.time > before) || !std::isfinite(row.time))
       return Error{"Session::follow `" + name + "`", "times must ascend and positions must be finite"};
     before = row.time;
+    const double size = glm::length(row.rotation);
+    if (!path.turns)
+      row.rotation = dquat(1, 0, 0, 0);
+    else if (std::abs(size - 1.0) < kUnitWithin)
+      row.rotation /= size;
+    else
+      return Error{"Session::follow `" + name + "`", "a rotation is not of unit length; normalise it"};
   }
-  Path kept = std::move(hand->path);
-  hand->path = std::move(path);
-  Status given = parts_->give(*hand, HandSource::kPath);
-  if (!given) hand->path = std::move(kept);
+  Path kept = std::move(effector->path);
+  effector->path = std::move(path);
+  Status given = parts_->give(*effector, EffectorSource::kPath);
+  if (!given) effector->path = std::move(kept);
   return given;
 }
 
 Status Session::orbit(const std::string& name) {
-  SessionHand* const hand = parts_->find_hand(name);
-  if (!hand) return parts_->unknown_hand(name);
+  SessionEffector* const effector = parts_->find_effector(name);
+  if (!effector) return parts_->unknown_effector(name);
   if (Status s = parts_->stand_still("Session::orbit"); !s) return s;
-  const auto index = static_cast<unsigned>(hand - parts_->hands.data());
-  Path path = orbit_of(parts_->world, hand->entity, index);
+  const auto index = static_cast<unsigned>(effector - parts_->effectors.data());
+  Path path = orbit_of(parts_->world, effector->entity, index);
   if (path.rows.empty())
     return Error{"Session::orbit `" + name + "`", "finds no surface that gives way; add one with Scene::add_surface"};
   return follow(name, std::move(path));
@@ -95,55 +104,61 @@ Status Session::connect(const std::string& name, const std::string& driver) {
 }
 
 Status Session::connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id) {
-  SessionHand* const hand = parts_->find_hand(name);
-  if (!hand) return parts_->unknown_hand(name);
+  SessionEffector* const effector = parts_->find_effector(name);
+  if (!effector) return parts_->unknown_effector(name);
   if (Status s = parts_->stand_still("Session::connect"); !s) return s;
-  if (!driver) return Error{"Session::connect `" + name + "`", "the driver is null; give one"};
-  if (hand->source != HandSource::kNone && hand->source != HandSource::kLevel)
-    return Error{"Session::connect `" + name + "`", "it has a source already; call Session::release() first"};
+  const std::string where = "Session::connect `" + name + "`";
+  if (!driver) return Error{where, "the driver is null; give one"};
+  if (Status s = parts_->may_give(*effector); !s) return s;
+  bool opened = false;
+  const auto failed = [&](const std::string& what) {
+    try {
+      if (opened) driver->close();
+    } catch (...) {  // gone all the same
+    }
+    return Error{where, what};
+  };
   try {
-    if (Status opened = driver->open(id); !opened) return opened;
-    hand->can = driver->capabilities();
+    if (Status status = driver->open(id); !status) return status;
+    opened = true;
+    effector->can = driver->capabilities();
   } catch (const std::exception& thrown) {
-    return Error{"Session::connect `" + name + "`", std::string("the driver threw: ") + thrown.what()};
+    return failed(std::string("the driver threw: ") + thrown.what());
   } catch (...) {
-    return Error{"Session::connect `" + name + "`", "the driver threw something unknown"};
+    return failed("the driver threw something unknown");
   }
-  hand->driver = std::move(driver);
-  return parts_->give(*hand, HandSource::kDriver);
+  const DeviceCapabilities& can = effector->can;
+  for (const double limit : {can.max_force, can.max_torque, can.max_stiffness})
+    if (!(limit >= 0.0)) {
+      effector->can = {};
+      return failed("a limit among its capabilities is negative or no number; say 0 where it is not known");
+    }
+  effector->driver = std::move(driver);
+  return parts_->give(*effector, EffectorSource::kDriver);
 }
 
 Status Session::release(const std::string& name) {
-  SessionHand* const hand = parts_->find_hand(name);
-  if (!hand) return parts_->unknown_hand(name);
+  SessionEffector* const effector = parts_->find_effector(name);
+  if (!effector) return parts_->unknown_effector(name);
   if (Status s = parts_->stand_still("Session::release"); !s) return s;
-  parts_->close_driver(*hand);
-  HapticDevice& device = parts_->world.registry.get<HapticDevice>(hand->device);
-  device.driver = DriverKind::kNull;
-  device.path = {};
-  device.status = DeviceStatus::kLost;
-  device.force_sent = device.torque_sent = dvec3(0);
-  static_cast<DeviceParameters&>(device) = parts_->limits_of(*hand);
-  hand->source = HandSource::kNone;
-  hand->placed = false;
+  if (parts_->replayed) return Error{"`" + name + "`", "is moved by a recording; call Session::restart() first"};
+  parts_->take_away(*effector, EffectorSource::kReleased);
   return Done{};
 }
 
 Status Session::step(std::uint64_t ticks) {
   if (Status s = parts_->stand_still("Session::step"); !s) return s;
   Parts& p = *parts_;
-  if (p.lived) return Error{"Session::step", "it has run in real time; call Session::restart() first"};
+  if (p.ended) return Error{"Session::step", std::string(p.ended) + "; call Session::restart() first"};
   const double dt = 1.0 / p.world.simulation.touch_rate;
-  const auto end = [&](const std::string& why) {
-    let_go(p.world, {p.ticks, dt, p.time});
-    p.zero_drivers();
-    return Error{"Session::step", "stopped by an exception: " + why};
-  };
+  Status done = Done{};
   try {
     for (std::uint64_t i = 0; i < ticks; ++i) {
-      if (p.replayed && p.ticks >= p.replayed->ticks.size())
-        return Error{"Session::step", fmt::format("all {} ticks of the recording have run; call Session::restart()",
+      if (p.replayed && p.ticks >= p.replayed->ticks.size()) {
+        done = Error{"Session::step", fmt::format("all {} ticks of the recording have run; call Session::restart()",
                                                   p.replayed->ticks.size())};
+        break;
+      }
       const Tick tick = p.replayed ? p.replayed_tick() : Tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
       p.soft->reach(tick.time);
       p.before(tick);
@@ -151,28 +166,31 @@ Status Session::step(std::uint64_t ticks) {
       p.after(tick);
       if (p.recorder && p.ticks % 1024 == 0) p.recorder->drain();
       ++p.ticks;
-      p.time = static_cast<double>(p.ticks) * dt;
+      p.time = tick.time + dt;
     }
   } catch (const std::exception& thrown) {
-    return end(thrown.what());
+    p.end("it was stopped by an exception");
+    done = Error{"Session::step", std::string("stopped by an exception: ") + thrown.what()};
   } catch (...) {
-    return end("of an unknown kind");
+    p.end("it was stopped by an exception");
+    done = Error{"Session::step", "stopped by an exception of an unknown kind"};
   }
   p.rows.acquire();
   if (p.recorder) p.recorder->drain();
-  return Done{};
+  return done;
 }
 
 Status Session::start() {
   if (Status s = parts_->stand_still("Session::start"); !s) return s;
   Parts& p = *parts_;
   if (p.ticks > 0) return Error{"Session::start", "it has run before; call Session::restart() first"};
+  if (p.ended) return Error{"Session::start", std::string(p.ended) + "; call Session::restart() first"};
   if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
   limit_tool_ticks(p.world);
-  p.lived = true;
+  p.ended = "it has run in real time";
   if (p.recorder) p.recorder->start();
   TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
-                   [&p] { p.zero_drivers(); }};
+                   [&p] { p.end("it has run in real time"); }};
   p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,
                                          std::numeric_limits<std::uint64_t>::max(), std::move(hooks));
   p.clock->start();
@@ -205,6 +223,7 @@ Status Session::stop() {
 
 Status Session::restart() {
   Status stopped = stop();
+  parts_->zero_drivers();
   if (parts_->recorder) {
     const Status ended = end_recording();
     if (stopped && !ended) stopped = ended;
@@ -232,24 +251,31 @@ Status Session::set(const std::string& object, const std::string& key, double va
     known += (known.empty() ? "" : ", ") + std::string(live.key);
     if (key != live.key) continue;
     if (!std::isfinite(value)) return Error{"`" + object + "`: " + key, "is not a number"};
-    Edit edit{{}, k, value};
+    Edit edit{{}, k, value, {}};
+    const char* extension = live.surface ? "deformable" : "haptic_device";
     if (live.surface) {
       if (Status s = check_edit(object, surface->second, p.world.meshes[surface->second.mesh], live, value); !s)
         return s;
       edit.entity = *p.find_object(object);
+      Deformable changed = surface->second;
+      changed.*(live.surface) = value;
+      edit.motion = motion(changed, p.world.touch->dt);
+      if (p.world.soft && p.edits->has_room() && !p.world.soft->surface_edits.push({edit.entity, changed}))
+        return Error{"Session::set", "too many values wait for a soft step; set fewer at a time"};
     } else {
       DeviceParameters changed = device->second;
       changed.*(live.device) = value;
       if (Status s = check_device(object, changed); !s) return s;
       std::swap(device->second, changed);
-      const SessionHand& hand = *p.find_hand(object);
-      edit.entity = hand.device;
-      edit.value = p.limits_of(hand).*(live.device);  // never beyond what its driver can render
-      std::swap(device->second, changed);             // until a tick takes it
+      const SessionEffector& effector = *p.find_effector(object);
+      edit.entity = effector.device;
+      edit.value = p.limits_of(effector).*(live.device);  // never beyond what its driver can render
+      std::swap(device->second, changed);                 // until a tick takes it
     }
     if (!p.edits->push(edit)) return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
     if (live.surface) surface->second.*(live.surface) = value;
     if (live.device) device->second.*(live.device) = value;
+    p.settings[object + "." + extension + "." + key] = fmt::format("{}", value);
     return Done{};
   }
   return Error{"`" + object + "`: " + key, "cannot change between ticks; keys are: " + known};

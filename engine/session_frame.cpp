@@ -1,4 +1,7 @@
 // What a Session shows (pliant/session.h): readings, deformed vertices, forces on them, the stream.
+#include <algorithm>
+#include <limits>
+
 #include "engine/limits.h"
 #include "engine/session_parts.h"
 #include "systems/soft/soft_state.h"
@@ -20,18 +23,19 @@ const Mesh* mesh_of(const World& world, Entity entity) {
 }  // namespace
 
 Result<Reading> Session::reading(const std::string& name) const {
-  const SessionHand* const hand = parts_->find_hand(name);
-  if (!hand) return parts_->unknown_hand(name);
+  const SessionEffector* const effector = parts_->find_effector(name);
+  if (!effector) return parts_->unknown_effector(name);
   if (parts_->clock) parts_->rows.acquire();
-  return parts_->rows.read()[static_cast<std::size_t>(hand - parts_->hands.data())].reading;
+  return parts_->rows.read()[static_cast<std::size_t>(effector - parts_->effectors.data())].reading;
 }
 
 SessionFigures Session::figures() const {
   const Parts& p = *parts_;
   SessionFigures out;
   if (p.clock) {
-    const TouchFigures& told = p.clock->figures();
-    out = {p.clock->now() + 1, told.p50, told.p99, told.max, told.overruns, p.soft->latest().steps};
+    const TouchFigures& prescribed = p.clock->figures();
+    out = {p.clock->now() + 1, prescribed.p50,      prescribed.p99,
+           prescribed.max,     prescribed.overruns, p.soft->latest().steps};
   } else {
     const Histogram& cost = p.schedule->total();
     out = {p.ticks,    cost.percentile_us(0.5), cost.percentile_us(0.99), cost.max_us(),
@@ -44,8 +48,8 @@ Result<std::vector<std::string>> Session::findings() const {
   const Parts& p = *parts_;
   if (Status s = p.stand_still("Session::findings"); !s) return s.error();
   std::vector<std::string> sentences = explain_dropped(p.world.dropped | (p.world.soft ? p.world.soft->dropped : 0));
-  for (const SessionHand& hand : p.hands)
-    for (std::string& sentence : explain_limits(p.world, hand.entity, hand.name))
+  for (const SessionEffector& effector : p.effectors)
+    for (std::string& sentence : explain_limits(p.world, effector.entity, effector.name))
       sentences.push_back(std::move(sentence));
   return sentences;
 }
@@ -69,7 +73,10 @@ Status Session::vertices(const std::string& object, std::vector<vec3>& out) {
   out.assign(mesh.of_source.size(), vec3(0));
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::uint32_t v = mesh.of_source[i];
-    if (v == kBorder) continue;  // no triangle uses it
+    if (v == kBorder) {  // no triangle uses it
+      out[i] = vec3(to_world[3]);
+      continue;
+    }
     if (soft && !soft->position.empty()) {
       out[i] = soft->position[v];
     } else {
@@ -89,7 +96,7 @@ Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out)
   const Mesh& mesh = *mesh_of(p.world, *entity);
   std::vector<vec3> on_vertex(mesh.vertex_count, vec3(0));
   std::vector<float> copies(mesh.vertex_count, 0.0f);
-  for (const HandRow& row : p.rows.read())
+  for (const EffectorRow& row : p.rows.read())
     for (std::uint32_t i = 0; i < row.reading.contacts; ++i) {
       const ContactReading& contact = row.reading.contact[i];
       if (p.object_entities[contact.object] != *entity) continue;
@@ -100,7 +107,29 @@ Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out)
   out.assign(mesh.of_source.size(), vec3(0));
   for (std::size_t i = 0; i < out.size(); ++i)
     if (const std::uint32_t v = mesh.of_source[i]; v != kBorder) out[i] = on_vertex[v] / copies[v];
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+    if (copies[v] == 0.0f && on_vertex[v] != vec3(0)) p.share_out(object, mesh, v, on_vertex[v], out);
   return Done{};
+}
+
+void Session::Parts::share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force,
+                               std::vector<vec3>& out) {
+  auto [place, is_new] = places[object].try_emplace(vertex);
+  if (is_new) {
+    std::vector<dvec3> source(mesh.of_source.size(), dvec3(std::numeric_limits<double>::max()));
+    for (std::size_t i = 0; i < source.size(); ++i)
+      if (mesh.of_source[i] != kBorder) source[i] = dvec3(mesh.position(mesh.of_source[i]));
+    std::vector<uvec3> triangles;
+    for (const LevelNode& node : scene.level().nodes)
+      if (node.name == object && node.mesh >= 0)
+        triangles = source_triangles(scene.level().meshes[static_cast<std::size_t>(node.mesh)]);
+    std::erase_if(triangles, [&](const uvec3& t) {
+      return std::max({t.x, t.y, t.z}) >= source.size() || mesh.of_source[t.x] == kBorder ||
+             mesh.of_source[t.y] == kBorder || mesh.of_source[t.z] == kBorder;
+    });
+    place->second = nearest_source(source, triangles, dvec3(mesh.position(vertex)));
+  }
+  for (int k = 0; k < 3; ++k) out[place->second.vertices[k]] += static_cast<float>(place->second.weights[k]) * force;
 }
 
 Result<Geometry> Session::geometry(const std::string& object) const {

@@ -50,11 +50,23 @@ std::vector<Entity> touchable(const World& world) {
 
 Session::Parts::~Parts() {
   if (clock) clock->stop();
-  for (SessionHand& hand : hands) close_driver(hand);
+  for (SessionEffector& effector : effectors) close_driver(effector);
   if (recorder) static_cast<void>(recorder->finish());
 }
 
 Status Session::Parts::prepare() {
+  std::vector<SessionEffector> before = std::move(effectors);
+  effectors.clear();
+  ended = "its restart failed";
+  Status made = remake(before);
+  for (SessionEffector& effector : before) close_driver(effector);  // what the new world has no place for
+  if (!made)
+    for (SessionEffector& effector : effectors) close_driver(effector);
+  if (made) ended = nullptr;
+  return made;
+}
+
+Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   notes = scene.level().notes;
   if (Status s = check_scene(scene.level()); !s) return s;
   auto spawned = spawn_level(scene.level(), &notes);
@@ -62,30 +74,30 @@ Status Session::Parts::prepare() {
   clock.reset();
   soft.reset();
   world = std::move(spawned).value();
-  std::vector<SessionHand> before = std::move(hands);
-  hands.clear();
-  for (const Entity hand : pliant::hands(world)) {
-    SessionHand made;
-    made.name = name_of(world, hand);
-    made.entity = hand;
-    made.device = own_device(world, hand);
-    made.told = std::make_unique<TripleBuffer<ToldPose>>();
+  places.clear();
+  for (const Entity held : pliant::hands(world)) {
+    SessionEffector made;
+    made.name = name_of(world, held);
+    made.entity = held;
+    made.device = own_device(world, held);
+    made.prescribed = std::make_unique<TripleBuffer<PrescribedPose>>();
     const HapticDevice& device = world.registry.get<HapticDevice>(made.device);
-    if (device.driver != DriverKind::kNull) made.source = HandSource::kLevel;
-    hands.push_back(std::move(made));
+    made.placed_rotation = device.rotation;
+    if (device.driver != DriverKind::kNull) made.source = EffectorSource::kLevel;
+    effectors.push_back(std::move(made));
   }
   objects.clear();
   object_entities = touchable(world);
   for (const Entity object : object_entities) objects.push_back(name_of(world, object));
   std::vector<std::string> names;
-  for (const SessionHand& hand : hands) names.push_back(hand.name);
+  for (const SessionEffector& effector : effectors) names.push_back(effector.name);
   if (Status s = check_names(names, "probe or tool"); !s) return s;
   if (Status s = check_names(objects, "object"); !s) return s;
 
   for (const auto& [name, surface] : surfaces)  // before a restart
     static_cast<DeformableParameters&>(world.registry.get<Deformable>(*find_object(name))) = surface;
   for (const auto& [name, device] : devices)
-    static_cast<DeviceParameters&>(world.registry.get<HapticDevice>(find_hand(name)->device)) = device;
+    static_cast<DeviceParameters&>(world.registry.get<HapticDevice>(find_effector(name)->device)) = device;
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (Status s = prepare_system(world); !s) return s;
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
@@ -93,40 +105,45 @@ Status Session::Parts::prepare() {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (const Deformable* surface = world.registry.find<Deformable>(object_entities[i]))
       surfaces[objects[i]] = *surface;
-  for (const SessionHand& hand : hands) devices.emplace(hand.name, world.registry.get<HapticDevice>(hand.device));
+  for (const SessionEffector& effector : effectors)
+    devices.emplace(effector.name, world.registry.get<HapticDevice>(effector.device));
 
   schedule.emplace(touch_schedule());
   soft = std::make_unique<SoftClock>(world);
   ticks = overruns = 0;
   time = 0.0;
-  lived = false;
+  after_pause = false;
   edits = std::make_unique<Ring<Edit>>(kMostEdits);
-  for (std::vector<HandRow>& slot : rows.slots()) slot.assign(hands.size(), {});
+  for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
-  for (SessionHand& old : before) {
-    SessionHand* const hand = find_hand(old.name);
-    if (!hand || old.source == HandSource::kLevel || old.source == HandSource::kNone) continue;
-    hand->driver = std::move(old.driver);
-    hand->can = old.can;
-    hand->path = std::move(old.path);
-    hand->source = HandSource::kNone;
-    if (Status s = give(*hand, old.source); !s) return s;
+  for (SessionEffector& old : before) {
+    SessionEffector* const effector = find_effector(old.name);
+    if (!effector || old.source == EffectorSource::kLevel || old.source == EffectorSource::kNone) continue;
+    if (old.source == EffectorSource::kReleased) {
+      take_away(*effector, old.source);
+      continue;
+    }
+    effector->driver = std::move(old.driver);
+    effector->can = old.can;
+    effector->path = std::move(old.path);
+    effector->source = EffectorSource::kNone;
+    if (Status s = give(*effector, old.source); !s) return s;
   }
   return Done{};
 }
 
-SessionHand* Session::Parts::find_hand(const std::string& name) {
-  for (SessionHand& hand : hands)
-    if (hand.name == name) return &hand;
+SessionEffector* Session::Parts::find_effector(const std::string& name) {
+  for (SessionEffector& effector : effectors)
+    if (effector.name == name) return &effector;
   return nullptr;
 }
-const SessionHand* Session::Parts::find_hand(const std::string& name) const {
-  return const_cast<Parts*>(this)->find_hand(name);
+const SessionEffector* Session::Parts::find_effector(const std::string& name) const {
+  return const_cast<Parts*>(this)->find_effector(name);
 }
 
-Error Session::Parts::unknown_hand(const std::string& name) const {
+Error Session::Parts::unknown_effector(const std::string& name) const {
   std::string names;
-  for (const SessionHand& hand : hands) names += (names.empty() ? "" : ", ") + hand.name;
+  for (const SessionEffector& effector : effectors) names += (names.empty() ? "" : ", ") + effector.name;
   return {"`" + name + "`", names.empty() ? "the scene has no probe and no tool; add one with Scene::add_probe"
                                           : "is no probe or tool; they are: " + names};
 }
@@ -141,31 +158,50 @@ Result<Entity> Session::Parts::find_object(const std::string& name) const {
 }
 
 Status Session::Parts::stand_still(const char* what) const {
-  if (!clock) return Done{};
-  return Error{what, "the clocks are running; call Session::stop() first"};
-}
-
-Status Session::Parts::give(SessionHand& hand, HandSource source) {
-  if (hand.source == source && source == HandSource::kPose) return Done{};
-  if (hand.source != HandSource::kNone && hand.source != HandSource::kLevel)
-    return Error{"`" + hand.name + "`", "has a source already; call Session::release() first"};
-  HapticDevice& device = world.registry.get<HapticDevice>(hand.device);
-  device.path = {};
-  device.driver = DriverKind::kExternal;
-  device.status = source == HandSource::kPath ? DeviceStatus::kReady : DeviceStatus::kLost;
-  hand.placed = false;
-  hand.source = source;
-  if (source == HandSource::kPath) {
-    device.driver = DriverKind::kScript;
-    device.path = world.paths.add(Path(hand.path));
-  }
-  static_cast<DeviceParameters&>(device) = limits_of(hand);
+  if (clock) return Error{what, "the clocks are running; call Session::stop() first"};
   return Done{};
 }
 
-DeviceParameters Session::Parts::limits_of(const SessionHand& hand) const {
-  DeviceParameters limits = devices.at(hand.name);
-  const DeviceCapabilities& can = hand.can;
+Status Session::Parts::may_give(const SessionEffector& effector) const {
+  if (replayed) return Error{"`" + effector.name + "`", "is moved by a recording; call Session::restart() first"};
+  if (effector.source == EffectorSource::kNone || effector.source == EffectorSource::kReleased ||
+      effector.source == EffectorSource::kLevel)
+    return Done{};
+  return Error{"`" + effector.name + "`", "has a source already; call Session::release() first"};
+}
+
+Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
+  if (effector.source == source && source == EffectorSource::kPose) return Done{};
+  if (Status s = may_give(effector); !s) return s;
+  HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+  device.path = {};
+  device.driver = DriverKind::kExternal;
+  device.status = source == EffectorSource::kPath ? DeviceStatus::kReady : DeviceStatus::kLost;
+  effector.placed = effector.ready = false;
+  effector.source = source;
+  if (source == EffectorSource::kPath) {
+    device.driver = DriverKind::kScript;
+    device.path = world.paths.add(Path(effector.path));
+  }
+  static_cast<DeviceParameters&>(device) = limits_of(effector);
+  return Done{};
+}
+
+void Session::Parts::take_away(SessionEffector& effector, EffectorSource source) {
+  close_driver(effector);
+  HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+  device.driver = DriverKind::kNull;
+  device.path = {};
+  device.status = DeviceStatus::kLost;
+  device.force_sent = device.torque_sent = dvec3(0);
+  static_cast<DeviceParameters&>(device) = limits_of(effector);
+  effector.source = source;
+  effector.placed = effector.ready = false;
+}
+
+DeviceParameters Session::Parts::limits_of(const SessionEffector& effector) const {
+  DeviceParameters limits = devices.at(effector.name);
+  const DeviceCapabilities& can = effector.can;
   if (can.max_force > 0.0) limits.max_force = std::min(limits.max_force, can.max_force);
   if (can.max_stiffness > 0.0)
     limits.max_stiffness =
@@ -174,76 +210,94 @@ DeviceParameters Session::Parts::limits_of(const SessionHand& hand) const {
 }
 
 void Session::Parts::zero_drivers() noexcept {
-  for (SessionHand& hand : hands) {
-    if (!hand.driver) continue;
+  for (SessionEffector& effector : effectors) {
+    if (!effector.driver) continue;
     try {
-      hand.driver->write({});
+      effector.driver->write({});
     } catch (...) {  // what fails is left: its device's own watchdog ends the force
     }
   }
 }
 
-void Session::Parts::close_driver(SessionHand& hand) noexcept {
-  if (!hand.driver) return;
+void Session::Parts::end(const char* why) noexcept {
+  ended = why;
+  let_go(world, {ticks, 1.0 / world.simulation.touch_rate, time});
+  zero_drivers();
+  for (EffectorRow& row : rows.write()) row = {};
+  rows.publish();
+}
+
+void Session::Parts::close_driver(SessionEffector& effector) noexcept {
+  if (!effector.driver) return;
   try {
-    hand.driver->write({});
+    effector.driver->write({});
   } catch (...) {  // closed all the same
   }
   try {
-    hand.driver->close();
+    effector.driver->close();
   } catch (...) {  // gone all the same
   }
-  hand.driver.reset();
-  hand.can = {};
+  effector.driver.reset();
+  effector.can = {};
 }
 
-void Session::Parts::read_told(SessionHand& hand, Tick tick) {
-  HapticDevice& device = world.registry.get<HapticDevice>(hand.device);
-  if (hand.told->acquire()) {
-    const ToldPose& to = hand.told->read();
-    const double since = tick.time - hand.heard_at;
-    hand.lasts = clock && hand.placed ? std::clamp(since, tick.dt, kLongestWay) : tick.dt;
-    hand.from = hand.placed ? hand.now : to;
-    hand.heard_at = tick.time;
-    hand.placed = true;
+void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
+  HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+  if (effector.prescribed->acquire()) {
+    const PrescribedPose& to = effector.prescribed->read();
+    const double since = tick.time - effector.heard_at;
+    effector.lasts = clock && effector.placed ? std::clamp(since, tick.dt, kLongestWay) : tick.dt;
+    effector.from = effector.placed ? effector.now : to;
+    effector.heard_at = tick.time;
+    effector.placed = true;
     device.status = DeviceStatus::kReady;
   }
-  if (clock && tick.time - hand.heard_at > kToldHolds) hand.placed = false;  // it grows stale
-  if (!hand.placed) return;
-  const ToldPose& to = hand.told->read();
-  const double share = std::min(1.0, (tick.time - hand.heard_at + tick.dt) / hand.lasts);
-  hand.now.position = share < 1.0 ? glm::mix(hand.from.position, to.position, share) : to.position;
-  hand.now.rotation = share < 1.0 ? glm::slerp(hand.from.rotation, to.rotation, share) : to.rotation;
-  device.position = hand.now.position;
-  device.rotation = hand.now.rotation;
+  if (clock && tick.time - effector.heard_at > kPrescribedHolds) effector.placed = false;  // it grows stale
+  if (!effector.placed) return;
+  const PrescribedPose& to = effector.prescribed->read();
+  const double share = std::min(1.0, (tick.time - effector.heard_at + tick.dt) / effector.lasts);
+  effector.now.position = share < 1.0 ? glm::mix(effector.from.position, to.position, share) : to.position;
+  effector.now.rotation = share < 1.0 ? glm::slerp(effector.from.rotation, to.rotation, share) : to.rotation;
+  device.position = effector.now.position;
+  device.rotation = effector.now.rotation;
   device.sensed_at = tick.time;
 }
 
-void Session::Parts::read_driver(SessionHand& hand, Tick tick) {
+// Without a new sample the device keeps what it said last; once that is old, safety takes it for lost.
+void Session::Parts::read_driver(SessionEffector& effector, Tick tick) {
+  HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
   DeviceSample sample;
-  if (!hand.driver->read(sample)) return;
-  HapticDevice& device = world.registry.get<HapticDevice>(hand.device);
-  device.position = sample.position;
-  device.rotation = sample.rotation;
-  device.sensed_at = tick.time;
-  device.status = sample.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
+  if (effector.driver->read(sample)) {
+    const double size = glm::length(sample.rotation);
+    device.position = device.scale * sample.position;
+    if (!effector.can.senses_rotation)
+      device.rotation = effector.placed_rotation;
+    else if (std::abs(size - 1.0) < kUnitWithin)
+      device.rotation = sample.rotation / size;
+    else
+      device.rotation = sample.rotation;  // no rotation: the pose is not taken, and counted
+    device.sensed_at = tick.time;
+    effector.ready = sample.ready;
+  }
+  device.status = effector.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
 }
 
 void Session::Parts::before(Tick tick) {
   Edit edit;
   while (edits->pop(edit)) apply_edit(world, edit);
-  for (SessionHand& hand : hands) {
-    if (hand.source == HandSource::kPose) read_told(hand, tick);
-    if (hand.source == HandSource::kDriver) read_driver(hand, tick);
+  for (SessionEffector& effector : effectors) {
+    if (effector.source == EffectorSource::kPose) read_prescribed(effector, tick);
+    if (effector.source == EffectorSource::kDriver) read_driver(effector, tick);
   }
 }
 
 void Session::Parts::idle() {
-  DeviceSample unheard;
-  for (SessionHand& hand : hands) {
-    if (!hand.driver) continue;
-    static_cast<void>(hand.driver->read(unheard));
-    hand.driver->write({});
+  after_pause = true;
+  DeviceSample sample;
+  for (SessionEffector& effector : effectors) {
+    if (!effector.driver) continue;
+    if (effector.driver->read(sample)) effector.ready = sample.ready;
+    effector.driver->write({});
   }
 }
 

@@ -1,5 +1,5 @@
 // What a Session holds (pliant/session.h), and which thread may touch it: the world belongs to the touch clock while
-// one runs; what the owner's thread and the clock tell each other goes through exchanges.
+// one runs; what the owner's thread and the clock exchange goes through exchanges.
 #pragma once
 
 #include <map>
@@ -14,42 +14,49 @@
 #include "engine/recording.h"
 #include "engine/session_view.h"
 #include "engine/soft_clock.h"
+#include "engine/source_place.h"
 #include "engine/touch_clock.h"
 #include "pliant/session.h"
 #include "runtime/exchange.h"
 #include "runtime/recorder.h"
 #include "runtime/schedule.h"
+#include "systems/touch/local_model.h"
 
 namespace pliant {
 
-enum class HandSource : std::uint8_t { kNone, kLevel, kPose, kPath, kDriver };
+enum class EffectorSource : std::uint8_t { kNone, kReleased, kLevel, kPose, kPath, kDriver };
 
-// [s] A pose that was told in real time holds so long; the next one is reached in the time since the one before, at
-// most kLongestWay: a program that draws 60 pictures a second tells 60 poses.
-inline constexpr double kToldHolds = 0.25, kLongestWay = 0.1;
+// [s] A pose that was was set in real time holds so long; the next one is reached in the time since the one before, at
+// most kLongestWay: a program that draws 60 pictures a second sets 60 poses.
+inline constexpr double kPrescribedHolds = 0.25, kLongestWay = 0.1;
 
-struct ToldPose {
+// [1] How far from unit length a rotation may be: then it is normalised.
+inline constexpr double kUnitWithin = 0.01;
+
+struct PrescribedPose {
   dvec3 position{0};
   dquat rotation{1, 0, 0, 0};
 };
 
 // One probe or tool.
-struct SessionHand {
+struct SessionEffector {
   std::string name;
   Entity entity, device;
-  HandSource source = HandSource::kNone;
-  Path path;                                     // of kPath, for restart()
-  DeviceCapabilities can;                        // its, while it is connected
-  std::unique_ptr<Driver> driver;                // of kDriver
-  std::unique_ptr<TripleBuffer<ToldPose>> told;  // owner -> touch clock
-  // Touch clock's: the way to the newest pose that was told.
+  EffectorSource source = EffectorSource::kNone;
+  Path path;                                                 // of kPath, for restart()
+  DeviceCapabilities can;                                    // its, while it is connected
+  std::unique_ptr<Driver> driver;                            // of kDriver
+  bool ready = false;                                        // as its driver said last
+  dquat placed_rotation{1, 0, 0, 0};                         // where its driver senses none
+  std::unique_ptr<TripleBuffer<PrescribedPose>> prescribed;  // owner -> touch clock
+  // Touch clock's: the way to the newest pose that was set.
   bool placed = false;
   double heard_at = 0.0, lasts = 1e-3;  // [s] when that came, and how long the way to it takes
-  ToldPose from, now;
+  PrescribedPose from, now;
 };
 
 // A reading, and where on the collision mesh its contacts press.
-struct HandRow {
+struct EffectorRow {
   Reading reading;
   std::array<uvec3, Reading::kMostContacts> vertices{};
   std::array<vec3, Reading::kMostContacts> weights{};  // [1] barycentric
@@ -58,6 +65,7 @@ struct HandRow {
 // One probe's or tool's pose of one tick, on its way into a recording.
 struct PoseRow {
   std::uint64_t tick = 0;
+  std::uint32_t effector = 0;
   RecordedPose pose;
 };
 
@@ -65,15 +73,18 @@ struct PoseRow {
 // time, writes them.
 class SessionRecorder {
  public:
-  SessionRecorder(RecordingWriter writer, std::size_t hands);
-  void note(std::uint64_t tick, const HapticDevice& device);  // touch clock: every hand, in order
+  SessionRecorder(RecordingWriter writer, std::size_t effectors);
+  // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh.
+  void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready);
   void drain();
   void start();  // a thread drains from now on
   Status finish();
 
  private:
   RecordingWriter writer_;
-  std::size_t hands_, written_ = 0;  // poses of the tick under way
+  std::vector<RecordedPose> last_;     // touch clock's: the last that was a pose, of each
+  std::vector<RecordedPose> pending_;  // of the tick under way
+  std::uint64_t pending_tick_ = 0;
   Recorder<PoseRow> rows_;
   std::vector<PoseRow> taken_;
   std::jthread thread_;
@@ -84,6 +95,7 @@ struct Edit {
   Entity entity;
   std::uint32_t key = 0;  // into live_keys()
   double value = 0.0;
+  Motion motion;  // that a surface has from then on
 };
 
 struct Session::Parts {
@@ -91,7 +103,7 @@ struct Session::Parts {
   World world;
   std::vector<std::string> notes, objects;
   std::vector<Entity> object_entities;
-  std::vector<SessionHand> hands;
+  std::vector<SessionEffector> effectors;
   // As the owner has set them: by object, by probe or tool. The world's own are the touch clock's.
   std::map<std::string, Deformable> surfaces;
   std::map<std::string, DeviceParameters> devices;
@@ -101,36 +113,47 @@ struct Session::Parts {
   std::unique_ptr<TouchClock> clock;  // null: lockstep
   std::uint64_t ticks = 0;            // done, in lockstep and in earlier real time
   std::uint64_t overruns = 0;
-  bool lived = false;                               // it has run in real time: its devices are lost until restart()
-  double time = 0.0;                                // [s] where the next lockstep tick begins
-  std::unique_ptr<Ring<Edit>> edits;                // owner -> touch clock
-  mutable TripleBuffer<std::vector<HandRow>> rows;  // touch clock -> owner
-  SessionView view;                                 // owner's
-  std::unique_ptr<SessionRecorder> recorder;        // null: nothing is recorded
+  const char* ended = nullptr;                          // why no tick may run until restart()
+  double time = 0.0;                                    // [s] where the next lockstep tick begins
+  std::unique_ptr<Ring<Edit>> edits;                    // owner -> touch clock
+  mutable TripleBuffer<std::vector<EffectorRow>> rows;  // touch clock -> owner
+  SessionView view;                                     // owner's
+  std::unique_ptr<SessionRecorder> recorder;            // null: nothing is recorded
   std::optional<Recording> replayed;
+  std::map<std::string, std::string> settings;  // NODE.EXT.KEY -> value: what set() changed
+  bool after_pause = false;                     // touch clock's: the next tick is the first after a pause
+  std::map<std::string, std::map<std::uint32_t, SourcePlace>> places;  // by object, of vertices that were pressed
 
   explicit Parts(const Scene& from) : scene(from) {}
   ~Parts();
 
   Status prepare();  // scene -> world, all sized
-  SessionHand* find_hand(const std::string& name);
-  const SessionHand* find_hand(const std::string& name) const;
+  Status remake(std::vector<SessionEffector>& before);
+  SessionEffector* find_effector(const std::string& name);
+  const SessionEffector* find_effector(const std::string& name) const;
   Result<Entity> find_object(const std::string& name) const;
-  Error unknown_hand(const std::string& name) const;
+  Error unknown_effector(const std::string& name) const;
   Status stand_still(const char* what) const;  // an error while the clocks run
 
-  Status give(SessionHand& hand, HandSource source);  // once; release() first
-  void close_driver(SessionHand& hand) noexcept;
+  Status may_give(const SessionEffector& effector) const;  // not if it has a source, or replays
+  Status give(SessionEffector& effector, EffectorSource source);
+  void take_away(SessionEffector& effector, EffectorSource source);  // nobody moves it
+  void close_driver(SessionEffector& effector) noexcept;
   void zero_drivers() noexcept;
-  DeviceParameters limits_of(const SessionHand& hand) const;  // the level's or the driver's, whichever are smaller
+  void end(const char* why) noexcept;                             // every device is lost, and written zero
+  DeviceWrench wrench_of(const SessionEffector& effector) const;  // what its device can render of the force sent
+  DeviceParameters limits_of(
+      const SessionEffector& effector) const;  // the level's or the driver's, whichever are smaller
 
+  // A force on a vertex of a refined mesh, shared by the source vertices around it.
+  void share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force, std::vector<vec3>& out);
   void look();  // the newest that the clocks show
 
   // On the touch clock, or the caller's thread in lockstep.
   void before(Tick tick);
   Tick replayed_tick();  // its poses are the devices' then
-  void read_told(SessionHand& hand, Tick tick);
-  void read_driver(SessionHand& hand, Tick tick);
+  void read_prescribed(SessionEffector& effector, Tick tick);
+  void read_driver(SessionEffector& effector, Tick tick);
   void after(Tick tick);
   void idle();
 };

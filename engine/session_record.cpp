@@ -2,10 +2,14 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <span>
 
 #include "content/files/file_io.h"
+#include "engine/scene_check.h"
 #include "engine/session_parts.h"
+#include "systems/safety/safety.h"
 
 namespace pliant {
 namespace {
@@ -13,22 +17,47 @@ namespace {
 constexpr std::size_t kRoom = 8192;  // ticks that may wait to be written
 constexpr auto kDrainEvery = std::chrono::milliseconds(20);
 
-}  // namespace
-
-SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t hands)
-    : writer_(std::move(writer)), hands_(hands), rows_(kRoom * hands) {}
-
-void SessionRecorder::note(std::uint64_t tick, const HapticDevice& device) {
-  rows_.record({tick, {device.position, device.rotation, device.status == DeviceStatus::kReady}});
+// NODE.EXT.KEY=VALUE, of the keys that a session can change.
+Status apply_setting(Session& session, const std::string& setting) {
+  const std::size_t equals = setting.find('='), key = setting.rfind('.', equals);
+  const std::size_t extension = key == std::string::npos || key == 0 ? key : setting.rfind('.', key - 1);
+  if (equals == std::string::npos || extension == std::string::npos)
+    return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
+  char* end = nullptr;
+  const std::string text = setting.substr(equals + 1);
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') return Error{"`" + setting + "`", "is not a number; set it in the scene"};
+  return session.set(setting.substr(0, extension), setting.substr(key + 1, equals - key - 1), value);
 }
 
+}  // namespace
+
+SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
+    : writer_(std::move(writer)), last_(effectors), rows_(kRoom * effectors) {}
+
+void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready) {
+  RecordedPose& last = last_[effector];
+  const double size = glm::length(device.rotation);
+  const bool sound = plausible_position(device.position) && std::abs(size - 1.0) < kUnitWithin;
+  if (sound) last = {device.position, device.rotation / size, ready};
+  last.ready = sound && ready;
+  rows_.record({tick, effector, last});
+}
+
+// A full ring, or a tick that ended in its middle, leaves a part of a tick: it is left out.
 void SessionRecorder::drain() {
   taken_.clear();
   rows_.drain(taken_);
   for (const PoseRow& row : taken_) {
-    if (written_ == 0) writer_.tick(row.tick);
-    writer_.pose(row.pose);
-    written_ = (written_ + 1) % hands_;
+    if (row.effector == 0) {
+      pending_.clear();
+      pending_tick_ = row.tick;
+    }
+    if (row.tick != pending_tick_ || row.effector != pending_.size()) continue;
+    pending_.push_back(row.pose);
+    if (pending_.size() < last_.size()) continue;
+    writer_.tick(row.tick);
+    for (const RecordedPose& pose : pending_) writer_.pose(pose);
   }
 }
 
@@ -55,13 +84,13 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
   Parts& p = *parts_;
   if (Status s = p.stand_still("Session::record"); !s) return s;
   if (p.recorder) return Error{"Session::record", "a recording is under way; call Session::end_recording() first"};
-  if (p.hands.empty())
+  if (p.effectors.empty())
     return Error{"Session::record", "the scene has no probe and no tool; there is nothing to record"};
-  RecordingHeader header{p.world.name, p.world.simulation.touch_rate, {}};
-  for (const SessionHand& hand : p.hands) header.probes.push_back(hand.name);
+  RecordingHeader header{p.world.name, p.world.simulation.touch_rate, effectors(), scene_hash(p.scene.level()), {}};
+  for (const auto& [key, value] : p.settings) header.settings.push_back(key + "=" + value);
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
-  p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.hands.size());
+  p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
   return Done{};
 }
 
@@ -84,14 +113,19 @@ Status Session::replay(const std::filesystem::path& file) {
   if (header.rate != p.world.simulation.touch_rate)
     return Error{file.string(), fmt::format("was made at {} Hz, the scene runs at {} Hz; set Scene::simulation()",
                                             header.rate, p.world.simulation.touch_rate)};
-  if (header.probes != hands())
+  if (header.probes != effectors())
     return Error{file.string(), "was made with other probes and tools, or in another order; use its own scene"};
-  for (SessionHand& hand : p.hands) {
-    p.close_driver(hand);
-    hand.source = HandSource::kNone;
-    HapticDevice& device = p.world.registry.get<HapticDevice>(hand.device);
-    device.driver = DriverKind::kExternal;
-    device.path = {};  // nothing but the recording moves it
+  if (header.scene != 0 && header.scene != scene_hash(p.scene.level()))
+    p.notes.push_back(file.string() + " was recorded in another scene: forces will differ");
+  if (!recording->ticks.empty() && recording->ticks.front() != 0)
+    p.notes.push_back(fmt::format("{} begins at tick {}: what was felt before is not in it", file.string(),
+                                  recording->ticks.front()));
+  for (const std::string& setting : header.settings)
+    if (Status applied = apply_setting(*this, setting); !applied)
+      p.notes.push_back(file.string() + ": its setting " + applied.error().message());
+  for (SessionEffector& effector : p.effectors) {
+    p.take_away(effector, EffectorSource::kNone);
+    p.world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
   }
   p.replayed = std::move(recording).value();
   return Done{};
@@ -101,9 +135,9 @@ Tick Session::Parts::replayed_tick() {
   const double dt = 1.0 / world.simulation.touch_rate;
   const std::size_t n = static_cast<std::size_t>(ticks);
   const Tick tick{replayed->ticks[n], dt, static_cast<double>(replayed->ticks[n]) * dt};
-  for (std::size_t i = 0; i < hands.size(); ++i) {
-    const RecordedPose& pose = replayed->poses[n * hands.size() + i];
-    HapticDevice& device = world.registry.get<HapticDevice>(hands[i].device);
+  for (std::size_t i = 0; i < effectors.size(); ++i) {
+    const RecordedPose& pose = replayed->poses[n * effectors.size() + i];
+    HapticDevice& device = world.registry.get<HapticDevice>(effectors[i].device);
     device.position = pose.position;
     device.rotation = pose.rotation;
     device.status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;

@@ -4,6 +4,7 @@
 
 #include "engine/session_parts.h"
 #include "systems/device/reading.h"
+#include "systems/safety/safety.h"
 #include "systems/touch/contacts_of.h"
 #include "systems/touch/local_model.h"
 
@@ -15,7 +16,7 @@ std::uint32_t index_of(const std::vector<Entity>& objects, Entity object) {
   return found == objects.end() ? Reading::kNone : static_cast<std::uint32_t>(found - objects.begin());
 }
 
-void add_contact(const World& world, const std::vector<Entity>& objects, const Contact& contact, HandRow& row) {
+void add_contact(const World& world, const std::vector<Entity>& objects, const Contact& contact, EffectorRow& row) {
   if (contact.state != ContactState::kTouching || row.reading.contacts == Reading::kMostContacts) return;
   const Pose& pose = world.registry.get<Pose>(contact.object);
   const Mesh& mesh = world.meshes[world.registry.get<Deformable>(contact.object).mesh];
@@ -27,33 +28,50 @@ void add_contact(const World& world, const std::vector<Entity>& objects, const C
   row.weights[i] = vec3(contact.barycentric);
 }
 
+dvec3 at_most(dvec3 v, double most) {
+  const double size = glm::length(v);
+  return size > most ? v * (most / size) : v;
+}
+
 }  // namespace
 
 void Session::Parts::after(Tick tick) {
-  std::vector<HandRow>& out = rows.write();
-  for (std::size_t i = 0; i < hands.size(); ++i) {
-    SessionHand& hand = hands[i];
-    const HapticDevice& device = world.registry.get<HapticDevice>(hand.device);
-    if (hand.driver) hand.driver->write({device.force_sent, device.torque_sent});
-    if (recorder) recorder->note(tick.index, device);
-    HandRow& row = out[i];
-    const ProbeReading read = pliant::reading(world, hand.entity);
+  std::vector<EffectorRow>& out = rows.write();
+  for (std::size_t i = 0; i < effectors.size(); ++i) {
+    SessionEffector& effector = effectors[i];
+    const HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+    const DeviceWrench wrench = wrench_of(effector);
+    if (effector.driver) effector.driver->write(wrench);
+    EffectorRow& row = out[i];
+    const ProbeReading read = pliant::reading(world, effector.entity);
     row.reading.tick = tick.index;
     row.reading.time = tick.time;
     row.reading.ready = device.status == DeviceStatus::kReady && tick.time - device.sensed_at <= kStaleAfter;
+    if (recorder) recorder->note(tick.index, static_cast<std::uint32_t>(i), device, row.reading.ready && !after_pause);
     row.reading.touching = read.in_contact;
     row.reading.position = read.position;
-    row.reading.force = device.force_sent;
-    row.reading.torque = device.torque_sent;
+    row.reading.force = wrench.force;
+    row.reading.torque = wrench.torque;
     row.reading.depth = read.depth;
     row.reading.normal = read.normal;
     row.reading.object = index_of(object_entities, read.object);
     row.reading.contacts = 0;
-    if (world.registry.has<Probe>(hand.entity))
-      for_contacts_of(world, hand.entity,
+    if (world.registry.has<Probe>(effector.entity))
+      for_contacts_of(world, effector.entity,
                       [&](const Contact& contact) { add_contact(world, object_entities, contact, row); });
   }
+  after_pause = false;
   rows.publish();
+}
+
+DeviceWrench Session::Parts::wrench_of(const SessionEffector& effector) const {
+  const HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+  DeviceWrench wrench{device.force_sent, device.torque_sent};
+  if (!effector.driver) return wrench;
+  if (!effector.can.renders_force) wrench.force = dvec3(0);
+  if (!effector.can.renders_torque) wrench.torque = dvec3(0);
+  if (effector.can.max_torque > 0.0) wrench.torque = at_most(wrench.torque, effector.can.max_torque);
+  return wrench;
 }
 
 const std::vector<LiveKey>& live_keys() {
@@ -83,6 +101,8 @@ Status check_edit(const std::string& name, const Deformable& surface, const Mesh
   if (painted && moves)
     return Error{"`" + name + "`: " + key.key,
                  "is painted on this surface, and is read when the session opens; change the scene instead"};
+  if (surface.young > 0.0 && key.surface == &DeformableParameters::stiffness)
+    return Error{"`" + name + "`: stiffness", "follows from its Young's modulus; change `young` in the scene instead"};
   Deformable changed = surface;
   changed.*(key.surface) = value;
   return check(changed, name);
@@ -97,7 +117,7 @@ void apply_edit(World& world, const Edit& edit) {
   Deformable& surface = world.registry.get<Deformable>(edit.entity);
   surface.*(key.surface) = edit.value;
   for (ObjectState& object : world.touch->objects)
-    if (object.entity == edit.entity) object.motion = motion(surface, world.touch->dt);
+    if (object.entity == edit.entity) object.motion = edit.motion;
 }
 
 }  // namespace pliant

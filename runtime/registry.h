@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -194,7 +195,7 @@ class Registry {
  private:
   // Component types are numbered in the order in which the program first meets them.
   static std::size_t next_type() {
-    static std::size_t count = 0;
+    static std::atomic<std::size_t> count{0};
     return count++;
   }
   template <class T>

@@ -9,49 +9,18 @@
 #include "components/deformable.h"
 #include "components/haptic_device.h"
 #include "components/probe.h"
+#include "components/registered.h"
 #include "components/soft_body.h"
 
 namespace pliant {
 
 // nullptr past the last enumerator. Enumerators count from 0 without a gap.
-constexpr const char* word_of(SpringLaw law) {
-  switch (law) {
-    case SpringLaw::kLinear:
-      return "linear";
-    case SpringLaw::kCubic:
-      return "cubic";
-    case SpringLaw::kExponential:
-      return "exponential";
-    case SpringLaw::kStandardLinearSolid:
-      return "sls";
-  }
-  return nullptr;
-}
-
 constexpr const char* word_of(Response response) {
   switch (response) {
     case Response::kFollow:
       return "follow";
     case Response::kLag:
       return "lag";
-  }
-  return nullptr;
-}
-
-constexpr const char* word_of(Shape shape) {
-  switch (shape) {
-    case Shape::kPunch:
-      return "punch";
-    case Shape::kHertz:
-      return "hertz";
-    case Shape::kGaussian:
-      return "gaussian";
-    case Shape::kWendland:
-      return "wendland";
-    case Shape::kVolume:
-      return "volume";
-    case Shape::kKelvinlet:
-      return "kelvinlet";
   }
   return nullptr;
 }

@@ -43,7 +43,7 @@ Json schema_of(const Key& key, const Json& standard) {
       out["anyOf"] = Json::array({{{"type", "string"}}, {{"type", "integer"}, {"minimum", 0}}});
       break;
     case KeyType::kChoice:
-      out["enum"] = key.choices;
+      out["enum"] = key.choices();
       break;
     case KeyType::kColor:
       out.update(array(3));
@@ -118,7 +118,7 @@ std::string extension_tables() {
         extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
     for (const Key& key : extension.keys) {
       std::string range;
-      for (const std::string& each : key.choices) range += (range.empty() ? "`" : " · `") + each + "`";
+      for (const std::string& each : key.choices()) range += (range.empty() ? "`" : " · `") + each + "`";
       if (range.empty() && key.type != KeyType::kText && key.type != KeyType::kNode && key.type != KeyType::kFlag)
         range = range_text(key);
       const Json standard = key.get(defaults.owner);

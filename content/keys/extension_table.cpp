@@ -60,7 +60,7 @@ Key choice(std::string name, Access access, std::string doc) {
   Key out = key(
       std::move(name), "", KeyType::kChoice, std::move(doc), access, [](Enum value) { return word_of(value); },
       [](const Json& json) { return *value_of_word<Enum>(json.get<std::string>()); });
-  out.choices = words_of<Enum>();
+  out.choices = words_of<Enum>;
   return out;
 }
 template <class Access>
@@ -245,6 +245,7 @@ std::vector<Key> soft_body_keys() {
       number("friction_static", "1", kFrictionRange, s(&S::friction_static), "coefficient of static friction"));
   keys.push_back(
       number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
+  keys.push_back(choice("solver", s(&S::solver), "what solves the linear systems; `auto` by size, as measured"));
   return keys;
 }
 

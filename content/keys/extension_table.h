@@ -20,7 +20,7 @@ struct Key {
   std::string unit;
   KeyType type = KeyType::kNumber;
   Range range;
-  std::vector<std::string> choices;
+  std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, registered ones included
   std::string doc;
   bool alias = false;  // sets other keys; never saved
   std::function<Json(const void*)> get;

@@ -53,7 +53,7 @@ std::string check_value(const Key& key, const Json& value) {
       return value.is_string() ? "" : must_be("a text");
     case KeyType::kChoice: {
       std::string all;
-      for (const std::string& each : key.choices) {
+      for (const std::string& each : key.choices()) {
         if (value == each) return "";
         all += (all.empty() ? "" : ", ") + each;
       }

@@ -17,7 +17,7 @@ namespace pliant {
 
 // What a device has sensed.
 struct DeviceSample {
-  dvec3 position{0};           // [m] world
+  dvec3 position{0};           // [m] its workspace, in world axes; DeviceParameters::scale makes it world
   dquat rotation{1, 0, 0, 0};  // device frame to world, unit
   bool ready = true;           // false: its state is not known; no force leaves for it
 };
@@ -29,10 +29,11 @@ struct DeviceWrench {
 };
 
 struct DeviceCapabilities {
-  bool senses_rotation = false;
-  bool renders_force = true;
-  bool renders_torque = false;
+  bool senses_rotation = false;  // false: samples' rotations are not used; a tool keeps the one it has
+  bool renders_force = true;     // false: it is written zero
+  bool renders_torque = false;   // the same
   double max_force = 0.0;      // [N] what the device can render; 0: not said. The smaller of this and the level's holds
+  double max_torque = 0.0;     // [N m] the same
   double max_stiffness = 0.0;  // [N/m] what it can render stably; 0: not said. The smaller holds here too
 };
 

@@ -18,6 +18,7 @@ struct Simulation {
   dvec3 gravity{0, -9.81, 0};     // [m/s2]
 };
 
+// Values behind the last of SpringLaw, Shape and SolverKind are registered ones (surface_law.h, linear_solver.h).
 enum class SpringLaw : std::uint8_t { kLinear, kCubic, kExponential, kStandardLinearSolid };
 enum class Shape : std::uint8_t { kPunch, kHertz, kGaussian, kWendland, kVolume, kKelvinlet };
 enum class Response : std::uint8_t { kFollow, kLag };     // methods.md 1.8
@@ -48,6 +49,16 @@ struct DeformableParameters {
   double thickness = 0.0;         // [m] 0: deep
 };
 
+// What solves a soft body's linear systems (P2: black boxes).
+enum class SolverKind : std::uint8_t {
+  kAuto,               // by size and by how many right-hand sides come, as measured
+  kBlockCholesky,      // sparse 3x3 blocks
+  kEigenCholesky,      // Eigen's SimplicialLDLT
+  kCholmod,            // SuiteSparse's, where the build has it
+  kConjugateGradient,  // preconditioned; for large bodies
+  kDense,              // for tests
+};
+
 // Tissue: co-rotational FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
 struct SoftBodyParameters {
   double young = 5e3;                    // [Pa]
@@ -59,6 +70,7 @@ struct SoftBodyParameters {
   Box pinned;                            // [m] object frame; empty: nothing (or the attribute _PINNED)
   double friction_static = 0.4;          // [1]
   double friction_sliding = 0.3;         // [1]
+  SolverKind solver = SolverKind::kAuto;
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };
@@ -70,7 +82,7 @@ enum class ToolForce : std::uint8_t {
   kContacts,  // CondensedContacts, solved again every tick; kLinear when late
 };
 
-// What a hand holds of a body: its rigid part, and the coupling between device and tool. Keys of PLIANT_handle.
+// What a person holds a body by: its rigid part, and the coupling between device and tool. Keys of PLIANT_handle.
 struct HandleParameters {
   Box box;  // [m] object frame: what is rigid; empty: the attribute _HANDLE
   Attachment attachment = Attachment::kSlave;
@@ -104,7 +116,7 @@ struct ProbeParameters {
   vec3 color{0.9f, 0.35f, 0.1f};                // linear RGB
 };
 
-// What may leave for a hand. Keys of PLIANT_haptic_device.
+// What may leave for the hand that holds the device. Keys of PLIANT_haptic_device.
 struct DeviceParameters {
   double scale = 1.0;          // [1] workspace -> world
   double max_force = 3.3;      // [N] norm of the force sent

@@ -15,7 +15,8 @@
 // with the clocks and never make them wait. Whatever ends a run, the last force that leaves for a device is zero.
 //
 // Misuse is an Error with a sentence: an unknown name, two sources for one probe, step() while the clocks run. No
-// function throws. World frame: metres, right-handed, Y up.
+// function throws. A session that was moved from may only be destroyed or assigned to. World frame: metres,
+// right-handed, Y up.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +49,8 @@ struct Reading {
   bool ready = false;  // its device's state is known; false: the force is zero
   bool touching = false;
   dvec3 position{0};             // [m] world: of a probe; of a tool's device
-  dvec3 force{0};                // [N] world, on the hand, as sent
-  dvec3 torque{0};               // [N m] world, on the hand, as sent; of tools
+  dvec3 force{0};                // [N] world, on the hand that holds it, as sent
+  dvec3 torque{0};               // [N m] world, on the hand that holds it, as sent; of tools
   double depth = 0.0;            // [m] below the undeformed surface, of the strongest contact
   dvec3 normal{0};               // [1] world, of the strongest contact
   std::uint32_t object = kNone;  // into Session::objects(): of the strongest contact
@@ -85,27 +86,28 @@ class Session {
 
   // What was read or made differently than one might expect.
   const std::vector<std::string>& notes() const;
-  std::vector<std::string> hands() const;           // probes, then tools
+  std::vector<std::string> effectors() const;       // probes, then tools
   const std::vector<std::string>& objects() const;  // surfaces that give way, soft and rigid bodies
 
   // --- What moves a probe or tool. Each has one source: a second one is an error until release().
-  // Where it is from now on. In real time it goes there in the time since it was told the last time (at most 0.1 s), so
-  // that a program may tell it once a picture; after 0.25 s of silence it counts as lost.
-  Status move(const std::string& hand, dvec3 position, dquat rotation = {1, 0, 0, 0});
-  Status follow(const std::string& hand, Path path);
-  Status orbit(const std::string& hand);  // a path over the scene's surfaces; not while the clocks run
+  // Where it is from now on. In real time it goes there in the time since it was last set (at most 0.1 s), so
+  // that a program may set it once a picture; after 0.25 s without a new pose it counts as lost.
+  Status move(const std::string& effector, dvec3 position, dquat rotation = {1, 0, 0, 0});
+  Status follow(const std::string& effector, Path path);
+  Status orbit(const std::string& effector);  // a path over the scene's surfaces; not while the clocks run
   // "NAME" or "NAME:ID" of a registered driver; or a driver of one's own.
-  Status connect(const std::string& hand, const std::string& driver);
-  Status connect(const std::string& hand, std::unique_ptr<Driver> driver, const std::string& id = {});
-  Status release(const std::string& hand);  // nobody moves it: no force
+  Status connect(const std::string& effector, const std::string& driver);
+  Status connect(const std::string& effector, std::unique_ptr<Driver> driver, const std::string& id = {});
+  Status release(const std::string& effector);  // nobody moves it: no force
 
   // --- Time
-  Status step(std::uint64_t ticks = 1);
+  Status step(std::uint64_t ticks = 1);  // what a driver was written last it keeps until the next
   Status start();
   Status pause(bool paused);  // devices are let go; they come back through the gate
-  Status stop();              // the error says what ended a clock before it was told to
+  Status stop();              // the error says what ended a clock before stop()
   bool running() const;
-  Status restart();     // as it was opened, at time 0; sources and parameters stay as they are
+  // As it was opened, at time 0; sources and parameters stay as they are. Where it fails, only restart() works.
+  Status restart();
   double time() const;  // [s]
 
   // --- Recordings: the pose of every probe and tool at every tick
@@ -113,8 +115,9 @@ class Session {
   // `replace` is set. The file appears whole with end_recording(), restart() or the session's end.
   Status record(const std::filesystem::path& file, bool replace = false);
   Status end_recording();
-  // Every source is the recording from now on, in lockstep: the same scene gives the same bits. step() fails behind its
-  // last tick. Not after a tick has run.
+  // Every source is the recording from now on, in lockstep; its settings hold. A recording of a lockstep run gives the
+  // same bits in the same scene; one of real time gives the same poses, while its bodies' steps may fall elsewhere.
+  // notes() say where scene or settings differ. step() fails behind its last tick. Not after a tick has run.
   Status replay(const std::filesystem::path& file);
 
   // --- Parameters, between ticks: friction, stiffness, damping and device limits (docs/embedding.md lists them).
@@ -122,16 +125,17 @@ class Session {
   Result<double> get(const std::string& object, const std::string& key) const;
 
   // --- What is felt and seen
-  Result<Reading> reading(const std::string& hand) const;
+  Result<Reading> reading(const std::string& effector) const;
   SessionFigures figures() const;
-  // Whatever kept a hand from what the law says so far, or was left out: forces that were clipped, withheld, gated or
+  // Whatever kept a force from what the law says so far, or was left out: forces that were clipped, withheld, gated or
   // slewed, poses that were no numbers, contacts that were dropped, each in a sentence with its cure. Not while the
   // clocks run.
   Result<std::vector<std::string>> findings() const;
-  // Deformed vertices, world frame [m], in the order in which the object's MeshData or file has them.
+  // Deformed vertices, world frame [m], in the order in which the object's MeshData or file has them. One that no
+  // triangle uses is at the object's origin.
   Status vertices(const std::string& object, std::vector<vec3>& out);
-  // The force on each of these vertices, world frame [N]: that of the contacts of probes, by their barycentric
-  // coordinates. Of surfaces that give way.
+  // The force on each of these vertices, world frame [N]: that of the contacts of probes (Reading::kMostContacts each),
+  // by their barycentric coordinates. Of surfaces that give way.
   Status vertex_forces(const std::string& object, std::vector<vec3>& out);
   // What a renderer of one's own draws: geometry once, the stream (nx, ny, nz, h) every frame, to_world every frame.
   // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of surfaces that give way.

@@ -252,7 +252,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   if (journal.probes().empty())
     say(run, "the level has no probe and no tool, so nothing is touched; give one with --probe NAME=orbit");
   if (!options.record.empty()) {
-    RecordingHeader header{world.name, rate, {}};
+    RecordingHeader header{world.name, rate, {}, run.scene, run.settings};
     for (const ProbeSummary& probe : keeper->summaries()) header.probes.push_back(probe.name);
     auto writer = RecordingWriter::create(options.record, header, options.force);
     if (!writer) return failed(writer.error());

@@ -1,12 +1,14 @@
 #include "player/verbs/run_setup.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
+#include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "player/run/unfelt.h"
 #include "player/verbs/content_folder.h"
@@ -117,6 +119,19 @@ void say_creeping(Prepared& run) {
   if (!sentence.empty()) say(run, sentence);
 }
 
+// A replay has the settings that it was recorded with, and --set on top of them.
+Outcome apply_settings(const RunOptions& options, Level& level, Prepared& run) {
+  if (run.replay && !run.replay->header.settings.empty()) {
+    run.settings = run.replay->header.settings;
+    if (const Status status = set_keys(level, run.settings); !status)
+      return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
+    say(run, fmt::format("the recording's settings hold: --set {}", fmt::join(run.settings, " --set ")));
+  }
+  if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
+  run.settings.insert(run.settings.end(), options.sets.begin(), options.sets.end());
+  return {};
+}
+
 // Once, however many bodies there are: which of them lock.
 void say_locking(Prepared& run) {
   std::size_t more = 0;
@@ -165,12 +180,15 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   }
   std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
-  if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
+  if (Outcome wrong = apply_settings(options, level, run)) return wrong;
   if (!options.tool_force.empty())
     if (Outcome wrong = choose_tool_force(options, level)) return wrong;
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
 
+  run.scene = scene_hash(level);
+  if (run.replay && run.replay->header.scene != 0 && run.replay->header.scene != run.scene)
+    say(run, "the level is not as it was when the recording was made (file, --set or --rate): forces will differ");
   auto spawned = spawn(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();

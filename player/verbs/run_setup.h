@@ -33,6 +33,8 @@ struct Prepared {
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
+  std::uint64_t scene = 0;            // scene_hash() of the level that runs
+  std::vector<std::string> settings;  // --set, those of a replayed recording before them
 };
 
 // On stderr and in the report.

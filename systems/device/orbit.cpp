@@ -107,7 +107,9 @@ std::optional<double> ground_below(const World& world, Entity tool, const Box& b
 Path make_tool_orbit(const World& world, Entity tool) {
   constexpr double kPress = 0.15, kSlide = 0.25;  // [1] of the tool's height and width
   const Pose& pose = world.registry.get<Pose>(tool);
-  const Box box = world_box(world.meshes[world.registry.get<SoftBody>(tool).collision_mesh], pose);
+  const SoftBody* const soft = world.registry.find<SoftBody>(tool);
+  const Handle<Mesh> mesh = soft ? soft->collision_mesh : world.registry.get<RigidBody>(tool).collision_mesh;
+  const Box box = world_box(world.meshes[mesh], pose);
   const dvec3 size(box.max - box.min);
   const double away = std::max(0.0, box.min.y - ground_below(world, tool, box).value_or(box.min.y - 0.5 * size.y));
   const dvec3 press = pose.position - dvec3(0, away + kPress * size.y, 0);

@@ -34,16 +34,19 @@ void add(SoftState& soft, Entity entity, std::unique_ptr<Body> body) {
   soft.bodies.push_back(std::move(body));
 }
 
-void add_soft(const World& world, SoftState& soft) {
+Status add_soft(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<SoftBody>()) {
+    if (!make_solver(body.solver, 1))
+      return Error{name_of(world, entity), "its solver is not in this build, or its factory makes none; use `auto`"};
     const Handle6* handle = world.registry.find<Handle6>(entity);
     auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.collision_mesh], body,
-                                                 handle, pose_of(world, entity));
+                                                 handle, pose_of(world, entity), body.solver);
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
     state->self_collides = true;  // fingers pinch, a strip folds
     add(soft, entity, std::move(state));
   }
+  return Done{};
 }
 
 // A rigid body that moves. An error where it encloses nothing.
@@ -146,7 +149,7 @@ Status prepare_soft(World& world) {
   world.soft = nullptr;
   world.soft_snapshots = nullptr;
   auto soft = std::make_shared<SoftState>();
-  add_soft(world, *soft);
+  if (Status status = add_soft(world, *soft); !status) return status;
   if (Status status = add_rigid(world, *soft); !status) return status;
   add_probes(world, *soft);
   if (soft->moving.empty()) return Done{};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "components/world.h"
+#include "runtime/exchange.h"
 #include "systems/soft/body/body.h"
 #include "systems/soft/body/yielding_body.h"
 #include "systems/soft/contact/contact_point.h"
@@ -37,6 +38,13 @@ struct SoftTally {
   std::uint32_t inside_a = 0, inside_b = 0;  // into SoftState::bodies
 };
 
+// Parameters of a P1 surface that change between steps.
+struct SurfaceEdit {
+  Entity surface;
+  DeformableParameters now;
+};
+inline constexpr std::size_t kMostSurfaceEdits = 256;  // that wait for a step
+
 struct SoftState {
   std::vector<std::unique_ptr<Body>> bodies;  // fixed ones too
   std::vector<std::uint32_t> moving;          // those with degrees of freedom, which a snapshot shows
@@ -48,14 +56,15 @@ struct SoftState {
   SweepReport report;
   SoftTally tally;
   SoftTimes times;
-  std::uint64_t steps = 0;    // done
-  int parts = 1, part = 0;    // of the step under way (run_soft_step)
-  int more = 0;               // parts that may still be added to it
-  double share = 1.0;         // [1] of the part under way that bodies go
-  double step = 0.0;          // [s] T of the step under way, all its parts together
-  bool settled = true;        // so far in the step under way
-  std::uint64_t began = 0;    // [ns] of the step under way
-  std::uint32_t dropped = 0;  // DroppedBit, the soft clock's own
+  std::uint64_t steps = 0;                             // done
+  int parts = 1, part = 0;                             // of the step under way (run_soft_step)
+  int more = 0;                                        // parts that may still be added to it
+  double share = 1.0;                                  // [1] of the part under way that bodies go
+  double step = 0.0;                                   // [s] T of the step under way, all its parts together
+  bool settled = true;                                 // so far in the step under way
+  std::uint64_t began = 0;                             // [ns] of the step under way
+  std::uint32_t dropped = 0;                           // DroppedBit, the soft clock's own
+  Ring<SurfaceEdit> surface_edits{kMostSurfaceEdits};  // who owns the run -> soft clock
 
   // [1] Of a penetration, in a part of T [s]: pushed out as fast in many parts as in one.
   double undone_in(double T) const { return kPenetrationShare * std::min(1.0, T / step); }

@@ -61,6 +61,14 @@ void stop_before(SoftState& soft, const Crossings& left, double T) {
 
 }  // namespace
 
+void take_edits(World& world, Tick) {
+  if (!world.soft) return;
+  SoftState& soft = *world.soft;
+  for (SurfaceEdit edit; soft.surface_edits.pop(edit);)
+    for (const std::uint32_t i : soft.yielding)
+      if (soft.bodies[i]->entity == edit.surface) soft.surface(i).set(edit.now);
+}
+
 void free_motion(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;

@@ -4,7 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
+#include "components/registered.h"
 #include "runtime/assert.h"
 
 namespace pliant {
@@ -137,12 +139,40 @@ double ShareKernel::slope(double r2) const {
   return weight * wendland_slope(r, inner) + (1 - weight) * wendland_slope(r, outer);
 }
 
+namespace {
+
+// The mixture that differs least, at its worst, from the positive part of a registered shape.
+ShareKernel fitted_kernel(const ShapeFunction& shape) {
+  constexpr int kPlaces = 64;
+  std::array<double, kPlaces> wanted;
+  const auto rho = [](int i) { return 1.5 * i / kPlaces; };
+  for (int i = 0; i < kPlaces; ++i) wanted[i] = rho(i) < 1.0 ? std::max(0.0, shape.value(rho(i) * rho(i))) : 0.0;
+  ShareKernel best;
+  double least = std::numeric_limits<double>::max();
+  for (int a = 6; a <= 20; ++a)
+    for (int b = a; b <= 30; ++b)
+      for (int w = 0; w <= 20; ++w) {
+        const ShareKernel kernel{0.05 * w, 0.05 * a, 0.05 * b};
+        double most = 0.0;
+        for (int i = 0; i < kPlaces && most < least; ++i)
+          most = std::max(most, std::abs(kernel.at(rho(i) * rho(i)) - wanted[i]));
+        if (most < least) least = most, best = kernel;
+      }
+  return best;
+}
+
+}  // namespace
+
 // Fitted to the largest difference; what is left of it, as a share of the dent's depth, is in the comment. A punch has
 // a flat bottom, which no positive definite function has.
 ShareKernel share_kernel(Shape shape, double reach, double volume) {
   const auto kernel = [reach](double weight, double inner, double outer) {
     return ShareKernel{weight, inner * reach, outer * reach};
   };
+  if (const ShapeFunction* own = registered_shape(shape)) {
+    const ShareKernel fitted = fitted_kernel(*own);
+    return kernel(fitted.weight, fitted.inner, fitted.outer);
+  }
   switch (shape) {
     case Shape::kPunch:
       return kernel(0.2, 1.0, 1.3);  // 0.18

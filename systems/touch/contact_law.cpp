@@ -22,8 +22,7 @@ double ContactLaw::force(double depth) const {
 
 double ContactLaw::potential(double depth) const {
   if (hertz == 0.0) return stiffness * law.potential(-depth);
-  if (law.kind != SpringLaw::kCubic && law.kind != SpringLaw::kExponential)
-    return 0.4 * hertz * depth * depth * std::sqrt(std::max(0.0, depth));
+  if (!law.curved()) return 0.4 * hertz * depth * depth * std::sqrt(std::max(0.0, depth));
   // Gauss-Legendre in sqrt(depth), which takes away the root at zero: d = s^2, dd = 2 s ds.
   constexpr double kAt[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
   constexpr double kWeight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};

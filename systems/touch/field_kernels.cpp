@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/registered.h"
 #include "runtime/assert.h"
 #include "runtime/kernel.h"
 #include "systems/touch/nonlinear_step.h"
@@ -91,6 +92,15 @@ PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const Fi
     out.nz[i] += t.z;
     out.h[i] += t.w;
   }
+}
+
+vec2 profile_of(const ShapeFunction& shape, float u) {
+  return {static_cast<float>(shape.value(u)), static_cast<float>(shape.slope(u))};
+}
+
+void add_registered(const ShapeFunction& shape, const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                    ZoneTargets& out) {
+  radial(mesh, begin, s, fresh, out, [&](float u) { return profile_of(shape, u); });
 }
 
 constexpr std::uint32_t kLanes = 8;
@@ -232,6 +242,11 @@ PLIANT_KERNEL void interleave(const ZoneTargets& t, float* __restrict stream) {
 }  // namespace
 
 vec4 target_at(const FieldSource& source, vec3 position, vec3 normal) {
+  if (const ShapeFunction* own = registered_shape(source.shape)) {
+    const vec3 d = position - source.center;
+    const float u = std::min(glm::dot(d, d) * source.inv_reach2, 1.0f);
+    return shared::field_radial(d, normal, source.normal, source.inv_reach2, source.amplitude, profile_of(*own, u));
+  }
   const vec4 place(source.center, source.inv_reach2), push(source.normal, source.amplitude);
   return shared::field_target(place, push, vec4(source.parameter, float(source.shape), 0, 0), position, normal);
 }
@@ -244,6 +259,8 @@ float share_at(const FieldSource& source, vec3 position, vec3 normal) {
 
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets) {
   const std::uint32_t begin = mesh.zone_begin(zone);
+  if (const ShapeFunction* own = registered_shape(source.shape))
+    return add_registered(*own, mesh, begin, source, fresh, targets);
   switch (source.shape) {
     case Shape::kPunch:
       return add_punch(mesh, begin, source, fresh, targets);

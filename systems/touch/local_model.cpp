@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "components/registered.h"
+
 namespace pliant {
 
 StepCoefficients exact_step(double m, double b, double k, double T) {
@@ -110,7 +112,26 @@ double damping_of(const Deformable& d) {
   return slow ? creep_ratio(kSlowest, d.settling_time) : d.damping_ratio;
 }
 
+namespace {
+
+// The discrete gradient of a law that is known by its values: the difference of its potential, or, where that would
+// cancel, the mean of its force over the way (Gauss-Legendre, four points).
+double mean_force(const RestoringLaw& law, double h0, double h1) {
+  const double d = h1 - h0;
+  if (std::abs(d) > 1e-3 * (std::abs(h0) + std::abs(h1))) return (law.potential(h1) - law.potential(h0)) / d;
+  constexpr double kAt[2] = {0.3399810435848563, 0.8611363115940526};
+  constexpr double kWeight[2] = {0.6521451548625461, 0.3478548451374538};
+  const double middle = 0.5 * (h0 + h1);
+  double sum = 0.0;
+  for (int i = 0; i < 2; ++i)
+    sum += kWeight[i] * (law.force(middle - 0.5 * d * kAt[i]) + law.force(middle + 0.5 * d * kAt[i]));
+  return 0.5 * sum;
+}
+
+}  // namespace
+
 double RestoringLaw::force(double h) const {
+  if (own) return own->force(h, {cubic, stiffening});
   switch (kind) {
     case SpringLaw::kLinear:
     case SpringLaw::kStandardLinearSolid:
@@ -124,6 +145,7 @@ double RestoringLaw::force(double h) const {
 }
 
 double RestoringLaw::potential(double h) const {
+  if (own) return own->potential(h, {cubic, stiffening});
   switch (kind) {
     case SpringLaw::kLinear:
     case SpringLaw::kStandardLinearSolid:
@@ -143,6 +165,7 @@ double RestoringLaw::potential(double h) const {
 }
 
 double RestoringLaw::slope(double h) const {
+  if (own) return own->slope(h, {cubic, stiffening});
   switch (kind) {
     case SpringLaw::kLinear:
     case SpringLaw::kStandardLinearSolid:
@@ -156,6 +179,7 @@ double RestoringLaw::slope(double h) const {
 }
 
 double RestoringLaw::discrete_gradient(double h0, double h1) const {
+  if (own) return mean_force(*this, h0, h1);
   switch (kind) {
     case SpringLaw::kLinear:
     case SpringLaw::kStandardLinearSolid:
@@ -180,7 +204,8 @@ double RestoringLaw::discrete_gradient(double h0, double h1) const {
 }
 
 RestoringLaw restoring_law(const Deformable& deformable) {
-  return {deformable.spring, deformable.cubic / deformable.stiffness, deformable.stiffening};
+  return {deformable.spring, deformable.cubic / deformable.stiffness, deformable.stiffening,
+          registered_spring(deformable.spring)};
 }
 
 HeightState step_restoring(const RestoringLaw& law, HeightState state, double m, double b, double k, double f,

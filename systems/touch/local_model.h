@@ -9,6 +9,7 @@
 #include <array>
 
 #include "components/deformable.h"
+#include "pliant/surface_law.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -50,9 +51,12 @@ double damping_of(const Deformable& deformable);
 // stiffens under compression only (a bulge is linear). [m]
 struct RestoringLaw {
   SpringLaw kind = SpringLaw::kLinear;
-  double cubic = 0.0;       // [1/m2] k3 / k
-  double stiffening = 0.0;  // [1/m] alpha
+  double cubic = 0.0;                   // [1/m2] k3 / k
+  double stiffening = 0.0;              // [1/m] alpha
+  const SpringFunction* own = nullptr;  // of a registered law: all below is its
 
+  // Neither linear nor the standard linear solid.
+  bool curved() const { return own != nullptr || kind == SpringLaw::kCubic || kind == SpringLaw::kExponential; }
   double force(double h) const;      // [m]
   double potential(double h) const;  // [m2] its integral from 0
   double slope(double h) const;      // [1]
@@ -77,7 +81,7 @@ struct Motion {
   double arm_time = 0;       // [s]
   double arm_decay = 1.0;    // e^(-T/tau)
   std::array<std::array<double, 3>, 3> solid{};
-  bool nonlinear() const { return law.kind == SpringLaw::kCubic || law.kind == SpringLaw::kExponential; }
+  bool nonlinear() const { return law.curved(); }
 };
 Motion motion(const Deformable& deformable, double dt);
 

@@ -96,6 +96,20 @@ struct Exponential {
   }
 };
 
+// A registered law: not SIMD, a vertex at a time.
+struct Own {
+  RestoringLaw law;
+  double force(double h) const { return law.force(h); }
+  double slope(double h) const { return law.slope(h); }
+  double keep(double) const { return 0.0; }
+  double slope_between(double h0, double d, double) const { return law.slope(h0 + 0.5 * d); }
+  Spring at(double h0, double d, double) const {
+    const double h1 = h0 + d, force1 = law.force(h1), slope1 = law.slope(h1), gradient = law.discrete_gradient(h0, h1);
+    const bool short_step = std::abs(d) <= 1e-7 * (std::abs(h0) + std::abs(h1));
+    return {force1, slope1, gradient, short_step ? 0.5 * slope1 : (force1 - gradient) / d};
+  }
+};
+
 struct alignas(64) Work {
   Lanes h0, v0, f, f_slope;
   Lanes mass, damping;            // [s2] m/k, [s] b/k
@@ -260,17 +274,25 @@ void step_nonlinear(const Motion& motion, const PaintedMotion& painted, std::uin
     std::copy_n(painted.mass.data() + std::size_t{zone} * kZoneSize, kZoneSize, w.mass);
     std::copy_n(painted.damping.data() + std::size_t{zone} * kZoneSize, kZoneSize, w.damping);
   }
-  const Cubic cubic{motion.law.cubic};
-  const Exponential exponential{motion.law.stiffening, 1 / motion.law.stiffening};
-  const bool is_cubic = motion.law.kind == SpringLaw::kCubic, forced = targets != nullptr;
-  is_cubic ? begin_cubic(cubic, motion, w, forced) : begin_exponential(exponential, motion, w, forced);
-  bool settled = false;
-  for (int step = 0; step < kSteps && !settled; ++step) {
-    is_cubic ? newton_cubic(cubic, w) : newton_exponential(exponential, w);
-    settled = all_settled(w);
+  const bool forced = targets != nullptr;
+  const auto step = [&](const auto& law, auto first, auto next, auto last) {
+    first(law, motion, w, forced);
+    bool settled = false;
+    for (int round = 0; round < kSteps && !settled; ++round) {
+      next(law, w);
+      settled = all_settled(w);
+    }
+    if (!settled) settle(motion, targets, w);
+    last(law, motion, w, s.h, r.h);
+  };
+  const RestoringLaw& law = motion.law;
+  if (law.own) {
+    step(Own{law}, begin<Own>, newton<Own>, finish<Own>);
+  } else if (law.kind == SpringLaw::kCubic) {
+    step(Cubic{law.cubic}, begin_cubic, newton_cubic, finish_cubic);
+  } else {
+    step(Exponential{law.stiffening, 1 / law.stiffening}, begin_exponential, newton_exponential, finish_exponential);
   }
-  if (!settled) settle(motion, targets, w);
-  is_cubic ? finish_cubic(cubic, motion, w, s.h, r.h) : finish_exponential(exponential, motion, w, s.h, r.h);
   for (int c = 0; c < 3; ++c) step_normals(motion, w, goal[c], s.n[c], r.n[c]);
   join(s, &state->x);
   join(r, &rate->x);

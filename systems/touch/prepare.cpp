@@ -207,7 +207,7 @@ Status prepare_touch(World& world) {
     object.zone_sources.assign(mesh.zone_count(), 0);
     object.visited.assign(mesh.zone_count(), 0);
     object.dirty.reserve(mesh.zone_count());
-    if (world.field_place == FieldPlace::kGpu && !object.on_gpu)
+    if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
       object.teller = FieldTeller(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
     for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // what is not at rest must be shown again
       field.zone_state[zone] &= kZoneListed | kZoneResidual;

@@ -171,7 +171,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   item.stream = StreamCopies(stream);
   if (item.gives_way && world.field_place == FieldPlace::kGpu) {
     item.on_gpu = has_closed_form(*deformable, *touch);
-    item.replayed = !item.on_gpu;
+    item.replayed = !item.on_gpu && gpu_knows(*deformable);
     if (item.on_gpu) item.field = FieldOnGpu(*touch);
     if (item.replayed) item.replay = FieldReplay(*touch, *deformable, 1 / world.simulation.touch_rate);
   }

@@ -13,12 +13,12 @@ TEST(SceneFile, IsASceneThatASessionRuns) {
   ASSERT_TRUE(scene) << scene.error().message();
   auto session = Session::open(*scene);
   ASSERT_TRUE(session) << session.error().message();
-  ASSERT_FALSE(session->hands().empty());
+  ASSERT_FALSE(session->effectors().empty());
   ASSERT_TRUE(session->step(1500));
   bool felt = false;
   for (int i = 0; i < 100; ++i) {
     ASSERT_TRUE(session->step(20));
-    felt |= session->reading(session->hands()[0])->touching;
+    felt |= session->reading(session->effectors()[0])->touching;
   }
   EXPECT_TRUE(felt) << "by its own script";
   EXPECT_FALSE(load_scene("no_such.gltf"));

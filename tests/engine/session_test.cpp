@@ -55,7 +55,7 @@ void press(Session& session, double depth) {
 
 TEST(Session, FeelsStiffnessTimesDepth) {
   Session session = opened(press_scene());
-  EXPECT_THAT(session.hands(), testing::ElementsAre("finger"));
+  EXPECT_THAT(session.effectors(), testing::ElementsAre("finger"));
   EXPECT_THAT(session.objects(), testing::ElementsAre("tissue"));
   press(session, 0.002);
   const Reading felt = *session.reading("finger");
@@ -215,7 +215,7 @@ TEST(Session, AToolIsHeldByItsHandleAndLiesOnARigidFloor) {
   EXPECT_FALSE(scene.add_handle("lever"));
   ASSERT_TRUE(scene.add_handle("stylus"));
   Session session = opened(scene);
-  EXPECT_THAT(session.hands(), testing::ElementsAre("stylus"));
+  EXPECT_THAT(session.effectors(), testing::ElementsAre("stylus"));
   double y = 0.02;
   for (int i = 0; i < 2000; ++i) {
     y = std::max(0.005, y - 5e-5);

@@ -32,13 +32,17 @@ dvec3 point_on(const Body& body, const SurfacePoint& point) {
 YieldingBody::YieldingBody(const Mesh& mesh, const Deformable& deformable, const Pose& pose, std::size_t slot)
     : deformable_(deformable), pose_(pose), slot_(slot) {
   collision_mesh = &mesh;
-  friction_static = deformable.friction_static;
-  friction_sliding = deformable.friction_sliding;
-  damping_ = deformable.contact_damping_material ? motion(deformable, 1.0).damping * deformable.stiffness
-                                                 : deformable.contact_damping;
+  set(deformable);
   surface_position.resize(mesh.vertex_count);
   surface_velocity.assign(mesh.vertex_count, dvec3(0));
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) surface_position[v] = pose_.to_world(dvec3(mesh.position(v)));
+}
+
+void YieldingBody::set(const DeformableParameters& now) {
+  static_cast<DeformableParameters&>(deformable_) = now;
+  friction_static = now.friction_static;
+  friction_sliding = now.friction_sliding;
+  damping_ = now.contact_damping_material ? motion(deformable_, 1.0).damping * now.stiffness : now.contact_damping;
 }
 
 bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {

@@ -28,6 +28,8 @@ class YieldingBody final : public ImmovableBody {
   // `slot`: its place in TouchState::objects. `mesh` outlives it.
   YieldingBody(const Mesh& mesh, const Deformable& deformable, const Pose& pose, std::size_t slot);
 
+  void set(const DeformableParameters& now);
+
   // Puts its contacts where P1's collision would find the tissue's points: foot, interpolated normal and height over
   // the rest surface; drops those beside an open surface's rim. `self`: its place among the bodies. Prepares the law
   // for a step of T [s]. Call on the contacts of a step, before the problem is built from them.

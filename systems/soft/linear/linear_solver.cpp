@@ -1,5 +1,6 @@
 #include "systems/soft/linear/linear_solver.h"
 
+#include "components/registered.h"
 #include "runtime/assert.h"
 #include "systems/soft/linear/auto_solver.h"
 #include "systems/soft/linear/block_cholesky.h"
@@ -7,6 +8,7 @@
 #include "systems/soft/linear/conjugate_gradient.h"
 #include "systems/soft/linear/dense_solver.h"
 #include "systems/soft/linear/eigen_cholesky.h"
+#include "systems/soft/linear/registered_solver.h"
 
 namespace pliant {
 
@@ -14,6 +16,7 @@ namespace pliant {
 constexpr std::uint32_t kSmall = 400;  // block rows
 
 std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_rows) {
+  if (const SolverFactory* factory = registered_solver(kind)) return make_registered(*factory);
   switch (kind) {
     case SolverKind::kDense:
       return std::make_unique<DenseSolver>();

@@ -7,18 +7,10 @@
 #include <vector>
 
 #include "components/math.h"
+#include "pliant/parameters.h"
 #include "systems/soft/linear/block_columns.h"
 
 namespace pliant {
-
-enum class SolverKind : std::uint8_t {
-  kAuto,           // by size and by how many right-hand sides come, as measured (auto_solver.h)
-  kBlockCholesky,  // ours, sparse 3x3 blocks
-  kEigenCholesky,  // Eigen's SimplicialLDLT
-  kCholmod,        // SuiteSparse's, where the build has it
-  kConjugateGradient,
-  kDense,  // for tests
-};
 
 class LinearSolver {
  public:
@@ -41,7 +33,7 @@ class LinearSolver {
   virtual void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const;
 };
 
-// Null where the build does not have that kind.
+// Null where the build does not have that kind, or its factory made nothing.
 std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_rows);
 std::vector<SolverKind> available_solvers();
 

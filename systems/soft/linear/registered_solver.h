@@ -1,0 +1,12 @@
+// A registered solver (pliant/linear_solver.h) behind the seam of the built-in ones.
+#pragma once
+
+#include "pliant/linear_solver.h"
+#include "systems/soft/linear/linear_solver.h"
+
+namespace pliant {
+
+// Null where the factory makes nothing.
+std::unique_ptr<LinearSolver> make_registered(const SolverFactory& factory);
+
+}  // namespace pliant
