@@ -58,11 +58,17 @@ Status Session::Parts::prepare() {
   std::vector<SessionEffector> before = std::move(effectors);
   effectors.clear();
   ended = "its restart failed";
-  Status made = remake(before);
+  Status made = Done{};
+  try {
+    made = remake(before);
+  } catch (const std::exception& thrown) {
+    made = Error{"scene", std::string("cannot be made: ") + thrown.what()};
+  }
   for (SessionEffector& effector : before) close_driver(effector);  // what the new world has no place for
-  if (!made)
+  if (made)
+    ended = nullptr;
+  else
     for (SessionEffector& effector : effectors) close_driver(effector);
-  if (made) ended = nullptr;
   return made;
 }
 

@@ -88,6 +88,12 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
     return Error{"Session::record", "the scene has no probe and no tool; there is nothing to record"};
   RecordingHeader header{p.world.name, p.world.simulation.touch_rate, effectors(), scene_hash(p.scene.level()), {}};
   for (const auto& [key, value] : p.settings) header.settings.push_back(key + "=" + value);
+  for (const SessionEffector& effector : p.effectors) {  // a driver's limits are felt as well
+    if (!effector.driver) continue;
+    const DeviceParameters limits = p.limits_of(effector);
+    header.settings.push_back(fmt::format("{}.haptic_device.max_force={}", effector.name, limits.max_force));
+    header.settings.push_back(fmt::format("{}.haptic_device.max_stiffness={}", effector.name, limits.max_stiffness));
+  }
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
   p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_crease.h"
@@ -9,6 +11,9 @@
 namespace pliant {
 
 namespace {
+
+// What a fingertip or a probe presses with, the radius that tissue stiffnesses are quoted for (methods.md 4).
+constexpr double kContactRadius = 0.004;  // [m]
 
 // A member of a component, or of its authored part, as a function from its owner.
 template <class Owner, class T, class Part, class Member>
@@ -58,7 +63,11 @@ template <class Access>
 Key choice(std::string name, Access access, std::string doc) {
   using Enum = std::remove_reference_t<decltype(access(nullptr))>;
   Key out = key(
-      std::move(name), "", KeyType::kChoice, std::move(doc), access, [](Enum value) { return word_of(value); },
+      std::move(name), "", KeyType::kChoice, std::move(doc), access,
+      [](Enum value) {
+        const char* const word = word_of(value);
+        return std::string(word ? word : "(no such value)");  // of a number that a program made up
+      },
       [](const Json& json) { return *value_of_word<Enum>(json.get<std::string>()); });
   out.choices = words_of<Enum>;
   return out;
@@ -392,6 +401,11 @@ std::vector<Extension> make_table() {
 }
 
 }  // namespace
+
+double calibrated_stiffness(double young, double poisson, double thickness) {
+  const double radius = thickness > 0.0 ? std::min(thickness, kContactRadius) : kContactRadius;
+  return 2.0 * young / (1.0 - poisson * poisson) * radius;
+}
 
 const std::vector<Extension>& extension_table() {
   static const std::vector<Extension> table = make_table();

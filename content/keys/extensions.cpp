@@ -11,9 +11,6 @@ namespace pliant {
 
 namespace {
 
-// What a fingertip or a probe presses with, the radius that tissue stiffnesses are quoted for (methods.md 4).
-constexpr double kContactRadius = 0.004;  // [m]
-
 // Reads one extension object into its owner, telling `report(pointer, message)` of every fault.
 template <class Report>
 class Reader {
@@ -147,11 +144,6 @@ Json write_all(bool on_scene, const Owner& owner, const Json& before) {
 }
 
 }  // namespace
-
-double calibrated_stiffness(double young, double poisson, double thickness) {
-  const double radius = thickness > 0.0 ? std::min(thickness, kContactRadius) : kContactRadius;
-  return 2.0 * young / (1.0 - poisson * poisson) * radius;
-}
 
 Status parse_node_extensions(const Json& extensions, const std::string& pointer,
                              const std::vector<std::string>& node_names, LevelNode& node) {

@@ -1,4 +1,5 @@
 // The table of keys: that it is the one truth about ranges, defaults, words and docs, for files and --set alike.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -158,6 +159,7 @@ TEST(KeyTable, EveryEnumeratorHasAWordOfItsOwn) {
   expect(DriverKind::kExternal, 5);
   expect(Attachment::kSlave, 2);
   expect(ToolForce::kContacts, 3);
+  expect(SolverKind::kDense, 6);
 }
 
 // --set N.EXT.KEY=TEXT against {"KEY": TEXT} in a file: both take it or both refuse it, and what they take is the same.
@@ -243,6 +245,24 @@ TEST(KeyTable, TheTablesOfTheLevelFormatAreThoseOfTheTable) {
   const std::string wanted = text.substr(0, from + begin.size()) + "\n" + extension_tables() + text.substr(to);
   if (std::getenv("PLIANT_WRITE_DOCS")) std::ofstream(path) << (text = wanted);
   EXPECT_EQ(text, wanted) << path << ": run this test with PLIANT_WRITE_DOCS=1 to write it anew";
+}
+
+struct Plain final : SpringFunction {
+  double force(double h, const SpringConstants&) const override { return h; }
+  double potential(double h, const SpringConstants&) const override { return 0.5 * h * h; }
+  double slope(double, const SpringConstants&) const override { return 1.0; }
+};
+
+TEST(KeyTable, ALawThatIsRegisteredIsAWordOfItsKey) {
+  const Key& key = *find_key(*find_extension("deformable"), "spring");
+  EXPECT_NE(check_value(key, "plain"), "");
+  ASSERT_TRUE(register_spring("plain", std::make_shared<Plain>()));
+  EXPECT_EQ(check_value(key, "plain"), "");
+  EXPECT_THAT(check_value(key, "plian"), testing::HasSubstr("sls, plain"));
+  LevelNode node;
+  node.deformable.emplace();
+  key.set(&node, "plain");
+  EXPECT_EQ(key.get(&node), "plain");
 }
 
 }  // namespace

@@ -9,49 +9,12 @@
 #include <fstream>
 #include <thread>
 
-#include "pliant/pliant.h"
+#include "tests/engine/session_rig.h"
 
 namespace pliant {
 namespace {
 
 using testing::HasSubstr;
-
-// Flat, facing up, `half` [m] to each side, its vertices row by row.
-MeshData sheet(double half = 0.05, std::uint32_t cells = 50) {
-  MeshData mesh;
-  const auto at = [&](std::uint32_t i) { return static_cast<float>(half * (2.0 * i / cells - 1.0)); };
-  for (std::uint32_t z = 0; z <= cells; ++z)
-    for (std::uint32_t x = 0; x <= cells; ++x) mesh.position.push_back({at(x), 0, at(z)});
-  for (std::uint32_t z = 0; z < cells; ++z)
-    for (std::uint32_t x = 0; x < cells; ++x) {
-      const std::uint32_t i = z * (cells + 1) + x, j = i + cells + 1;
-      for (const std::uint32_t corner : {i, j, i + 1, i + 1, j, j + 1}) mesh.index.push_back(corner);
-    }
-  return mesh;
-}
-
-Scene press_scene() {
-  Scene scene("press");
-  scene.add_surface("tissue", sheet(), {.stiffness = 300.0});
-  scene.add_probe("finger");
-  return scene;
-}
-
-Session opened(const Scene& scene) {
-  auto session = Session::open(scene);
-  EXPECT_TRUE(session) << session.error().message();
-  return std::move(session).value();
-}
-
-// From above to `depth` [m], a tick every 10 um.
-void press(Session& session, double depth) {
-  for (double y = 0.0005; y > -depth; y -= 1e-5) {
-    ASSERT_TRUE(session.move("finger", {0, y, 0}));
-    ASSERT_TRUE(session.step());
-  }
-  ASSERT_TRUE(session.move("finger", {0, -depth, 0}));
-  ASSERT_TRUE(session.step());
-}
 
 TEST(Session, FeelsStiffnessTimesDepth) {
   Session session = opened(press_scene());
@@ -231,46 +194,6 @@ TEST(Session, AToolIsHeldByItsHandleAndLiesOnARigidFloor) {
   for (const vec3 p : vertices) EXPECT_GT(p.y, -2e-4f);
 }
 
-// A device that the test looks at.
-struct Log {
-  std::atomic<int> reads{0}, writes{0}, opened{0}, closed{0};
-  std::atomic<double> last{-1.0}, largest{0.0}, height{0.01};
-  std::atomic<bool> ready{true}, silent{false}, throws{false};
-};
-class LoggedDevice final : public Driver {
- public:
-  explicit LoggedDevice(Log& log) : log_(log) {}
-  Status open(const std::string& id) override {
-    ++log_.opened;
-    if (id == "broken") return Error{"device broken", "is broken; mend it"};
-    return Done{};
-  }
-  DeviceCapabilities capabilities() const override { return {.max_force = 0.5}; }
-  bool read(DeviceSample& sample) override {
-    ++log_.reads;
-    if (log_.throws) throw std::runtime_error("cable cut");
-    sample.position = {0, log_.height.load(), 0};
-    sample.ready = log_.ready;
-    return !log_.silent;
-  }
-  void write(const DeviceWrench& wrench) override {
-    ++log_.writes;
-    log_.last = length(wrench.force);
-    log_.largest = std::max(log_.largest.load(), length(wrench.force));
-  }
-  void close() override { ++log_.closed; }
-
- private:
-  Log& log_;
-};
-
-void lower(Session& session, Log& log, double to) {
-  for (int i = 0; i < 1000 && log.height > to; ++i) {
-    log.height = std::max(to, log.height.load() - 2e-5);
-    ASSERT_TRUE(session.step());
-  }
-}
-
 TEST(Session, ADriverIsReadAndWrittenEveryTickWithinItsLimit) {
   Log log;
   {
@@ -345,16 +268,6 @@ TEST(Session, ARecordingGivesTheSameBitsAgain) {
   EXPECT_EQ(lines, ran + 1);
   EXPECT_EQ(first, "0,0,\"finger\",0,0.0005,0,1,0,0,0,1");
   std::filesystem::remove_all(folder);
-}
-
-// Until `done`, at most five seconds.
-template <class Done>
-bool within_five_seconds(Done done) {
-  for (int i = 0; i < 5000; ++i) {
-    if (done()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
 }
 
 TEST(Session, InRealTimeAPauseLetsGoAndComesBackThroughTheGate) {
