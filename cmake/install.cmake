@@ -11,7 +11,7 @@ function(pliant_component name)
 endfunction()
 pliant_component(engine pliant_options pliant_runtime pliant_components pliant_systems pliant_level pliant_engine)
 pliant_component(content pliant_content)
-pliant_component(visual pliant_visual)
+pliant_component(visual pliant_visual pliant_picture)
 
 install(DIRECTORY include/pliant DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -57,6 +57,7 @@ Session::Parts::~Parts() {
 Status Session::Parts::prepare() {
   std::vector<SessionEffector> before = std::move(effectors);
   effectors.clear();
+  run.reset();
   ended = "its restart failed";
   Status made = Done{};
   try {
@@ -122,6 +123,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   edits = std::make_unique<Ring<Edit>>(kMostEdits);
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
+  run = std::make_shared<int>();
   for (SessionEffector& old : before) {
     SessionEffector* const effector = find_effector(old.name);
     if (!effector || old.source == EffectorSource::kLevel || old.source == EffectorSource::kNone) continue;

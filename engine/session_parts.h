@@ -118,6 +118,7 @@ struct Session::Parts {
   std::unique_ptr<Ring<Edit>> edits;                    // owner -> touch clock
   mutable TripleBuffer<std::vector<EffectorRow>> rows;  // touch clock -> owner
   SessionView view;                                     // owner's
+  std::shared_ptr<int> run;                             // of this world: whoever looks at it knows when it has gone
   std::unique_ptr<SessionRecorder> recorder;            // null: nothing is recorded
   std::optional<Recording> replayed;
   std::map<std::string, std::string> settings;  // NODE.EXT.KEY -> value: what set() changed

@@ -9,6 +9,8 @@ namespace pliant {
 void SessionView::reset(const World& world) {
   shown_.clear();
   soft_.clear();
+  seen = {};
+  soft_seen = {};
   for (auto [entity, pose] : world.registry.view<const Pose>()) {
     Shown shown{entity, pose.matrix(), {}};
     if (const Deformable* surface = world.registry.find<Deformable>(entity))
@@ -35,8 +37,13 @@ void SessionView::add(const Snapshot& snapshot) {
 }
 
 void SessionView::take(World& world) {
-  while (world.snapshots->acquire()) add(world.snapshots->read());
-  if (world.soft_snapshots && world.soft_snapshots->acquire()) soft_ = world.soft_snapshots->read().objects;
+  while (world.snapshots->acquire()) {
+    add(world.snapshots->read());
+    if (seen) seen(world.snapshots->read());
+  }
+  if (!world.soft_snapshots || !world.soft_snapshots->acquire()) return;
+  soft_ = world.soft_snapshots->read().objects;
+  if (soft_seen) soft_seen(world.soft_snapshots->read());
 }
 
 void SessionView::take_all(World& world, Tick tick) {

@@ -1,6 +1,7 @@
 // The frame side of a Session: what the touch and soft clocks have shown so far, complete. Owner's thread.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "components/world.h"
@@ -19,6 +20,10 @@ class SessionView {
   const std::vector<vec4>* stream(Entity object) const;  // null: no surface that gives way
   const SoftObjectSnapshot* soft(Entity object) const;   // null: nothing that moves, or not seen yet
   mat4 to_world(const World& world, Entity object) const;
+
+  // Called for every snapshot that is taken: a renderer follows them (engine/picture/camera.cpp).
+  std::function<void(const Snapshot&)> seen;
+  std::function<void(const SoftSnapshot&)> soft_seen;
 
  private:
   void add(const Snapshot& snapshot);

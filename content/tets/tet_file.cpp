@@ -23,27 +23,53 @@ fs::path partner(fs::path path, const char* lower, const char* upper) {
   return path.replace_extension(is_upper ? upper : lower);
 }
 
+template <Result<TetFile> (*parse)(std::span<const std::uint8_t>, const std::string&)>
+Result<TetFile> read_one(const fs::path& path) {
+  Result<Bytes> bytes = read_file(path, kMostBytes);
+  if (!bytes) return bytes.error();
+  return parse(*bytes, path.string());
+}
+
+// TetGen writes two files; either may be named.
+Result<TetFile> read_tetgen(const fs::path& path) {
+  Result<Bytes> nodes =
+      read_file(lower_extension(path) == ".node" ? path : partner(path, ".node", ".NODE"), kMostBytes);
+  if (!nodes) return nodes.error();
+  Result<Bytes> tets = read_file(lower_extension(path) == ".ele" ? path : partner(path, ".ele", ".ELE"), kMostBytes);
+  if (!tets) return tets.error();
+  return parse_tetgen(*nodes, *tets, fs::path(path).replace_extension().string());
+}
+
+// A new format is a file with its parser and a line here.
+struct Format {
+  const char* extension;
+  Result<TetFile> (*read)(const fs::path&);
+};
+constexpr Format kFormats[] = {
+    {".msh", read_one<parse_msh>},  // Gmsh 2 and 4
+    {".vtk", read_one<parse_vtk>},  // legacy VTK
+    {".node", read_tetgen},
+    {".ele", read_tetgen},
+};
+
+const Format* format_of(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  for (const Format& format : kFormats)
+    if (extension == format.extension) return &format;
+  return nullptr;
+}
+
 }  // namespace
 
 bool is_tet_file(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension == ".msh" || extension == ".vtk" || extension == ".node" || extension == ".ele";
+  return format_of(path) != nullptr;
 }
 
 Result<TetFile> load_tets(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  if (!is_tet_file(path))
-    return Error{path.string(), "is no tetrahedra file that is read; use .msh, .vtk, .node or .ele"};
-  Result<Bytes> bytes = read_file(path, kMostBytes);
-  if (!bytes) return bytes.error();
-  if (extension == ".msh") return parse_msh(*bytes, path.string());
-  if (extension == ".vtk") return parse_vtk(*bytes, path.string());
-  const bool is_node = extension == ".node";
-  Result<Bytes> other =
-      read_file(is_node ? partner(path, ".ele", ".ELE") : partner(path, ".node", ".NODE"), kMostBytes);
-  if (!other) return other.error();
-  const std::string stem = fs::path(path).replace_extension().string();
-  return is_node ? parse_tetgen(*bytes, *other, stem) : parse_tetgen(*other, *bytes, stem);
+  if (const Format* format = format_of(path)) return format->read(path);
+  std::string known;
+  for (const Format& format : kFormats) known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  return Error{path.string(), "is no tetrahedra file that is read; formats are: " + known};
 }
 
 }  // namespace pliant

@@ -143,8 +143,10 @@ class Session {
   Status stream(const std::string& object, std::vector<vec4>& out);
   Result<mat4> to_world(const std::string& object);
 
+  struct Parts;  // engine/session_parts.h; not part of the public interface
+
  private:
-  struct Parts;
+  friend class Camera;
   explicit Session(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };

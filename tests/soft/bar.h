@@ -82,7 +82,7 @@ Bar make_bar(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell, 
       Embedding place_in{.tet = found[0].tet, .weight = {0, 0, 0, 0}};
       const Tet& tet = bar.tets.tets[found[0].tet];
       place_in.weight[static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) - tet.begin())] = 1.0;
-      bar.tets.collision_mesh.push_back(place_in);
+      bar.tets.embedding.push_back(place_in);
     }
     bar.collision_mesh.triangles.push_back(triangle);
   }

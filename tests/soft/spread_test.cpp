@@ -24,7 +24,7 @@ struct Finger {
 
   explicit Finger(bool inside) {
     if (inside)
-      for (Embedding& place : bar.tets.collision_mesh) place.weight = {0.1, 0.2, 0.3, 0.4};
+      for (Embedding& place : bar.tets.embedding) place.weight = {0.1, 0.2, 0.3, 0.4};
     handle.attachment = Attachment::kSlave;
     state = std::make_unique<SoftBodyState>(bar.tets, bar.collision_mesh, SoftBody{}, &handle,
                                             Pose{{0.1, 0.2, -0.1}, rotation_of({0.3, -0.5, 0.2})});
@@ -36,7 +36,7 @@ struct Finger {
     Rows out = Rows::Zero(3, state->size());
     for (int corner = 0; corner < 3; ++corner)
       for (std::size_t k = 0; k < 4; ++k) {
-        const Embedding& place = tets.collision_mesh[bar.collision_mesh.triangles[point.triangle][corner]];
+        const Embedding& place = tets.embedding[bar.collision_mesh.triangles[point.triangle][corner]];
         const std::uint32_t node = tets.tets[place.tet][k];
         const double weight = point.barycentric[corner] * place.weight[k];
         if (node < tets.free_count)

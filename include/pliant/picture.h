@@ -1,0 +1,54 @@
+// Pictures of a Session by the renderer of the command: materials, bump maps, surroundings, reflection, refraction,
+// shadows (component `visual`). A program with a renderer of its own takes Session::stream instead.
+//
+//   auto camera = pliant::Camera::headless(*session);
+//   auto picture = camera->picture(camera->view(), 1280, 720);
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pliant/session.h"
+
+namespace pliant {
+
+// Where a picture is taken from.
+struct View {
+  dvec3 eye{0, 0, 1};  // [m] world
+  dvec3 target{0};     // [m]
+  dvec3 up{0, 1, 0};
+  float yfov = 0.7f;  // [rad] vertical field of view
+};
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;  // sRGB, four bytes a pixel, rows from top to bottom
+};
+
+// Belongs to the thread that owns the session, and to one run of it: after Session::restart() or the session's end
+// every call is an error, and a new camera is made. Made before start(); pictures may be taken while the clocks run.
+class Camera {
+ public:
+  // With a context of its own, without a window (EGL): on the GPU, or by Mesa's software renderer.
+  static Result<Camera> headless(Session& session);
+  // In the OpenGL 4.5 core context that is current on this thread, here and in every later call of Camera.
+  static Result<Camera> in_current_context(Session& session);
+  Camera(Camera&&) noexcept;
+  Camera& operator=(Camera&&) noexcept;
+  ~Camera();
+
+  // The level's own, or one that sees everything that gives way.
+  View view() const;
+  // At most 16384 pixels wide and high.
+  Result<Picture> picture(const View& view, int width, int height);
+  // Into a framebuffer of the current context: 0 is the window's.
+  Status draw(const View& view, unsigned framebuffer, int width, int height);
+
+ private:
+  struct Parts;
+  explicit Camera(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace pliant

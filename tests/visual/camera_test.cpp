@@ -1,0 +1,84 @@
+// Pictures of a session through the public header alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "pliant/picture.h"
+#include "pliant/pliant.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+MeshData sheet() {
+  constexpr std::uint32_t kCells = 40;
+  MeshData mesh;
+  for (std::uint32_t z = 0; z <= kCells; ++z)
+    for (std::uint32_t x = 0; x <= kCells; ++x)
+      mesh.position.push_back({0.05f * (2.0f * float(x) / kCells - 1), 0, 0.05f * (2.0f * float(z) / kCells - 1)});
+  for (std::uint32_t z = 0; z < kCells; ++z)
+    for (std::uint32_t x = 0; x < kCells; ++x) {
+      const std::uint32_t i = z * (kCells + 1) + x, j = i + kCells + 1;
+      mesh.index.insert(mesh.index.end(), {i, j, i + 1, i + 1, j, j + 1});
+    }
+  return mesh;
+}
+
+Session opened() {
+  Scene scene;
+  scene.add_surface("tissue", sheet());
+  scene.add_probe("finger", {.radius = 0.004});
+  return std::move(Session::open(scene)).value();
+}
+
+// Pixels that differ between two pictures by more than a few grey levels.
+std::size_t differing(const Picture& a, const Picture& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4)
+    count += std::abs(int(a.rgba[i]) - int(b.rgba[i])) > 8 || std::abs(int(a.rgba[i + 1]) - int(b.rgba[i + 1])) > 8;
+  return count;
+}
+
+TEST(Camera, SeesTheDentAndOutlivesNeitherARestartNorItsSession) {
+  std::optional<Session> session(opened());
+  auto camera = Camera::headless(*session);
+  if (!camera) GTEST_SKIP() << camera.error().message();
+  EXPECT_THAT(Camera::headless(*session).error().message(), HasSubstr("has a camera"));
+  ASSERT_TRUE(session->move("finger", {0, 0.03, 0}));
+  ASSERT_TRUE(session->step());
+  const View above{{0, 0.1, 0.1}, {0, 0, 0}};
+  const auto before = camera->picture(above, 160, 90);
+  ASSERT_TRUE(before) << before.error().message();
+  ASSERT_EQ(before->rgba.size(), 160u * 90u * 4u);
+  for (int i = 0; i <= 300; ++i) {
+    ASSERT_TRUE(session->move("finger", {0, 0.006 - 5e-5 * i, 0}));
+    ASSERT_TRUE(session->step());
+    std::vector<vec3> vertices;
+    if (i % 50 == 0) ASSERT_TRUE(session->vertices("tissue", vertices)) << "what others look at is not lost to it";
+  }
+  ASSERT_TRUE(session->move("finger", {0, 0.03, 0}));  // out of the way: only the dent is left to see
+  ASSERT_TRUE(session->step());
+  const auto dented = camera->picture(above, 160, 90);
+  ASSERT_TRUE(dented);
+  EXPECT_GT(differing(*before, *dented), 20u);
+  ASSERT_TRUE(session->step(3000));
+  const auto after = camera->picture(above, 160, 90);
+  ASSERT_TRUE(after);
+  EXPECT_LT(differing(*before, *after), 5u) << "it has come back";
+
+  EXPECT_FALSE(camera->picture(above, 0, 90));
+  EXPECT_FALSE(camera->picture(above, 160, 100000));
+  EXPECT_FALSE(camera->picture({{0, 0, 0}, {0, 0, 0}}, 160, 90));
+  ASSERT_TRUE(session->restart());
+  EXPECT_THAT(camera->picture(above, 160, 90).error().message(), HasSubstr("restarted"));
+  auto second = Camera::headless(*session);
+  ASSERT_TRUE(second) << second.error().message();
+  EXPECT_TRUE(second->picture(second->view(), 64, 36));
+  session.reset();
+  EXPECT_FALSE(second->picture(above, 160, 90));
+}
+
+}  // namespace
+}  // namespace pliant
