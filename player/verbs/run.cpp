@@ -202,8 +202,7 @@ Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared
   session.ticks = loop.ticks;
   session.frame_width = options.width;
   session.frame_height = options.height;
-  if (options.fps > 0.0) session.frame_ticks = regular_frames(loop.ticks, loop.rate, options.fps);
-  if (options.frames > 0) session.frame_ticks = spread_frames(loop.ticks, options.frames);
+  session.frame_ticks = loop.frame_ticks;
   // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
   const std::string field = loop.world.field_place == FieldPlace::kGpu ? "gpu" : "cpu";
   session.open = [&options, &next, field](const std::string& file) -> std::optional<Error> {
@@ -222,6 +221,18 @@ Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared
     ran.ended = explain(error);
     return ran;
   }
+}
+
+// The rows that still wait, then every file is closed.
+Status finish(Keeper& keeper, Journal& journal) {
+  Status kept = Done{};
+  try {
+    keeper.keep(journal);
+  } catch (const std::exception& error) {
+    kept = explain(error);
+  }
+  const Status closed = keeper.finish();
+  return kept ? closed : kept;
 }
 
 // `shown`: the window, or null. `next`: what is to be run after this, if a window asked for it.
@@ -272,9 +283,10 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
     loop.soft = &soft;
     soft.note_in(*bodies);
   }
-  if (frames)
-    loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps)
-                                         : spread_frames(ticks, options.frames < 0 ? kDefaultFrames : options.frames);
+  if (frames || shown) {
+    const int spread = options.frames >= 0 ? options.frames : shown ? 0 : kDefaultFrames;
+    loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps) : spread_frames(ticks, spread);
+  }
   Prepared other;
   const Ran ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
   soft.stop();  // where an exception left it running
@@ -285,10 +297,14 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   let_go(world, {journal.ticks(), 1.0 / rate, static_cast<double>(journal.ticks()) / rate});
   // Whatever ended the run: what ran is written, and then the first error is said.
   std::optional<Error> wrong = interrupt.reason();
-  for (const Status& status : {ran.ended, keeper->finish()})
-    if (!status && !wrong) wrong = status.error();
+  const auto take = [&](const Status& status) {
+    if (!status && !wrong) wrong = out->at_place(status.error());
+  };
   if (wrong) wrong = out->at_place(*wrong);
-  if (wrong && journal.ticks() == 0) return failed(*wrong);
+  take(ran.ended);
+  if (wrong && journal.ticks() == 0) return failed(*wrong);  // what is staged goes, and replaces nothing
+  if (keeper->recorded_nothing()) say(run, options.record + " is not written, because no tick was recorded");
+  take(finish(*keeper, journal));
 
   RunFigures figures{world,
                      schedule,
@@ -307,12 +323,29 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
                      wrong                   ? wrong->message()
                      : interrupt.requested() ? "interrupted"
                                              : "done"};
-  std::vector<std::string> sentences = explain_run(figures);
+  std::vector<std::string> sentences;
+  try {
+    sentences = explain_run(figures);
+  } catch (const std::exception& error) {  // the figures are written without them
+    figures.misses.resize(journal.probes().size());
+    take(explain(error));
+  }
+  const std::uint64_t reached = journal.ticks() + ran.overruns;
+  const auto due = static_cast<std::size_t>(
+      std::lower_bound(loop.frame_ticks.begin(), loop.frame_ticks.end(), std::max<std::uint64_t>(reached, 1) - 1) -
+      loop.frame_ticks.begin());
+  if (ran.pictures < due && !wrong)
+    sentences.push_back(fmt::format(
+        "{} of {} pictures were not taken because drawing is slower than the run; take fewer or smaller ones",
+        due - ran.pictures, due));
+  const std::uint64_t rows = journal.ticks() * journal.probes().size();
   for (const auto& [lost, file] :
-       {std::pair(journal.lost(), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
+       {std::pair(rows - std::min(rows, keeper->rows()), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
     if (lost > 0)
-      sentences.push_back(fmt::format(
-          "{} rows of {} were lost because writing fell behind; take fewer or smaller pictures", lost, file));
+      sentences.push_back(
+          fmt::format("{} rows of {} were lost because the disk was too slow; use a faster disk, a lower --rate or "
+                      "fewer pictures",
+                      lost, file));
   for (const std::string& sentence : sentences) {
     note(sentence);
     figures.dropped.push_back(sentence);

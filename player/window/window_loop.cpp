@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "player/exit.h"
+#include "player/run/touch_loop.h"
 #include "systems/device/mouse.h"
 #include "systems/visual/viewpoint.h"
 
@@ -106,7 +107,7 @@ std::filesystem::path WindowLoop::next_frame() {
   const std::uint64_t reached = touch_ ? touch_->now() : 0;
   if (!touch_ || next_frame_ >= s_.frame_ticks.size() || s_.frame_ticks[next_frame_] > reached) return {};
   while (next_frame_ < s_.frame_ticks.size() && s_.frame_ticks[next_frame_] <= reached) ++next_frame_;
-  return s_.out.stage(fmt::format("frame-{:04d}.png", figures_.pictures++));
+  return s_.out.stage(fmt::format("frame-{:04d}.png", figures_.pictures));
 }
 
 // At once, and beside what is already there: a hand asked for it.
@@ -156,11 +157,9 @@ PictureOrder WindowLoop::order(bool shown) {
 
 // What a picture brings back: figures, what the overlay's switches say, and what stands under the cursor.
 Status WindowLoop::learn(const PictureDone& done) {
+  figures_.pictures += done.framed;
   if (!done.failed) return done.failed;
-  if (!done.frame) {
-    --figures_.pictures;
-    return done.frame;
-  }
+  if (!done.frame) return done.frame;
   figures_.frames.add(done.stats);
   state_.upload_bytes = done.stats.upload_bytes;
   state_.draw_ms = done.stats.draw_ms;
@@ -181,24 +180,25 @@ Status WindowLoop::learn(const PictureDone& done) {
   return Done{};
 }
 
-WindowFigures WindowLoop::run() {
-  std::vector<InputEvent> events;
-  // Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
+// Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
+Status WindowLoop::warm_up() {
   for (int i = 0; i < 3; ++i) {
     pictures_.begin(order(false));
-    pictures_.done();
+    if (const Status& failed = pictures_.done().failed; !failed) return failed;
   }
   s_.window.show(s_.world.name + " - Pliant");
-  TouchHooks hooks;
-  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
-  touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
-  touch_->start();
+  if (Window::lost()) return Window::loss();
+  return Done{};
+}
+
+// Hears the hand and orders pictures beside the touch clock.
+Status WindowLoop::turn_until_the_end() {
+  std::vector<InputEvent> events;
   const std::uint64_t start = now_ns();
-  Status status = Done{};
-  bool begun = false;
-  while (!close_ && !figures_.opened && !touch_->done() && !s_.interrupt.requested() && status) {
+  while (!close_ && !figures_.opened && !touch_->done() && !s_.interrupt.requested()) {
     events.clear();
     s_.window.poll(events, kHearEvery);
+    if (Window::lost()) return Window::loss();
     s_.script.take(static_cast<double>(now_ns()) * 1e-9, events);
     const double now = static_cast<double>(now_ns() - start) * 1e-9, dt = std::min(now - seconds_, kSlowestTurn);
     seconds_ = now;
@@ -208,16 +208,39 @@ WindowFigures WindowLoop::run() {
     point(dt);
     look_for_opened();
     if (pictures_.busy()) continue;
-    if (begun) status = learn(pictures_.done());
+    if (begun_)
+      if (const Status seen = learn(pictures_.done()); !seen) return seen;
     pictures_.begin(order(true));
-    begun = true;
+    begun_ = true;
+  }
+  return Done{};
+}
+
+WindowFigures WindowLoop::run() {
+  if (const Status ready = warm_up(); !ready) {
+    figures_.ended = ready;
+    return figures_;
+  }
+  TouchHooks hooks;
+  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
+  touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
+  Status status = Done{};
+  try {
+    touch_->start();
+    status = turn_until_the_end();
+  } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
+    status = explain(error);
   }
   touch_->stop();
-  keep();
-  if (begun && status) status = learn(pictures_.done());
+  try {
+    keep();
+    if (begun_ && status) status = learn(pictures_.done());
+  } catch (const std::exception& error) {
+    if (status) status = explain(error);
+  }
   if (opening_.valid()) opening_.wait();
-  s_.window.hide_cursor(false);
-  if (!touch_->has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
+  if (!Window::lost()) s_.window.hide_cursor(false);
+  if (!touch_->has_priority()) note(kNoPriority);
   figures_.overruns = touch_->overruns();
   figures_.ended = status;
   if (s_.soft && s_.soft->error()) figures_.ended = *s_.soft->error();
@@ -232,8 +255,14 @@ WindowFigures run_window(WindowSession& session) {
     none.ended = renderer.error();
     return none;
   }
-  WindowLoop loop(session, **renderer);
-  return loop.run();
+  WindowFigures figures;
+  {
+    WindowLoop loop(session, **renderer);
+    figures = loop.run();
+  }
+  // What is on the GPU goes with its context, which a lost display gives back no more.
+  if (Window::lost()) static_cast<void>(std::move(renderer).value().release());
+  return figures;
 }
 
 }  // namespace pliant

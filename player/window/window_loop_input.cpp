@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "player/exit.h"
+
 namespace pliant {
 namespace {
 
@@ -30,10 +32,13 @@ void WindowLoop::open(const std::string& file) {
 
 void WindowLoop::look_for_opened() {
   if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  if (const std::optional<Error> wrong = opening_.get()) {
-    say(wrong->message(), true);
-  } else {
-    figures_.opened = true;
+  try {
+    if (const std::optional<Error> wrong = opening_.get())
+      say(wrong->message(), true);
+    else
+      figures_.opened = true;
+  } catch (const std::exception& error) {  // a file that is too much is no reason to end
+    say(explain(error).message(), true);
   }
 }
 

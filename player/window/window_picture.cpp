@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "content/files/file_io.h"
 #include "content/files/image.h"
@@ -53,7 +54,7 @@ WindowPictures::~WindowPictures() {
   }
   changed_.notify_all();
   thread_.join();
-  window_.take_context();
+  if (!Window::lost()) window_.take_context();
 }
 
 void WindowPictures::begin(PictureOrder order) {
@@ -82,30 +83,50 @@ const PictureDone& WindowPictures::done() {
 }
 
 void WindowPictures::run() {
-  window_.take_context();
-  overlay_.emplace(scale_);
+  try {
+    window_.take_context();
+    overlay_.emplace(scale_);
+  } catch (...) {
+    failure_ = std::current_exception();  // every picture fails with it
+  }
+  draw_when_ordered();
+  overlay_.reset();
+  coarse_ = gpu::Framebuffer();
+  if (!Window::lost()) window_.give_context();
+}
+
+void WindowPictures::draw_when_ordered() {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return busy_ || stop_; });
       if (!busy_) break;
     }
-    try {
-      draw();
-    } catch (const std::exception& error) {  // ends the run, as any failed picture does
+    const auto fail = [this](Error why) {  // ends the run, as any failed picture does
+      const bool framed = done_.framed;
       done_ = PictureDone();
-      done_.failed = explain(error);
+      done_.framed = framed;
+      done_.failed = std::move(why);
+    };
+    done_ = PictureDone();
+    try {
+      if (failure_) std::rethrow_exception(failure_);
+      if (Window::lost())
+        fail(Window::loss());
+      else
+        draw();
+    } catch (const std::exception& error) {
+      fail(explain(error));
+    } catch (...) {
+      fail({"picture", "stopped by an exception of an unknown kind; please report it with the level"});
     }
     {
       const std::lock_guard lock(mutex_);
       busy_ = false;
     }
     changed_.notify_all();
-    window_.wake();
+    if (!Window::lost()) window_.wake();
   }
-  overlay_.reset();
-  coarse_ = gpu::Framebuffer();
-  window_.give_context();
 }
 
 void WindowPictures::take_snapshots() {
@@ -138,12 +159,12 @@ FrameStats WindowPictures::draw_scene(double share) {
 }
 
 void WindowPictures::draw() {
-  done_ = PictureDone();
   renderer_.options() = order_.options;
   take_snapshots();
   if (!order_.frame.empty()) {
     const Image image = renderer_.picture(order_.view, order_.frame_width, order_.frame_height);
     done_.frame = write_file(order_.frame, encode_png(image.width, image.height, image.rgba.data()));
+    done_.framed = done_.frame.ok();
   }
   // A picture that stays is worth some time.
   const bool stays = !order_.screenshot.empty();

@@ -85,6 +85,28 @@ TEST(Recording, ReadsBackToTheBitWhatWasWritten) {
   EXPECT_FALSE(read->poses[7 * 3 + 2].ready);
 }
 
+TEST(Recording, OneWithoutATickIsNotWrittenAndReplacesNothing) {
+  const fs::path file = fs::temp_directory_path() / ("pliant-no-tick-" + std::to_string(::getpid()));
+  fs::remove(file);
+  const RecordingHeader header{"level", 1000.0, {"p"}, 0, {}};
+  auto good = RecordingWriter::create(file, header);
+  ASSERT_TRUE(good);
+  good->tick(0);
+  good->pose({});
+  ASSERT_TRUE(good->finish());
+  auto empty = RecordingWriter::create(file, header, true);
+  ASSERT_TRUE(empty);
+  const fs::path aside = empty->aside();
+  const Status finished = empty->finish();
+  ASSERT_FALSE(finished);
+  EXPECT_NE(finished.error().message().find("no tick"), std::string::npos) << finished.error().message();
+  EXPECT_FALSE(fs::exists(aside));
+  const auto read = read_recording(file);
+  ASSERT_TRUE(read) << "it was replaced";
+  EXPECT_EQ(read->ticks.size(), 1u);
+  fs::remove(file);
+}
+
 TEST(Recording, EveryCutAndEveryFlippedBitIsNoticed) {
   const std::string bytes = recorded_bytes({"level", 1000.0, {"p"}}, 4);
   for (std::size_t size = 0; size < bytes.size(); ++size)
