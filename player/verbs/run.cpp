@@ -320,7 +320,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
                      fmt::format("{:016x}", hash.value()),
                      loop.soft,
                      {},
-                     wrong                   ? wrong->message()
+                     wrong                   ? sentence_of(kFailed, *wrong)
                      : interrupt.requested() ? "interrupted"
                                              : "done"};
   std::vector<std::string> sentences;

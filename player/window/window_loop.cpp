@@ -31,6 +31,12 @@ std::optional<double> mouse_radius(const World& world) {
   return {};
 }
 
+// A link that leads nowhere counts.
+bool is_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(file, ignored));
+}
+
 float tint_of(const World& world) {
   double reach = 0.0;
   for (auto [entity, deformable] : world.registry.view<Deformable>()) reach = std::max(reach, deformable.reach);
@@ -113,9 +119,7 @@ std::filesystem::path WindowLoop::next_frame() {
 // At once, and beside what is already there: a hand asked for it.
 std::filesystem::path WindowLoop::next_screenshot() const {
   std::filesystem::path file;
-  std::error_code ignored;
-  for (int i = 1; file.empty() || std::filesystem::exists(file, ignored); ++i)
-    file = s_.out.path() / fmt::format("screenshot-{:03d}.png", i);
+  for (int i = 1; file.empty() || is_there(file); ++i) file = s_.out.path() / fmt::format("screenshot-{:03d}.png", i);
   return file;
 }
 
@@ -170,7 +174,9 @@ Status WindowLoop::learn(const PictureDone& done) {
   state_.frames_per_second = frame_time_ > 0 ? 1 / frame_time_ : 0;
   if (done.options != ordered_options_) options_ = done.options;
   wants_mouse_ = done.wants_mouse;
-  if (!shooting_.empty())
+  if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
+    ++screenshots_;  // another window took the name meanwhile
+  else if (!shooting_.empty())
     say(done.screenshot ? shooting_.string() : done.screenshot.error().message(), !done.screenshot);
   shooting_.clear();
   if (!done.answer) return Done{};

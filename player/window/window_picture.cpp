@@ -10,7 +10,6 @@
 #include "content/files/image.h"
 #include "player/exit.h"
 #include "runtime/clock.h"
-#include "systems/visual/png.h"
 
 namespace pliant {
 namespace {
@@ -181,7 +180,11 @@ void WindowPictures::draw() {
     overlay_->draw(order_.overlay, renderer_.options(), order_.tint, order_.mouse, order_.width, order_.height,
                    order_.dt);
     done_.wants_mouse = overlay_->wants_mouse();
-    if (stays) done_.screenshot = write_png(read_back(order_.width, order_.height), order_.screenshot);
+    if (stays) {
+      const Image image = read_back(order_.width, order_.height);
+      done_.screenshot =
+          write_file(order_.screenshot, encode_png(image.width, image.height, image.rgba.data()), Existing::kRefuse);
+    }
     window_.present();
   }
   done_.options = renderer_.options();

@@ -309,7 +309,7 @@ TEST_F(WindowTest, EventsOfTheDisplayItselfMoveAndCloseIt) {
                                      "xdotool mousemove --window $id 200 100; sleep 0.3; xdotool mousemove --window "
                                      "$id 120 80; xdotool key Tab; sleep 1\n"
                                      "xdotool mousedown 1; sleep 2; xdotool mouseup 1; sleep 0.2\n"
-                                     "kill -INT $!; wait $!\n");
+                                     "kill -TERM $!; wait $!\n");
   const std::string line = std::string("env -u WAYLAND_DISPLAY ") + kDriversLeak +
                            "timeout 60 xvfb-run -a -s '-screen 0 400x300x24' sh " +
                            quoted((folder / "hand.sh").string()) + " >" + quoted((folder / "said").string()) + " 2>&1";
