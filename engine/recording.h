@@ -30,7 +30,7 @@ struct RecordingHeader {
   double rate = 1000.0;  // [Hz]
   std::vector<std::string> probes;
   std::uint64_t scene = 0;            // scene_hash() (engine/scene_check.h); 0: not known, of format 1
-  std::vector<std::string> settings;  // NODE.EXT.KEY=VALUE that were set on top of the level
+  std::vector<std::string> settings;  // NODE.EXT.KEY=VALUE that were set on top of the level; --unit=METRES
 };
 
 struct Recording {

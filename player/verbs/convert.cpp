@@ -1,6 +1,7 @@
 // pliant convert: any mesh format to glTF or GLB; an EXR panorama to a picture of its cube map.
 #include <set>
 #include <string>
+#include <utility>
 
 #include "content/files/exr.h"
 #include "content/files/file_io.h"
@@ -100,6 +101,9 @@ Status check_free(const ConvertOptions& options) {
 int convert_panorama(const ConvertOptions& options) {
   if (lower_extension(options.out) != ".png")
     return fail(kUsage, {options.out, "a panorama becomes a picture of its cube map; end the name with .png"});
+  for (const auto& [given, name] :
+       {std::pair(options.draco_bits != 0, "--draco"), {options.reorder, "--reorder"}, {options.unit != 1.0, "--unit"}})
+    if (given) return fail(kUsage, {name, "is for meshes, and a panorama becomes a picture; leave it out"});
   if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   const auto panorama = load_panorama(options.in);
   if (!panorama) return fail(kFailed, panorama.error());
@@ -124,6 +128,7 @@ int convert(const ConvertOptions& options) {
   if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   auto level = load_level(options.in);
   if (!level) return fail(kFailed, level.error());
+  if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
   for (const std::string& sentence : level->notes) note(sentence);
   scale_roots(*level, options.unit);
   if (options.reorder)

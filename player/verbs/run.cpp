@@ -39,6 +39,8 @@ constexpr double kEndless = 1e7;                         // [s] a window stays o
 Outcome check(const RunOptions& options) {
   if (options.field == "gpu" && options.frames == 0)
     return wrong_arguments({"--field gpu", "computes the surface for pictures; leave out --frames 0"});
+  if (options.sized && options.frames == 0 && (options.headless || options.lockstep || !options.replay.empty()))
+    return wrong_arguments({"--size", "is of pictures and windows; leave out --frames 0"});
   if (!options.replay.empty() && options.realtime)
     return wrong_arguments({"--replay", "runs in lockstep; leave out --realtime"});
   if (!options.replay.empty() && !options.probes.empty())
@@ -82,7 +84,9 @@ std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepar
 Outcome open_window(const RunOptions& options, Shown& shown) {
   const bool possible = !options.headless && !options.lockstep && options.replay.empty();
   if (!options.window && (!possible || !Window::display_is_there())) {
-    if (!options.input.empty()) return wrong_arguments({"--input", "is for a window; leave out --headless"});
+    if (!options.input.empty())
+      return wrong_arguments(
+          {"--input", "needs a window; leave out --headless, --lockstep and --replay, and set DISPLAY"});
     return {};
   }
   if (!options.input.empty()) {
@@ -94,7 +98,7 @@ Outcome open_window(const RunOptions& options, Shown& shown) {
       Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
   if (!window) {
     if (options.window) return failed(window.error());
-    note(window.error().what + " (going on without a window)");
+    note("running without a window: " + window.error().what);
     return {};
   }
   if (options.frames > 0 && options.seconds <= 0.0)
@@ -116,9 +120,18 @@ Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Fr
   } else if (run.world.field_place == FieldPlace::kGpu) {
     return failed({"--field gpu", "there is no GPU to compute on: " + made.error().message() + ", or use --field cpu"});
   } else {
-    say(run, made.error().message() + " (going on without pictures)");
+    say(run, "running without pictures: " + made.error().message());
   }
   return {};
+}
+
+// Something in this run could move this probe or tool.
+bool is_moved(const RunFigures& figures, std::size_t hand) {
+  const HapticDevice* device = find_device(figures.world, figures.journal.probes()[hand]);
+  const DriverKind driver = device ? device->driver : DriverKind::kNull;
+  if (driver == DriverKind::kMouse) return figures.mode == "window";
+  if (driver == DriverKind::kExternal) return figures.keeper.summaries()[hand].source.starts_with("replay:");
+  return driver != DriverKind::kNull;
 }
 
 // Nothing silent: what kept a hand from what the law says, who touched nothing at all, and what soft steps left
@@ -129,11 +142,16 @@ std::vector<std::string> explain_run(RunFigures& figures) {
     const Entity hand = figures.journal.probes()[i];
     const ProbeSummary& summary = figures.keeper.summaries()[i];
     figures.misses.emplace_back();
-    if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
+    if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
+      sentences.push_back(fmt::format("{} `{}` never touched anything: nothing moves it; give it --probe {}=orbit",
+                                      summary.tool ? "tool" : "probe", summary.name, summary.name));
+    } else if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
       figures.misses.back() = find_miss(figures.world, summary.approach, probe->radius);
       sentences.push_back(explain_miss(summary.name, figures.misses.back()));
     } else if (summary.contact_ticks == 0) {
-      sentences.push_back("tool `" + summary.name + "` never touched anything; lead its device to what it shall touch");
+      sentences.push_back("tool `" + summary.name +
+                          "` never touched anything; move its device into contact (script, or --probe " + summary.name +
+                          "=orbit)");
     }
     for (std::string& sentence : explain_limits(figures.world, hand, summary.name))
       sentences.push_back(std::move(sentence));
@@ -241,6 +259,14 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   World& world = run.world;
   const double rate = world.simulation.touch_rate;
   const std::uint64_t ticks = count_ticks(options, shown, run);
+  if (const double pictures = static_cast<double>(ticks) / rate * options.fps;
+      pictures > kMostFrames && !(shown && options.seconds <= 0.0))
+    return wrong_arguments(
+        {"--fps", fmt::format("{:.0f} pictures are asked for, and a run takes at most {}; give a lower "
+                              "one, or a shorter --seconds",
+                              pictures, kMostFrames)});
+  if (run.replay && options.seconds > 0.0 && ticks < static_cast<std::uint64_t>(std::llround(options.seconds * rate)))
+    say(run, fmt::format("the recording ends after {} ticks, before --seconds {}", ticks, options.seconds));
 
   auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out, options.force);
   if (!out) return failed(out.error());
@@ -282,6 +308,9 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   if (soft.any()) {
     loop.soft = &soft;
     soft.note_in(*bodies);
+    if (!options.record.empty() && (options.realtime || shown))
+      say(run, "the steps of the soft clock are not recorded: a replay of " + options.record +
+                   " follows the same poses, but its hash will differ; record with --lockstep for the same bits");
   }
   if (frames || shown) {
     const int spread = options.frames >= 0 ? options.frames : shown ? 0 : kDefaultFrames;

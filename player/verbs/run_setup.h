@@ -34,7 +34,7 @@ struct Prepared {
   std::optional<Recording> replay;
   std::vector<std::string> notes;
   std::uint64_t scene = 0;            // scene_hash() of the level that runs
-  std::vector<std::string> settings;  // --set, those of a replayed recording before them
+  std::vector<std::string> settings;  // for a recording: --set, --unit and --tool-force, those of a replay before them
 };
 
 // On stderr and in the report.

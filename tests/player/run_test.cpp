@@ -186,11 +186,11 @@ TEST_F(Run, AMeshInMillimetresIsHintedAtAndTouchedInItsUnit) {
   const Said wrong = touch("wrong", {}), said = touch("mm", {"--unit", "mm"}), number = touch("f", {"--unit", "0.001"});
   ASSERT_EQ(wrong.status, 0) << wrong.err;
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(wrong.err.find("millimetres"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("unusual for metres"), std::string::npos) << wrong.err;
   EXPECT_NE(wrong.err.find(Json::parse(pliant({"inspect", "big.obj", "--json"}).out)["unit_hint"].get<std::string>()),
             std::string::npos)
       << "one sentence for both: " << wrong.err;
-  EXPECT_EQ(said.err.find("millimetres"), std::string::npos) << said.err;
+  EXPECT_EQ(said.err.find("unusual for metres"), std::string::npos) << said.err;
   EXPECT_NEAR(report("mm")["probes"][0]["max_depth_m"], 0.002, 1e-6);
   ASSERT_EQ(number.status, 0) << number.err;
   EXPECT_EQ(report("f")["hash"], report("mm")["hash"]);
