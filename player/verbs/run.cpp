@@ -163,27 +163,38 @@ std::vector<std::string> explain_run(RunFigures& figures) {
   return sentences;
 }
 
-// Options for a file that was dropped: what was said of the first level's nodes and files is not meant for it.
-RunOptions another_level(const RunOptions& options, const std::string& file) {
-  RunOptions other = options;
+// Options for a file that was dropped, of those that were asked for: what was said of the first level's nodes and files
+// is not meant for it. `left`: which those are.
+RunOptions another_level(const RunOptions& asked, const std::string& file, std::string& left) {
+  RunOptions other = asked;
   other.level = file;
+  for (const auto& [given, name] : {std::pair(!asked.probes.empty(), "--probe"),
+                                    {!asked.sets.empty(), "--set"},
+                                    {!asked.record.empty(), "--record"},
+                                    {!asked.tool_force.empty(), "--tool-force"},
+                                    {asked.unit != 1.0, "--unit"},
+                                    {asked.force, "--force"}})
+    if (given) left += std::string(left.empty() ? "" : ", ") + name;
   other.probes.clear();
   other.sets.clear();
   other.record.clear();
   other.force = false;
   other.tool_force.clear();
   other.unit = 1.0;
-  if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
+  if (!asked.out.empty()) other.out = asked.out + "/" + std::filesystem::path(file).stem().string();
   return other;
 }
 
 // The same level anew, beside what was written of it.
-RunOptions same_level(const RunOptions& options) {
+RunOptions same_level(const RunOptions& options, const RunOptions& asked) {
   RunOptions other = options;
   other.force = false;
   std::error_code ignored;
-  for (int n = 2; !options.record.empty() && (n == 2 || std::filesystem::exists(other.record, ignored)); ++n)
-    other.record = numbered(options.record, n).string();  // the one under way has its place soon
+  // The recording under way has its place soon.
+  for (int n = 2; !options.record.empty() &&
+                  (n == 2 || other.record == options.record || std::filesystem::exists(other.record, ignored));
+       ++n)
+    other.record = numbered(asked.record, n).string();
   return other;
 }
 
@@ -211,7 +222,7 @@ Ran run_headless(const RunOptions& options, TouchLoop& loop) {
   return ran;
 }
 
-Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
+Ran run_shown(const RunOptions& options, const RunOptions& asked, Shown& shown, TouchLoop& loop, Prepared& next) {
   WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
                         loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
   session.soft = loop.soft;
@@ -223,12 +234,16 @@ Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared
   session.frame_ticks = loop.frame_ticks;
   // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
   const std::string field = loop.world.field_place == FieldPlace::kGpu ? "gpu" : "cpu";
-  session.open = [&options, &next, field](const std::string& file) -> std::optional<Error> {
+  session.open = [&options, &asked, &next, field](const std::string& file) -> std::optional<Error> {
     next = Prepared();
-    RunOptions other = file == options.level ? same_level(options) : another_level(options, file);
+    std::string left;
+    RunOptions other = file == options.level ? same_level(options, asked) : another_level(asked, file, left);
     other.field = field;
     if (Outcome wrong = prepare(other, true, next)) return wrong->error;
+    if (!left.empty())
+      say(next, fmt::format("the options {} are for the first level and do not hold for `{}`", left, next.world.name));
     next.options = other;
+    next.asked = asked;
     return {};
   };
   try {
@@ -317,7 +332,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
     loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps) : spread_frames(ticks, spread);
   }
   Prepared other;
-  const Ran ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
+  const Ran ran = shown ? run_shown(options, run.asked, *shown, loop, other) : run_headless(options, loop);
   soft.stop();  // where an exception left it running
   if (ran.opened) next = std::move(other);
   if (soft.any()) world.dropped |= world.soft->dropped;
@@ -394,7 +409,7 @@ int run(const RunOptions& options) {
   if (Outcome wrong = open_window(options, shown)) return fail(wrong->status, wrong->error);
   const bool windowed = shown.window != nullptr;
   std::optional<Prepared> next(std::in_place);
-  next->options = options;
+  next->options = next->asked = options;
   Outcome wrong = prepare(options, windowed, *next);
   const Interrupt interrupt;
   while (!wrong && next) {

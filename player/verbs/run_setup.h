@@ -30,6 +30,7 @@ inline Outcome failed(Error error) {
 // Everything a run needs before its first tick.
 struct Prepared {
   RunOptions options;
+  RunOptions asked;  // on the command line: other levels follow the first one in a window
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;

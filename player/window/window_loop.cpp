@@ -8,18 +8,20 @@
 
 #include "player/exit.h"
 #include "player/run/touch_loop.h"
+#include "runtime/printable.h"
 #include "systems/device/mouse.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {
 namespace {
 
-constexpr vec3 kToolColor(0.85f, 0.55f, 0.42f);  // linear: of a tool's plot
-constexpr double kMessageTime = 8.0;             // [s]
-constexpr float kTintShare = 0.2f;               // [1] of the reach: a height that is coloured fully
-constexpr double kSlowestTurn = 0.25;            // [s] beyond this, motion does not catch up
-constexpr double kSmoothing = 0.1;               // [1] of the newest picture in the shown rate
-constexpr double kHearEvery = 0.004;             // [s] at most
+constexpr vec3 kToolColor(0.85f, 0.55f, 0.42f);               // linear: of a tool's plot
+constexpr double kMessageTime = 8.0;                          // [s]
+constexpr float kTintShare = 0.2f;                            // [1] of the reach: a height that is coloured fully
+constexpr double kSlowestTurn = 0.25;                         // [s] beyond this, motion does not catch up
+constexpr double kSmoothing = 0.1;                            // [1] of the newest picture in the shown rate
+constexpr double kHearEvery = 0.004;                          // [s] at most
+constexpr std::size_t kLongestTitle = 28, kLongestName = 16;  // [byte] in the panel
 constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may never come: nobody sees what the hand does
 
 // The radius of the probe that the mouse moves, if there is one. [m]
@@ -29,6 +31,14 @@ std::optional<double> mouse_radius(const World& world) {
     if (device && device->driver == DriverKind::kMouse) return probe.radius;
   }
   return {};
+}
+
+// Of a file's name, as much as a panel has room for, in whole characters.
+std::string cut(const std::string& name, std::size_t longest) {
+  std::string shown = printable(name);
+  if (shown.size() <= longest) return shown;
+  while (longest > 0 && (static_cast<unsigned char>(shown[longest]) & 0xc0) == 0x80) --longest;
+  return shown.substr(0, longest) + "...";
 }
 
 // A link that leads nowhere counts.
@@ -54,12 +64,13 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
       options_(renderer.options()),
       tint_(tint_of(session.world)),
       pictures_(session.window, session.world, renderer) {
-  state_.title = session.world.name;
+  state_.title = cut(session.world.name, kLongestTitle);
   state_.rate_wanted = session.rate;
   for (std::size_t i = 0; i < session.journal.probes().size(); ++i) {
     const ProbeSummary& summary = session.keeper.summaries()[i];
     const Probe* probe = session.world.registry.find<Probe>(session.journal.probes()[i]);
-    state_.probes.push_back({summary.name, summary.source, probe ? probe->color : kToolColor, {}});
+    state_.probes.push_back(
+        {cut(summary.name, kLongestName), cut(summary.source, kLongestTitle), probe ? probe->color : kToolColor, {}});
     if (summary.source == "mouse") mouse_probe_ = i;
     if (carrier_ && session.journal.probes()[i] == carrier_->tool()) carried_ = i;
   }
@@ -68,7 +79,7 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
   probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
   if (radius_ || carrier_) add_mouse(session.world, probe_at_);
   if (carried_ && carrier_->taken() == kNoEntity)
-    say("take hold of `" + state_.probes[*carried_].name + "` with the left button to carry it yourself", false);
+    say("drag `" + session.keeper.summaries()[*carried_].name + "` with the left button to move it", false);
 }
 
 Ray WindowLoop::ray() const {

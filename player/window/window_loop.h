@@ -38,7 +38,7 @@ class WindowLoop {
   void wheel(const InputEvent& event);
   void open(const std::string& file);  // on a thread of its own
   void look_for_opened();
-  void say(std::string sentence, bool error);
+  void say(const std::string& sentence, bool error);
   void point(double dt);
   void keep();  // rows of the journal
   PictureOrder order(bool shown);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "player/exit.h"
+#include "runtime/printable.h"
 
 namespace pliant {
 namespace {
@@ -18,8 +19,8 @@ std::size_t imgui_button(MouseButton button) {
 
 }  // namespace
 
-void WindowLoop::say(std::string sentence, bool error) {
-  state_.message = std::move(sentence);
+void WindowLoop::say(const std::string& sentence, bool error) {
+  state_.message = printable(sentence);
   state_.message_is_error = error;
   said_at_ = seconds_;
 }
