@@ -8,6 +8,7 @@
 namespace pliant {
 namespace {
 
+constexpr const char* kReport = "; please report it with the level";
 constexpr double kTellEvery = 0.1;  // [s] of figures for a person to read
 
 }  // namespace
@@ -157,9 +158,9 @@ void TouchClock::run() {
     last_.time = static_cast<double>(last_.index) * last_.dt;
     tick_without_devices();
   } catch (const std::exception& thrown) {
-    error_ = Error{"touch clock", std::string("stopped by an exception: ") + thrown.what()};
+    error_ = Error{"touch clock", std::string("stopped by an exception: ") + thrown.what() + kReport};
   } catch (...) {
-    error_ = Error{"touch clock", "stopped by an exception of an unknown kind"};
+    error_ = Error{"touch clock", std::string("stopped by an exception of an unknown kind") + kReport};
   }
   if (error_) end_after_error();
   if (hooks_.end) hooks_.end();

@@ -131,8 +131,8 @@ void say_creeping(Prepared& run) {
     }
     const Name* name = run.world.registry.find<Name>(entity);
     sentence = fmt::format(
-        "`{}`: a surface that settles in {:g} s creeps and does not coast: damping_ratio {:.3g} is "
-        "taken instead of {:g}; give a shorter settling_time to have your own",
+        "`{}`: settling_time {:g} s needs damping_ratio {:.3g}, which is used instead of {:g}; give a shorter "
+        "settling_time to keep your own",
         name ? name->value : std::string(), deformable.settling_time, ratio, deformable.damping_ratio);
   }
   if (more > 0) sentence += fmt::format(" ({} more surfaces too)", more);

@@ -161,7 +161,7 @@ TEST_F(Run, AProbeThatStaysInAnothersDentIsToldSo) {
   const Said said = pliant(
       {"run", "plate.obj", "--probe", "a=script:a.csv", "--probe", "b=script:b.csv", "--out", "out", "--frames", "0"});
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(said.err.find("`b` never touched anything, although it was behind the surface of `plate`"),
+  EXPECT_NE(said.err.find("`b` never touched anything, although it was below the surface of `plate`"),
             std::string::npos)
       << said.err;
 }
@@ -323,7 +323,7 @@ TEST_F(Run, AFileWithNothingToTouchSaysSo) {
   write_text(folder / "empty.gltf", R"({"asset": {"version": "2.0"}})");
   const Said said = pliant({"run", "empty.gltf", "--seconds", "0.1", "--frames", "0", "--out", "out"});
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(said.err.find("finds no surface"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("found no deformable surface"), std::string::npos) << said.err;
   EXPECT_EQ(report("out")["probes"][0]["contact_ticks"], 0);
 }
 
