@@ -1,8 +1,12 @@
 // pliant run: a level or mesh, its probes, the loop, and what is written about it.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <future>
 #include <optional>
 #include <utility>
 
@@ -206,10 +210,13 @@ struct Ran {
   std::size_t pictures = 0;
   bool opened = false;    // another level takes its place
   Status ended = Done{};  // what ended it early
+  bool hung = false;      // in a picture (window_session.h)
+  std::future<std::optional<Error>> opening;
 };
 
 Ran run_headless(const RunOptions& options, TouchLoop& loop) {
-  Ran ran{options.realtime ? "realtime" : "lockstep"};
+  Ran ran;
+  ran.mode = options.realtime ? "realtime" : "lockstep";
   try {
     ran.ended = options.realtime ? run_realtime(loop, ran.overruns) : run_lockstep(loop);
   } catch (const std::exception& error) {
@@ -247,10 +254,12 @@ Ran run_shown(const RunOptions& options, const RunOptions& asked, Shown& shown, 
     return {};
   };
   try {
-    const WindowFigures figures = run_window(session);
-    return {"window", figures.overruns, figures.frames, figures.pictures, figures.opened, figures.ended};
+    WindowFigures figures = run_window(session);
+    return {"window",       figures.overruns, figures.frames, figures.pictures,
+            figures.opened, figures.ended,    figures.hung,   std::move(figures.opening)};
   } catch (const std::exception& error) {
-    Ran ran{"window"};
+    Ran ran;
+    ran.mode = "window";
     ran.ended = explain(error);
     return ran;
   }
@@ -397,6 +406,13 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   figures.dropped.insert(figures.dropped.end(), run.notes.begin(), run.notes.end());
   if (const std::optional<Error> lost = write_reports(figures, *out); lost && !wrong) wrong = lost;
   print_summary(figures, *out);
+  if (ran.opening.valid() && ran.opening.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    note("results are written; waiting until the file that was dropped is read");
+  if (ran.hung) {  // a thread that nobody can end uses the window and the world
+    { const OutputFolder done = std::move(*out); }
+    std::fflush(stdout);
+    ::_exit(wrong ? fail(kFailed, *wrong) : kDone);
+  }
   return wrong ? failed(*wrong) : Outcome();
 }
 

@@ -22,6 +22,7 @@ constexpr double kSlowestTurn = 0.25;                         // [s] beyond this
 constexpr double kSmoothing = 0.1;                            // [1] of the newest picture in the shown rate
 constexpr double kHearEvery = 0.004;                          // [s] at most
 constexpr std::size_t kLongestTitle = 28, kLongestName = 16;  // [byte] in the panel
+constexpr double kHungEnd = 10.0;                             // [s] that the end waits for a picture
 constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may never come: nobody sees what the hand does
 
 // The radius of the probe that the mouse moves, if there is one. [m]
@@ -236,7 +237,7 @@ Status WindowLoop::turn_until_the_end() {
 WindowFigures WindowLoop::run() {
   if (const Status ready = warm_up(); !ready) {
     figures_.ended = ready;
-    return figures_;
+    return std::move(figures_);
   }
   TouchHooks hooks;
   hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
@@ -251,18 +252,21 @@ WindowFigures WindowLoop::run() {
   touch_->stop();
   try {
     keep();
+    figures_.hung = !pictures_.wait(kHungEnd);
+    if (figures_.hung && status)
+      status = Error{"picture", "the graphics driver does not answer; update it, or use --headless"};
     if (begun_ && status) status = learn(pictures_.done());
   } catch (const std::exception& error) {
     if (status) status = explain(error);
   }
-  if (opening_.valid()) opening_.wait();
-  if (!Window::lost()) s_.window.hide_cursor(false);
+  figures_.opening = std::move(opening_);
+  if (!Window::lost() && !figures_.hung) s_.window.hide_cursor(false);
   if (!touch_->has_priority()) note(kNoPriority);
   figures_.overruns = touch_->overruns();
   figures_.ended = status;
   if (s_.soft && s_.soft->error()) figures_.ended = *s_.soft->error();
   if (touch_->error()) figures_.ended = *touch_->error();
-  return figures_;
+  return std::move(figures_);
 }
 
 WindowFigures run_window(WindowSession& session) {
@@ -272,13 +276,12 @@ WindowFigures run_window(WindowSession& session) {
     none.ended = renderer.error();
     return none;
   }
-  WindowFigures figures;
-  {
-    WindowLoop loop(session, **renderer);
-    figures = loop.run();
-  }
-  // What is on the GPU goes with its context, which a lost display gives back no more.
-  if (Window::lost()) static_cast<void>(std::move(renderer).value().release());
+  auto loop = std::make_unique<WindowLoop>(session, **renderer);
+  WindowFigures figures = loop->run();
+  if (figures.hung) static_cast<void>(loop.release());  // its thread goes on using it
+  loop.reset();
+  // What is on the GPU goes with its context, which a lost display or a hung driver gives back no more.
+  if (Window::lost() || figures.hung) static_cast<void>(std::move(renderer).value().release());
   return figures;
 }
 

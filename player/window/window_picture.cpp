@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 
@@ -79,6 +80,11 @@ const PictureDone& WindowPictures::done() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !busy_; });
   return done_;
+}
+
+bool WindowPictures::wait(double seconds) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return !busy_; });
 }
 
 void WindowPictures::run() {

@@ -59,6 +59,8 @@ class WindowPictures {
   double seconds() const;  // [s] that the picture under way has taken so far, else 0
   // What came of the picture before, waiting for it.
   const PictureDone& done();
+  // False: after so long [s] a picture is still under way.
+  bool wait(double seconds);
 
  private:
   void run();
