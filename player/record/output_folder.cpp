@@ -195,7 +195,7 @@ Status OutputFolder::move_on() {
 int OutputFolder::place_list() {
   const fs::path copy = staging_ / kListCopy;
   if (::link((staging_ / kRunList).c_str(), copy.c_str()) != 0) return ENOTSUP;
-  const int error = move_file(copy, folder_ / kRunList, replace_);
+  const int error = move_file(copy, folder_ / kRunList, replaces());
   std::error_code ignored;
   fs::remove(copy, ignored);
   return error;
@@ -218,7 +218,7 @@ Status OutputFolder::commit() {
   // The list first: it says what may come, should the process be killed now.
   int placed = EEXIST;
   for (int attempt = 0; placed == EEXIST && attempt < kAttempts; ++attempt) {
-    if (std::any_of(names_.begin(), names_.end(), in_the_way) || (!replace_ && is_there(folder_ / kRunList))) {
+    if (std::any_of(names_.begin(), names_.end(), in_the_way) || (!replaces() && is_there(folder_ / kRunList))) {
       if (const Status next = move_on(); !next) return next.error();
       old.clear();
     }
@@ -232,7 +232,7 @@ Status OutputFolder::commit() {
     return error != 0;
   });
   if (placed != 0)  // a file system without links
-    if (const int error = move_file(staging_ / kRunList, folder_ / kRunList, replace_); error != 0)
+    if (const int error = move_file(staging_ / kRunList, folder_ / kRunList, replaces()); error != 0)
       note_first(kRunList, kNotMoved, std::generic_category().message(error) + cure);
   std::error_code error;
   for (const std::string& name : old)

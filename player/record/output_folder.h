@@ -45,6 +45,7 @@ class OutputFolder {
   Status open(const std::filesystem::path& folder);
   Status move_on();
   int place_list();
+  bool replaces() const { return replace_ && !moved(); }
   Status choose_next();
   std::filesystem::path given_, asked_, folder_, staging_;
   bool replace_ = false;
