@@ -17,7 +17,7 @@ std::vector<std::string> explain_dropped(std::uint32_t dropped) {
   std::vector<std::string> sentences;
   if (dropped & kDroppedContacts)
     sentences.push_back(
-        "more contacts on one object than it has room for, and some were not felt; use fewer probes, or split the "
+        "an object had more contacts than its list holds, and the others made no force; use fewer probes, or split the "
         "object");
   if (dropped & kDroppedNonFinite)
     sentences.push_back("a pose or force was not a number and was replaced by zero; check the device");
@@ -37,7 +37,8 @@ std::vector<std::string> explain_dropped(std::uint32_t dropped) {
         "script down");
   if (dropped & kDroppedSetBack)
     sentences.push_back(
-        "a tool got away from its device (more than 2 m, or faster than 50 m/s) and was set back into the hand; reduce "
+        "a tool separated from its device (more than 2 m, or faster than 50 m/s) and was reset to the device's pose; "
+        "reduce "
         "`soft_step`, or move slower");
   return sentences;
 }

@@ -40,8 +40,7 @@ std::string sentence(SafetyLimit limit, const LimitCount& count, const std::stri
           who, q.name, ticks, percent);
     case SafetyLimit::kGated:
       return fmt::format(
-          "{}: no {} was sent in {}, because it begins only once less than {} is wanted; begin outside of what is "
-          "touched",
+          "{}: no {} was sent in {}: the safety gate opens once less than {} is computed; start outside the object",
           who, q.name, ticks, q.smaller);
     case SafetyLimit::kSlewed:
       return fmt::format(

@@ -107,6 +107,7 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
   const std::size_t body = bytes.size() - in.at - sizeof(std::uint64_t);
   if (body % tick_bytes != 0) return short_file;
   const std::size_t ticks = body / tick_bytes;
+  if (ticks == 0) return Error{name, "holds no tick; record it again"};
   recording.ticks.reserve(ticks);
   recording.poses.reserve(ticks * probes);
   for (std::size_t t = 0; t < ticks; ++t) {
@@ -121,7 +122,8 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
         *value = in.get<double>();
       pose.ready = in.get<std::uint8_t>() == 1;
       if (!sound(pose))
-        return Error{name, "has a pose that is no pose at tick " + std::to_string(index) + "; record it again"};
+        return Error{name, "has a pose at tick " + std::to_string(index) +
+                               " that is not finite or not a unit quaternion; record it again"};
       recording.poses.push_back(pose);
     }
   }
@@ -132,9 +134,11 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
 
 Result<Recording> read_recording(const fs::path& file) {
   std::error_code error;
-  const std::uint64_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
+  // Looked at before it is opened: a pipe would be waited for.
+  if (!fs::is_regular_file(file, error)) return Error{file.string(), "is no file that can be read; check the path"};
+  const std::uint64_t size = fs::file_size(file, error);
   std::ifstream in(file, std::ios::binary);
-  if (!in || error || !fs::is_regular_file(file, error)) return Error{file.string(), "cannot be read; check the path"};
+  if (!in || error) return Error{file.string(), "cannot be read; check its permissions"};
   if (size > kMaxBytes) return Error{file.string(), "is larger than 1 GiB; record a shorter run"};
   std::string bytes(size, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(size));
@@ -150,6 +154,8 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
   if (fs::is_directory(file, ignored)) return Error{file.string(), "is a folder; name a file in it"};
   if (fs::exists(file, ignored)) {
     if (!replace) return Error{file.string(), "is there already; name another, or replace it with --force"};
+    if (!fs::is_regular_file(file, ignored))
+      return Error{file.string(), "is not a regular file; name another"};  // a pipe would be waited for
     char magic[sizeof kMagic] = {};
     std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
     if (std::memcmp(magic, kMagic, sizeof kMagic) != 0)
@@ -160,9 +166,11 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
   writer.file_ = file;
   writer.replace_ = replace;
   writer.probes_ = header.probes.size();
-  writer.aside_ = file;
   static std::atomic<int> writers{0};
-  writer.aside_ += ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(writers++);
+  do {
+    writer.aside_ = file;
+    writer.aside_ += ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(writers++);
+  } while (fs::symlink_status(writer.aside_, ignored).type() != fs::file_type::not_found);
   auto out = GrowingFile::create(writer.aside_);
   if (!out) return Error{file.string(), out.error().what};
   writer.out_.emplace(std::move(out).value());
@@ -210,6 +218,7 @@ void RecordingWriter::add_record() {
 }
 
 void RecordingWriter::tick(std::uint64_t index) {
+  ++ticks_;
   put(index);
   if (probes_ == 0) add_record();
 }
@@ -223,6 +232,12 @@ void RecordingWriter::pose(const RecordedPose& pose) {
 }
 
 Status RecordingWriter::finish() {
+  if (ticks_ == 0) {
+    std::error_code ignored;
+    fs::remove(aside_, ignored);
+    if (const Status closed = out_->close(); !closed) return closed;
+    return Error{file_.string(), "is not written, because no tick was recorded; run for longer"};
+  }
   const auto bytes_of = [](const std::uint64_t& hash) {
     return std::string_view(reinterpret_cast<const char*>(&hash), sizeof hash);
   };
@@ -253,7 +268,9 @@ Status RecordingWriter::finish() {
     return Error{file_.string(), "cannot be put in place: " + why_not_written(error)};
   }
   if (failure) return *failure;
-  if (place != file_) return Error{file_.string(), "is another's meanwhile; the recording is " + place.string()};
+  if (place != file_)
+    return Error{file_.string(),
+                 "was created by another program during the run; the recording was saved as " + place.string()};
   return Done{};
 }
 

@@ -30,7 +30,7 @@ struct RecordingHeader {
   double rate = 1000.0;  // [Hz]
   std::vector<std::string> probes;
   std::uint64_t scene = 0;            // scene_hash() (engine/scene_check.h); 0: not known, of format 1
-  std::vector<std::string> settings;  // NODE.EXT.KEY=VALUE that were set on top of the level
+  std::vector<std::string> settings;  // NODE.EXT.KEY=VALUE that were set on top of the level; --unit=METRES
 };
 
 struct Recording {
@@ -54,7 +54,9 @@ class RecordingWriter {
   void tick(std::uint64_t index);  // then one pose for each probe, in order
   void pose(const RecordedPose& pose);
   const std::optional<Error>& failure() const { return out_->failure(); }
+  std::uint64_t ticks() const { return ticks_; }                 // so far
   const std::filesystem::path& aside() const { return aside_; }  // where it is until finish()
+  // Into place. A recording without a tick is an error, and replaces nothing.
   Status finish();
 
  private:
@@ -66,6 +68,7 @@ class RecordingWriter {
   std::filesystem::path file_, aside_;
   bool replace_ = false;
   std::size_t probes_ = 0, poses_ = 0;  // of a tick; in the record so far
+  std::uint64_t ticks_ = 0;
   std::optional<GrowingFile> out_;
   std::string record_;
   Hash hash_;

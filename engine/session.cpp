@@ -92,7 +92,7 @@ Status Session::orbit(const std::string& name) {
   const auto index = static_cast<unsigned>(effector - parts_->effectors.data());
   Path path = orbit_of(parts_->world, effector->entity, index);
   if (path.rows.empty())
-    return Error{"Session::orbit `" + name + "`", "finds no surface that gives way; add one with Scene::add_surface"};
+    return Error{"Session::orbit `" + name + "`", "found no deformable surface; add one with Scene::add_surface"};
   return follow(name, std::move(path));
 }
 
@@ -170,10 +170,11 @@ Status Session::step(std::uint64_t ticks) {
     }
   } catch (const std::exception& thrown) {
     p.end("it was stopped by an exception");
-    done = Error{"Session::step", std::string("stopped by an exception: ") + thrown.what()};
+    done = Error{"Session::step",
+                 std::string("stopped by an exception: ") + thrown.what() + "; please report it with the scene"};
   } catch (...) {
     p.end("it was stopped by an exception");
-    done = Error{"Session::step", "stopped by an exception of an unknown kind"};
+    done = Error{"Session::step", "stopped by an exception of an unknown kind; please report it with the scene"};
   }
   p.rows.acquire();
   if (p.recorder) p.recorder->drain();
@@ -243,7 +244,7 @@ Status Session::set(const std::string& object, const std::string& key, double va
   const auto surface = p.surfaces.find(object);
   const auto device = p.devices.find(object);
   if (surface == p.surfaces.end() && device == p.devices.end())
-    return Error{"`" + object + "`", "is no surface that gives way, no probe and no tool; check the name"};
+    return Error{"`" + object + "`", "is not a deformable surface, a probe or a tool; check the name"};
   std::string known;
   for (std::uint32_t k = 0; k < live_keys().size(); ++k) {
     const LiveKey& live = live_keys()[k];
@@ -289,7 +290,9 @@ Result<double> Session::get(const std::string& object, const std::string& key) c
     const auto device = parts_->devices.find(object);
     if (live.device && device != parts_->devices.end()) return device->second.*(live.device);
   }
-  return Error{"`" + object + "`: " + key, "is no key that a session keeps; see Session::set"};
+  std::string known;
+  for (const LiveKey& live : live_keys()) known += (known.empty() ? "" : ", ") + std::string(live.key);
+  return Error{"`" + object + "`", "has no key '" + key + "' that a session keeps; keys are: " + known};
 }
 
 }  // namespace pliant

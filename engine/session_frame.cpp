@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr const char* kNoSurface = "does not give way (it has no PLIANT_deformable); ask Session::vertices()";
+constexpr const char* kNoSurface = "is not deformable (it has no PLIANT_deformable); ask Session::vertices()";
 
 // The mesh that is touched, whatever kind of object.
 const Mesh* mesh_of(const World& world, Entity entity) {

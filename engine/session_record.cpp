@@ -9,6 +9,7 @@
 #include "content/files/file_io.h"
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
+#include "runtime/printable.h"
 #include "systems/safety/safety.h"
 
 namespace pliant {
@@ -161,7 +162,7 @@ Status export_recording(const std::filesystem::path& file, const std::filesystem
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const RecordedPose& pose = recording->poses[n * probes.size() + i];
       std::string name;
-      for (const char c : probes[i]) name += c == '"' ? std::string("\"\"") : std::string(1, c);
+      for (const char c : printable(probes[i])) name += c == '"' ? std::string("\"\"") : std::string(1, c);
       text += fmt::format("{},{:.9g},\"{}\",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", recording->ticks[n],
                           static_cast<double>(recording->ticks[n]) / recording->header.rate, name, pose.position.x,
                           pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x, pose.rotation.y,

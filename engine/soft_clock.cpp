@@ -11,6 +11,10 @@
 
 namespace pliant {
 
+namespace {
+constexpr const char* kReport = "; please report it with the level";
+}
+
 SoftClock::SoftClock(World& world) : world_(world), schedule_(soft_schedule()) {
   for (auto [entity, body] : world.registry.view<const SoftBody>())
     tetrahedra_ += world.tet_meshes[body.tets].tets.size();
@@ -64,9 +68,9 @@ void SoftClock::run() {
   try {
     loop();
   } catch (const std::exception& thrown) {
-    error_ = Error{"soft clock", std::string("stopped by an exception: ") + thrown.what()};
+    error_ = Error{"soft clock", std::string("stopped by an exception: ") + thrown.what() + kReport};
   } catch (...) {
-    error_ = Error{"soft clock", "stopped by an exception of an unknown kind"};
+    error_ = Error{"soft clock", std::string("stopped by an exception of an unknown kind") + kReport};
   }
   failed_ = error_.has_value();
 }

@@ -120,9 +120,9 @@ std::vector<std::string> make_orbits(World& world) {
     index += world.registry.has<Probe>(hand);
     if (path.rows.empty()) {
       const Name* name = world.registry.find<Name>(hand);
-      held.push_back("the path `orbit` of `" + (name ? name->value : std::string()) +
-                     "` finds no surface that gives way, so it is held where it stands; give it a script, or a node "
-                     "PLIANT_deformable");
+      const std::string its = name ? name->value : std::string();
+      held.push_back("`orbit` of `" + its + "` found no deformable surface, so `" + its +
+                     "` does not move; give it a script, or a node PLIANT_deformable");
       continue;
     }
     world.registry.get<HapticDevice>(device_of(world, hand)).path = world.paths.add(std::move(path));

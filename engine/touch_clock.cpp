@@ -8,6 +8,7 @@
 namespace pliant {
 namespace {
 
+constexpr const char* kReport = "; please report it with the level";
 constexpr double kTellEvery = 0.1;  // [s] of figures for a person to read
 
 }  // namespace
@@ -52,13 +53,30 @@ void TouchClock::tick(Tick tick) {
   if (hooks_.before) hooks_.before(tick);
   schedule_.run(world_, tick);
   if (hooks_.after) hooks_.after(tick);
+  noted_ = true;
   now_.store(tick.index, std::memory_order_relaxed);
 }
 
-void TouchClock::pause_devices(Tick tick) {
+// last_ with every device lost: it goes through safety, so its forces are zero. No device is read.
+void TouchClock::tick_without_devices() {
+  for (auto [entity, device] : world_.registry.view<HapticDevice>()) device.status = DeviceStatus::kLost;
+  schedule_.run(world_, last_);
+  if (hooks_.after) hooks_.after(last_);
+  noted_ = true;
+  now_.store(last_.index, std::memory_order_relaxed);
+}
+
+void TouchClock::pause_devices() {
   std::size_t i = 0;
   for (auto [entity, device] : world_.registry.view<HapticDevice>()) before_pause_[i++] = device.status;
-  let_go(world_, tick);
+  tick_without_devices();
+  i = 0;
+  bool found = false;  // a mouse that was first heard in this very tick
+  for (auto [entity, device] : world_.registry.view<HapticDevice>()) {
+    if (device.status == DeviceStatus::kReady) before_pause_[i] = device.status, found = true;
+    ++i;
+  }
+  if (found) let_go(world_, last_);
 }
 
 void TouchClock::resume_devices() {
@@ -91,9 +109,12 @@ void TouchClock::loop() {
     const Tick wall = clock.next();
     if (paused_) {
       if (!standing) {
-        pause_index = wall.index;
+        const std::uint64_t index = wall.index - stood;
+        if (index >= ticks_) break;
+        last_ = {index, wall.dt, static_cast<double>(index) * wall.dt};
+        pause_index = wall.index + 1;
         pause_overruns = clock.overruns();
-        pause_devices(last_);
+        pause_devices();
       }
       standing = true;
       if (hooks_.idle) hooks_.idle(last_);
@@ -116,22 +137,32 @@ void TouchClock::loop() {
   overruns_ = clock.overruns() - stood_overruns;
 }
 
+// The last row, where there are any, has zero force whatever failed.
+void TouchClock::end_after_error() {
+  let_go(world_, last_);
+  if (!noted_) return;
+  ++last_.index;
+  last_.time = static_cast<double>(last_.index) * last_.dt;
+  try {
+    if (hooks_.after) hooks_.after(last_);
+    now_.store(last_.index, std::memory_order_relaxed);
+  } catch (...) {  // the first error is the one to say
+  }
+}
+
 void TouchClock::run() {
   granted_ = request_realtime_priority();
   try {
     loop();
-    for (auto [entity, device] : world_.registry.view<HapticDevice>()) device.status = DeviceStatus::kLost;
     ++last_.index;
-    last_.time += last_.dt;
-    schedule_.run(world_, last_);  // no device is read any more
-    if (hooks_.after) hooks_.after(last_);
-    now_.store(last_.index, std::memory_order_relaxed);
+    last_.time = static_cast<double>(last_.index) * last_.dt;
+    tick_without_devices();
   } catch (const std::exception& thrown) {
-    error_ = Error{"touch clock", std::string("stopped by an exception: ") + thrown.what()};
+    error_ = Error{"touch clock", std::string("stopped by an exception: ") + thrown.what() + kReport};
   } catch (...) {
-    error_ = Error{"touch clock", "stopped by an exception of an unknown kind"};
+    error_ = Error{"touch clock", std::string("stopped by an exception of an unknown kind") + kReport};
   }
-  if (error_) let_go(world_, last_);
+  if (error_) end_after_error();
   if (hooks_.end) hooks_.end();
   done_ = true;
 }

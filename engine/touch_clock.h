@@ -46,7 +46,8 @@ class TouchClock {
 
   // The world is the thread's from start() until stop() returns.
   void start();
-  // Stands still in its own time. Devices are let go; those that were ready come back through the gate.
+  // Stands still in its own time. Devices are let go in one tick, which is noted like any other; those that were ready
+  // come back through the gate.
   void pause(bool paused);
   bool paused() const { return paused_; }
   void stop();
@@ -63,7 +64,9 @@ class TouchClock {
   void run();
   void loop();
   void tick(Tick tick);
-  void pause_devices(Tick tick);
+  void tick_without_devices();
+  void pause_devices();
+  void end_after_error();
   void resume_devices();
   void tell(double time);
 
@@ -80,6 +83,7 @@ class TouchClock {
   Tick last_{};
   std::uint64_t told_at_ = 0, told_count_ = 0, count_ = 0;
   std::uint64_t overruns_ = 0;
+  bool noted_ = false;  // a tick has come to its end
   bool granted_ = false;
   std::optional<Error> error_;
   std::thread thread_;

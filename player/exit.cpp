@@ -1,37 +1,59 @@
 #include "player/exit.h"
 
+#include <poll.h>
+#include <unistd.h>
+
+#include <climits>
 #include <cstdio>
 #include <new>
 
+#include "player/progress.h"
 #include "runtime/printable.h"
 
 namespace pliant {
 namespace {
 
-// Names from files may hold anything; a line end at the end says nothing.
-std::string one_line(std::string text) {
+// A line end at the end says nothing.
+std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '\n' || text.back() == '\r')) text.pop_back();
-  return printable(text);
+  return text;
+}
+
+// Names from files may hold anything.
+std::string note_line(const std::string& sentence) {
+  return std::string(progress_line_stands() ? "\r\x1b[K" : "") + "pliant: note: " + printable(trimmed(sentence)) + '\n';
 }
 
 }  // namespace
 
-int fail(ExitStatus status, const Error& error) {
-  std::string sentence = one_line(error.message());
+std::string sentence_of(ExitStatus status, const Error& error) {
+  std::string sentence = trimmed(error.message());
   if (sentence.find("; ") == std::string::npos)  // a finding that is its own cure, to a reader who knows the format
     sentence += status == kUsage ? "; see `pliant --help`" : "; mend the input: `pliant validate` lists every finding";
-  std::fprintf(stderr, "pliant: error: %s\n", sentence.c_str());
+  return sentence;
+}
+
+int fail(ExitStatus status, const Error& error) {
+  std::fprintf(stderr, "pliant: error: %s\n", printable(sentence_of(status, error)).c_str());
   return status;
 }
 
 Error explain(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error))
-    return {"memory", "there is not enough for this input; use a smaller one"};
+    return {"memory", "out of memory; use a coarser mesh, or smaller pictures (--size)"};
   return {"pliant", std::string(error.what()) + "; please report this input"};
 }
 
 void note(const std::string& sentence) {
-  std::fprintf(stderr, "pliant: note: %s\n", one_line(sentence).c_str());
+  std::fputs(note_line(sentence).c_str(), stderr);
+}
+
+void note_at_once(const std::string& sentence) {
+  const std::string line = note_line(sentence);
+  pollfd room{STDERR_FILENO, POLLOUT, 0};
+  // A pipe that can be written has room for PIPE_BUF bytes, which is more than a line.
+  if (line.size() > PIPE_BUF || ::poll(&room, 1, 0) <= 0 || !(room.revents & POLLOUT)) return;
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <string>
 
 #include "runtime/result.h"
 
@@ -15,7 +16,12 @@ int fail(ExitStatus status, const Error& error);
 // What an exception that nobody below expected (most are a library's) says to a user.
 Error explain(const std::exception& error);
 
+// The error's sentence with its cure, as fail() prints it and the report has it.
+std::string sentence_of(ExitStatus status, const Error& error);
+
 // Prints `pliant: note: ...` to stderr: something was done differently than a user might expect.
 void note(const std::string& sentence);
+// The same without waiting for whoever reads stderr: left out where there is no room.
+void note_at_once(const std::string& sentence);
 
 }  // namespace pliant

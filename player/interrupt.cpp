@@ -39,6 +39,7 @@ constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 }  // namespace
 
 struct Interrupt::State {
+  InterruptWords words;
   std::mutex mutex;  // of the two below
   std::optional<Error> reason;
   std::vector<std::filesystem::path> staged;
@@ -56,8 +57,7 @@ struct Interrupt::State {
       if (presses > 0 && now - counted < kOnePress) continue;
       counted = now;
       if (++presses == kForcedPress) end_at_once();
-      if (presses == kForcedPress - 1)
-        note("the run is ending and its report is being written; Ctrl-C once more ends at once, without it");
+      if (presses == kForcedPress - 1) note_at_once(words.second);
     }
   }
 
@@ -70,12 +70,13 @@ struct Interrupt::State {
         std::filesystem::remove_all(*at, error);
         if (!error) break;
       }
-    note("ended at once, without a report");
+    note_at_once(words.third);
     ::_exit(128 + SIGINT);
   }
 };
 
-Interrupt::Interrupt() : state_(std::make_unique<State>()) {
+Interrupt::Interrupt(InterruptWords words) : state_(std::make_unique<State>()) {
+  state_->words = words;
   g_requested = g_pressed = false;
   sem_init(&g_arrived, 0, 0);
   state_->watcher = std::thread([state = state_.get()] { state->watch(); });
@@ -84,7 +85,7 @@ Interrupt::Interrupt() : state_(std::make_unique<State>()) {
   action.sa_flags = SA_RESTART;
   for (std::size_t i = 0; i < std::size(kSignals); ++i) {
     sigaction(kSignals[i], nullptr, &state_->before[i]);
-    if (kSignals[i] == SIGHUP && state_->before[i].sa_handler == SIG_IGN) continue;
+    if (kSignals[i] != SIGTERM && state_->before[i].sa_handler == SIG_IGN) continue;
     sigaction(kSignals[i], &action, nullptr);
   }
 }

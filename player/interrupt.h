@@ -10,13 +10,19 @@
 
 namespace pliant {
 
+// What is said at the second Ctrl-C, and at the third.
+struct InterruptWords {
+  const char* second = "ending, results are being written; press Ctrl-C again to quit at once without them";
+  const char* third = "quit at once; results of this run were not written";
+};
+
 // From its beginning to its end SIGINT, SIGTERM and SIGHUP only request the end of the run, however often they come.
 // Only the third Ctrl-C ends the process at once, without a report; the second one says so. Signals that arrive
-// together (from the terminal and from a program that forwards it) count as one Ctrl-C. SIGHUP stays ignored where it
-// was (nohup). One at a time.
+// together (from the terminal and from a program that forwards it) count as one Ctrl-C. SIGHUP and SIGINT stay ignored
+// where they were (nohup; what a script runs in the background). One at a time.
 class Interrupt {
  public:
-  Interrupt();
+  explicit Interrupt(InterruptWords words = {});
   ~Interrupt();  // signals do what they did before
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;

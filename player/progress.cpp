@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 
 #include "runtime/clock.h"
@@ -12,6 +13,7 @@ namespace {
 constexpr double kQuiet = 1.0;       // [s] before anything is said
 constexpr double kOnTerminal = 0.2;  // [s] between two updates there
 constexpr double kElsewhere = 5.0;   // [s]
+std::atomic<bool> g_line{false};     // the terminal is the process's
 double seconds(std::uint64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
@@ -20,8 +22,13 @@ double seconds(std::uint64_t nanoseconds) {
 Progress::Progress(std::string what)
     : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), begin_(now_ns()), last_(begin_) {}
 
+bool progress_line_stands() {
+  return g_line;
+}
+
 Progress::~Progress() {
   if (shown_ && terminal_) std::fputs("\r\x1b[K", stderr);
+  g_line = false;
 }
 
 void Progress::update(double share) {
@@ -30,6 +37,7 @@ void Progress::update(double share) {
   if (elapsed < kQuiet || seconds(now - last_) < (terminal_ ? kOnTerminal : kElsewhere)) return;
   last_ = now;
   shown_ = true;
+  g_line = terminal_;
   const double left = share > 0.0 ? elapsed * (1.0 - share) / share : 0.0;
   std::fprintf(stderr, terminal_ ? "\r\x1b[K%s: %3.0f %%, %.0f s left" : "%s: %3.0f %%, %.0f s left\n",
                printable(what_).c_str(), share * 100.0, left);

@@ -7,6 +7,9 @@
 
 namespace pliant {
 
+// A line stands on the terminal that the next output has to clear. From any thread.
+bool progress_line_stands();
+
 class Progress {
  public:
   explicit Progress(std::string what);

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <system_error>
 
 namespace pliant {
 
@@ -18,9 +19,11 @@ void prepare_standard_streams() {
 
 std::optional<Error> close_stdout() {
   const bool lost = std::ferror(stdout) != 0;
+  errno = 0;
   if (std::fflush(stdout) == 0 && !lost) return {};
+  const std::string why = errno != 0 ? ": " + std::generic_category().message(errno) : std::string();
   return Error{"stdout",
-               "what was printed could not be written; leave the reader open (files were written all the same)"};
+               "cannot be written" + why + "; free some space, or keep the reading program open (files were written)"};
 }
 
 }  // namespace pliant

@@ -3,11 +3,12 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include <cmath>
 #include <thread>
 
 namespace pliant {
 
-RealtimeClock::RealtimeClock(double rate_hz) : period_(static_cast<std::int64_t>(1e9 / rate_hz)) {}
+RealtimeClock::RealtimeClock(double rate_hz) : rate_(rate_hz) {}
 
 Tick RealtimeClock::next() {
   using clock = std::chrono::steady_clock;
@@ -17,15 +18,17 @@ Tick RealtimeClock::next() {
   } else {
     ++index_;
   }
-  const auto due = start_ + period_ * static_cast<std::int64_t>(index_);
+  // From the index: a period that is no whole number of nanoseconds adds up no error.
+  const auto due = start_ + std::chrono::nanoseconds(std::llround(static_cast<double>(index_) * 1e9 / rate_));
   const auto now = clock::now();
   if (now < due) {
     std::this_thread::sleep_until(due);
-  } else if (const std::int64_t late = (now - due) / period_; late > 0) {
-    overruns_ += static_cast<std::uint64_t>(late);
-    index_ += static_cast<std::uint64_t>(late);
+  } else {
+    const auto late = static_cast<std::uint64_t>(std::chrono::duration<double>(now - due).count() * rate_);
+    overruns_ += late;
+    index_ += late;
   }
-  const double dt = std::chrono::duration<double>(period_).count();
+  const double dt = 1.0 / rate_;
   return {index_, dt, static_cast<double>(index_) * dt};
 }
 

@@ -39,7 +39,7 @@ class RealtimeClock {
   std::uint64_t overruns() const { return overruns_; }
 
  private:
-  std::chrono::nanoseconds period_;
+  double rate_;  // [Hz]
   std::chrono::steady_clock::time_point start_;
   std::uint64_t index_ = 0;
   std::uint64_t overruns_ = 0;

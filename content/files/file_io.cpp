@@ -21,6 +21,8 @@ struct Close {
 };
 using File = std::unique_ptr<std::FILE, Close>;
 
+constexpr int kMostAside = 100;  // names
+
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -71,6 +73,25 @@ int move_file(const fs::path& from, const fs::path& to, bool replace) {
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
+fs::path aside_of(const fs::path& path) {
+  return fs::path(path).concat(fmt::format(".{}.part", ::getpid()));
+}
+
+namespace {
+
+// A new file under the first name that is free: never through a link, never over what is there. Null: errno says why.
+File open_aside(const fs::path& path, fs::path& aside) {
+  aside = aside_of(path);
+  for (int n = 2;; ++n) {
+    const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file >= 0) return File(::fdopen(file, "wb"));
+    if (errno != EEXIST || n > kMostAside) return nullptr;
+    aside = fs::path(path).concat(fmt::format(".{}-{}.part", ::getpid(), n));
+  }
+}
+
+}  // namespace
+
 Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
   std::error_code ignored;
   const auto taken = [](const fs::path& path) {
@@ -85,9 +106,10 @@ Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
     return error;
   };
   for (const FileToWrite& each : files) {
-    aside.push_back(fs::path(each.path).concat(fmt::format(".{}.part", ::getpid())));
-    File file(std::fopen(aside.back().c_str(), "wb"));
+    fs::path name;
+    File file = open_aside(each.path, name);
     if (!file) return fail(each.path, "cannot be written");
+    aside.push_back(name);
     // Flushed before it is closed: a full disk may only show here, and closing may hide why.
     if (std::fwrite(each.bytes.data(), 1, each.bytes.size(), file.get()) != each.bytes.size() ||
         std::fflush(file.get()) != 0 || std::fclose(file.release()) != 0)

@@ -25,6 +25,9 @@ std::filesystem::path numbered(const std::filesystem::path& path, int number);
 // Renames a file; without `replace` only to a name that is free. 0, or errno (EEXIST: it is taken).
 int move_file(const std::filesystem::path& from, const std::filesystem::path& to, bool replace);
 
+// Where write_files() writes a file first; where that name is taken, beside it.
+std::filesystem::path aside_of(const std::filesystem::path& path);
+
 struct FileToWrite {
   std::filesystem::path path;
   std::span<const std::uint8_t> bytes;

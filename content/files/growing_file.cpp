@@ -35,7 +35,7 @@ std::size_t write_all(int file, std::string_view bytes, int& error) {
 Result<GrowingFile> GrowingFile::create(const fs::path& path) {
   GrowingFile file;
   file.path_ = path;
-  file.file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  file.file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);  // nobody else's
   if (file.file_ < 0) return Error{path.string(), "cannot be written: " + why_not_written(errno)};
   ::flock(file.file_, LOCK_EX | LOCK_NB);  // where that is impossible, what is left behind stays
   return file;
@@ -102,7 +102,7 @@ void remove_abandoned(const fs::path& file, std::string_view magic) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
     if (name.size() > begin.size() && name.starts_with(begin) &&
-        name.find_first_not_of("0123456789", begin.size()) == std::string::npos)
+        name.find_first_not_of("0123456789-", begin.size()) == std::string::npos)
       found.push_back(entry.path());
   }
   for (const fs::path& each : found) {

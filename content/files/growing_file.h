@@ -15,7 +15,8 @@ namespace pliant {
 
 class GrowingFile {
  public:
-  // Empty. The file is locked (flock) while it is open, so that others can tell it from one that a killed process left.
+  // A new, empty file: one that is there is refused. It is locked (flock) while it is open, so that others can tell it
+  // from one that a killed process left.
   static Result<GrowingFile> create(const std::filesystem::path& path);
   GrowingFile(GrowingFile&& other) noexcept;
   GrowingFile& operator=(GrowingFile&&) = delete;
@@ -46,8 +47,8 @@ class GrowingFile {
   std::optional<Error> failure_;
 };
 
-// Removes what a killed process left aside of `file`: `file`.partial-PID, if it begins with `magic` and nobody has it
-// open.
+// Removes what a killed process left aside of `file`: `file`.partial-PID and `file`.partial-PID-N, if it begins with
+// `magic` and nobody has it open.
 void remove_abandoned(const std::filesystem::path& file, std::string_view magic);
 
 }  // namespace pliant

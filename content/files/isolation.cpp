@@ -57,6 +57,10 @@ bool write_all(int end, const void* data, std::size_t size) {
     const std::string sentence = result ? "" : result.error().where + '\n' + result.error().what;
     sent = result ? write_all(end, &kDone, 1) && write_all(end, result->data(), result->size())
                   : write_all(end, &kRefused, 1) && write_all(end, sentence.data(), sentence.size());
+  } catch (const std::bad_alloc&) {
+    const std::string sentence =
+        "\nneeds more memory than a file of this size may use; simplify it, or convert it to glTF";
+    sent = write_all(end, &kRefused, 1) && write_all(end, sentence.data(), sentence.size());
   } catch (const std::exception& e) {
     const std::string sentence = std::string("\ncannot be read: ") + e.what();
     sent = write_all(end, &kRefused, 1) && write_all(end, sentence.data(), sentence.size());
@@ -108,7 +112,7 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
   }
   if (late) return Error{"", "takes too long to read; the file is damaged, or too large"};
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
-    return Error{"", "makes its reader fail; the file is damaged, export it again"};
+    return Error{"", "crashed the importer; the file is damaged, export it again"};
   const char verdict = static_cast<char>(answer.front());
   answer.erase(answer.begin());
   if (verdict == kDone) return answer;

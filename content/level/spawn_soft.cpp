@@ -73,16 +73,16 @@ std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
 
 std::string soft_fault(const LevelNode& node) {
   if (node.soft_body && node.deformable)
-    return "has both PLIANT_soft_body and PLIANT_deformable; keep one, the node's mesh is tissue or a yielding surface";
+    return "has both PLIANT_soft_body and PLIANT_deformable; keep one, a node is a soft body or a deformable surface";
   if (node.soft_body && node.rigid_body)
     return "has both PLIANT_soft_body and PLIANT_rigid_body; keep one, or mark the rigid part with PLIANT_handle";
   if (node.rigid_body && node.deformable)
-    return "has both PLIANT_rigid_body and PLIANT_deformable; keep one, a yielding surface does not move";
+    return "has both PLIANT_rigid_body and PLIANT_deformable; keep one, a deformable surface does not move";
   if (node.handle && !node.soft_body && !node.rigid_body)
     return "has PLIANT_handle but neither PLIANT_soft_body nor PLIANT_rigid_body; add what the handle holds, or remove "
            "it";
   if (node.handle && node.rigid_body && node.rigid_body->fixed)
-    return "has PLIANT_handle on a rigid body that is `fixed`; take `fixed` away, so that a hand can move it, or "
+    return "has PLIANT_handle on a rigid body that is `fixed`; remove `fixed`, so that a hand can move it, or "
            "remove "
            "the handle";
   if (node.soft_body && node.mesh < 0 && node.soft_body->mesh.empty())

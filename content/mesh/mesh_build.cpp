@@ -98,7 +98,9 @@ std::string winding_doubt(const MeshReport& report) {
   };
   add(report.unorientable_parts, "part has one side only", "parts have one side only");
   add(report.undecided_parts, "part may be inside out", "parts may be inside out");
-  return what.empty() ? what : what + ", which nothing in the file decides; check the winding where it feels wrong";
+  return what.empty()
+             ? what
+             : what + ": the orientation is ambiguous; if forces point inwards, flip the winding and export again";
 }
 
 namespace {

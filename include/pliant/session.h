@@ -103,7 +103,7 @@ class Session {
   // --- Time
   Status step(std::uint64_t ticks = 1);  // what a driver was written last it keeps until the next
   Status start();
-  Status pause(bool paused);  // devices are let go; they come back through the gate
+  Status pause(bool paused);  // devices are let go, in a tick of their own; they come back through the gate
   Status stop();              // the error says what ended a clock before stop()
   bool running() const;
   // As it was opened, at time 0; sources and parameters stay as they are. Where it fails, only restart() works.
@@ -112,7 +112,8 @@ class Session {
 
   // --- Recordings: the pose of every probe and tool at every tick
   // From the next tick on; before the clocks start. A file that is there is refused, unless it is a recording and
-  // `replace` is set. The file appears whole with end_recording(), restart() or the session's end.
+  // `replace` is set. The file appears whole with end_recording(), restart() or the session's end; without a tick it is
+  // not written, which is an error of the first two.
   Status record(const std::filesystem::path& file, bool replace = false);
   Status end_recording();
   // Every source is the recording from now on, in lockstep; its settings hold. A recording of a lockstep run gives the

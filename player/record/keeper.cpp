@@ -66,6 +66,7 @@ const std::optional<Error>& Keeper::failure() const {
 }
 
 void Keeper::keep(const TickRow& row) {
+  ++kept_;
   const ProbeReading& r = row.reading;
   line_.clear();
   fmt::format_to(std::back_inserter(line_), "{},{:.9g},{}", row.tick, row.time, names_[row.probe]);
@@ -126,6 +127,7 @@ void Keeper::record(const TickRow& row) {
 Status Keeper::finish() {
   std::vector<Status> closed{csv_->close()};
   if (bodies_) closed.push_back(bodies_->finish());
+  if (recorded_nothing()) recording_.reset();
   if (recording_) closed.push_back(recording_->finish());
   for (Status& status : closed)
     if (!status) return status;

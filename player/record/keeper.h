@@ -44,7 +44,10 @@ class Keeper {
 
   void keep(Journal& journal);                                  // all rows that wait
   const std::vector<TickRow>& latest() const { return rows_; }  // what the last keep() took
-  Status finish();  // closes the files and the recording; the first error of any
+  // Closes the files and the recording; the first error of any. A recording without a tick is not written.
+  Status finish();
+  std::uint64_t rows() const { return kept_; }                                      // of forces.csv
+  bool recorded_nothing() const { return recording_ && recording_->ticks() == 0; }  // so far
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
   const std::vector<Trace>& traces() const { return traces_; }
@@ -65,6 +68,7 @@ class Keeper {
   std::string line_;
   bool torque_ = false;  // forces.csv has its columns
   std::vector<TickRow> rows_;
+  std::uint64_t kept_ = 0;  // rows
   std::vector<ProbeSummary> summaries_;
   std::vector<Trace> traces_;
   std::vector<Last> last_;

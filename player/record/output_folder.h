@@ -27,8 +27,8 @@ class OutputFolder {
   std::filesystem::path stage(const std::string& name);
   // Gives back the space that is kept for the last, small files: the report is written on a full disk too.
   void free_reserve();
-  // Moves every staged file that was written into place. Where somebody else took a name meanwhile, all of them go into
-  // the next folder that is free.
+  // Moves every staged file that was written into place, their list first. Where somebody else took a name meanwhile,
+  // all of them go into the next folder that is free. A file that cannot be moved keeps no other from its place.
   Status commit();
 
   const std::filesystem::path& path() const { return folder_; }      // absolute
@@ -43,6 +43,9 @@ class OutputFolder {
  private:
   OutputFolder() = default;
   Status open(const std::filesystem::path& folder);
+  Status move_on();
+  int place_list();
+  bool replaces() const { return replace_ && !moved(); }
   Status choose_next();
   std::filesystem::path given_, asked_, folder_, staging_;
   bool replace_ = false;

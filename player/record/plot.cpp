@@ -145,7 +145,7 @@ struct Captions {
   const char *depth_axis, *depth, *normal, *tangential;
 };
 constexpr Captions kProbe{"depth [mm]", "depth", "normal", "tangential"};
-constexpr Captions kTool{"past the handle [mm]", "device past the handle", "along the contacts' mean push", "the rest"};
+constexpr Captions kTool{"offset [mm]", "device-handle offset", "along the mean contact normal", "tangential"};
 
 // One line under the title for what is shown.
 std::string subtitle_of(const std::vector<PlotRow>& rows, std::size_t shown) {
@@ -153,7 +153,7 @@ std::string subtitle_of(const std::vector<PlotRow>& rows, std::size_t shown) {
   if (rows.size() > shown) return fmt::format("the first {} of {} probes and tools", shown, rows.size());
   const auto tools =
       static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const PlotRow& row) { return row.tool; }));
-  const std::string probe = "depth below the undeformed surface", tool = "how far the device is led past the handle";
+  const std::string probe = "depth below the undeformed surface", tool = "device-handle offset";
   const std::string left = tools == 0 ? probe : tools == rows.size() ? tool : "probes: " + probe + "; tools: " + tool;
   return left + ", and force on the hand";
 }

@@ -72,18 +72,19 @@ std::optional<Miss> find_miss(const World& world, const Approach& approach, doub
 std::string explain_miss(const std::string& probe, const std::optional<Miss>& miss) {
   if (!miss)
     return "probe `" + probe +
-           "` never touched anything: the level has no surface that gives way (PLIANT_deformable), and no soft or "
-           "rigid "
-           "body came in its way; lead it to one";
+           "` never touched anything: the level has no deformable surface (PLIANT_deformable), and the probe met no "
+           "soft or "
+           "rigid body; add one, or change the probe's path";
   if (miss->behind)
     return fmt::format(
-        "probe `{}` never touched anything, although it was behind the surface of `{}`: it came through its back, or "
-        "stayed within the dent of another probe; lead it there from outside, or deeper",
+        "probe `{}` never touched anything, although it was below the surface of `{}`: it entered through a back face, "
+        "or "
+        "stayed inside another probe's dent; approach from outside, or press deeper",
         probe, miss->object);
   return fmt::format(
-      "probe `{}` never touched anything: it came no nearer than {:.4g} mm to `{}` ({} vertices, {:.4g} mm across); "
-      "lead "
-      "it there, and check the units of its path (metres) and of the mesh (`pliant inspect`)",
+      "probe `{}` never touched anything: its smallest distance was {:.4g} mm, to `{}` ({} vertices, {:.4g} mm "
+      "across); "
+      "move its path there, and check the units of its path (metres) and of the mesh (`pliant inspect`)",
       probe, miss->distance * 1e3, miss->object, miss->vertices, miss->diagonal * 1e3);
 }
 

@@ -21,7 +21,7 @@ std::vector<std::uint64_t> spread_frames(std::uint64_t ticks, int count) {
 
 std::vector<std::uint64_t> regular_frames(std::uint64_t ticks, double rate, double fps) {
   std::vector<std::uint64_t> at;
-  for (int i = 0; i <= 9999; ++i) {
+  for (int i = 0; i < kMostFrames; ++i) {
     const auto tick = static_cast<std::uint64_t>(std::llround(i * rate / fps));
     if (tick >= ticks) break;
     at.push_back(tick);

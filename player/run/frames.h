@@ -19,7 +19,8 @@ class HeadlessContext;
 
 // Ticks of `count` pictures spread over a run of `ticks`: each stands in the middle of its share.
 std::vector<std::uint64_t> spread_frames(std::uint64_t ticks, int count);
-// Ticks of `fps` pictures per simulated second at `rate` ticks per second, at most 9999.
+inline constexpr int kMostFrames = 10000;  // of a run: the names of pictures have four digits
+// Ticks of `fps` pictures per simulated second at `rate` ticks per second, at most kMostFrames.
 std::vector<std::uint64_t> regular_frames(std::uint64_t ticks, double rate, double fps);
 
 // What drawing cost.

@@ -191,7 +191,7 @@ void print_summary(const RunFigures& figures, const OutputFolder& out) {
   for (const ProbeSummary& probe : figures.keeper.summaries())
     print("  {} ({}): in contact for {:.2f} s, at most {:.2f} mm {} and {:.2f} N{}, net work {:.3g} mJ\n", probe.name,
           probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
-          probe.tool ? "led past the handle" : "deep", probe.max_force,
+          probe.tool ? "device-handle offset" : "deep", probe.max_force,
           probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
   if (figures.soft) {
     const SoftFigures& soft = figures.soft->figures();

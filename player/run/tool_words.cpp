@@ -26,10 +26,11 @@ std::string count(std::uint64_t n, const char* what) {
 std::vector<std::string> explain_tool(const World& world, const ProbeSummary& summary) {
   std::vector<std::string> sentences;
   if (summary.late_ticks > 0)
-    sentences.push_back(fmt::format(
-        "tool `{}`: its contacts were not solved in time in {}, and the linear model took over where {} in a row were "
-        "late; lower --rate, or take --tool-force linear",
-        summary.name, count(summary.late_ticks, "tick"), kLateTicks));
+    sentences.push_back(
+        fmt::format("tool `{}`: the contact solve exceeded its time budget in {}; after {} such ticks in a row the "
+                    "linear model was "
+                    "used; lower --rate, or use --tool-force linear",
+                    summary.name, count(summary.late_ticks, "tick"), kLateTicks));
   if (summary.stale_ticks > 0)
     sentences.push_back(fmt::format(
         "tool `{}`: in {} its model was older than {:g} soft steps ({:.3g} s), so its force faded; lower "
@@ -42,23 +43,22 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
   std::vector<std::string> sentences;
   const SoftTally& tally = world.soft->tally;
   if (tally.contacts_cut > 0)
-    sentences.push_back(
-        fmt::format("{} left out of soft steps because a limit was reached; press with less of a surface at once, or "
-                    "use coarser meshes where bodies touch",
-                    count(tally.contacts_cut, "contact") + (tally.contacts_cut == 1 ? " was" : " were")));
+    sentences.push_back(fmt::format(
+        "{} dropped because a soft step was full; press with a smaller area, or coarsen the meshes in contact",
+        count(tally.contacts_cut, "contact") + (tally.contacts_cut == 1 ? " was" : " were")));
   if (tally.began_inside > 0.0)
     sentences.push_back(
         fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart; move one of them in the level",
                     name_of(world, tally.inside_a), name_of(world, tally.inside_b), tally.began_inside * 1e3));
   if (tally.halted_for > 0.0)
-    sentences.push_back(
-        fmt::format("bodies stood still for {:.3g} s in soft steps that would have taken them through each other; make "
-                    "soft_step shorter, or press more slowly",
-                    tally.halted_for));
+    sentences.push_back(fmt::format(
+        "bodies were stopped for {:.3g} s in total, in soft steps in which they would have passed through each "
+        "other; make soft_step shorter, or press more slowly",
+        tally.halted_for));
   if (tally.unconverged > 0 && tally.residual > kSaidResidual)
     sentences.push_back(
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "
-                    "creep; make soft_step shorter, or keep masses and stiffnesses of what touches closer together",
+                    "creep; make soft_step shorter, or give bodies in contact more similar masses and stiffnesses",
                     tally.unconverged, count(figures.steps, "soft step"), tally.residual));
   const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] at least
   if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))

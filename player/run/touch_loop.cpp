@@ -53,12 +53,11 @@ Status run_lockstep(TouchLoop& loop) {
   return Done{};
 }
 
-Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
+namespace {
+
+// Beside the clock: rows are kept and pictures taken until it is done, or something is wrong.
+Status run_beside(TouchLoop& loop, TouchClock& touch) {
   Progress progress("running");
-  TouchHooks hooks;
-  hooks.after = [&](Tick tick) { loop.journal.note(loop.world, tick); };
-  TouchClock touch(loop.world, loop.schedule, loop.soft, loop.rate, loop.ticks, hooks);
-  touch.start();
   Status status = Done{};
   auto frame = loop.frame_ticks.begin();
   while (!touch.done() && status && !loop.interrupt.requested()) {
@@ -73,10 +72,26 @@ Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
     }
     progress.update(static_cast<double>(reached) / static_cast<double>(loop.ticks));
   }
+  return status;
+}
+
+}  // namespace
+
+Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
+  TouchHooks hooks;
+  hooks.after = [&](Tick tick) { loop.journal.note(loop.world, tick); };
+  TouchClock touch(loop.world, loop.schedule, loop.soft, loop.rate, loop.ticks, hooks);
+  Status status = Done{};
+  try {
+    touch.start();
+    status = run_beside(loop, touch);
+  } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
+    status = explain(error);
+  }
   touch.stop();
   overruns = touch.overruns();
   loop.keeper.keep(loop.journal);
-  if (!touch.has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
+  if (!touch.has_priority()) note(kNoPriority);
   if (touch.error()) return *touch.error();
   if (loop.soft && loop.soft->error()) return *loop.soft->error();
   return status;

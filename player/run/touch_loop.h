@@ -16,6 +16,9 @@
 
 namespace pliant {
 
+inline constexpr const char* kNoPriority =
+    "the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`";
+
 struct TouchLoop {
   World& world;
   Schedule<World>& schedule;

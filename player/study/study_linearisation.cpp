@@ -354,9 +354,9 @@ void print_figures(const LinearisationFigures& figures) {
           100.0 * m.rms_share, m.p50_us, m.p99_us, m.max_us);
   print(
       "tool_feedback in the touch tick: p50 {:.1f}, p99 {:.1f}, max {:.1f} us\n"
-      "change of force in an update's tick or the next five: up to {:.2f} x the slope around; above 2 x in {} of {}, "
-      "in {} "
-      "of these as a contact touched, let go or changed between sticking and sliding\n",
+      "largest force jump at a model update: {:.2f} x the change between ticks around it; above 2 x in {} of {} "
+      "updates, "
+      "{} of them with a change of contact state\n",
       figures.touch_p50_us, figures.touch_p99_us, figures.touch_max_us, figures.jump_share, figures.jumps,
       figures.updates, figures.jumps_of_contacts);
 }

@@ -79,7 +79,8 @@ void add_unit(CLI::App* verb, double& unit, const char* what) {
 void add_run(CLI::App& app, RunOptions& run) {
   CLI::App* verb = app.add_subcommand("run", "run a level or touch a bare mesh; writes forces, plot, pictures, report");
   CLI::Option* level =
-      verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)");
+      verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)")
+          ->check(named());
   verb->add_flag("--list", run.list, "which levels ship, and what they show")->excludes(level);
   verb->add_option("--probe", run.probes, "NAME=SOURCE: script:FILE.csv, orbit, mouse, device:ID; may be repeated")
       ->take_all()
@@ -101,7 +102,8 @@ void add_run(CLI::App& app, RunOptions& run) {
                    "how every tool's force is made: " + joined(words_of<ToolForce>()) + "; default: each tool's key")
       ->check(one_of(words_of<ToolForce>()));
   verb->add_option("--out", run.out,
-                   "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results");
+                   "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results")
+      ->check(named());
   verb->add_flag("--force", run.force, "replace the results of an earlier run in that folder, and its recording");
   CLI::Option* frames =
       verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: none")->check(within(0, 9999));
@@ -118,9 +120,11 @@ void add_run(CLI::App& app, RunOptions& run) {
   verb->add_flag("--window", run.window, "in a window (default where there is a display)")
       ->excludes(headless)
       ->excludes(lockstep);
-  verb->add_option("--input", run.input, "events for the window from a CSV file")->group("");  // docs/cli.md
-  verb->add_option("--record", run.record, "write every probe's pose per tick to FILE");
-  verb->add_option("--replay", run.replay, "move the probes as FILE says, in lockstep");
+  verb->add_option("--input", run.input, "events for the window from a CSV file")
+      ->group("")
+      ->check(named());  // docs/cli.md
+  verb->add_option("--record", run.record, "write every probe's pose per tick to FILE")->check(named());
+  verb->add_option("--replay", run.replay, "move the probes as FILE says, in lockstep")->check(named());
   verb->add_option("--threads", run.threads, "threads for loading and preparing; 0: all")->check(within(0, 1024));
   verb->footer(
       "Examples:\n"
@@ -160,7 +164,8 @@ void add_study(CLI::App& app, StudyOptions& options) {
   CLI::Option* name = verb->add_option("name", options.name, "of a study, or all");
   CLI::Option* list = verb->add_flag("--list", options.list, "which studies there are");
   verb->add_option("--out", options.out,
-                   "folder for what is written; default: out/study; FOLDER-2 and on where one has results");
+                   "folder for what is written; default: out/study; FOLDER-2 and on where one has results")
+      ->check(named());
   verb->add_flag("--force", options.force, "replace the results of an earlier study in that folder");
   verb->add_flag("--quick", options.quick, "a shorter run, for a look");
   name->excludes(list);

@@ -1,6 +1,7 @@
 // pliant convert: any mesh format to glTF or GLB; an EXR panorama to a picture of its cube map.
 #include <set>
 #include <string>
+#include <utility>
 
 #include "content/files/exr.h"
 #include "content/files/file_io.h"
@@ -19,6 +20,17 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint32_t kPreviewFace = 256;  // [pixel] side of a cube face
+
+constexpr InterruptWords kWords{"the file is being written; press Ctrl-C again to quit at once without it",
+                                "quit at once; the file was not written"};
+
+// What is written aside of `file`, and of the .bin of a .gltf.
+void remove_if_forced(const Interrupt& interrupt, const fs::path& file) {
+  std::error_code ignored;
+  for (const fs::path& each : {file, fs::path(file).replace_extension(".bin")})
+    if (const fs::path aside = aside_of(each); !fs::exists(fs::symlink_status(aside, ignored)))
+      interrupt.remove_if_forced(aside);
+}
 
 std::string lower_extension(const fs::path& file) {
   std::string extension = file.extension().string();
@@ -89,10 +101,14 @@ Status check_free(const ConvertOptions& options) {
 int convert_panorama(const ConvertOptions& options) {
   if (lower_extension(options.out) != ".png")
     return fail(kUsage, {options.out, "a panorama becomes a picture of its cube map; end the name with .png"});
+  for (const auto& [given, name] :
+       {std::pair(options.draco_bits != 0, "--draco"), {options.reorder, "--reorder"}, {options.unit != 1.0, "--unit"}})
+    if (given) return fail(kUsage, {name, "is for meshes, and a panorama becomes a picture; leave it out"});
   if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   const auto panorama = load_panorama(options.in);
   if (!panorama) return fail(kFailed, panorama.error());
-  const Interrupt interrupt;  // until the file is in place: nothing half-written stays behind
+  const Interrupt interrupt(kWords);  // until the file is in place: nothing half-written stays behind
+  remove_if_forced(interrupt, options.out);
   const Image image = cube_cross(*panorama, kPreviewFace);
   if (const Status s =
           write_file(options.out, encode_png(image.width, image.height, image.rgba.data()), existing(options));
@@ -112,11 +128,13 @@ int convert(const ConvertOptions& options) {
   if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   auto level = load_level(options.in);
   if (!level) return fail(kFailed, level.error());
+  if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
   for (const std::string& sentence : level->notes) note(sentence);
   scale_roots(*level, options.unit);
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
-  const Interrupt interrupt;  // until the file is in place: nothing half-written stays behind
+  const Interrupt interrupt(kWords);  // until the file is in place: nothing half-written stays behind
+  remove_if_forced(interrupt, options.out);
   if (const Status s = save_level(*level, options.out, SaveOptions{options.draco_bits, existing(options)}); !s)
     return fail(kFailed, s.error());
 

@@ -164,7 +164,7 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   json["devices"] = devices;
   json["tools"] = describe_tools(level);
   json["bounds_m"] = to_json(box);
-  json["unit_hint"] = unit_hint(box);
+  json["unit_hint"] = unit_hint(box, !level.has_pliant());
   json["touchable"] = touchable;
   json["bare_mesh"] = !level.has_pliant();
   json["objects"] = list;

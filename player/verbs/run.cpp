@@ -1,8 +1,12 @@
 // pliant run: a level or mesh, its probes, the loop, and what is written about it.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <future>
 #include <optional>
 #include <utility>
 
@@ -39,6 +43,8 @@ constexpr double kEndless = 1e7;                         // [s] a window stays o
 Outcome check(const RunOptions& options) {
   if (options.field == "gpu" && options.frames == 0)
     return wrong_arguments({"--field gpu", "computes the surface for pictures; leave out --frames 0"});
+  if (options.sized && options.frames == 0 && (options.headless || options.lockstep || !options.replay.empty()))
+    return wrong_arguments({"--size", "is of pictures and windows; leave out --frames 0"});
   if (!options.replay.empty() && options.realtime)
     return wrong_arguments({"--replay", "runs in lockstep; leave out --realtime"});
   if (!options.replay.empty() && !options.probes.empty())
@@ -82,7 +88,9 @@ std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepar
 Outcome open_window(const RunOptions& options, Shown& shown) {
   const bool possible = !options.headless && !options.lockstep && options.replay.empty();
   if (!options.window && (!possible || !Window::display_is_there())) {
-    if (!options.input.empty()) return wrong_arguments({"--input", "is for a window; leave out --headless"});
+    if (!options.input.empty())
+      return wrong_arguments(
+          {"--input", "needs a window; leave out --headless, --lockstep and --replay, and set DISPLAY"});
     return {};
   }
   if (!options.input.empty()) {
@@ -94,7 +102,7 @@ Outcome open_window(const RunOptions& options, Shown& shown) {
       Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
   if (!window) {
     if (options.window) return failed(window.error());
-    note(window.error().what + " (going on without a window)");
+    note("running without a window: " + window.error().what);
     return {};
   }
   if (options.frames > 0 && options.seconds <= 0.0)
@@ -116,9 +124,18 @@ Outcome make_frames(const RunOptions& options, Prepared& run, std::unique_ptr<Fr
   } else if (run.world.field_place == FieldPlace::kGpu) {
     return failed({"--field gpu", "there is no GPU to compute on: " + made.error().message() + ", or use --field cpu"});
   } else {
-    say(run, made.error().message() + " (going on without pictures)");
+    say(run, "running without pictures: " + made.error().message());
   }
   return {};
+}
+
+// Something in this run could move this probe or tool.
+bool is_moved(const RunFigures& figures, std::size_t hand) {
+  const HapticDevice* device = find_device(figures.world, figures.journal.probes()[hand]);
+  const DriverKind driver = device ? device->driver : DriverKind::kNull;
+  if (driver == DriverKind::kMouse) return figures.mode == "window";
+  if (driver == DriverKind::kExternal) return figures.keeper.summaries()[hand].source.starts_with("replay:");
+  return driver != DriverKind::kNull;
 }
 
 // Nothing silent: what kept a hand from what the law says, who touched nothing at all, and what soft steps left
@@ -129,11 +146,16 @@ std::vector<std::string> explain_run(RunFigures& figures) {
     const Entity hand = figures.journal.probes()[i];
     const ProbeSummary& summary = figures.keeper.summaries()[i];
     figures.misses.emplace_back();
-    if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
+    if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
+      sentences.push_back(fmt::format("{} `{}` never touched anything: nothing moves it; give it --probe {}=orbit",
+                                      summary.tool ? "tool" : "probe", summary.name, summary.name));
+    } else if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
       figures.misses.back() = find_miss(figures.world, summary.approach, probe->radius);
       sentences.push_back(explain_miss(summary.name, figures.misses.back()));
     } else if (summary.contact_ticks == 0) {
-      sentences.push_back("tool `" + summary.name + "` never touched anything; lead its device to what it shall touch");
+      sentences.push_back("tool `" + summary.name +
+                          "` never touched anything; move its device into contact (script, or --probe " + summary.name +
+                          "=orbit)");
     }
     for (std::string& sentence : explain_limits(figures.world, hand, summary.name))
       sentences.push_back(std::move(sentence));
@@ -145,27 +167,38 @@ std::vector<std::string> explain_run(RunFigures& figures) {
   return sentences;
 }
 
-// Options for a file that was dropped: what was said of the first level's nodes and files is not meant for it.
-RunOptions another_level(const RunOptions& options, const std::string& file) {
-  RunOptions other = options;
+// Options for a file that was dropped, of those that were asked for: what was said of the first level's nodes and files
+// is not meant for it. `left`: which those are.
+RunOptions another_level(const RunOptions& asked, const std::string& file, std::string& left) {
+  RunOptions other = asked;
   other.level = file;
+  for (const auto& [given, name] : {std::pair(!asked.probes.empty(), "--probe"),
+                                    {!asked.sets.empty(), "--set"},
+                                    {!asked.record.empty(), "--record"},
+                                    {!asked.tool_force.empty(), "--tool-force"},
+                                    {asked.unit != 1.0, "--unit"},
+                                    {asked.force, "--force"}})
+    if (given) left += std::string(left.empty() ? "" : ", ") + name;
   other.probes.clear();
   other.sets.clear();
   other.record.clear();
   other.force = false;
   other.tool_force.clear();
   other.unit = 1.0;
-  if (!options.out.empty()) other.out = options.out + "/" + std::filesystem::path(file).stem().string();
+  if (!asked.out.empty()) other.out = asked.out + "/" + std::filesystem::path(file).stem().string();
   return other;
 }
 
 // The same level anew, beside what was written of it.
-RunOptions same_level(const RunOptions& options) {
+RunOptions same_level(const RunOptions& options, const RunOptions& asked) {
   RunOptions other = options;
   other.force = false;
   std::error_code ignored;
-  for (int n = 2; !options.record.empty() && (n == 2 || std::filesystem::exists(other.record, ignored)); ++n)
-    other.record = numbered(options.record, n).string();  // the one under way has its place soon
+  // The recording under way has its place soon.
+  for (int n = 2; !options.record.empty() &&
+                  (n == 2 || other.record == options.record || std::filesystem::exists(other.record, ignored));
+       ++n)
+    other.record = numbered(asked.record, n).string();
   return other;
 }
 
@@ -177,10 +210,13 @@ struct Ran {
   std::size_t pictures = 0;
   bool opened = false;    // another level takes its place
   Status ended = Done{};  // what ended it early
+  bool hung = false;      // in a picture (window_session.h)
+  std::future<std::optional<Error>> opening;
 };
 
 Ran run_headless(const RunOptions& options, TouchLoop& loop) {
-  Ran ran{options.realtime ? "realtime" : "lockstep"};
+  Ran ran;
+  ran.mode = options.realtime ? "realtime" : "lockstep";
   try {
     ran.ended = options.realtime ? run_realtime(loop, ran.overruns) : run_lockstep(loop);
   } catch (const std::exception& error) {
@@ -193,7 +229,7 @@ Ran run_headless(const RunOptions& options, TouchLoop& loop) {
   return ran;
 }
 
-Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared& next) {
+Ran run_shown(const RunOptions& options, const RunOptions& asked, Shown& shown, TouchLoop& loop, Prepared& next) {
   WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
                         loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
   session.soft = loop.soft;
@@ -202,26 +238,43 @@ Ran run_shown(const RunOptions& options, Shown& shown, TouchLoop& loop, Prepared
   session.ticks = loop.ticks;
   session.frame_width = options.width;
   session.frame_height = options.height;
-  if (options.fps > 0.0) session.frame_ticks = regular_frames(loop.ticks, loop.rate, options.fps);
-  if (options.frames > 0) session.frame_ticks = spread_frames(loop.ticks, options.frames);
+  session.frame_ticks = loop.frame_ticks;
   // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
   const std::string field = loop.world.field_place == FieldPlace::kGpu ? "gpu" : "cpu";
-  session.open = [&options, &next, field](const std::string& file) -> std::optional<Error> {
+  session.open = [&options, &asked, &next, field](const std::string& file) -> std::optional<Error> {
     next = Prepared();
-    RunOptions other = file == options.level ? same_level(options) : another_level(options, file);
+    std::string left;
+    RunOptions other = file == options.level ? same_level(options, asked) : another_level(asked, file, left);
     other.field = field;
     if (Outcome wrong = prepare(other, true, next)) return wrong->error;
+    if (!left.empty())
+      say(next, fmt::format("the options {} are for the first level and do not hold for `{}`", left, next.world.name));
     next.options = other;
+    next.asked = asked;
     return {};
   };
   try {
-    const WindowFigures figures = run_window(session);
-    return {"window", figures.overruns, figures.frames, figures.pictures, figures.opened, figures.ended};
+    WindowFigures figures = run_window(session);
+    return {"window",       figures.overruns, figures.frames, figures.pictures,
+            figures.opened, figures.ended,    figures.hung,   std::move(figures.opening)};
   } catch (const std::exception& error) {
-    Ran ran{"window"};
+    Ran ran;
+    ran.mode = "window";
     ran.ended = explain(error);
     return ran;
   }
+}
+
+// The rows that still wait, then every file is closed.
+Status finish(Keeper& keeper, Journal& journal) {
+  Status kept = Done{};
+  try {
+    keeper.keep(journal);
+  } catch (const std::exception& error) {
+    kept = explain(error);
+  }
+  const Status closed = keeper.finish();
+  return kept ? closed : kept;
 }
 
 // `shown`: the window, or null. `next`: what is to be run after this, if a window asked for it.
@@ -230,6 +283,14 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   World& world = run.world;
   const double rate = world.simulation.touch_rate;
   const std::uint64_t ticks = count_ticks(options, shown, run);
+  if (const double pictures = static_cast<double>(ticks) / rate * options.fps;
+      pictures > kMostFrames && !(shown && options.seconds <= 0.0))
+    return wrong_arguments(
+        {"--fps", fmt::format("{:.0f} pictures are asked for, and a run takes at most {}; give a lower "
+                              "one, or a shorter --seconds",
+                              pictures, kMostFrames)});
+  if (run.replay && options.seconds > 0.0 && ticks < static_cast<std::uint64_t>(std::llround(options.seconds * rate)))
+    say(run, fmt::format("the recording ends after {} ticks, before --seconds {}", ticks, options.seconds));
 
   auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out, options.force);
   if (!out) return failed(out.error());
@@ -271,12 +332,16 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   if (soft.any()) {
     loop.soft = &soft;
     soft.note_in(*bodies);
+    if (!options.record.empty() && (options.realtime || shown))
+      say(run, "the steps of the soft clock are not recorded: a replay of " + options.record +
+                   " follows the same poses, but its hash will differ; record with --lockstep for the same bits");
   }
-  if (frames)
-    loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps)
-                                         : spread_frames(ticks, options.frames < 0 ? kDefaultFrames : options.frames);
+  if (frames || shown) {
+    const int spread = options.frames >= 0 ? options.frames : shown ? 0 : kDefaultFrames;
+    loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps) : spread_frames(ticks, spread);
+  }
   Prepared other;
-  const Ran ran = shown ? run_shown(options, *shown, loop, other) : run_headless(options, loop);
+  const Ran ran = shown ? run_shown(options, run.asked, *shown, loop, other) : run_headless(options, loop);
   soft.stop();  // where an exception left it running
   if (ran.opened) next = std::move(other);
   if (soft.any()) world.dropped |= world.soft->dropped;
@@ -285,10 +350,14 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   let_go(world, {journal.ticks(), 1.0 / rate, static_cast<double>(journal.ticks()) / rate});
   // Whatever ended the run: what ran is written, and then the first error is said.
   std::optional<Error> wrong = interrupt.reason();
-  for (const Status& status : {ran.ended, keeper->finish()})
-    if (!status && !wrong) wrong = status.error();
+  const auto take = [&](const Status& status) {
+    if (!status && !wrong) wrong = out->at_place(status.error());
+  };
   if (wrong) wrong = out->at_place(*wrong);
-  if (wrong && journal.ticks() == 0) return failed(*wrong);
+  take(ran.ended);
+  if (wrong && journal.ticks() == 0) return failed(*wrong);  // what is staged goes, and replaces nothing
+  if (keeper->recorded_nothing()) say(run, options.record + " is not written, because no tick was recorded");
+  take(finish(*keeper, journal));
 
   RunFigures figures{world,
                      schedule,
@@ -304,15 +373,32 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
                      fmt::format("{:016x}", hash.value()),
                      loop.soft,
                      {},
-                     wrong                   ? wrong->message()
+                     wrong                   ? sentence_of(kFailed, *wrong)
                      : interrupt.requested() ? "interrupted"
                                              : "done"};
-  std::vector<std::string> sentences = explain_run(figures);
+  std::vector<std::string> sentences;
+  try {
+    sentences = explain_run(figures);
+  } catch (const std::exception& error) {  // the figures are written without them
+    figures.misses.resize(journal.probes().size());
+    take(explain(error));
+  }
+  const std::uint64_t reached = journal.ticks() + ran.overruns;
+  const auto due = static_cast<std::size_t>(
+      std::lower_bound(loop.frame_ticks.begin(), loop.frame_ticks.end(), std::max<std::uint64_t>(reached, 1) - 1) -
+      loop.frame_ticks.begin());
+  if (ran.pictures < due && !wrong)
+    sentences.push_back(fmt::format(
+        "{} of {} pictures were not taken because drawing is slower than the run; take fewer or smaller ones",
+        due - ran.pictures, due));
+  const std::uint64_t rows = journal.ticks() * journal.probes().size();
   for (const auto& [lost, file] :
-       {std::pair(journal.lost(), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
+       {std::pair(rows - std::min(rows, keeper->rows()), "forces.csv"), {bodies ? bodies->lost() : 0, "bodies.csv"}})
     if (lost > 0)
-      sentences.push_back(fmt::format(
-          "{} rows of {} were lost because writing fell behind; take fewer or smaller pictures", lost, file));
+      sentences.push_back(
+          fmt::format("{} rows of {} were lost because the disk was too slow; use a faster disk, a lower --rate or "
+                      "fewer pictures",
+                      lost, file));
   for (const std::string& sentence : sentences) {
     note(sentence);
     figures.dropped.push_back(sentence);
@@ -320,6 +406,13 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   figures.dropped.insert(figures.dropped.end(), run.notes.begin(), run.notes.end());
   if (const std::optional<Error> lost = write_reports(figures, *out); lost && !wrong) wrong = lost;
   print_summary(figures, *out);
+  if (ran.opening.valid() && ran.opening.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    note("results are written; waiting until the file that was dropped is read");
+  if (ran.hung) {  // a thread that nobody can end uses the window and the world
+    { const OutputFolder done = std::move(*out); }
+    std::fflush(stdout);
+    ::_exit(wrong ? fail(kFailed, *wrong) : kDone);
+  }
   return wrong ? failed(*wrong) : Outcome();
 }
 
@@ -332,7 +425,7 @@ int run(const RunOptions& options) {
   if (Outcome wrong = open_window(options, shown)) return fail(wrong->status, wrong->error);
   const bool windowed = shown.window != nullptr;
   std::optional<Prepared> next(std::in_place);
-  next->options = options;
+  next->options = next->asked = options;
   Outcome wrong = prepare(options, windowed, *next);
   const Interrupt interrupt;
   while (!wrong && next) {

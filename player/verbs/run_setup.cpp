@@ -24,6 +24,10 @@
 namespace pliant {
 namespace {
 
+constexpr const char* kNeedsWindow =
+    "needs a window, and none is open; set DISPLAY and leave out --headless and --lockstep, or use orbit";
+constexpr const char* kUnitSetting = "--unit=";  // among a recording's settings
+
 // The recording belongs to this level: same name, rate and probes.
 Outcome check_replay(const Recording& replay, const RunOptions& options, const World& world) {
   if (replay.header.level != world.name)
@@ -56,7 +60,7 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
     auto source = parse_source(argument);
     if (!source) return wrong_arguments(source.error());
     if (source->driver == DriverKind::kMouse && !windowed)
-      return wrong_arguments({"--probe " + argument, "the mouse needs a window; leave out --headless, or use orbit"});
+      return wrong_arguments({"--probe " + argument, kNeedsWindow});
     sources.push_back(*source);
   }
   if (windowed && sources.empty())
@@ -98,6 +102,22 @@ FieldPlace choose_field(const RunOptions& options, bool windowed, const World& w
   return cost && cost->gpu_us < cost->processor_us ? FieldPlace::kGpu : FieldPlace::kProcessor;
 }
 
+// Devices of the level whose driver is not there in this run.
+void say_unmoved(bool windowed, Prepared& run) {
+  if (run.replay) return;
+  for (const Entity hand : hands(run.world)) {
+    const HapticDevice* device = find_device(run.world, hand);
+    if (!device) continue;
+    const bool mouse = device->driver == DriverKind::kMouse && !windowed;
+    if (!mouse && device->driver != DriverKind::kExternal) continue;
+    const Name* name = run.world.registry.find<Name>(hand);
+    const std::string its = name ? name->value : std::string();
+    say(run,
+        fmt::format("nothing moves `{}`: its driver `{}` {}; give it --probe {}=orbit", its, word_of(device->driver),
+                    mouse ? "needs a window" : "is for programs that embed the engine", its));
+  }
+}
+
 // Once, however many surfaces there are: which of them settle so slowly that they have another damping than their own.
 void say_creeping(Prepared& run) {
   std::size_t more = 0;
@@ -111,25 +131,42 @@ void say_creeping(Prepared& run) {
     }
     const Name* name = run.world.registry.find<Name>(entity);
     sentence = fmt::format(
-        "`{}`: a surface that settles in {:g} s creeps and does not coast: damping_ratio {:.3g} is "
-        "taken instead of {:g}; give a shorter settling_time to have your own",
+        "`{}`: settling_time {:g} s needs damping_ratio {:.3g}, which is used instead of {:g}; give a shorter "
+        "settling_time to keep your own",
         name ? name->value : std::string(), deformable.settling_time, ratio, deformable.damping_ratio);
   }
   if (more > 0) sentence += fmt::format(" ({} more surfaces too)", more);
   if (!sentence.empty()) say(run, sentence);
 }
 
-// A replay has the settings that it was recorded with, and --set on top of them.
-Outcome apply_settings(const RunOptions& options, Level& level, Prepared& run) {
+// A replay has the settings that it was recorded with, and --set and --tool-force on top of them.
+Outcome apply_settings(const RunOptions& options, double unit, Level& level, Prepared& run) {
   if (run.replay && !run.replay->header.settings.empty()) {
-    run.settings = run.replay->header.settings;
+    for (const std::string& setting : run.replay->header.settings)
+      if (!setting.starts_with(kUnitSetting)) run.settings.push_back(setting);
     if (const Status status = set_keys(level, run.settings); !status)
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
-    say(run, fmt::format("the recording's settings hold: --set {}", fmt::join(run.settings, " --set ")));
+    say(run, fmt::format("the recording's settings hold:{}{}{}",
+                         unit != options.unit ? fmt::format(" --unit {}", unit) : std::string(),
+                         run.settings.empty() ? "" : " --set ", fmt::join(run.settings, " --set ")));
   }
   if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
   run.settings.insert(run.settings.end(), options.sets.begin(), options.sets.end());
+  if (!options.tool_force.empty()) {
+    if (Outcome wrong = choose_tool_force(options, level)) return wrong;
+    run.settings.push_back("*.handle.force=" + options.tool_force);
+  }
+  if (unit != 1.0) run.settings.push_back(fmt::format("{}{}", kUnitSetting, unit));
   return {};
+}
+
+// A bare mesh is replayed in the unit in which it was recorded, unless --unit says another.
+Result<double> choose_unit(const RunOptions& options, const Level& level, const Prepared& run) {
+  if (const Status status = check_unit(level, options.unit); !status) return status.error();
+  if (!run.replay || options.unit != 1.0 || level.has_pliant()) return options.unit;
+  for (const std::string& setting : run.replay->header.settings)
+    if (setting.starts_with(kUnitSetting)) return parse_unit(setting.substr(std::string_view(kUnitSetting).size()));
+  return options.unit;
 }
 
 // Once, however many bodies there are: which of them lock.
@@ -170,30 +207,31 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   std::vector<std::string> notes = level.notes;
 
   const bool bare = !level.has_pliant();
-  if (options.unit != 1.0 && !bare)
-    return wrong_arguments(
-        {"--unit", "is for bare meshes; this level's PLIANT extensions name lengths in metres: scale its nodes"});
-  scale_roots(level, options.unit);
+  const Result<double> unit = choose_unit(options, level, run);
+  if (!unit) return wrong_arguments(unit.error());
+  scale_roots(level, *unit);
   if (bare) {
     make_touchable(level);
     if (const std::string hint = unit_hint(bounds(level)); !hint.empty()) say(run, hint);
   }
   std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
-  if (Outcome wrong = apply_settings(options, level, run)) return wrong;
-  if (!options.tool_force.empty())
-    if (Outcome wrong = choose_tool_force(options, level)) return wrong;
+  if (Outcome wrong = apply_settings(options, *unit, level, run)) return wrong;
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
 
   run.scene = scene_hash(level);
   if (run.replay && run.replay->header.scene != 0 && run.replay->header.scene != run.scene)
-    say(run, "the level is not as it was when the recording was made (file, --set or --rate): forces will differ");
+    say(run,
+        "the level is not as it was when the recording was made (its file, or --set, --unit or --tool-force of this "
+        "run): "
+        "forces will differ");
   auto spawned = spawn(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
+  say_unmoved(windowed, run);
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})

@@ -30,11 +30,12 @@ inline Outcome failed(Error error) {
 // Everything a run needs before its first tick.
 struct Prepared {
   RunOptions options;
+  RunOptions asked;  // on the command line: other levels follow the first one in a window
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
   std::uint64_t scene = 0;            // scene_hash() of the level that runs
-  std::vector<std::string> settings;  // --set, those of a replayed recording before them
+  std::vector<std::string> settings;  // for a recording: --set, --unit and --tool-force, those of a replay before them
 };
 
 // On stderr and in the report.

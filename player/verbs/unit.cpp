@@ -25,6 +25,11 @@ Result<double> parse_unit(const std::string& text) {
   return Error{"--unit", "must be m, cm, mm, in, or metres for one unit such as 0.0254; got '" + text + "'"};
 }
 
+Status check_unit(const Level& level, double metres) {
+  if (metres == 1.0 || !level.has_pliant()) return Done{};
+  return Error{"--unit", "is for bare meshes; this level's PLIANT extensions name lengths in metres: scale its nodes"};
+}
+
 void scale_roots(Level& level, double metres) {
   if (metres == 1.0) return;
   const auto factor = static_cast<float>(metres);
@@ -58,17 +63,24 @@ Box bounds(const Level& level) {
   return box;
 }
 
-std::string unit_hint(const Box& box) {
+std::string unit_hint(const Box& box, bool bare) {
   const float diagonal = box.diagonal();
   if (box.empty() || (diagonal <= kLargest && diagonal >= kSmallest)) return {};
+  if (!bare)
+    return fmt::format(
+        "its diagonal is {:.4g} m, unusual for metres; where the lengths of its PLIANT extensions are in metres, scale "
+        "its nodes",
+        diagonal);
   if (diagonal > kLargest)
     return fmt::format(
-        "the diagonal is {:.4g} m: is the file in millimetres or centimetres? `pliant run FILE --unit mm` touches it "
-        "so, `pliant convert IN OUT --unit mm` mends it",
+        "its diagonal is {:.4g} m, unusual for metres; if the file is in mm, use `pliant run FILE --unit mm`, or "
+        "convert "
+        "it with `pliant convert IN OUT --unit mm`",
         diagonal);
   return fmt::format(
-      "the diagonal is {:.4g} m: is the file in another unit than metres? `pliant run FILE --unit METRES` touches it "
-      "so, `pliant convert IN OUT --unit METRES` mends it",
+      "its diagonal is {:.4g} m, unusual for metres; if the file is in another unit, use `pliant run FILE --unit "
+      "METRES`, "
+      "or convert it with `pliant convert IN OUT --unit METRES`",
       diagonal);
 }
 

@@ -12,6 +12,8 @@ namespace pliant {
 // m, cm, mm, in, or a number: metres for one unit of the input.
 Result<double> parse_unit(const std::string& text);
 
+// Only a bare mesh may have another unit than metres.
+Status check_unit(const Level& level, double metres);
 // Scales the whole scene about the world's origin: what the roots say, their children inherit.
 void scale_roots(Level& level, double metres);
 
@@ -21,6 +23,7 @@ std::vector<mat4> world_matrices(const Level& level);
 Box bounds(const Level& level);
 
 // A sentence where a scene of this size is probably not in metres; else empty.
-std::string unit_hint(const Box& box);
+// `bare`: without PLIANT extensions, so that --unit can scale it.
+std::string unit_hint(const Box& box, bool bare = true);
 
 }  // namespace pliant

@@ -124,8 +124,8 @@ void limit_line(const ProbeLine& probe, float scale) {
     ImGui::TextColored(kBad, "%s", words);
   };
   say(SafetyLimit::kClipped, "clipped at max_force");
-  say(SafetyLimit::kWithheld, "damped: it gave out energy");
-  say(SafetyLimit::kGated, "no force until it is let go");
+  say(SafetyLimit::kWithheld, "passivity: damped");
+  say(SafetyLimit::kGated, "gate closed: lift off to feel force again");
 }
 
 void plot(const ProbeLine& probe, float scale) {

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "player/window/display_loss.h"
+#include "runtime/printable.h"
+
 namespace pliant {
 namespace {
 
@@ -49,6 +52,7 @@ Result<std::unique_ptr<Window>> Window::create(int width, int height) {
   if (!display_is_there())
     return Error{"--window",
                  "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set; set one, or use --headless"};
+  watch_display();
   if (!glfwInit())
     return Error{"--window", "the display cannot be reached" + reason() + "; check DISPLAY, or use --headless"};
   std::unique_ptr<Window> window(new Window());
@@ -64,6 +68,7 @@ Result<std::unique_ptr<Window>> Window::create(int width, int height) {
   if (!window->handle_)
     return Error{"--window", "the display gives no OpenGL 4.5 core context" + reason() +
                                  "; install libgl1-mesa-dri or the GPU's driver, or use --headless"};
+  watch_display();  // with its connection; GLFW has put back what it found
   glfwMakeContextCurrent(window->handle_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window->handle_, window.get());
@@ -71,7 +76,16 @@ Result<std::unique_ptr<Window>> Window::create(int width, int height) {
   return window;
 }
 
+bool Window::lost() {
+  return display_is_lost();
+}
+
+Error Window::loss() {
+  return display_loss();
+}
+
 Window::~Window() {
+  if (lost()) return;
   if (handle_) glfwDestroyWindow(handle_);
   glfwTerminate();
 }
@@ -107,7 +121,7 @@ void Window::connect(GLFWwindow* handle) {
 }
 
 void Window::show(const std::string& title) {
-  glfwSetWindowTitle(handle_, title.c_str());
+  glfwSetWindowTitle(handle_, printable(title).c_str());
   glfwShowWindow(handle_);
 }
 
@@ -142,13 +156,13 @@ void Window::hide_cursor(bool hidden) {
 int Window::width() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(handle_, &width, &height);
-  return std::max(width, 1);
+  return lost() ? 1 : std::max(width, 1);  // a lost display leaves anything in it
 }
 
 int Window::height() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(handle_, &width, &height);
-  return std::max(height, 1);
+  return lost() ? 1 : std::max(height, 1);
 }
 
 float Window::scale() const {

@@ -20,6 +20,10 @@ class Window {
   // every call but those that say otherwise. Sizes in pixels. One window at a time.
   static Result<std::unique_ptr<Window>> create(int width, int height);
   ~Window();
+  // The display is gone, or has refused something, whichever thread asked it: no more may be asked, and `loss` says
+  // why. What the process has of it is left to the end of the process.
+  static bool lost();
+  static Error loss();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 

@@ -7,18 +7,22 @@
 #include <filesystem>
 
 #include "player/exit.h"
+#include "player/run/touch_loop.h"
+#include "runtime/printable.h"
 #include "systems/device/mouse.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {
 namespace {
 
-constexpr vec3 kToolColor(0.85f, 0.55f, 0.42f);  // linear: of a tool's plot
-constexpr double kMessageTime = 8.0;             // [s]
-constexpr float kTintShare = 0.2f;               // [1] of the reach: a height that is coloured fully
-constexpr double kSlowestTurn = 0.25;            // [s] beyond this, motion does not catch up
-constexpr double kSmoothing = 0.1;               // [1] of the newest picture in the shown rate
-constexpr double kHearEvery = 0.004;             // [s] at most
+constexpr vec3 kToolColor(0.85f, 0.55f, 0.42f);               // linear: of a tool's plot
+constexpr double kMessageTime = 8.0;                          // [s]
+constexpr float kTintShare = 0.2f;                            // [1] of the reach: a height that is coloured fully
+constexpr double kSlowestTurn = 0.25;                         // [s] beyond this, motion does not catch up
+constexpr double kSmoothing = 0.1;                            // [1] of the newest picture in the shown rate
+constexpr double kHearEvery = 0.004;                          // [s] at most
+constexpr std::size_t kLongestTitle = 28, kLongestName = 16;  // [byte] in the panel
+constexpr double kHungEnd = 10.0;                             // [s] that the end waits for a picture
 constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may never come: nobody sees what the hand does
 
 // The radius of the probe that the mouse moves, if there is one. [m]
@@ -28,6 +32,20 @@ std::optional<double> mouse_radius(const World& world) {
     if (device && device->driver == DriverKind::kMouse) return probe.radius;
   }
   return {};
+}
+
+// Of a file's name, as much as a panel has room for, in whole characters.
+std::string cut(const std::string& name, std::size_t longest) {
+  std::string shown = printable(name);
+  if (shown.size() <= longest) return shown;
+  while (longest > 0 && (static_cast<unsigned char>(shown[longest]) & 0xc0) == 0x80) --longest;
+  return shown.substr(0, longest) + "...";
+}
+
+// A link that leads nowhere counts.
+bool is_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(file, ignored));
 }
 
 float tint_of(const World& world) {
@@ -47,12 +65,13 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
       options_(renderer.options()),
       tint_(tint_of(session.world)),
       pictures_(session.window, session.world, renderer) {
-  state_.title = session.world.name;
+  state_.title = cut(session.world.name, kLongestTitle);
   state_.rate_wanted = session.rate;
   for (std::size_t i = 0; i < session.journal.probes().size(); ++i) {
     const ProbeSummary& summary = session.keeper.summaries()[i];
     const Probe* probe = session.world.registry.find<Probe>(session.journal.probes()[i]);
-    state_.probes.push_back({summary.name, summary.source, probe ? probe->color : kToolColor, {}});
+    state_.probes.push_back(
+        {cut(summary.name, kLongestName), cut(summary.source, kLongestTitle), probe ? probe->color : kToolColor, {}});
     if (summary.source == "mouse") mouse_probe_ = i;
     if (carrier_ && session.journal.probes()[i] == carrier_->tool()) carried_ = i;
   }
@@ -61,7 +80,7 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
   probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
   if (radius_ || carrier_) add_mouse(session.world, probe_at_);
   if (carried_ && carrier_->taken() == kNoEntity)
-    say("take hold of `" + state_.probes[*carried_].name + "` with the left button to carry it yourself", false);
+    say("drag `" + session.keeper.summaries()[*carried_].name + "` with the left button to move it", false);
 }
 
 Ray WindowLoop::ray() const {
@@ -106,15 +125,13 @@ std::filesystem::path WindowLoop::next_frame() {
   const std::uint64_t reached = touch_ ? touch_->now() : 0;
   if (!touch_ || next_frame_ >= s_.frame_ticks.size() || s_.frame_ticks[next_frame_] > reached) return {};
   while (next_frame_ < s_.frame_ticks.size() && s_.frame_ticks[next_frame_] <= reached) ++next_frame_;
-  return s_.out.stage(fmt::format("frame-{:04d}.png", figures_.pictures++));
+  return s_.out.stage(fmt::format("frame-{:04d}.png", figures_.pictures));
 }
 
 // At once, and beside what is already there: a hand asked for it.
 std::filesystem::path WindowLoop::next_screenshot() const {
   std::filesystem::path file;
-  std::error_code ignored;
-  for (int i = 1; file.empty() || std::filesystem::exists(file, ignored); ++i)
-    file = s_.out.path() / fmt::format("screenshot-{:03d}.png", i);
+  for (int i = 1; file.empty() || is_there(file); ++i) file = s_.out.path() / fmt::format("screenshot-{:03d}.png", i);
   return file;
 }
 
@@ -156,11 +173,9 @@ PictureOrder WindowLoop::order(bool shown) {
 
 // What a picture brings back: figures, what the overlay's switches say, and what stands under the cursor.
 Status WindowLoop::learn(const PictureDone& done) {
+  figures_.pictures += done.framed;
   if (!done.failed) return done.failed;
-  if (!done.frame) {
-    --figures_.pictures;
-    return done.frame;
-  }
+  if (!done.frame) return done.frame;
   figures_.frames.add(done.stats);
   state_.upload_bytes = done.stats.upload_bytes;
   state_.draw_ms = done.stats.draw_ms;
@@ -171,7 +186,9 @@ Status WindowLoop::learn(const PictureDone& done) {
   state_.frames_per_second = frame_time_ > 0 ? 1 / frame_time_ : 0;
   if (done.options != ordered_options_) options_ = done.options;
   wants_mouse_ = done.wants_mouse;
-  if (!shooting_.empty())
+  if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
+    ++screenshots_;  // another window took the name meanwhile
+  else if (!shooting_.empty())
     say(done.screenshot ? shooting_.string() : done.screenshot.error().message(), !done.screenshot);
   shooting_.clear();
   if (!done.answer) return Done{};
@@ -181,24 +198,25 @@ Status WindowLoop::learn(const PictureDone& done) {
   return Done{};
 }
 
-WindowFigures WindowLoop::run() {
-  std::vector<InputEvent> events;
-  // Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
+// Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
+Status WindowLoop::warm_up() {
   for (int i = 0; i < 3; ++i) {
     pictures_.begin(order(false));
-    pictures_.done();
+    if (const Status& failed = pictures_.done().failed; !failed) return failed;
   }
   s_.window.show(s_.world.name + " - Pliant");
-  TouchHooks hooks;
-  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
-  touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
-  touch_->start();
+  if (Window::lost()) return Window::loss();
+  return Done{};
+}
+
+// Hears the hand and orders pictures beside the touch clock.
+Status WindowLoop::turn_until_the_end() {
+  std::vector<InputEvent> events;
   const std::uint64_t start = now_ns();
-  Status status = Done{};
-  bool begun = false;
-  while (!close_ && !figures_.opened && !touch_->done() && !s_.interrupt.requested() && status) {
+  while (!close_ && !figures_.opened && !touch_->done() && !s_.interrupt.requested()) {
     events.clear();
     s_.window.poll(events, kHearEvery);
+    if (Window::lost()) return Window::loss();
     s_.script.take(static_cast<double>(now_ns()) * 1e-9, events);
     const double now = static_cast<double>(now_ns() - start) * 1e-9, dt = std::min(now - seconds_, kSlowestTurn);
     seconds_ = now;
@@ -208,21 +226,47 @@ WindowFigures WindowLoop::run() {
     point(dt);
     look_for_opened();
     if (pictures_.busy()) continue;
-    if (begun) status = learn(pictures_.done());
+    if (begun_)
+      if (const Status seen = learn(pictures_.done()); !seen) return seen;
     pictures_.begin(order(true));
-    begun = true;
+    begun_ = true;
+  }
+  return Done{};
+}
+
+WindowFigures WindowLoop::run() {
+  if (const Status ready = warm_up(); !ready) {
+    figures_.ended = ready;
+    return std::move(figures_);
+  }
+  TouchHooks hooks;
+  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
+  touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
+  Status status = Done{};
+  try {
+    touch_->start();
+    status = turn_until_the_end();
+  } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
+    status = explain(error);
   }
   touch_->stop();
-  keep();
-  if (begun && status) status = learn(pictures_.done());
-  if (opening_.valid()) opening_.wait();
-  s_.window.hide_cursor(false);
-  if (!touch_->has_priority()) note("the system does not grant SCHED_FIFO, so ticks may come late; see `ulimit -r`");
+  try {
+    keep();
+    figures_.hung = !pictures_.wait(kHungEnd);
+    if (figures_.hung && status)
+      status = Error{"picture", "the graphics driver does not answer; update it, or use --headless"};
+    if (begun_ && status) status = learn(pictures_.done());
+  } catch (const std::exception& error) {
+    if (status) status = explain(error);
+  }
+  figures_.opening = std::move(opening_);
+  if (!Window::lost() && !figures_.hung) s_.window.hide_cursor(false);
+  if (!touch_->has_priority()) note(kNoPriority);
   figures_.overruns = touch_->overruns();
   figures_.ended = status;
   if (s_.soft && s_.soft->error()) figures_.ended = *s_.soft->error();
   if (touch_->error()) figures_.ended = *touch_->error();
-  return figures_;
+  return std::move(figures_);
 }
 
 WindowFigures run_window(WindowSession& session) {
@@ -232,8 +276,13 @@ WindowFigures run_window(WindowSession& session) {
     none.ended = renderer.error();
     return none;
   }
-  WindowLoop loop(session, **renderer);
-  return loop.run();
+  auto loop = std::make_unique<WindowLoop>(session, **renderer);
+  WindowFigures figures = loop->run();
+  if (figures.hung) static_cast<void>(loop.release());  // its thread goes on using it
+  loop.reset();
+  // What is on the GPU goes with its context, which a lost display or a hung driver gives back no more.
+  if (Window::lost() || figures.hung) static_cast<void>(std::move(renderer).value().release());
+  return figures;
 }
 
 }  // namespace pliant

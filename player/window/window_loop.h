@@ -27,6 +27,8 @@ class WindowLoop {
   WindowFigures run();
 
  private:
+  Status warm_up();
+  Status turn_until_the_end();
   void handle(const InputEvent& event);
   void key(int key);
   void press(const InputEvent& event);
@@ -36,7 +38,7 @@ class WindowLoop {
   void wheel(const InputEvent& event);
   void open(const std::string& file);  // on a thread of its own
   void look_for_opened();
-  void say(std::string sentence, bool error);
+  void say(const std::string& sentence, bool error);
   void point(double dt);
   void keep();  // rows of the journal
   PictureOrder order(bool shown);
@@ -68,6 +70,7 @@ class WindowLoop {
   Ray asked_ray_;                              // of the question under way
   std::uint64_t questions_ = 0, decides_ = 0;  // asked so far; the one whose answer decides a press
   bool pointed_ = false, close_ = false, wants_mouse_ = false;
+  bool begun_ = false;                    // a picture that is shown has been ordered
   int screenshots_ = 0;                   // asked for, not yet taken
   std::filesystem::path shooting_;        // of the picture under way
   double frame_time_ = 0.0;               // [s] smoothed

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "player/exit.h"
+#include "runtime/printable.h"
+
 namespace pliant {
 namespace {
 
@@ -16,8 +19,8 @@ std::size_t imgui_button(MouseButton button) {
 
 }  // namespace
 
-void WindowLoop::say(std::string sentence, bool error) {
-  state_.message = std::move(sentence);
+void WindowLoop::say(const std::string& sentence, bool error) {
+  state_.message = printable(sentence);
   state_.message_is_error = error;
   said_at_ = seconds_;
 }
@@ -30,10 +33,13 @@ void WindowLoop::open(const std::string& file) {
 
 void WindowLoop::look_for_opened() {
   if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  if (const std::optional<Error> wrong = opening_.get()) {
-    say(wrong->message(), true);
-  } else {
-    figures_.opened = true;
+  try {
+    if (const std::optional<Error> wrong = opening_.get())
+      say(wrong->message(), true);
+    else
+      figures_.opened = true;
+  } catch (const std::exception& error) {  // a file that is too much is no reason to end
+    say(explain(error).message(), true);
   }
 }
 

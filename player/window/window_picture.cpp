@@ -3,13 +3,14 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <exception>
 
 #include "content/files/file_io.h"
 #include "content/files/image.h"
 #include "player/exit.h"
 #include "runtime/clock.h"
-#include "systems/visual/png.h"
 
 namespace pliant {
 namespace {
@@ -53,7 +54,7 @@ WindowPictures::~WindowPictures() {
   }
   changed_.notify_all();
   thread_.join();
-  window_.take_context();
+  if (!Window::lost()) window_.take_context();
 }
 
 void WindowPictures::begin(PictureOrder order) {
@@ -81,31 +82,56 @@ const PictureDone& WindowPictures::done() {
   return done_;
 }
 
+bool WindowPictures::wait(double seconds) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return !busy_; });
+}
+
 void WindowPictures::run() {
-  window_.take_context();
-  overlay_.emplace(scale_);
+  try {
+    window_.take_context();
+    overlay_.emplace(scale_);
+  } catch (...) {
+    failure_ = std::current_exception();  // every picture fails with it
+  }
+  draw_when_ordered();
+  overlay_.reset();
+  coarse_ = gpu::Framebuffer();
+  if (!Window::lost()) window_.give_context();
+}
+
+void WindowPictures::draw_when_ordered() {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return busy_ || stop_; });
       if (!busy_) break;
     }
-    try {
-      draw();
-    } catch (const std::exception& error) {  // ends the run, as any failed picture does
+    const auto fail = [this](Error why) {  // ends the run, as any failed picture does
+      const bool framed = done_.framed;
       done_ = PictureDone();
-      done_.failed = explain(error);
+      done_.framed = framed;
+      done_.failed = std::move(why);
+    };
+    done_ = PictureDone();
+    try {
+      if (failure_) std::rethrow_exception(failure_);
+      if (Window::lost())
+        fail(Window::loss());
+      else
+        draw();
+    } catch (const std::exception& error) {
+      fail(explain(error));
+    } catch (...) {
+      fail({"picture", "stopped by an exception of an unknown kind; please report it with the level"});
     }
     {
       const std::lock_guard lock(mutex_);
       busy_ = false;
     }
     changed_.notify_all();
-    window_.wake();
+    if (!Window::lost()) window_.wake();
   }
-  overlay_.reset();
-  coarse_ = gpu::Framebuffer();
-  window_.give_context();
 }
 
 void WindowPictures::take_snapshots() {
@@ -138,12 +164,12 @@ FrameStats WindowPictures::draw_scene(double share) {
 }
 
 void WindowPictures::draw() {
-  done_ = PictureDone();
   renderer_.options() = order_.options;
   take_snapshots();
   if (!order_.frame.empty()) {
     const Image image = renderer_.picture(order_.view, order_.frame_width, order_.frame_height);
     done_.frame = write_file(order_.frame, encode_png(image.width, image.height, image.rgba.data()));
+    done_.framed = done_.frame.ok();
   }
   // A picture that stays is worth some time.
   const bool stays = !order_.screenshot.empty();
@@ -160,7 +186,11 @@ void WindowPictures::draw() {
     overlay_->draw(order_.overlay, renderer_.options(), order_.tint, order_.mouse, order_.width, order_.height,
                    order_.dt);
     done_.wants_mouse = overlay_->wants_mouse();
-    if (stays) done_.screenshot = write_png(read_back(order_.width, order_.height), order_.screenshot);
+    if (stays) {
+      const Image image = read_back(order_.width, order_.height);
+      done_.screenshot =
+          write_file(order_.screenshot, encode_png(image.width, image.height, image.rgba.data()), Existing::kRefuse);
+    }
     window_.present();
   }
   done_.options = renderer_.options();

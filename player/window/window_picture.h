@@ -3,6 +3,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -40,7 +41,8 @@ struct PictureDone {
   std::uint64_t awake_vertices = 0;
   double resolution = 1.0;  // [1] of the window's, each way
   Status screenshot = Done{}, frame = Done{};
-  Status failed = Done{};  // the renderer; nothing above holds
+  bool framed = false;     // the file of the scene alone is written
+  Status failed = Done{};  // the renderer; nothing above holds but `framed`
 };
 
 class WindowPictures {
@@ -57,9 +59,12 @@ class WindowPictures {
   double seconds() const;  // [s] that the picture under way has taken so far, else 0
   // What came of the picture before, waiting for it.
   const PictureDone& done();
+  // False: after so long [s] a picture is still under way.
+  bool wait(double seconds);
 
  private:
   void run();
+  void draw_when_ordered();
   void take_snapshots();
   FrameStats draw_scene(double share);
   void choose_share(double draw_ms);
@@ -76,7 +81,8 @@ class WindowPictures {
   std::uint64_t awake_ = 0;
   PictureOrder order_;  // this thread's while a picture is under way, else the other's; so is done_
   PictureDone done_;
-  mutable std::mutex mutex_;  // of the four below
+  std::exception_ptr failure_;  // of the thread, before its first picture
+  mutable std::mutex mutex_;    // of the four below
   std::condition_variable changed_;
   bool busy_ = false, stop_ = false;
   std::uint64_t began_ns_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,8 @@ struct WindowFigures {
   std::size_t pictures = 0;  // staged
   bool opened = false;       // another level is ready and takes this one's place
   Status ended = Done{};     // what kept it from drawing
+  bool hung = false;         // a picture is under way that does not end: its thread uses window and world from now on
+  std::future<std::optional<Error>> opening;  // a level that is still being opened, into what `open` fills
 };
 
 // Returns when the window is closed, on Ctrl-C, after `ticks`, or when another level is ready. Devices have been let go

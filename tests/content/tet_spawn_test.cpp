@@ -238,13 +238,13 @@ TEST(SpawnSoft, WhatCannotBeIsRefusedInOneSentenceThatNamesTheNode) {
     level.meshes[0].primitives = {sheet(4)};
   });
   expect("encloses nothing", [](Level& level, LevelNode&) { level.meshes[0].primitives = {sheet(4)}; });
-  expect("says nowhere which part is rigid", [](Level&, LevelNode& n) { n.handle = Handle6{}; });
+  expect("defines no rigid part", [](Level&, LevelNode& n) { n.handle = Handle6{}; });
   expect("PLIANT_handle/box: holds no node", [](Level&, LevelNode& n) {
     n.handle = Handle6{};
     n.handle->box = {{1, 1, 1}, {2, 2, 2}};
   });
   expect("pinned: holds no node", [](Level&, LevelNode& n) { n.soft_body->pinned = {{1, 1, 1}, {2, 2, 2}}; });
-  expect("no node left", [](Level&, LevelNode& n) { n.soft_body->pinned = {{-1, -1, -1}, {1, 1, 1}}; });
+  expect("no free node", [](Level&, LevelNode& n) { n.soft_body->pinned = {{-1, -1, -1}, {1, 1, 1}}; });
   expect("`nobody`", [](Level&, LevelNode& n) {
     n.handle = Handle6{};
     n.handle->box = {{-1, 0, -1}, {1, 1, 1}};

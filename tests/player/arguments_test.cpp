@@ -62,7 +62,17 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"run", "three_probes", "--unit", "mm"}, 2, "bare");
   expect_refused({"convert", "plate.obj"}, 2, "out");
   expect_refused({"inspect"}, 2, "file");
-  for (const char* verb : {"inspect", "validate"}) expect_refused({verb, ""}, 2, "empty");
+  for (const char* verb : {"inspect", "validate", "run"}) expect_refused({verb, ""}, 2, "empty");
+  for (const char* option : {"--record", "--replay", "--out", "--input"})
+    expect_refused({"run", "plate.obj", option, ""}, 2, "empty");
+  const std::string sky = std::string(PLIANT_SOURCE_DIR) + "/content/environments/sky.exr";
+  expect_refused({"convert", sky, "sky.png", "--draco", "14"}, 2, "--draco");
+  expect_refused({"convert", sky, "sky.png", "--reorder"}, 2, "--reorder");
+  expect_refused({"convert", sky, "sky.png", "--unit", "mm"}, 2, "--unit");
+  const std::string level = std::string(PLIANT_SOURCE_DIR) + "/content/levels/inclusion.glb";
+  expect_refused({"convert", level, "x.glb", "--unit", "mm"}, 2, "bare");
+  expect_refused({"run", "plate.obj", "--probe", "p=orbit", "--fps", "30", "--seconds", "600"}, 2, "--fps");
+  expect_refused({"run", "plate.obj", "--headless", "--frames", "0", "--size", "320x200"}, 2, "--size");
 }
 
 TEST_F(Arguments, WhatIsMisspelledIsAnsweredWithWhatWasMeant) {

@@ -20,6 +20,7 @@ class Ends : public CommandTest {
   void SetUp() override {
     CommandTest::SetUp();
     write_text(folder / "plate.obj", plate_obj());
+    std::signal(SIGINT, SIG_DFL);  // these tests may have been started in the background of a script
   }
 
   static std::string run_line(const std::string& more) {
@@ -37,10 +38,11 @@ class Ends : public CommandTest {
   }
   // Starts a run that would take ten minutes, sends it what `signals` says as soon as it has begun, and waits for it.
   Said signalled(const std::string& signals, const std::string& more = "--frames 0") const {
-    return shell(run_line("--realtime --seconds 600 --out out " + more) +
-                 " &\npid=$!\nuntil [ -e out/.partial-$pid/forces.csv ]; do kill -0 $pid || exit 99; sleep 0.02; done\n"
-                 "sleep 0.5\n" +
-                 signals + "\nwait $pid");
+    return shell(
+        "(trap - INT; exec " + run_line("--realtime --seconds 600 --out out " + more) +  // shells ignore it
+        ") &\npid=$!\nuntil [ -e out/.partial-$pid/forces.csv ]; do kill -0 $pid || exit 99; sleep 0.02; done\n"
+        "sleep 0.5\n" +
+        signals + "\nwait $pid");
   }
   void expect_nothing_staged() const {
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -100,9 +102,9 @@ TEST_F(Ends, TheThirdCtrlCEndsAtOnceAndLeavesNothingStagedAndTheSecondSaysSo) {
     std::_Exit(99);
   };
   EXPECT_EXIT(hang(1), ::testing::ExitedWithCode(99), "^$");
-  EXPECT_EXIT(hang(2), ::testing::ExitedWithCode(99), "Ctrl-C once more ends at once");
+  EXPECT_EXIT(hang(2), ::testing::ExitedWithCode(99), "press Ctrl-C again to quit at once");
   EXPECT_TRUE(fs::exists(staged));
-  EXPECT_EXIT(hang(3), ::testing::ExitedWithCode(130), "ended at once, without a report");
+  EXPECT_EXIT(hang(3), ::testing::ExitedWithCode(130), "quit at once; results of this run were not written");
   expect_nothing_staged();
 }
 
@@ -110,6 +112,13 @@ TEST_F(Ends, WhatNohupProtectsIgnoresTheEndOfTheTerminal) {
   const Said said = shell("nohup " + run_line("--realtime --seconds 2 --frames 0 --out out") +
                           " >nohup 2>&1 &\npid=$!\nsleep 1\nkill -HUP $pid\nwait $pid");
   EXPECT_EQ(said.status, 0) << read_text(folder / "nohup");
+  expect_results("out", "done");
+}
+
+TEST_F(Ends, ACtrlCThatIsMeantForTheForegroundLeavesARunInTheBackgroundAlone) {
+  const Said said =
+      shell(run_line("--realtime --seconds 2 --frames 0 --out out") + " &\npid=$!\nsleep 1\nkill -INT $pid\nwait $pid");
+  EXPECT_EQ(said.status, 0) << said.err;
   expect_results("out", "done");
 }
 

@@ -88,10 +88,54 @@ TEST_F(Results, TwoRunsAtOnceKeepApart) {
   const std::string line = begin + "600 --realtime --out out >.said 2>&1 & } && pid=$! && " +
                            "while kill -0 $pid && [ ! -e out/.partial-$pid/forces.csv ]; do :; done && " +
                            begin.substr(begin.find("env")) +
-                           "0.1 --out out >.said2 2>&1 && kill -INT $pid && wait $pid";
+                           "0.1 --out out >.said2 2>&1 && kill -TERM $pid && wait $pid";
   EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0) << read_text(folder / ".said") << read_text(folder / ".said2");
   EXPECT_EQ(report("out-2")["ticks"], 100);
   EXPECT_EQ(report("out")["mode"], "realtime");
+}
+
+TEST_F(Results, RunsThatBeginTogetherEachGetAFolder) {
+  std::string line = "cd " + quoted(folder.string()) + "; pids=";
+  for (int i = 0; i < 6; ++i)
+    line += "; env -u DISPLAY -u WAYLAND_DISPLAY " + quoted(PLIANT_BINARY) +
+            " run plate.obj --probe p=orbit --frames 0 --seconds 0.1 --out fresh/x >.said" + std::to_string(i) +
+            " 2>&1 & pids=\"$pids $!\"";
+  line += "; all=0; for pid in $pids; do wait $pid || all=1; done; exit $all";
+  const int status = std::system(line.c_str());
+  std::string said;
+  for (int i = 0; i < 6; ++i) said += read_text(folder / (".said" + std::to_string(i)));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << said;
+  for (const char* name : {"x", "x-2", "x-3", "x-4", "x-5", "x-6"})
+    EXPECT_TRUE(fs::exists(folder / "fresh" / name / "report.json")) << name << '\n' << said;
+}
+
+TEST_F(Results, AFolderInThePlaceOfAResultIsNotReplaced) {
+  ASSERT_EQ(run({"--out", "out"}).status, 0);
+  fs::remove(folder / "out" / "forces.png");
+  fs::create_directory(folder / "out" / "forces.png");
+  const std::string report = read_text(folder / "out" / "report.json");
+  expect_refused({"run", "plate.obj", "--probe", "p=orbit", "--frames", "0", "--out", "out", "--force"}, 1,
+                 "out/forces.png");
+  EXPECT_EQ(read_text(folder / "out" / "report.json"), report);
+}
+
+TEST_F(Results, AFolderBehindALinkIsTheOneThatTheSystemMeans) {
+  fs::create_directories(folder / "a" / "b");
+  fs::create_directory_symlink("a/b", folder / "ab");
+  ASSERT_EQ(run({"--out", "ab/../sy"}).status, 0);
+  EXPECT_TRUE(fs::exists(folder / "a" / "sy" / "report.json"));
+  EXPECT_FALSE(fs::exists(folder / "sy"));
+  fs::create_directory_symlink("a", folder / "link");
+  const Said first = run({"--out", "link"}), second = run({"--out", "link"});
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_TRUE(fs::exists(folder / "a" / "report.json")) << first.out;
+  EXPECT_TRUE(fs::exists(folder / "link-2" / "report.json")) << "as it says: " << second.out;
+}
+
+TEST_F(Results, WhatIsNoFileIsNoPlaceForARecordingAndNoneIsReadFromIt) {
+  ASSERT_EQ(std::system(("mkfifo " + quoted((folder / "pipe").string())).c_str()), 0);
+  expect_refused({"run", "plate.obj", "--probe", "p=orbit", "--record", "pipe", "--force", "--out", "b"}, 1, "pipe");
+  expect_refused({"run", "plate.obj", "--replay", "pipe", "--out", "b"}, 1, "pipe");
 }
 
 TEST_F(Results, ARecordingIsReplacedByForceOnlyAndOnlyIfItIsOne) {

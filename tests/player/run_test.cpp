@@ -161,7 +161,7 @@ TEST_F(Run, AProbeThatStaysInAnothersDentIsToldSo) {
   const Said said = pliant(
       {"run", "plate.obj", "--probe", "a=script:a.csv", "--probe", "b=script:b.csv", "--out", "out", "--frames", "0"});
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(said.err.find("`b` never touched anything, although it was behind the surface of `plate`"),
+  EXPECT_NE(said.err.find("`b` never touched anything, although it was below the surface of `plate`"),
             std::string::npos)
       << said.err;
 }
@@ -186,14 +186,52 @@ TEST_F(Run, AMeshInMillimetresIsHintedAtAndTouchedInItsUnit) {
   const Said wrong = touch("wrong", {}), said = touch("mm", {"--unit", "mm"}), number = touch("f", {"--unit", "0.001"});
   ASSERT_EQ(wrong.status, 0) << wrong.err;
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(wrong.err.find("millimetres"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("unusual for metres"), std::string::npos) << wrong.err;
   EXPECT_NE(wrong.err.find(Json::parse(pliant({"inspect", "big.obj", "--json"}).out)["unit_hint"].get<std::string>()),
             std::string::npos)
       << "one sentence for both: " << wrong.err;
-  EXPECT_EQ(said.err.find("millimetres"), std::string::npos) << said.err;
+  EXPECT_EQ(said.err.find("unusual for metres"), std::string::npos) << said.err;
   EXPECT_NEAR(report("mm")["probes"][0]["max_depth_m"], 0.002, 1e-6);
   ASSERT_EQ(number.status, 0) << number.err;
   EXPECT_EQ(report("f")["hash"], report("mm")["hash"]);
+}
+
+TEST_F(Run, AReplayHasTheSettingsAndTheUnitOfItsRecording) {
+  const Said recorded =
+      pliant({"run", "plate.obj", "--probe", "p=orbit", "--unit", "0.5", "--set", "*.deformable.stiffness=777",
+              "--record", "p.rec", "--seconds", "1.5", "--frames", "0", "--out", "first"});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  EXPECT_GT(report("first")["probes"][0]["contact_ticks"], 0);
+  const Said replayed = pliant({"run", "plate.obj", "--replay", "p.rec", "--frames", "0", "--out", "again"});
+  ASSERT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_EQ(report("again")["hash"], report("first")["hash"]);
+  EXPECT_NE(replayed.err.find("--unit 0.5"), std::string::npos) << replayed.err;
+  EXPECT_EQ(replayed.err.find("forces will differ"), std::string::npos) << replayed.err;
+  const Said other = pliant({"run", "plate.obj", "--replay", "p.rec", "--set", "*.deformable.stiffness=300", "--frames",
+                             "0", "--out", "other"});
+  EXPECT_NE(other.err.find("forces will differ"), std::string::npos) << other.err;
+  const Said longer =
+      pliant({"run", "plate.obj", "--replay", "p.rec", "--seconds", "9", "--frames", "0", "--out", "longer"});
+  EXPECT_NE(longer.err.find("ends after 1500 ticks"), std::string::npos) << longer.err;
+}
+
+TEST_F(Run, AProbeWhoseDriverIsNotThereIsNamed) {
+  ASSERT_EQ(pliant({"convert", "plate.obj", "level.gltf"}).status, 0);
+  Json json = Json::parse(read_text(folder / "level.gltf"));
+  for (Json& node : json["nodes"])
+    if (node.contains("mesh")) node["extensions"]["PLIANT_deformable"] = Json::object();
+  json["nodes"].push_back(
+      {{"name", "tip"},
+       {"translation", {0, 0.05, 0}},
+       {"extensions", {{"PLIANT_probe", Json::object()}, {"PLIANT_haptic_device", {{"driver", "mouse"}}}}}});
+  json["scenes"][0]["nodes"].push_back(json["nodes"].size() - 1);
+  json["extensionsUsed"] = {"PLIANT_deformable", "PLIANT_probe", "PLIANT_haptic_device"};
+  write_text(folder / "level.gltf", json.dump());
+  const Said said = pliant({"run", "level.gltf", "--seconds", "0.2", "--frames", "0", "--out", "out"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("nothing moves `tip`: its driver `mouse` needs a window"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("`tip` never touched anything: nothing moves it"), std::string::npos) << said.err;
+  EXPECT_FALSE(report("out")["probes"][0].contains("missed_by_m"));
 }
 
 TEST_F(Run, SetChangesTheFieldItNames) {
@@ -285,7 +323,7 @@ TEST_F(Run, AFileWithNothingToTouchSaysSo) {
   write_text(folder / "empty.gltf", R"({"asset": {"version": "2.0"}})");
   const Said said = pliant({"run", "empty.gltf", "--seconds", "0.1", "--frames", "0", "--out", "out"});
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(said.err.find("finds no surface"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("found no deformable surface"), std::string::npos) << said.err;
   EXPECT_EQ(report("out")["probes"][0]["contact_ticks"], 0);
 }
 

@@ -317,7 +317,7 @@ TEST_F(ToolRun, AnOrbitTakesTheToolDownToTheGround) {
 TEST_F(ToolRun, AnOrbitWithoutASurfaceHoldsItsProbeAndSaysSo) {
   const Said said = press("out", {"--probe", "finger=orbit", "--seconds", "0.1"});
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(said.err.find("`finger` finds no surface"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("`finger` found no deformable surface"), std::string::npos) << said.err;
   const Json json = report("out");
   EXPECT_NE(json["dropped"].dump().find("finger"), std::string::npos);
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");

@@ -225,8 +225,10 @@ TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
   write_text(folder / "other.obj", plate_obj());
   for (const std::string close : {"9.0", "40.0"}) {  // a slow machine is still loading it when the first one closes
     fs::remove_all(folder / "out");
-    const Said said = shown({"plate.obj"}, "0.1,drop,other.obj\n" + close + ",close,\n");
+    const Said said =
+        shown({"plate.obj", "--set", "*.deformable.stiffness=500"}, "0.1,drop,other.obj\n" + close + ",close,\n");
     ASSERT_EQ(said.status, 0) << said.err;
+    EXPECT_NE(said.err.find("--set are for the first level"), std::string::npos) << said.err;
     if (fs::exists(folder / "out" / "other" / "report.json")) break;
   }
   EXPECT_EQ(report("out")["level"], "plate");
@@ -235,13 +237,72 @@ TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
 
 TEST_F(WindowTest, TheSameLevelAnewIsWrittenBesideWhatWasWrittenOfIt) {
   for (const std::string close : {"9.0", "40.0"}) {  // a slow machine is still loading it when the first one closes
-    for (const char* old : {"out", "out-2", "p.rec", "p-2.rec"}) fs::remove_all(folder / old);
-    const Said said = shown({"plate.obj", "--record", "p.rec"}, "0.5,key,R\n" + close + ",close,\n");
+    for (const char* old : {"out", "out-2", "out-3", "p.rec", "p-2.rec", "p-3.rec"}) fs::remove_all(folder / old);
+    const std::string second = std::to_string(std::stod(close) / 2);
+    const Said said =
+        shown({"plate.obj", "--record", "p.rec"}, "0.5,key,R\n" + second + ",key,R\n" + close + ",close,\n");
     ASSERT_EQ(said.status, 0) << said.err;
-    if (fs::exists(folder / "out-2")) break;
+    if (fs::exists(folder / "out-3")) break;
   }
-  for (const char* file : {"out/report.json", "out-2/report.json", "p.rec", "p-2.rec"})
+  for (const char* file : {"out/report.json", "out-2/report.json", "out-3/report.json", "p.rec", "p-2.rec", "p-3.rec"})
     EXPECT_TRUE(fs::exists(folder / file)) << file;
+}
+
+TEST_F(WindowTest, AFailureBeforeTheFirstTickLeavesTheEarlierRecordingAndNothingElse) {
+  ASSERT_EQ(pliant({"run", "plate.obj", "--probe", "p=orbit", "--seconds", "0.2", "--frames", "0", "--record", "p.rec",
+                    "--out", "first"})
+                .status,
+            0);
+  const std::string recorded = read_text(folder / "p.rec");
+  fs::create_directory(folder / "no-shaders");
+  const std::string before = std::string(kDriversLeak) + "PLIANT_SHADERS=" + quoted((folder / "no-shaders").string()) +
+                             " timeout 60 xvfb-run -a -s '-screen 0 400x300x24'";
+  const Said said = pliant({"run", "plate.obj", "--window", "--record", "p.rec", "--force", "--out", "out"}, before);
+  EXPECT_EQ(said.status, 1) << said.err;
+  EXPECT_EQ(read_text(folder / "p.rec"), recorded);
+  EXPECT_EQ(pliant({"run", "plate.obj", "--window", "--record", "new.rec", "--out", "out"}, before).status, 1);
+  EXPECT_FALSE(fs::exists(folder / "new.rec"));
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  for (const auto& entry : fs::directory_iterator(folder))
+    EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+}
+
+TEST_F(WindowTest, ARecordingWithAPauseReplaysToTheSameHash) {
+  write_text(folder / "press.csv", press_csv(0.002));
+  const Said said = shown({"plate.obj", "--probe", "tip=script:press.csv", "--field", "cpu", "--record", "p.rec"},
+                          "0.6,key,Space\n0.9,key,Space\n2.5,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  ASSERT_EQ(pliant({"run", "plate.obj", "--replay", "p.rec", "--frames", "0", "--out", "again"}).status, 0);
+  EXPECT_GT(probe("tip")["contact_ticks"], 100);
+  EXPECT_EQ(report("again")["hash"], report("out")["hash"]);
+  EXPECT_EQ(report("again")["ticks"], report("out")["ticks"]);
+}
+
+TEST_F(WindowTest, ALostDisplayEndsTheRunLikeAnyOtherError) {
+  if (!there("Xvfb")) GTEST_SKIP() << "Xvfb is missing; install xvfb";
+  write_text(folder / "lose.sh",
+             "cd " + quoted(folder.string()) +
+                 "\nXvfb -displayfd 3 -screen 0 400x300x24 3>number 2>/dev/null &\nserver=$!\n"
+                 "for i in $(seq 300); do [ -s number ] && break; sleep 0.1; done\n"
+                 "export DISPLAY=:$(cat number)\n" +
+                 quoted(PLIANT_BINARY) +
+                 " run plate.obj --window --probe p=orbit --record p.rec --out out --size 240x160 &\npid=$!\n"
+                 "until [ -s out/.partial-$pid/forces.csv ]; do kill -0 $pid || break; sleep 0.02; done\n"
+                 "kill -9 $server\nwait $pid\n");
+  const std::string line = std::string("env -u WAYLAND_DISPLAY ") + kDriversLeak + "timeout 100 bash " +
+                           quoted((folder / "lose.sh").string()) + " >" + quoted((folder / "said").string()) + " 2>&1";
+  const int status = std::system(line.c_str());
+  const std::string said = read_text(folder / "said");
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1) << said;
+  EXPECT_NE(said.find("pliant: error: display: "), std::string::npos) << said;
+  ASSERT_TRUE(fs::exists(folder / "out" / "report.json")) << said;
+  EXPECT_NE(report("out")["ended"].get<std::string>().find("display"), std::string::npos) << report("out")["ended"];
+  EXPECT_GT(report("out")["ticks"], 0);
+  EXPECT_EQ(read_text(folder / "out" / "forces.png").substr(1, 3), "PNG");
+  EXPECT_TRUE(fs::exists(folder / "p.rec"));
+  expect_no_force_at_the_end();
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
 }
 
 TEST_F(WindowTest, EventsOfTheDisplayItselfMoveAndCloseIt) {
@@ -252,7 +313,7 @@ TEST_F(WindowTest, EventsOfTheDisplayItselfMoveAndCloseIt) {
                                      "xdotool mousemove --window $id 200 100; sleep 0.3; xdotool mousemove --window "
                                      "$id 120 80; xdotool key Tab; sleep 1\n"
                                      "xdotool mousedown 1; sleep 2; xdotool mouseup 1; sleep 0.2\n"
-                                     "kill -INT $!; wait $!\n");
+                                     "kill -TERM $!; wait $!\n");
   const std::string line = std::string("env -u WAYLAND_DISPLAY ") + kDriversLeak +
                            "timeout 60 xvfb-run -a -s '-screen 0 400x300x24' sh " +
                            quoted((folder / "hand.sh").string()) + " >" + quoted((folder / "said").string()) + " 2>&1";

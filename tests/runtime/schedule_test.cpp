@@ -69,5 +69,17 @@ TEST(RealtimeClock, NeverGoesBackAndSkipsWhatItMissed) {
   EXPECT_EQ(late.index + 1, asked + clock.overruns()) << "every index was handed out or counted as an overrun";
 }
 
+// 1e9 / 3000 is no whole number: cut to nanoseconds, a second of ticks would be 1 us short.
+TEST(RealtimeClock, HasTheTimesOfTheLockstepClockAtEveryRate) {
+  for (const double rate : {1000.0, 1024.0, 3000.0, 100000.0 / 7.0}) {
+    RealtimeClock clock(rate);
+    for (int i = 0; i < 10; ++i) {
+      const Tick tick = clock.next();
+      ASSERT_EQ(tick.dt, 1.0 / rate);
+      ASSERT_EQ(tick.time, static_cast<double>(tick.index) * (1.0 / rate));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pliant
