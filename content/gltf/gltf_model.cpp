@@ -43,6 +43,15 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
+// The reader only appends. An element takes up to 3 kB: long lists grow once, not by doubling.
+void reserve(const Json& json, tinygltf::Model& model) {
+  model.accessors.reserve(array_of(json, "accessors").size());
+  model.bufferViews.reserve(array_of(json, "bufferViews").size());
+  model.materials.reserve(array_of(json, "materials").size());
+  model.meshes.reserve(array_of(json, "meshes").size());
+  model.nodes.reserve(array_of(json, "nodes").size());
+}
+
 // Whether every element of the document has become one of the Model, with the same number.
 bool is_complete(const Json& json, const tinygltf::Model& model) {
   const auto same = [](const Json& object, const char* key, const auto& elements) {
@@ -78,10 +87,7 @@ void read_model(SourceDocument& document, const Container& container, FetchedByt
   reader.SetFsCallbacks({&exists, &as_it_is, &hand_over, nullptr, &fetched});
   reader.SetImageLoader(&keep_encoded, nullptr);
   std::string errors, warnings;  // not shown: the checks before have said all that there is to say
-  // The reader only appends: a list of many elements grows once, not by doubling.
-  document.model.accessors.reserve(array_of(document.json, "accessors").size());
-  document.model.bufferViews.reserve(array_of(document.json, "bufferViews").size());
-  document.model.nodes.reserve(array_of(document.json, "nodes").size());
+  reserve(document.json, document.model);
   bool read = false;
   std::string text;
   if (const std::optional<Json> rewritten = rewritten_for_tinygltf(document, container, fetched))
