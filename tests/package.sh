@@ -7,6 +7,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/installed" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 
+# A program may hold another version of tinygltf.
+nm -C "$(find "$work/installed" -name libpliant_content.a)" | grep -E ' [TVW] tinygltf::' &&
+  { echo "tinygltf is not under our own name"; exit 1; }
+
 # Nothing but public headers, and none of them needs another's include or one that is not installed.
 find "$work/installed/include" -name '*.h' | grep -v '/include/pliant/[a-z_]*\.h$' && { echo "not public"; exit 1; }
 for header in "$work"/installed/include/pliant/*.h; do

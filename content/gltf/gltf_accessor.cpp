@@ -7,20 +7,10 @@ namespace pliant {
 
 namespace {
 
+// 0: a type that glTF 2.0 does not have; tinygltf knows two more.
 std::size_t size_of_component(int type) {
-  switch (type) {
-    case kByte:
-    case kUnsignedByte:
-      return 1;
-    case kShort:
-    case kUnsignedShort:
-      return 2;
-    case kUnsignedInt:
-    case kFloat:
-      return 4;
-    default:
-      return 0;
-  }
+  if (type == TINYGLTF_COMPONENT_TYPE_INT || type == TINYGLTF_COMPONENT_TYPE_DOUBLE) return 0;
+  return static_cast<std::size_t>(std::max(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)), 0));
 }
 
 template <class T>
@@ -60,69 +50,91 @@ void read_element(const std::uint8_t* at, const AccessorLayout& layout, Out* out
                               layout.normalized);
 }
 
-// Where a bufferView's bytes begin, shifted by an offset; null if the buffer is a placeholder.
-const std::uint8_t* view_data(const SourceDocument& document, const Json& holder) {
-  const Json& view = document.json["bufferViews"][holder["bufferView"].get<std::size_t>()];
-  const Bytes& buffer = document.buffers[view["buffer"].get<std::size_t>()];
-  if (buffer.empty()) return nullptr;
-  return buffer.data() + value_of<std::size_t>(view, "byteOffset", 0) + value_of<std::size_t>(holder, "byteOffset", 0);
+// Where a bufferView's bytes begin, shifted by an offset; null if there is none or its buffer is a placeholder.
+const std::uint8_t* view_data(const SourceDocument& document, int number, std::size_t offset) {
+  if (number < 0) return nullptr;
+  const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(number)];
+  const Bytes& buffer = document.buffers[static_cast<std::size_t>(view.buffer)];
+  return buffer.empty() ? nullptr : buffer.data() + view.byteOffset + offset;
+}
+const std::uint8_t* sparse_indices(const SourceDocument& document, const tinygltf::Accessor& accessor) {
+  const auto& at = accessor.sparse.indices;
+  return view_data(document, at.bufferView, static_cast<std::uint32_t>(at.byteOffset));
+}
+const std::uint8_t* sparse_values(const SourceDocument& document, const tinygltf::Accessor& accessor) {
+  const auto& at = accessor.sparse.values;
+  return view_data(document, at.bufferView, static_cast<std::uint32_t>(at.byteOffset));
 }
 
 template <class Out>
 std::vector<Out> read(const SourceDocument& document, std::size_t index, bool stored = false) {
-  const Json& accessor = document.json["accessors"][index];
+  const tinygltf::Accessor& accessor = document.model.accessors[index];
   AccessorLayout layout = layout_of(accessor);
   layout.normalized &= !stored;
   const std::size_t width = layout.components();
   std::vector<Out> out(layout.count * width);
-  const std::uint8_t* data = accessor.contains("bufferView") ? view_data(document, accessor) : nullptr;
-  if (data) {
-    const Json& view = document.json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
-    const std::size_t stride = value_of<std::size_t>(view, "byteStride", layout.element_size);
+  if (const std::uint8_t* data = view_data(document, accessor.bufferView, accessor.byteOffset)) {
+    const std::size_t given = document.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
+    const std::size_t stride = given == 0 ? layout.element_size : given;
     if (std::is_same_v<Out, float> && layout.component_type == kFloat && stride == layout.element_size)
       std::memcpy(out.data(), data, out.size() * sizeof(Out));
     else
       for (std::size_t i = 0; i < layout.count; ++i) read_element(data + i * stride, layout, &out[i * width]);
   }
-  if (accessor.contains("sparse")) {
+  if (accessor.sparse.isSparse) {
     const std::vector<std::uint32_t> indices = read_sparse_indices(document, index);
-    const std::uint8_t* values = view_data(document, accessor["sparse"]["values"]);
+    const std::uint8_t* values = sparse_values(document, accessor);
     for (std::size_t i = 0; values && i < indices.size(); ++i)
       if (indices[i] < layout.count) read_element(values + i * layout.element_size, layout, &out[indices[i] * width]);
   }
   return out;
 }
 
-}  // namespace
-
-AccessorLayout layout_of(const Json& accessor) {
+// A vector is one column.
+AccessorLayout make_layout(std::size_t rows, std::size_t columns, int component_type, std::uint64_t count,
+                           bool normalized) {
   AccessorLayout layout;
-  const std::string& type = accessor["type"].get_ref<const std::string&>();
-  if (type == "SCALAR") layout.rows = layout.columns = 1;
-  if (type == "VEC2" || type == "VEC3" || type == "VEC4") {
-    layout.rows = static_cast<std::size_t>(type[3] - '0');
-    layout.columns = 1;
-  }
-  if (type == "MAT2" || type == "MAT3" || type == "MAT4")
-    layout.rows = layout.columns = static_cast<std::size_t>(type[3] - '0');
-  layout.component_type = accessor["componentType"].get<int>();
-  layout.component_size = size_of_component(layout.component_type);
-  layout.column_size = layout.rows * layout.component_size;
-  if (layout.columns > 1) layout.column_size = (layout.column_size + 3) / 4 * 4;
-  layout.element_size = layout.columns * layout.column_size;
-  layout.last_size =
-      layout.element_size == 0 ? 0 : (layout.columns - 1) * layout.column_size + layout.rows * layout.component_size;
-  layout.count = accessor["count"].get<std::uint64_t>();
-  layout.normalized = value_of(accessor, "normalized", false);
+  layout.rows = rows;
+  layout.columns = columns;
+  layout.component_type = component_type;
+  layout.component_size = size_of_component(component_type);
+  layout.column_size = rows * layout.component_size;
+  if (columns > 1) layout.column_size = (layout.column_size + 3) / 4 * 4;
+  layout.element_size = columns * layout.column_size;
+  layout.last_size = layout.element_size == 0 ? 0 : (columns - 1) * layout.column_size + rows * layout.component_size;
+  layout.count = count;
+  layout.normalized = normalized;
   layout.known = layout.element_size > 0;
   return layout;
 }
 
+}  // namespace
+
+AccessorLayout layout_of(const Json& accessor) {
+  const std::string& type = accessor["type"].get_ref<const std::string&>();
+  std::size_t rows = 0, columns = 0;
+  if (type == "SCALAR") rows = columns = 1;
+  if (type == "VEC2" || type == "VEC3" || type == "VEC4") {
+    rows = static_cast<std::size_t>(type[3] - '0');
+    columns = 1;
+  }
+  if (type == "MAT2" || type == "MAT3" || type == "MAT4") rows = columns = static_cast<std::size_t>(type[3] - '0');
+  return make_layout(rows, columns, accessor["componentType"].get<int>(), accessor["count"].get<std::uint64_t>(),
+                     value_of(accessor, "normalized", false));
+}
+
+AccessorLayout layout_of(const tinygltf::Accessor& accessor) {
+  // TINYGLTF_TYPE_VEC2 .. VEC4 are 2 .. 4, MAT2 .. MAT4 are 32 + 2 .. 4.
+  const int type = accessor.type == TINYGLTF_TYPE_SCALAR ? 1 : accessor.type;
+  const bool matrix = type >= TINYGLTF_TYPE_MAT2, known = type > 0;
+  const std::size_t rows = known ? static_cast<std::size_t>(type % 32) : 0;
+  return make_layout(rows, matrix ? rows : known ? 1 : 0, accessor.componentType, accessor.count, accessor.normalized);
+}
+
 bool has_data(const SourceDocument& document, std::size_t index) {
-  const Json& accessor = document.json["accessors"][index];
-  if (accessor.contains("bufferView")) return view_data(document, accessor) != nullptr;
-  return accessor.contains("sparse") && view_data(document, accessor["sparse"]["indices"]) != nullptr &&
-         view_data(document, accessor["sparse"]["values"]) != nullptr;
+  const tinygltf::Accessor& accessor = document.model.accessors[index];
+  if (accessor.bufferView >= 0) return view_data(document, accessor.bufferView, accessor.byteOffset) != nullptr;
+  return accessor.sparse.isSparse && sparse_indices(document, accessor) && sparse_values(document, accessor);
 }
 
 std::vector<float> read_floats(const SourceDocument& document, std::size_t accessor) {
@@ -137,11 +149,11 @@ std::vector<double> read_stored(const SourceDocument& document, std::size_t acce
 }
 
 std::vector<std::uint32_t> read_sparse_indices(const SourceDocument& document, std::size_t index) {
-  const Json& sparse = document.json["accessors"][index]["sparse"];
-  const std::uint8_t* data = view_data(document, sparse["indices"]);
+  const tinygltf::Accessor& accessor = document.model.accessors[index];
+  const std::uint8_t* data = sparse_indices(document, accessor);
   if (!data) return {};
-  std::vector<std::uint32_t> indices(sparse["count"].get<std::size_t>());
-  const int type = sparse["indices"]["componentType"].get<int>();
+  std::vector<std::uint32_t> indices(static_cast<std::uint32_t>(accessor.sparse.count));
+  const int type = accessor.sparse.indices.componentType;
   for (std::size_t i = 0; i < indices.size(); ++i)
     indices[i] = component<std::uint32_t>(data + i * size_of_component(type), type, false);
   return indices;

@@ -1,5 +1,6 @@
-// glTF accessors as plain arrays: strides, normalised integers, sparse overrides and matrix padding resolved. Relies on
-// check_meaning: every range has been checked against its buffer.
+// The Model's accessors as plain arrays (tinygltf has them, but does not read them): strides, normalised integers,
+// sparse overrides and matrix padding resolved. Relies on check_meaning: every range has been checked against its
+// buffer.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,8 @@ struct AccessorLayout {
   bool known = false;  // false: a type or component type that glTF 2.0 does not have
   std::size_t components() const { return rows * columns; }
 };
-AccessorLayout layout_of(const Json& accessor);
+AccessorLayout layout_of(const Json& accessor);  // for the checks that stand before tinygltf
+AccessorLayout layout_of(const tinygltf::Accessor& accessor);
 
 // Whether the accessor stands for bytes of this file: false for zeros, and where a buffer is a placeholder.
 bool has_data(const SourceDocument& document, std::size_t accessor);

@@ -18,52 +18,51 @@ std::optional<NodeProperty> property_of(const std::string& path) {
   return {};
 }
 
-Interpolation interpolation_of(const Json& sampler) {
-  const std::string name = value_of<std::string>(sampler, "interpolation", "LINEAR");
-  if (name == "STEP") return Interpolation::kStep;
-  return name == "CUBICSPLINE" ? Interpolation::kCubicSpline : Interpolation::kLinear;
+Interpolation interpolation_of(const tinygltf::AnimationSampler& sampler) {
+  if (sampler.interpolation == "STEP") return Interpolation::kStep;
+  return sampler.interpolation == "CUBICSPLINE" ? Interpolation::kCubicSpline : Interpolation::kLinear;
 }
 
 class AnimationReader {
  public:
   AnimationReader(const SourceDocument& document, Level& level) : document_(document), level_(level) {
-    node_of_.assign(array_of(document.json, "nodes").size(), -1);
+    node_of_.assign(document.model.nodes.size(), -1);
     for (std::size_t i = 0; i < document.json_node.size(); ++i)
       node_of_[static_cast<std::size_t>(document.json_node[i])] = static_cast<std::int32_t>(i);
   }
 
-  Status animation(const Json& json, std::size_t number) {
+  Status animation(const tinygltf::Animation& animation, std::size_t number) {
     LevelAnimation out;
-    out.name = value_of<std::string>(json, "name", "");
-    for (std::size_t c = 0; c < json["channels"].size(); ++c)
-      if (Status s = channel(json, c, fmt::format("/animations/{}/channels/{}", number, c), out); !s) return s;
+    out.name = animation.name;
+    for (std::size_t c = 0; c < animation.channels.size(); ++c)
+      if (Status s = channel(animation, c, fmt::format("/animations/{}/channels/{}", number, c), out); !s) return s;
     for (LevelChannel& channel : out.channels) channel.track.length = out.length;
     level_.animations.push_back(std::move(out));
     return Done{};
   }
 
  private:
-  Status channel(const Json& animation, std::size_t number, const std::string& pointer, LevelAnimation& out) {
-    const Json& json = animation["channels"][number];
-    const Json& target = json["target"];
-    const std::optional<NodeProperty> property = property_of(target["path"].get<std::string>());
+  Status channel(const tinygltf::Animation& animation, std::size_t number, const std::string& pointer,
+                 LevelAnimation& out) {
+    const tinygltf::AnimationChannel& from = animation.channels[number];
+    const std::optional<NodeProperty> property = property_of(from.target_path);
     if (!property) {
       level_.notes.emplace_back("animations move nodes; morph weights and what else they animate stay as they are");
       return Done{};
     }
-    if (!target.contains("node")) return Done{};  // glTF 2.0: to be ignored
-    const Json& sampler = animation["samplers"][json["sampler"].get<std::size_t>()];
-    const std::size_t input = sampler["input"].get<std::size_t>(), output = sampler["output"].get<std::size_t>();
+    if (from.target_node < 0) return Done{};  // glTF 2.0: to be ignored
+    const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(from.sampler)];
+    const std::size_t input = static_cast<std::size_t>(sampler.input),
+                      output = static_cast<std::size_t>(sampler.output);
     if (!has_data(document_, input) || !has_data(document_, output)) {
       level_.notes.push_back(pointer + ": is left out: its times or values have no data in this file");
       return Done{};
     }
-    keys_ += std::max(layout_of(document_.json["accessors"][input]).count,
-                      layout_of(document_.json["accessors"][output]).count);
+    keys_ += std::max(document_.model.accessors[input].count, document_.model.accessors[output].count);
     if (keys_ > kMostKeys)
       return Error{pointer,
                    fmt::format("brings the level above {} keys; sample its animations more coarsely", kMostKeys)};
-    LevelChannel channel{node_of_[target["node"].get<std::size_t>()], *property, {}};
+    LevelChannel channel{node_of_[static_cast<std::size_t>(from.target_node)], *property, {}};
     channel.track.interpolation = interpolation_of(sampler);
     if (const std::string fault = fill(channel, read_floats(document_, input), read_floats(document_, output));
         !fault.empty())
@@ -108,9 +107,8 @@ class AnimationReader {
 
 Status read_animations(const SourceDocument& document, Level& level) {
   AnimationReader reader(document, level);
-  const Json& animations = array_of(document.json, "animations");
-  for (std::size_t a = 0; a < animations.size(); ++a)
-    if (Status s = reader.animation(animations[a], a); !s) return s;
+  for (std::size_t a = 0; a < document.model.animations.size(); ++a)
+    if (Status s = reader.animation(document.model.animations[a], a); !s) return s;
   return Done{};
 }
 

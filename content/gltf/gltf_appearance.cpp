@@ -10,15 +10,19 @@ namespace {
 
 constexpr std::uint64_t kMaxDecodedPictures = std::uint64_t{768} << 20;  // [byte] of a level, all together
 
-// The picture of a texture slot, -1: none.
-std::int32_t texture_of(const SourceDocument& document, const Json& object, const char* key, Level& level) {
-  if (!object.contains(key)) return -1;
-  const Json& info = object[key];
+std::int32_t picture_of(const SourceDocument& document, std::size_t texture) {
+  return document.model.textures[texture].source;
+}
+
+// The picture of the texture slot `holder[key]`, -1: none.
+std::int32_t texture_of(const SourceDocument& document, const Json& holder, const char* key, Level& level) {
+  if (!holder.contains(key)) return -1;
+  const Json& info = holder[key];
   if (extension_of(info, "KHR_texture_transform"))
     level.notes.push_back("KHR_texture_transform is ignored: textures are laid as they are");
   if (value_of(info, "texCoord", 0) != 0)
     level.notes.push_back("textures on another set than TEXCOORD_0 use TEXCOORD_0");
-  return value_of(document.json["textures"][info["index"].get<std::size_t>()], "source", -1);
+  return picture_of(document, info["index"].get<std::size_t>());
 }
 
 // Relief that glTF has no place for, in the material's extras: {"height_texture": {"index": n}, "height_scale":
@@ -30,35 +34,38 @@ void read_relief(const SourceDocument& document, const Json& json, Material& out
   if (!extras.contains("height_scale") || !extras["height_scale"].is_number()) return;
   const Json& texture = extras["height_texture"];
   const float scale = extras["height_scale"].get<float>();
-  if (!texture.contains("index") || !texture["index"].is_number_unsigned() || !document.json.contains("textures"))
-    return;
+  if (!texture.contains("index") || !texture["index"].is_number_unsigned()) return;
   const std::size_t index = texture["index"].get<std::size_t>();
-  if (index >= document.json["textures"].size() || !(scale > 0.0f && scale < 1e3f)) return;
-  out.height_texture = value_of(document.json["textures"][index], "source", -1);
+  if (index >= document.model.textures.size() || !(scale > 0.0f && scale < 1e3f)) return;
+  out.height_texture = picture_of(document, index);
   out.height_scale = scale;
 }
 
 }  // namespace
 
-Material material_of(const SourceDocument& document, const Json& json, Level& level) {
+Material material_of(const SourceDocument& document, std::size_t material, Level& level) {
   static const Json kEmpty = Json::object();
   const auto part = [&](const Json* found) -> const Json& { return found ? *found : kEmpty; };
-  const Json& pbr = json.contains("pbrMetallicRoughness") ? json["pbrMetallicRoughness"] : kEmpty;
+  const tinygltf::Material& from = document.model.materials[material];
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  // Texture slots and extensions: SourceDocument says why they are not the Model's.
+  const Json& json = document.json["materials"][material];
+  const Json& slots = json.contains("pbrMetallicRoughness") ? json["pbrMetallicRoughness"] : kEmpty;
   Material out;
-  out.name = value_of<std::string>(json, "name", "");
-  out.base_color = vector_of(pbr, "baseColorFactor", vec4(1));
-  out.metallic = value_of(pbr, "metallicFactor", 1.0f);
-  out.roughness = value_of(pbr, "roughnessFactor", 1.0f);
-  out.emissive = vector_of(json, "emissiveFactor", vec3(0)) *
+  out.name = from.name;
+  out.base_color = vector_of(pbr.baseColorFactor, vec4(1));
+  out.metallic = static_cast<float>(pbr.metallicFactor);
+  out.roughness = static_cast<float>(pbr.roughnessFactor);
+  out.emissive = vector_of(from.emissiveFactor, vec3(0)) *
                  value_of(part(extension_of(json, "KHR_materials_emissive_strength")), "emissiveStrength", 1.0f);
-  out.base_color_texture = texture_of(document, pbr, "baseColorTexture", level);
-  out.metallic_roughness_texture = texture_of(document, pbr, "metallicRoughnessTexture", level);
+  out.base_color_texture = texture_of(document, slots, "baseColorTexture", level);
+  out.metallic_roughness_texture = texture_of(document, slots, "metallicRoughnessTexture", level);
   out.normal_texture = texture_of(document, json, "normalTexture", level);
   out.occlusion_texture = texture_of(document, json, "occlusionTexture", level);
   out.emissive_texture = texture_of(document, json, "emissiveTexture", level);
   read_relief(document, json, out);
-  if (json.contains("normalTexture")) out.normal_scale = value_of(json["normalTexture"], "scale", 1.0f);
-  if (json.contains("occlusionTexture")) out.occlusion_strength = value_of(json["occlusionTexture"], "strength", 1.0f);
+  out.normal_scale = static_cast<float>(from.normalTexture.scale);
+  out.occlusion_strength = static_cast<float>(from.occlusionTexture.strength);
   out.ior = value_of(part(extension_of(json, "KHR_materials_ior")), "ior", 1.5f);
   const Json& transmission = part(extension_of(json, "KHR_materials_transmission"));
   out.transmission = value_of(transmission, "transmissionFactor", 0.0f);
@@ -66,59 +73,56 @@ Material material_of(const SourceDocument& document, const Json& json, Level& le
   const Json& volume = part(extension_of(json, "KHR_materials_volume"));
   out.thickness = value_of(volume, "thicknessFactor", 0.0f);
   out.thickness_texture = texture_of(document, volume, "thicknessTexture", level);
-  out.attenuation_color = vector_of(volume, "attenuationColor", vec3(1));
+  out.attenuation_color = vector_of(value_of(volume, "attenuationColor", std::vector<double>{}), vec3(1));
   out.attenuation_distance = value_of(volume, "attenuationDistance", 0.0f);
-  const std::string alpha = value_of<std::string>(json, "alphaMode", "OPAQUE");
-  out.alpha = alpha == "MASK"    ? Material::Alpha::kMask
-              : alpha == "BLEND" ? Material::Alpha::kBlend
-                                 : Material::Alpha::kOpaque;
-  out.alpha_cutoff = value_of(json, "alphaCutoff", 0.5f);
-  out.double_sided = value_of(json, "doubleSided", false);
+  out.alpha = from.alphaMode == "MASK"    ? Material::Alpha::kMask
+              : from.alphaMode == "BLEND" ? Material::Alpha::kBlend
+                                          : Material::Alpha::kOpaque;
+  out.alpha_cutoff = static_cast<float>(from.alphaCutoff);
+  out.double_sided = from.doubleSided;
   return out;
 }
 
-std::optional<Light> light_of(const SourceDocument& document, const Json& node) {
-  const Json* reference = extension_of(node, "KHR_lights_punctual");
+std::optional<Light> light_of(const SourceDocument& document, std::size_t node) {
+  const Json* reference = extension_of(document.json["nodes"][node], "KHR_lights_punctual");
   if (!reference) return std::nullopt;
-  const Json& json =
-      (*extension_of(document.json, "KHR_lights_punctual"))["lights"][(*reference)["light"].get<std::size_t>()];
+  const tinygltf::Light& from = document.model.lights[(*reference)["light"].get<std::size_t>()];
   Light out;
-  const std::string type = json["type"].get<std::string>();
-  if (type == "point")
+  if (from.type == "point")
     out.kind = Light::Kind::kPoint;
-  else if (type == "spot")
+  else if (from.type == "spot")
     out.kind = Light::Kind::kSpot;
-  else if (type != "directional")
+  else if (from.type != "directional")
     return std::nullopt;
-  out.color = vector_of(json, "color", vec3(1));
-  out.intensity = value_of(json, "intensity", 1.0f);
-  out.range = value_of(json, "range", 0.0f);
+  out.color = vector_of(from.color, vec3(1));
+  out.intensity = static_cast<float>(from.intensity);
+  out.range = static_cast<float>(from.range);
   if (out.kind == Light::Kind::kSpot) {
-    out.inner_cone = value_of(json["spot"], "innerConeAngle", 0.0f);
-    out.outer_cone = value_of(json["spot"], "outerConeAngle", 0.7853982f);
+    out.inner_cone = static_cast<float>(from.spot.innerConeAngle);
+    out.outer_cone = static_cast<float>(from.spot.outerConeAngle);
   }
   return out;
 }
 
-std::optional<Camera> camera_of(const SourceDocument& document, const Json& node, Level& level) {
-  if (!node.contains("camera")) return std::nullopt;
-  const Json& json = document.json["cameras"][node["camera"].get<std::size_t>()];
-  if (!json.contains("perspective")) {
+std::optional<Camera> camera_of(const SourceDocument& document, std::size_t node, Level& level) {
+  const int number = document.model.nodes[node].camera;
+  if (number < 0) return std::nullopt;
+  const tinygltf::Camera& from = document.model.cameras[static_cast<std::size_t>(number)];
+  if (from.type != "perspective") {
     level.notes.push_back("orthographic cameras are ignored");
     return std::nullopt;
   }
   Camera out;
-  out.yfov = json["perspective"]["yfov"].get<float>();
-  out.znear = json["perspective"]["znear"].get<float>();
-  out.zfar = value_of(json["perspective"], "zfar", out.zfar);
+  out.yfov = static_cast<float>(from.perspective.yfov);
+  out.znear = static_cast<float>(from.perspective.znear);
+  if (from.perspective.zfar > 0.0) out.zfar = static_cast<float>(from.perspective.zfar);
   return out;
 }
 
 Status read_images(const SourceDocument& document, Level& level) {
   std::uint64_t decoded = 0;
-  const Json& images = array_of(document.json, "images");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    std::string name = value_of<std::string>(images[i], "name", "");
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    std::string name = value_of<std::string>(document.json["images"][i], "name", "");
     if (document.images[i].empty()) {
       level.images.push_back({name, 1, 1, {255, 255, 255, 255}});
       continue;

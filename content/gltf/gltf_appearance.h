@@ -5,19 +5,18 @@
 
 namespace pliant {
 
-// A vector member, or `otherwise` if it is absent.
+// A vector as tinygltf has it, or `otherwise` if it is empty.
 template <class Vector>
-Vector vector_of(const Json& object, const char* key, Vector otherwise) {
-  const auto it = object.find(key);
-  if (it == object.end()) return otherwise;
-  for (int i = 0; i < Vector::length(); ++i) otherwise[i] = (*it)[static_cast<std::size_t>(i)].get<float>();
+Vector vector_of(const std::vector<double>& numbers, Vector otherwise) {
+  for (int i = 0; !numbers.empty() && i < Vector::length(); ++i)
+    otherwise[i] = static_cast<float>(numbers[static_cast<std::size_t>(i)]);
   return otherwise;
 }
 
-// Notes of what is read differently go to the level.
-Material material_of(const SourceDocument& document, const Json& json, Level& level);
-std::optional<Light> light_of(const SourceDocument& document, const Json& node);
-std::optional<Camera> camera_of(const SourceDocument& document, const Json& node, Level& level);
+// By glTF number. Notes of what is read differently go to the level.
+Material material_of(const SourceDocument& document, std::size_t material, Level& level);
+std::optional<Light> light_of(const SourceDocument& document, std::size_t node);
+std::optional<Camera> camera_of(const SourceDocument& document, std::size_t node, Level& level);
 // Decodes every picture into level.images, by glTF number.
 Status read_images(const SourceDocument& document, Level& level);
 

@@ -7,6 +7,7 @@
 
 #include "content/files/image.h"
 #include "content/gltf/gltf_accessor.h"
+#include "content/gltf/gltf_model.h"
 #include "content/gltf/gltf_save.h"
 #include "content/mesh/painted.h"
 
@@ -15,10 +16,20 @@ namespace pliant {
 namespace {
 
 template <class Vector>
-Json numbers(const Vector& v) {
-  Json out = Json::array();
-  for (int i = 0; i < Vector::length(); ++i) out.push_back(v[i]);
+std::vector<double> numbers(const Vector& v) {
+  std::vector<double> out;
+  for (int i = 0; i < Vector::length(); ++i) out.push_back(static_cast<double>(v[i]));
   return out;
+}
+
+tinygltf::Value value(float number) {
+  return tinygltf::Value(static_cast<double>(number));
+}
+tinygltf::Value value(const vec3& v) {
+  return tinygltf::Value(tinygltf::Value::Array{value(v.x), value(v.y), value(v.z)});
+}
+tinygltf::Value texture_value(std::int32_t image) {
+  return tinygltf::Value(tinygltf::Value::Object{{"index", tinygltf::Value(image)}});
 }
 
 class Builder {
@@ -26,101 +37,120 @@ class Builder {
   explicit Builder(const Level& level) : level_(level) {}
 
   Result<SourceDocument> build() {
-    json_["asset"] = {{"version", "2.0"}, {"generator", "pliant"}};
-    if (!level_.about.empty()) json_["asset"]["extras"] = {{"about", level_.about}};
-    images();
-    for (const Material& material : level_.materials) json_["materials"].push_back(material_json(material));
+    model_.asset.generator = "pliant";
+    if (!level_.about.empty())
+      model_.asset.extras = tinygltf::Value(tinygltf::Value::Object{{"about", tinygltf::Value(level_.about)}});
+    for (const Material& material : level_.materials) add_material(material);
     for (const LevelMesh& mesh : level_.meshes)
       if (const Status status = add_mesh(mesh); !status) return status.error();
     nodes();
     animations();
+    images();
     SourceDocument document;
+    document.json = model_as_json(model_);
     if (!bytes_.empty()) {
-      json_["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
+      document.json["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
       document.buffers.push_back(std::move(bytes_));
     }
     for (std::size_t i = 0; i < level_.nodes.size(); ++i) document.json_node.push_back(static_cast<std::int32_t>(i));
-    document.images = std::move(images_);
-    document.json = std::move(json_);
+    document.images.resize(model_.images.size());  // which lie in the buffer
+    document.model = std::move(model_);
     return document;
   }
 
  private:
+  // Pictures are textures by the same numbers.
   void images() {
-    for (std::size_t i = 0; i < level_.images.size(); ++i) {
-      const Image& image = level_.images[i];
-      images_.push_back(encode_png(image.width, image.height, image.rgba.data()));
-      // The packer gives it a bufferView.
-      Json json = {{"mimeType", "image/png"}};
-      if (!image.name.empty()) json["name"] = image.name;
-      json_["images"].push_back(std::move(json));
-      json_["textures"].push_back({{"source", i}});
+    for (const Image& image : level_.images) {
+      const Bytes png = encode_png(image.width, image.height, image.rgba.data());
+      tinygltf::Image out;
+      out.name = image.name;
+      out.mimeType = "image/png";
+      out.bufferView = add_view(png.data(), png.size(), 0);
+      tinygltf::Texture texture;
+      texture.source = static_cast<int>(model_.images.size());
+      model_.images.push_back(std::move(out));
+      model_.textures.push_back(std::move(texture));
     }
   }
 
-  static void set_texture(Json& json, const char* key, std::int32_t image) {
-    if (image >= 0) json[key] = {{"index", image}};
-  }
-
-  Json material_json(const Material& m) {
-    Json json = Json::object();
-    if (!m.name.empty()) json["name"] = m.name;
-    Json& pbr = json["pbrMetallicRoughness"];
-    pbr = {
-        {"baseColorFactor", numbers(m.base_color)}, {"metallicFactor", m.metallic}, {"roughnessFactor", m.roughness}};
-    set_texture(pbr, "baseColorTexture", m.base_color_texture);
-    set_texture(pbr, "metallicRoughnessTexture", m.metallic_roughness_texture);
-    set_texture(json, "normalTexture", m.normal_texture);
-    set_texture(json, "occlusionTexture", m.occlusion_texture);
-    set_texture(json, "emissiveTexture", m.emissive_texture);
+  void add_material(const Material& m) {
+    tinygltf::Material out;
+    out.name = m.name;
+    out.pbrMetallicRoughness.baseColorFactor = numbers(m.base_color);
+    out.pbrMetallicRoughness.metallicFactor = static_cast<double>(m.metallic);
+    out.pbrMetallicRoughness.roughnessFactor = static_cast<double>(m.roughness);
+    out.pbrMetallicRoughness.baseColorTexture.index = m.base_color_texture;
+    out.pbrMetallicRoughness.metallicRoughnessTexture.index = m.metallic_roughness_texture;
+    out.normalTexture.index = m.normal_texture;
+    out.normalTexture.scale = static_cast<double>(m.normal_scale);
+    out.occlusionTexture.index = m.occlusion_texture;
+    out.occlusionTexture.strength = static_cast<double>(m.occlusion_strength);
+    out.emissiveTexture.index = m.emissive_texture;
     if (m.height_texture >= 0)
-      json["extras"] = {{"height_texture", {{"index", m.height_texture}}}, {"height_scale", m.height_scale}};
-    if (m.normal_texture >= 0) json["normalTexture"]["scale"] = m.normal_scale;
-    if (m.occlusion_texture >= 0) json["occlusionTexture"]["strength"] = m.occlusion_strength;
+      out.extras = tinygltf::Value(tinygltf::Value::Object{{"height_texture", texture_value(m.height_texture)},
+                                                           {"height_scale", value(m.height_scale)}});
     // glTF's factor ends at 1; what is brighter is scaled by a power of two, which loses no bit.
     float strength = 1.0f;
     while (std::max({m.emissive.x, m.emissive.y, m.emissive.z}) > strength) strength *= 2.0f;
-    if (m.emissive != vec3(0)) json["emissiveFactor"] = numbers(m.emissive / strength);
-    if (strength != 1.0f) extend(json, "KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
-    if (m.ior != 1.5f) extend(json, "KHR_materials_ior", {{"ior", m.ior}});
-    Json transmission = Json::object();
-    if (m.transmission != 0.0f) transmission["transmissionFactor"] = m.transmission;
-    set_texture(transmission, "transmissionTexture", m.transmission_texture);
-    if (!transmission.empty()) extend(json, "KHR_materials_transmission", transmission);
-    Json volume = Json::object();
-    if (m.thickness != 0.0f) volume["thicknessFactor"] = m.thickness;
-    set_texture(volume, "thicknessTexture", m.thickness_texture);
-    if (m.attenuation_color != vec3(1)) volume["attenuationColor"] = numbers(m.attenuation_color);
-    if (m.attenuation_distance != 0.0f) volume["attenuationDistance"] = m.attenuation_distance;
-    if (!volume.empty()) extend(json, "KHR_materials_volume", volume);
-    if (m.alpha != Material::Alpha::kOpaque) json["alphaMode"] = m.alpha == Material::Alpha::kMask ? "MASK" : "BLEND";
-    if (m.alpha_cutoff != 0.5f) json["alphaCutoff"] = m.alpha_cutoff;
-    if (m.double_sided) json["doubleSided"] = true;
-    return json;
+    out.emissiveFactor = numbers(m.emissive / strength);
+    tinygltf::Value::Object emission, ior, transmission, volume;
+    if (strength != 1.0f) emission["emissiveStrength"] = value(strength);
+    if (m.ior != 1.5f) ior["ior"] = value(m.ior);
+    if (m.transmission != 0.0f) transmission["transmissionFactor"] = value(m.transmission);
+    if (m.transmission_texture >= 0) transmission["transmissionTexture"] = texture_value(m.transmission_texture);
+    if (m.thickness != 0.0f) volume["thicknessFactor"] = value(m.thickness);
+    if (m.thickness_texture >= 0) volume["thicknessTexture"] = texture_value(m.thickness_texture);
+    if (m.attenuation_color != vec3(1)) volume["attenuationColor"] = value(m.attenuation_color);
+    if (m.attenuation_distance != 0.0f) volume["attenuationDistance"] = value(m.attenuation_distance);
+    extend(out.extensions, "KHR_materials_emissive_strength", std::move(emission));
+    extend(out.extensions, "KHR_materials_ior", std::move(ior));
+    extend(out.extensions, "KHR_materials_transmission", std::move(transmission));
+    extend(out.extensions, "KHR_materials_volume", std::move(volume));
+    if (m.alpha != Material::Alpha::kOpaque) out.alphaMode = m.alpha == Material::Alpha::kMask ? "MASK" : "BLEND";
+    out.alphaCutoff = static_cast<double>(m.alpha_cutoff);
+    out.doubleSided = m.double_sided;
+    model_.materials.push_back(std::move(out));
   }
 
-  void extend(Json& object, const char* name, Json value) {
-    object["extensions"][name] = std::move(value);
-    declare_extension(json_, name, false);
+  // Nothing to say: no extension.
+  void extend(tinygltf::ExtensionMap& extensions, const char* name, tinygltf::Value::Object members) {
+    if (members.empty()) return;
+    extensions[name] = tinygltf::Value(std::move(members));
+    std::vector<std::string>& used = model_.extensionsUsed;
+    if (std::find(used.begin(), used.end(), name) == used.end()) used.emplace_back(name);
   }
 
-  // Appends an array to the buffer as a bufferView and an accessor of its own.
-  std::size_t add_accessor(const void* data, std::size_t count, std::size_t element, int component, const char* type,
-                           int target) {
+  // Appends an array to the buffer as a bufferView of its own.
+  int add_view(const void* data, std::size_t size, int target) {
     bytes_.resize((bytes_.size() + 7) / 8 * 8);
     const auto* begin = static_cast<const std::uint8_t*>(data);
-    json_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", count * element}});
-    if (target != 0) json_["bufferViews"].back()["target"] = target;
-    bytes_.insert(bytes_.end(), begin, begin + count * element);
-    json_["accessors"].push_back({{"bufferView", json_["bufferViews"].size() - 1},
-                                  {"componentType", component},
-                                  {"count", count},
-                                  {"type", type}});
-    return json_["accessors"].size() - 1;
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = bytes_.size();
+    view.byteLength = size;
+    view.target = target;
+    bytes_.insert(bytes_.end(), begin, begin + size);
+    model_.bufferViews.push_back(std::move(view));
+    return static_cast<int>(model_.bufferViews.size() - 1);
+  }
+  // ... and an accessor over it.
+  int add_accessor(const void* data, std::size_t count, std::size_t element, int component, int type, int target) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = add_view(data, count * element, target);
+    accessor.componentType = component;
+    accessor.count = count;
+    accessor.type = type;
+    model_.accessors.push_back(std::move(accessor));
+    return static_cast<int>(model_.accessors.size() - 1);
   }
   template <class T>
-  std::size_t add_attribute(const std::vector<T>& values, const char* type) {
-    return add_accessor(values.data(), values.size(), sizeof(T), kFloat, type, 34962);
+  int add_attribute(const std::vector<T>& values, int type) {
+    return add_accessor(values.data(), values.size(), sizeof(T), kFloat, type, TINYGLTF_TARGET_ARRAY_BUFFER);
+  }
+  void set_bounds(int accessor, std::vector<double> low, std::vector<double> high) {
+    model_.accessors[static_cast<std::size_t>(accessor)].minValues = std::move(low);
+    model_.accessors[static_cast<std::size_t>(accessor)].maxValues = std::move(high);
   }
 
   bool has_textures(std::int32_t material) const {
@@ -131,7 +161,8 @@ class Builder {
   }
 
   Status add_mesh(const LevelMesh& mesh) {
-    Json primitives = Json::array();
+    tinygltf::Mesh out;
+    out.name = mesh.name;
     for (const Primitive& primitive : mesh.primitives) {
       if (primitive.index.empty() || primitive.position.empty()) continue;
       const std::size_t count = primitive.position.size();
@@ -146,76 +177,84 @@ class Builder {
           return Error{mesh.name, "has a position that is not finite and cannot be saved"};
         box.add(p);
       }
-      Json json;
-      Json& attributes = json["attributes"];
-      const std::size_t position = add_attribute(primitive.position, "VEC3");
-      json_["accessors"][position]["min"] = numbers(box.min);
-      json_["accessors"][position]["max"] = numbers(box.max);
-      attributes["POSITION"] = position;
-      if (!primitive.normal.empty()) attributes["NORMAL"] = add_attribute(primitive.normal, "VEC3");
-      if (!primitive.tangent.empty()) attributes["TANGENT"] = add_attribute(primitive.tangent, "VEC4");
-      if (!primitive.uv.empty()) attributes["TEXCOORD_0"] = add_attribute(primitive.uv, "VEC2");
+      tinygltf::Primitive made;
+      std::map<std::string, int>& attributes = made.attributes;
+      attributes["POSITION"] = add_attribute(primitive.position, TINYGLTF_TYPE_VEC3);
+      set_bounds(attributes["POSITION"], numbers(box.min), numbers(box.max));
+      if (!primitive.normal.empty()) attributes["NORMAL"] = add_attribute(primitive.normal, TINYGLTF_TYPE_VEC3);
+      if (!primitive.tangent.empty()) attributes["TANGENT"] = add_attribute(primitive.tangent, TINYGLTF_TYPE_VEC4);
+      if (!primitive.uv.empty()) attributes["TEXCOORD_0"] = add_attribute(primitive.uv, TINYGLTF_TYPE_VEC2);
       // A textured material on a primitive without coordinates is not glTF: all of it takes the texture's corner.
       else if (has_textures(primitive.material))
-        attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), "VEC2");
+        attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), TINYGLTF_TYPE_VEC2);
       for (const PaintedAttribute& painted : kPainted)
         if (const std::vector<float>& values = primitive.*painted.values; !values.empty())
-          attributes[painted.name] = add_attribute(values, "SCALAR");
+          attributes[painted.name] = add_attribute(values, TINYGLTF_TYPE_SCALAR);
+      const std::vector<std::uint32_t>& index = primitive.index;
       if (count < 65535) {
-        const std::vector<std::uint16_t> small(primitive.index.begin(), primitive.index.end());
-        json["indices"] = add_accessor(small.data(), small.size(), 2, kUnsignedShort, "SCALAR", 34963);
+        const std::vector<std::uint16_t> small(index.begin(), index.end());
+        made.indices = add_accessor(small.data(), small.size(), 2, kUnsignedShort, TINYGLTF_TYPE_SCALAR,
+                                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
       } else {
-        json["indices"] =
-            add_accessor(primitive.index.data(), primitive.index.size(), 4, kUnsignedInt, "SCALAR", 34963);
+        made.indices = add_accessor(index.data(), index.size(), 4, kUnsignedInt, TINYGLTF_TYPE_SCALAR,
+                                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
       }
-      if (primitive.material >= 0) json["material"] = primitive.material;
-      primitives.push_back(std::move(json));
+      made.material = primitive.material;
+      made.mode = TINYGLTF_MODE_TRIANGLES;
+      out.primitives.push_back(std::move(made));
     }
-    if (primitives.empty()) {  // glTF has no mesh without primitives
+    if (out.primitives.empty()) {  // glTF has no mesh without primitives
       mesh_number_.push_back(-1);
       return Done{};
     }
-    mesh_number_.push_back(static_cast<std::int32_t>(json_["meshes"].size()));
-    json_["meshes"].push_back({{"primitives", std::move(primitives)}});
-    if (!mesh.name.empty()) json_["meshes"].back()["name"] = mesh.name;
+    mesh_number_.push_back(static_cast<std::int32_t>(model_.meshes.size()));
+    model_.meshes.push_back(std::move(out));
     return Done{};
   }
 
   void nodes() {
-    Json roots = Json::array();
+    tinygltf::Scene scene;
     for (std::size_t i = 0; i < level_.nodes.size(); ++i) {
       const LevelNode& node = level_.nodes[i];
-      Json json = transform_json(node.local);
-      json["name"] = node.name;
-      if (!node.children.empty()) json["children"] = node.children;
-      if (node.mesh >= 0 && mesh_number_[static_cast<std::size_t>(node.mesh)] >= 0)
-        json["mesh"] = mesh_number_[static_cast<std::size_t>(node.mesh)];
-      if (node.light) extend(json, "KHR_lights_punctual", {{"light", add_light(*node.light)}});
-      if (node.camera) {
-        const Camera& camera = *node.camera;
-        json_["cameras"].push_back(
-            {{"type", "perspective"},
-             {"perspective", {{"yfov", camera.yfov}, {"znear", camera.znear}, {"zfar", camera.zfar}}}});
-        json["camera"] = json_["cameras"].size() - 1;
+      tinygltf::Node out;
+      const quat& q = node.local.rotation;
+      if (node.local.translation != vec3(0)) out.translation = numbers(node.local.translation);
+      if (q != quat(1, 0, 0, 0)) out.rotation = numbers(vec4(q.x, q.y, q.z, q.w));
+      if (node.local.scale != vec3(1)) out.scale = numbers(node.local.scale);
+      out.name = node.name;
+      out.children.assign(node.children.begin(), node.children.end());
+      if (node.mesh >= 0) out.mesh = mesh_number_[static_cast<std::size_t>(node.mesh)];
+      if (node.light) {
+        add_light(*node.light);
+        extend(out.extensions, "KHR_lights_punctual",
+               {{"light", tinygltf::Value(static_cast<int>(model_.lights.size() - 1))}});
       }
-      if (node.parent < 0 && node.in_scene) roots.push_back(i);
-      json_["nodes"].push_back(std::move(json));
+      if (node.camera) {
+        tinygltf::Camera camera;
+        camera.type = "perspective";
+        camera.perspective.yfov = static_cast<double>(node.camera->yfov);
+        camera.perspective.znear = static_cast<double>(node.camera->znear);
+        camera.perspective.zfar = static_cast<double>(node.camera->zfar);
+        out.camera = static_cast<int>(model_.cameras.size());
+        model_.cameras.push_back(std::move(camera));
+      }
+      if (node.parent < 0 && node.in_scene) scene.nodes.push_back(static_cast<int>(i));
+      model_.nodes.push_back(std::move(out));
     }
-    json_["scenes"] = Json::array({roots.empty() ? Json::object() : Json{{"nodes", roots}}});
-    json_["scene"] = 0;
+    model_.scenes.push_back(std::move(scene));
+    model_.defaultScene = 0;
   }
 
-  std::size_t add_light(const Light& light) {
+  void add_light(const Light& light) {
     constexpr const char* kTypes[] = {"directional", "point", "spot"};
-    Json json = {{"type", kTypes[static_cast<std::size_t>(light.kind)]},
-                 {"color", numbers(light.color)},
-                 {"intensity", light.intensity}};
-    if (light.range > 0.0f) json["range"] = light.range;
-    if (light.kind == Light::Kind::kSpot)
-      json["spot"] = {{"innerConeAngle", light.inner_cone}, {"outerConeAngle", light.outer_cone}};
-    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
-    lights.push_back(std::move(json));
-    return lights.size() - 1;
+    tinygltf::Light out;
+    out.type = kTypes[static_cast<std::size_t>(light.kind)];
+    out.color = numbers(light.color);
+    out.intensity = static_cast<double>(light.intensity);
+    out.range = static_cast<double>(std::max(light.range, 0.0f));
+    out.spot.innerConeAngle = static_cast<double>(light.inner_cone);
+    out.spot.outerConeAngle = static_cast<double>(light.outer_cone);
+    model_.lights.push_back(std::move(out));
   }
 
   // Every channel has accessors of its own; the times' bounds are as glTF wants them.
@@ -223,33 +262,35 @@ class Builder {
     constexpr const char* kPaths[] = {"translation", "rotation", "scale"};
     constexpr const char* kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
     for (const LevelAnimation& animation : level_.animations) {
-      Json json = {{"channels", Json::array()}, {"samplers", Json::array()}};
-      if (!animation.name.empty()) json["name"] = animation.name;
-      for (const LevelChannel& channel : animation.channels) {
-        const Track& track = channel.track;
-        const bool turns = channel.property == NodeProperty::kRotation;
+      tinygltf::Animation out;
+      out.name = animation.name;
+      for (const LevelChannel& from : animation.channels) {
+        const Track& track = from.track;
+        const bool turns = from.property == NodeProperty::kRotation;
         const std::vector<float> times(track.times.begin(), track.times.end());
         std::vector<float> values;
-        for (const glm::dvec4& value : track.values)
-          for (int i = 0; i < (turns ? 4 : 3); ++i) values.push_back(static_cast<float>(value[i]));
-        const std::size_t input = add_accessor(times.data(), times.size(), 4, kFloat, "SCALAR", 0);
-        json_["accessors"][input]["min"] = Json::array({times.front()});
-        json_["accessors"][input]["max"] = Json::array({times.back()});
-        const std::size_t output = turns ? add_accessor(values.data(), track.values.size(), 16, kFloat, "VEC4", 0)
-                                         : add_accessor(values.data(), track.values.size(), 12, kFloat, "VEC3", 0);
-        json["channels"].push_back({{"sampler", json["samplers"].size()},
-                                    {"target", {{"node", channel.node}, {"path", kPaths[int(channel.property)]}}}});
-        json["samplers"].push_back(
-            {{"input", input}, {"output", output}, {"interpolation", kInterpolations[int(track.interpolation)]}});
+        for (const glm::dvec4& key : track.values)
+          for (int i = 0; i < (turns ? 4 : 3); ++i) values.push_back(static_cast<float>(key[i]));
+        tinygltf::AnimationSampler sampler;
+        sampler.input = add_accessor(times.data(), times.size(), 4, kFloat, TINYGLTF_TYPE_SCALAR, 0);
+        set_bounds(sampler.input, {static_cast<double>(times.front())}, {static_cast<double>(times.back())});
+        sampler.output = turns ? add_accessor(values.data(), track.values.size(), 16, kFloat, TINYGLTF_TYPE_VEC4, 0)
+                               : add_accessor(values.data(), track.values.size(), 12, kFloat, TINYGLTF_TYPE_VEC3, 0);
+        sampler.interpolation = kInterpolations[int(track.interpolation)];
+        tinygltf::AnimationChannel channel;
+        channel.sampler = static_cast<int>(out.samplers.size());
+        channel.target_node = from.node;
+        channel.target_path = kPaths[int(from.property)];
+        out.samplers.push_back(std::move(sampler));
+        out.channels.push_back(std::move(channel));
       }
-      if (!json["channels"].empty()) json_["animations"].push_back(std::move(json));
+      if (!out.channels.empty()) model_.animations.push_back(std::move(out));
     }
   }
 
   const Level& level_;
-  Json json_;
+  tinygltf::Model model_;
   Bytes bytes_;
-  std::vector<Bytes> images_;
   std::vector<std::int32_t> mesh_number_;  // Level mesh -> /meshes/i, -1: empty
 };
 

@@ -65,6 +65,7 @@ bool split_glb(std::span<const std::uint8_t> file, Container& out, Findings& fin
     return fail(fmt::format("declares {} bytes but has {}; the file is cut off", declared, file.size()));
   if (declared < file.size()) add_warning(findings, "", "has data after its declared end, which is ignored");
   file = file.first(declared);
+  out.glb = file;
   bool has_json = false;
   std::size_t at = 12;
   for (std::size_t chunk = 0; at < file.size(); ++chunk) {

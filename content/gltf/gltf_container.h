@@ -9,6 +9,7 @@ namespace pliant {
 
 struct Container {
   std::span<const std::uint8_t> json, bin;
+  std::span<const std::uint8_t> glb;  // the whole file as far as it declares; empty: it is no GLB
   bool has_bin = false;
 };
 
@@ -24,8 +25,16 @@ bool split_glb(std::span<const std::uint8_t> file, Container& out, Findings& fin
 // JSON of bounded depth and number of values; false after an error.
 bool parse_json(std::span<const std::uint8_t> text, Json& json, Findings& findings);
 
-// Fill document.buffers and document.images; structure and meaning have been checked.
-void resolve_buffers(SourceDocument& document, const Container& container, Findings& findings);
-void resolve_images(SourceDocument& document, Findings& findings);
+// What URIs stand for, by glTF number.
+struct FetchedBytes {
+  std::vector<Bytes> buffers;        // as long as declared; empty: in the BIN chunk, or a placeholder
+  std::vector<bool> is_placeholder;  // of buffers: without data
+  std::vector<Bytes> images;         // encoded; empty: in a bufferView, or not there
+};
+// Structure and meaning have been checked.
+FetchedBytes fetch_bytes(const SourceDocument& document, const Container& container, Findings& findings);
+
+// Compares document.images with what they claim to be, and drops what is not shown.
+void check_pictures(SourceDocument& document, Findings& findings);
 
 }  // namespace pliant

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "content/gltf/gltf_check.h"
-#include "content/gltf/gltf_container.h"
+#include "content/gltf/gltf_model.h"
 
 namespace pliant {
 
@@ -38,9 +38,11 @@ std::optional<SourceDocument> open_gltf(std::span<const std::uint8_t> bytes, boo
   if (any_error(findings)) return std::nullopt;
   check_meaning(document.json, findings);
   if (any_error(findings)) return std::nullopt;
-  resolve_buffers(document, container, findings);
+  FetchedBytes fetched = fetch_bytes(document, container, findings);
   if (any_error(findings)) return std::nullopt;
-  resolve_images(document, findings);
+  read_model(document, container, std::move(fetched), findings);
+  if (any_error(findings)) return std::nullopt;
+  check_pictures(document, findings);
   if (any_error(findings)) return std::nullopt;
   check_data(document, findings);
   if (any_error(findings)) return std::nullopt;

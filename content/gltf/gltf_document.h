@@ -1,5 +1,5 @@
-// A glTF file taken apart and checked: its JSON, the bytes of its buffers and of its pictures. load_level reads from
-// it, save_level writes it back; nothing else knows glTF's containers.
+// A glTF file checked and read: its JSON, what tinygltf makes of it, the bytes of its buffers and of its pictures.
+// load_level reads from it, save_level writes it back; nothing else knows glTF's containers.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 
 #include "components/transform.h"
 #include "content/files/file_io.h"
+#include "content/gltf/tinygltf.h"
 #include "content/level/finding.h"
 #include "content/level/level.h"
 
@@ -18,7 +19,9 @@ namespace pliant {
 using Json = nlohmann::json;
 
 struct SourceDocument {
-  Json json;
+  Json json;                    // as checked. Extensions and extras are read from here, and saving changes only this
+  tinygltf::Model model;        // the same without extensions and extras, as it was read; without bytes
+  bool json_is_mended = false;  // not what the file's text says: tinygltf then reads `json` instead
   std::filesystem::path folder;
   std::vector<Bytes> buffers;  // as many as json["buffers"]; empty: a placeholder without data
   std::vector<Bytes> images;   // encoded, as many as json["images"]; empty: not read (a format that is not shown)

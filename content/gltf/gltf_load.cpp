@@ -40,11 +40,9 @@ constexpr const char* kSupported[] = {"KHR_mesh_quantization",
                                       "KHR_materials_dispersion",
                                       "KHR_materials_iridescence"};
 
-LocalTransform transform_of(const Json& node) {
+LocalTransform transform_of(const tinygltf::Node& node) {
   LocalTransform local;
-  if (node.contains("matrix")) {
-    double m[16];
-    for (std::size_t i = 0; i < 16; ++i) m[i] = node["matrix"][i].get<double>();
+  if (const std::vector<double>& m = node.matrix; !m.empty()) {
     dmat3 axes(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
     dvec3 scale(length(axes[0]), length(axes[1]), length(axes[2]));
     if (glm::determinant(axes) < 0.0) scale.x = -scale.x;
@@ -54,9 +52,9 @@ LocalTransform transform_of(const Json& node) {
     local.scale = vec3(scale);
     return local;
   }
-  local.translation = vector_of(node, "translation", local.translation);
-  local.scale = vector_of(node, "scale", local.scale);
-  const vec4 q = vector_of(node, "rotation", vec4(0, 0, 0, 1));
+  local.translation = vector_of(node.translation, local.translation);
+  local.scale = vector_of(node.scale, local.scale);
+  const vec4 q = vector_of(node.rotation, vec4(0, 0, 0, 1));
   local.rotation = quat(q.w, q.x, q.y, q.z);
   // A unit quaternion to single precision is kept to the bit, so that saving changes nothing.
   const dquat exact(local.rotation);
@@ -64,15 +62,17 @@ LocalTransform transform_of(const Json& node) {
   return local;
 }
 
+std::size_t shown_scene(const SourceDocument& document) {
+  return static_cast<std::size_t>(std::max(document.model.defaultScene, 0));
+}
+
 // Parents first, the shown scene's roots before all others; every node keeps its number in document.json_node.
 void order_nodes(SourceDocument& document, Level& level) {
-  const Json& nodes = array_of(document.json, "nodes");
-  const Json& scenes = array_of(document.json, "scenes");
-  const std::size_t shown = value_of<std::size_t>(document.json, "scene", 0);
+  const std::vector<tinygltf::Node>& nodes = document.model.nodes;
+  const std::vector<tinygltf::Scene>& scenes = document.model.scenes;
   std::vector<std::int32_t> parent(nodes.size(), -1);
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (const Json& child : array_of(nodes[i], "children"))
-      parent[child.get<std::size_t>()] = static_cast<std::int32_t>(i);
+    for (const int child : nodes[i].children) parent[static_cast<std::size_t>(child)] = static_cast<std::int32_t>(i);
   struct Visit {
     std::size_t node;
     std::int32_t parent;
@@ -81,9 +81,9 @@ void order_nodes(SourceDocument& document, Level& level) {
   std::vector<Visit> roots;
   std::vector<bool> placed(nodes.size(), false);
   if (!scenes.empty())
-    for (const Json& root : array_of(scenes[shown], "nodes")) {
-      roots.push_back({root.get<std::size_t>(), -1, true});
-      placed[root.get<std::size_t>()] = true;
+    for (const int root : scenes[shown_scene(document)].nodes) {
+      roots.push_back({static_cast<std::size_t>(root), -1, true});
+      placed[static_cast<std::size_t>(root)] = true;
     }
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (parent[i] < 0 && !placed[i]) roots.push_back({i, -1, scenes.empty()});
@@ -98,9 +98,9 @@ void order_nodes(SourceDocument& document, Level& level) {
     level.nodes.push_back(std::move(node));
     document.json_node.push_back(static_cast<std::int32_t>(visit.node));
     if (visit.parent >= 0) level.nodes[static_cast<std::size_t>(visit.parent)].children.push_back(here);
-    const Json& children = array_of(nodes[visit.node], "children");
+    const std::vector<int>& children = nodes[visit.node].children;
     for (std::size_t c = children.size(); c-- > 0;)
-      stack.push_back({children[c].get<std::size_t>(), here, visit.in_scene});
+      stack.push_back({static_cast<std::size_t>(children[c]), here, visit.in_scene});
   }
 }
 
@@ -119,34 +119,33 @@ std::vector<dmat4> world_matrices(const SourceDocument& document, const Level& l
 }
 
 Status read_nodes(SourceDocument& document, MeshReader& meshes, Level& level) {
-  const Json& nodes = array_of(document.json, "nodes");
+  const std::vector<tinygltf::Node>& nodes = document.model.nodes;
   order_nodes(document, level);
   std::vector<std::string> json_names(nodes.size());
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const std::size_t number = static_cast<std::size_t>(document.json_node[i]);
-    const Json& json = nodes[number];
     LevelNode& node = level.nodes[i];
-    node.local = transform_of(json);
-    node.mesh = value_of(json, "mesh", -1);
-    node.name = value_of<std::string>(json, "name", "");
+    node.local = transform_of(nodes[number]);
+    node.mesh = nodes[number].mesh;
+    node.name = nodes[number].name;
     if (node.name.empty() && node.mesh >= 0) node.name = level.meshes[static_cast<std::size_t>(node.mesh)].name;
     if (node.name.empty()) node.name = fmt::format("node_{}", number);
     json_names[number] = node.name;
-    node.light = light_of(document, json);
-    node.camera = camera_of(document, json, level);
+    node.light = light_of(document, number);
+    node.camera = camera_of(document, number, level);
   }
   const std::vector<dmat4> world = world_matrices(document, level);
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const std::size_t number = static_cast<std::size_t>(document.json_node[i]);
-    const Json& json = nodes[number];
-    if (json.contains("skin")) {
-      Result<LevelMesh> mesh =
-          meshes.read_skinned(json["mesh"].get<std::size_t>(), json["skin"].get<std::size_t>(), world, number);
+    if (nodes[number].skin >= 0) {
+      Result<LevelMesh> mesh = meshes.read_skinned(static_cast<std::size_t>(nodes[number].mesh),
+                                                   static_cast<std::size_t>(nodes[number].skin), world, number);
       if (!mesh) return mesh.error();
       level.notes.push_back("skins are read at rest: " + level.nodes[i].name);
       level.nodes[i].mesh = static_cast<std::int32_t>(level.meshes.size());
       level.meshes.push_back(std::move(*mesh));
     }
+    const Json& json = document.json["nodes"][number];
     if (!json.contains("extensions")) continue;
     const Status status = parse_node_extensions(json["extensions"], fmt::format("/nodes/{}/extensions", number),
                                                 json_names, level.nodes[i]);
@@ -158,14 +157,13 @@ Status read_nodes(SourceDocument& document, MeshReader& meshes, Level& level) {
 Status read_scene(const SourceDocument& document, Level& level) {
   const Json& scenes = array_of(document.json, "scenes");
   if (scenes.empty()) return Done{};
-  const std::size_t shown = value_of<std::size_t>(document.json, "scene", 0);
+  const std::size_t shown = shown_scene(document);
   if (!scenes[shown].contains("extensions")) return Done{};
   return parse_scene_extensions(scenes[shown]["extensions"], fmt::format("/scenes/{}/extensions", shown), level);
 }
 
 Status fill(SourceDocument& document, Level& level) {
-  for (const Json& name : array_of(document.json, "extensionsRequired")) {
-    const std::string& wanted = name.get_ref<const std::string&>();
+  for (const std::string& wanted : document.model.extensionsRequired) {
     const bool known = wanted.rfind("PLIANT_", 0) == 0 ||
                        std::find(std::begin(kSupported), std::end(kSupported), wanted) != std::end(kSupported);
     if (!known)
@@ -173,10 +171,10 @@ Status fill(SourceDocument& document, Level& level) {
                    "asks for " + wanted.substr(0, 100) + ", which is not supported; export without it"};
   }
   if (const Status status = read_images(document, level); !status) return status;
-  for (const Json& material : array_of(document.json, "materials"))
-    level.materials.push_back(material_of(document, material, level));
+  for (std::size_t m = 0; m < document.model.materials.size(); ++m)
+    level.materials.push_back(material_of(document, m, level));
   MeshReader meshes(document);
-  for (std::size_t m = 0; m < array_of(document.json, "meshes").size(); ++m) {
+  for (std::size_t m = 0; m < document.model.meshes.size(); ++m) {
     Result<LevelMesh> mesh = meshes.read(m);
     if (!mesh) return mesh.error();
     level.meshes.push_back(std::move(*mesh));

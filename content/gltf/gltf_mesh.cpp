@@ -15,8 +15,6 @@ namespace pliant {
 
 namespace {
 
-enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
-
 template <class Vector>
 std::vector<Vector> as_vectors(const std::vector<float>& values) {
   constexpr std::size_t kWidth = static_cast<std::size_t>(Vector::length());
@@ -24,6 +22,15 @@ std::vector<Vector> as_vectors(const std::vector<float>& values) {
   for (std::size_t i = 0; i < out.size(); ++i)
     for (std::size_t c = 0; c < kWidth; ++c) out[i][static_cast<int>(c)] = values[i * kWidth + c];
   return out;
+}
+
+bool has_triangles(const tinygltf::Primitive& primitive) {
+  return primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
+}
+
+// Extensions are read from the checked JSON: SourceDocument.
+const Json* draco_of(const SourceDocument& document, std::size_t mesh, std::size_t primitive) {
+  return extension_of(document.json["meshes"][mesh]["primitives"][primitive], "KHR_draco_mesh_compression");
 }
 
 bool all_finite(const std::vector<float>& values) {
@@ -41,13 +48,13 @@ bool all_directions(const std::vector<float>& values, std::size_t width) {
 }  // namespace
 
 std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> corner) {
-  if (mode == kTriangles) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
     corner.resize(corner.size() / 3 * 3);
     return corner;
   }
   std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i + 2 < corner.size(); ++i) {
-    if (mode == kFan)
+    if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
       out.insert(out.end(), {corner[i + 1], corner[i + 2], corner[0]});
     else if (i % 2 == 0)
       out.insert(out.end(), {corner[i], corner[i + 1], corner[i + 2]});
@@ -59,7 +66,7 @@ std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> cor
 
 // Attributes are read from the Draco data where it has them, from accessors otherwise.
 struct MeshReader::Source {
-  const Json* attributes = nullptr;
+  const std::map<std::string, int>* attributes = nullptr;  // name -> accessor
   std::map<std::string, std::vector<float>> decoded;
   std::vector<std::uint32_t> index;
   std::size_t vertices = 0;
@@ -82,32 +89,31 @@ Status MeshReader::spend(std::uint64_t bytes, const std::string& pointer) {
 std::vector<float> MeshReader::attribute(const Source& source, const char* name) const {
   if (const auto found = source.decoded.find(name); found != source.decoded.end()) return found->second;
   const auto member = source.attributes->find(name);
-  return member == source.attributes->end() ? std::vector<float>{} : read_floats(document_, member->get<std::size_t>());
+  return member == source.attributes->end() ? std::vector<float>{}
+                                            : read_floats(document_, static_cast<std::size_t>(member->second));
 }
 
-Status MeshReader::read_draco(const Json& json, const std::string& pointer, Source& source) {
-  const Json& extension = json["extensions"]["KHR_draco_mesh_compression"];
+Status MeshReader::read_draco(const Json& extension, const std::string& pointer, Source& source) {
   const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
-  const Json& view = document_.json["bufferViews"][extension["bufferView"].get<std::size_t>()];
-  const Bytes& buffer = document_.buffers[view["buffer"].get<std::size_t>()];
+  const tinygltf::BufferView& view = document_.model.bufferViews[extension["bufferView"].get<std::size_t>()];
+  const Bytes& buffer = document_.buffers[static_cast<std::size_t>(view.buffer)];
   if (buffer.empty()) return Error{here, "stands on a buffer without data"};
   std::vector<std::string> names;
   std::vector<std::uint32_t> ids;
   for (const auto& [name, id] : extension["attributes"].items()) {
-    if (!json["attributes"].contains(name)) return Error{here, "names " + name + ", which the primitive does not have"};
+    if (source.attributes->count(name) == 0)
+      return Error{here, "names " + name + ", which the primitive does not have"};
     names.push_back(name);
     ids.push_back(id.get<std::uint32_t>());
   }
-  Result<DracoMesh> mesh = decode_draco(
-      std::span(buffer).subspan(value_of<std::size_t>(view, "byteOffset", 0), view["byteLength"].get<std::size_t>()),
-      ids);
+  Result<DracoMesh> mesh = decode_draco(std::span(buffer).subspan(view.byteOffset, view.byteLength), ids);
   if (!mesh) return Error{here, mesh.error().message()};
   source.draco = true;
   source.vertices = mesh->vertices;
   source.index = std::move(mesh->index);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const AccessorLayout layout =
-        layout_of(document_.json["accessors"][json["attributes"][names[i]].get<std::size_t>()]);
+        layout_of(document_.model.accessors[static_cast<std::size_t>(source.attributes->at(names[i]))]);
     std::vector<float>& values = mesh->attributes[i].values;
     if (layout.components() != mesh->attributes[i].width || layout.count != mesh->vertices)
       return Error{here, fmt::format("holds {} x {} numbers for {}, its accessor says {} x {}", mesh->vertices,
@@ -124,54 +130,54 @@ Status MeshReader::read_draco(const Json& json, const std::string& pointer, Sour
   return Done{};
 }
 
-Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string& pointer) {
-  const int mode = value_of(json, "mode", static_cast<int>(kTriangles));
-  const Json& attributes = json["attributes"];
+Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t number) {
+  const tinygltf::Primitive& primitive = document_.model.meshes[mesh].primitives[number];
+  const std::string pointer = fmt::format("/meshes/{}/primitives/{}", mesh, number);
   Primitive out;
-  out.material = value_of(json, "material", -1);
-  if (mode < kTriangles || mode > kFan) {
+  out.material = primitive.material;
+  if (!has_triangles(primitive)) {
     notes_.insert("points and lines are left out: only triangles can be touched");
     return out;
   }
-  if (!attributes.contains("POSITION")) {
+  if (primitive.attributes.count("POSITION") == 0) {
     notes_.insert("primitives without POSITION are left out");
     return out;
   }
   Source source;
-  source.attributes = &attributes;
-  if (extension_of(json, "KHR_draco_mesh_compression")) {
-    if (const Status status = read_draco(json, pointer, source); !status) return status.error();
+  source.attributes = &primitive.attributes;
+  if (const Json* draco = draco_of(document_, mesh, number)) {
+    if (const Status status = read_draco(*draco, pointer, source); !status) return status.error();
   } else {
-    const std::size_t position = attributes["POSITION"].get<std::size_t>();
-    source.vertices = document_.json["accessors"][position]["count"].get<std::size_t>();
-    if (document_.json["accessors"][position].contains("bufferView") && !has_data(document_, position)) {
-      const std::size_t view = document_.json["accessors"][position]["bufferView"].get<std::size_t>();
-      const std::size_t buffer = document_.json["bufferViews"][view]["buffer"].get<std::size_t>();
+    const std::size_t position = static_cast<std::size_t>(primitive.attributes.at("POSITION"));
+    const tinygltf::Accessor& accessor = document_.model.accessors[position];
+    source.vertices = accessor.count;
+    if (accessor.bufferView >= 0 && !has_data(document_, position)) {
+      const int buffer = document_.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].buffer;
       if (document_.json["buffers"][buffer].contains("uri"))
         return Error{fmt::format("/buffers/{}/uri", buffer),
                      "lies on another machine and is not fetched; download it beside the level"};
       notes_.insert("primitives whose buffer has no data are left out");
       return out;
     }
-    std::uint64_t corners = source.vertices;
-    if (json.contains("indices"))
-      corners = document_.json["accessors"][json["indices"].get<std::size_t>()]["count"].get<std::uint64_t>();
+    const bool indexed = primitive.indices >= 0;
+    const std::size_t indices = static_cast<std::size_t>(primitive.indices);
+    const std::uint64_t corners = indexed ? document_.model.accessors[indices].count : source.vertices;
     // What is decoded is 64 bytes a vertex at most, and three indices a corner of a strip.
     if (const Status status = spend(source.vertices * 64 + corners * 16, pointer); !status) return status.error();
-    if (json.contains("indices")) {
-      source.index = read_integers(document_, json["indices"].get<std::size_t>());
+    if (indexed) {
+      source.index = read_integers(document_, indices);
     } else {
       source.index.resize(source.vertices);
       std::iota(source.index.begin(), source.index.end(), 0u);
     }
   }
-  if (mode == kTriangles && source.index.size() % 3 != 0)
+  if (primitive.mode == TINYGLTF_MODE_TRIANGLES && source.index.size() % 3 != 0)
     notes_.insert("corners beyond the last whole triangle are left out");
-  if (json.contains("targets")) notes_.insert("morph targets are ignored: the mesh is read at rest");
+  if (!primitive.targets.empty()) notes_.insert("morph targets are ignored: the mesh is read at rest");
   for (const std::uint32_t index : source.index)
     if (index >= source.vertices)
       return Error{pointer, fmt::format("refers to vertex {} of {}; export the mesh again", index, source.vertices)};
-  out.index = as_triangles(source.draco ? static_cast<int>(kTriangles) : mode, std::move(source.index));
+  out.index = as_triangles(source.draco ? TINYGLTF_MODE_TRIANGLES : primitive.mode, std::move(source.index));
   const auto not_finite = [&](const char* name) {
     return Error{pointer, fmt::format("has a number in {} that is not finite", name)};
   };
@@ -200,12 +206,10 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
 }
 
 Result<LevelMesh> MeshReader::read(std::size_t mesh) {
-  const Json& json = document_.json["meshes"][mesh];
   LevelMesh out;
-  out.name = value_of<std::string>(json, "name", "");
-  for (std::size_t p = 0; p < json["primitives"].size(); ++p) {
-    Result<Primitive> primitive =
-        read_primitive(json["primitives"][p], fmt::format("/meshes/{}/primitives/{}", mesh, p));
+  out.name = document_.model.meshes[mesh].name;
+  for (std::size_t p = 0; p < document_.model.meshes[mesh].primitives.size(); ++p) {
+    Result<Primitive> primitive = read_primitive(mesh, p);
     if (!primitive) return primitive.error();
     if (!primitive->index.empty()) out.primitives.push_back(std::move(*primitive));
   }
@@ -216,8 +220,8 @@ Result<LevelMesh> MeshReader::read_skinned(std::size_t mesh, std::size_t skin, c
                                            std::size_t node) {
   Result<LevelMesh> read_mesh = read(mesh);
   if (!read_mesh) return read_mesh;
-  const Json& json = document_.json["skins"][skin];
-  const Json& joints = json["joints"];
+  const tinygltf::Skin& from = document_.model.skins[skin];
+  const std::vector<int>& joints = from.joints;
   if (std::abs(glm::determinant(dmat3(world[node]))) < 1e-30) {
     notes_.insert("a skin on a node of zero scale is ignored");
     return read_mesh;
@@ -225,29 +229,27 @@ Result<LevelMesh> MeshReader::read_skinned(std::size_t mesh, std::size_t skin, c
   const dmat4 to_node = glm::inverse(world[node]);
   std::vector<dmat4> motion(joints.size());
   std::vector<float> bind;
-  if (json.contains("inverseBindMatrices"))
-    bind = read_floats(document_, json["inverseBindMatrices"].get<std::size_t>());
+  if (from.inverseBindMatrices >= 0) bind = read_floats(document_, static_cast<std::size_t>(from.inverseBindMatrices));
   for (std::size_t j = 0; j < joints.size(); ++j) {
     dmat4 inverse_bind(1.0);
     if (bind.size() >= 16 * (j + 1))
       for (std::size_t c = 0; c < 16; ++c)
         inverse_bind[static_cast<int>(c / 4)][static_cast<int>(c % 4)] = bind[16 * j + c];
-    motion[j] = to_node * world[joints[j].get<std::size_t>()] * inverse_bind;
+    motion[j] = to_node * world[static_cast<std::size_t>(joints[j])] * inverse_bind;
   }
   std::size_t next = 0;  // primitives without triangles are not in the mesh that was read
-  for (const Json& primitive : document_.json["meshes"][mesh]["primitives"]) {
+  for (std::size_t p = 0; p < document_.model.meshes[mesh].primitives.size(); ++p) {
     if (next >= read_mesh->primitives.size()) break;
-    const int mode = value_of(primitive, "mode", static_cast<int>(kTriangles));
-    const Json& attributes = primitive["attributes"];
-    if (mode < kTriangles || mode > kFan || !attributes.contains("POSITION")) continue;
+    const tinygltf::Primitive& primitive = document_.model.meshes[mesh].primitives[p];
+    if (!has_triangles(primitive) || primitive.attributes.count("POSITION") == 0) continue;
     Primitive& out = read_mesh->primitives[next++];
     Source source;
-    source.attributes = &attributes;
-    if (extension_of(primitive, "KHR_draco_mesh_compression"))
-      if (const Status status = read_draco(primitive, "", source); !status) return status.error();
+    source.attributes = &primitive.attributes;
+    if (const Json* draco = draco_of(document_, mesh, p))
+      if (const Status status = read_draco(*draco, "", source); !status) return status.error();
     std::vector<dmat4> blend(out.position.size(), dmat4(0.0));
     std::vector<double> sum(out.position.size(), 0.0);
-    for (int set = 0; attributes.contains(fmt::format("JOINTS_{}", set)); ++set) {
+    for (int set = 0; primitive.attributes.count(fmt::format("JOINTS_{}", set)) != 0; ++set) {
       const std::vector<float> joint = attribute(source, fmt::format("JOINTS_{}", set).c_str());
       const std::vector<float> weight = attribute(source, fmt::format("WEIGHTS_{}", set).c_str());
       if (joint.size() != 4 * blend.size() || weight.size() != 4 * blend.size()) break;

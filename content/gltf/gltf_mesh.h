@@ -28,8 +28,8 @@ class MeshReader {
 
  private:
   struct Source;  // one primitive's attributes, wherever they come from
-  Result<Primitive> read_primitive(const Json& json, const std::string& pointer);
-  Status read_draco(const Json& json, const std::string& pointer, Source& source);
+  Result<Primitive> read_primitive(std::size_t mesh, std::size_t primitive);
+  Status read_draco(const Json& extension, const std::string& pointer, Source& source);
   Status spend(std::uint64_t bytes, const std::string& pointer);
   std::vector<float> attribute(const Source& source, const char* name) const;
 

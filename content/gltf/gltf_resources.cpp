@@ -80,6 +80,25 @@ bool is_remote(const std::string& uri) {
   return uri.rfind("http://", 0) == 0 || uri.rfind("https://", 0) == 0;
 }
 
+// A URI's ending, in small letters.
+std::string ending_of(const std::string& uri) {
+  std::string extension = fs::path(uri.substr(0, 4096)).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+// A picture in a file of a format that is not shown.
+bool is_foreign(const std::string& uri) {
+  const std::string extension = ending_of(uri);
+  return !is_data_uri(uri) && (extension == ".webp" || extension == ".ktx2" || extension == ".dds");
+}
+bool is_missing(const SourceDocument& document, const std::string& uri) {
+  if (uri.empty() || is_data_uri(uri) || is_remote(uri) || is_foreign(uri)) return false;
+  const Result<fs::path> path = confined_path(document.folder, uri);
+  std::error_code ignored;
+  return path && !fs::exists(*path, ignored);
+}
+
 // The bytes that a buffer's or picture's URI stands for.
 std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, const std::string& pointer,
                              Findings& findings) {
@@ -101,90 +120,86 @@ std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, con
   return DataUri{"", std::move(*bytes)};
 }
 
+// A buffer's bytes; empty where it has none, or they lie in the BIN chunk.
+Bytes fetch_buffer(const SourceDocument& document, std::size_t number, const Container& container, Findings& findings) {
+  const Json& buffer = document.json["buffers"][number];
+  const std::string pointer = fmt::format("/buffers/{}", number);
+  const std::uint64_t length = buffer["byteLength"].get<std::uint64_t>();
+  const auto enough = [&](std::size_t size) {
+    if (size < length)
+      add_error(findings, pointer, fmt::format("declares {} bytes but has {}; the file is cut off", length, size));
+    return size >= length;
+  };
+  if (is_remote(value_of<std::string>(buffer, "uri", ""))) {
+    add_warning(findings, pointer, "lies on another machine and is not fetched; download it beside the level");
+  } else if (buffer.contains("uri")) {
+    std::optional<DataUri> data =
+        fetch(buffer["uri"].get_ref<const std::string&>(), document.folder, pointer + "/uri", findings);
+    if (!data) return {};
+    if (is_data_uri(buffer["uri"]) && data->mime != "application/octet-stream" &&
+        data->mime != "application/gltf-buffer")
+      add_error(
+          findings, pointer + "/uri",
+          "has the media type '" + data->mime + "'; a buffer's is application/octet-stream or application/gltf-buffer");
+    else if (enough(data->bytes.size()))
+      data->bytes.resize(length);
+    return std::move(data->bytes);
+  } else if (number == 0 && container.has_bin) {
+    enough(container.bin.size());
+  } else {
+    add_warning(findings, pointer, "has no data: a placeholder; what it would hold is read as absent");
+  }
+  return {};
+}
+
+// A picture's bytes; empty where it lies in a bufferView, elsewhere, or is of a format that is not shown.
+Bytes fetch_picture(const SourceDocument& document, std::size_t number, Findings& findings) {
+  const Json& image = document.json["images"][number];
+  if (!image.contains("uri")) return {};
+  const std::string pointer = fmt::format("/images/{}/uri", number);
+  const std::string& uri = image["uri"].get_ref<const std::string&>();
+  if (is_remote(uri) || is_foreign(uri)) return {};
+  // A surface can be touched without its picture: a missing one is only told of.
+  if (is_missing(document, uri)) {
+    add_warning(findings, pointer, "names " + uri.substr(0, 100) + ", which does not exist; shown as plain white");
+    return {};
+  }
+  std::optional<DataUri> data = fetch(uri, document.folder, pointer, findings);
+  return data ? std::move(data->bytes) : Bytes{};
+}
+
 }  // namespace
 
-void resolve_buffers(SourceDocument& document, const Container& container, Findings& findings) {
+FetchedBytes fetch_bytes(const SourceDocument& document, const Container& container, Findings& findings) {
+  FetchedBytes out;
   const Json& buffers = array_of(document.json, "buffers");
   std::uint64_t total = 0;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
-    const std::string pointer = fmt::format("/buffers/{}", i);
-    const std::uint64_t length = buffers[i]["byteLength"].get<std::uint64_t>();
-    Bytes bytes;
-    if (is_remote(value_of<std::string>(buffers[i], "uri", ""))) {
-      add_warning(findings, pointer, "lies on another machine and is not fetched; download it beside the level");
-      document.buffers.emplace_back();
-      continue;
+    out.buffers.push_back(fetch_buffer(document, i, container, findings));
+    if (any_error(findings)) return out;
+    const bool in_bin = i == 0 && container.has_bin && !buffers[i].contains("uri");
+    out.is_placeholder.push_back(out.buffers.back().empty() && !in_bin);
+    if (!out.is_placeholder.back()) total += buffers[i]["byteLength"].get<std::uint64_t>();
+    if (total > kMaxFileBytes) {
+      add_error(findings, fmt::format("/buffers/{}", i), "makes the buffers exceed 2 GiB together; split the level");
+      return out;
     }
-    if (buffers[i].contains("uri")) {
-      std::optional<DataUri> data =
-          fetch(buffers[i]["uri"].get_ref<const std::string&>(), document.folder, pointer + "/uri", findings);
-      if (!data) return;
-      if (is_data_uri(buffers[i]["uri"]) && data->mime != "application/octet-stream" &&
-          data->mime != "application/gltf-buffer")
-        return add_error(findings, pointer + "/uri",
-                         "has the media type '" + data->mime +
-                             "'; a buffer's is application/octet-stream or application/gltf-buffer");
-      bytes = std::move(data->bytes);
-    } else if (i == 0 && container.has_bin) {
-      bytes.assign(container.bin.begin(), container.bin.end());
-    } else {
-      add_warning(findings, pointer, "has no data: a placeholder; what it would hold is read as absent");
-      document.buffers.emplace_back();
-      continue;
-    }
-    if (bytes.size() < length)
-      return add_error(findings, pointer,
-                       fmt::format("declares {} bytes but has {}; the file is cut off", length, bytes.size()));
-    bytes.resize(length);
-    total += length;
-    if (total > kMaxFileBytes)
-      return add_error(findings, pointer, "makes the buffers exceed 2 GiB together; split the level");
-    document.buffers.push_back(std::move(bytes));
   }
+  for (std::size_t i = 0; i < array_of(document.json, "images").size() && !any_error(findings); ++i)
+    out.images.push_back(fetch_picture(document, i, findings));
+  return out;
 }
 
-// Pictures are fetched, recognised and compared with what they claim; they are decoded only by load_level.
-void resolve_images(SourceDocument& document, Findings& findings) {
-  const Json& images = array_of(document.json, "images");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const Json& image = images[i];
-    const std::string pointer = fmt::format("/images/{}", i);
+// Pictures are recognised and compared with what they claim; they are decoded only by load_level.
+void check_pictures(SourceDocument& document, Findings& findings) {
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    const Json& image = document.json["images"][i];
+    const std::string pointer = fmt::format("/images/{}", i), uri = value_of<std::string>(image, "uri", "");
     std::string claimed = value_of<std::string>(image, "mimeType", ""), embedded;
-    Bytes bytes;
-    bool foreign = false;
-    if (image.contains("uri")) {
-      const std::string& uri = image["uri"].get_ref<const std::string&>();
-      std::string extension = fs::path(uri.substr(0, 4096)).extension().string();
-      std::transform(extension.begin(), extension.end(), extension.begin(),
-                     [](unsigned char c) { return std::tolower(c); });
-      foreign = is_remote(uri) ||
-                (!is_data_uri(uri) && (extension == ".webp" || extension == ".ktx2" || extension == ".dds"));
-      // A surface can be touched without its picture: a missing one is only told of.
-      if (!foreign && !is_data_uri(uri)) {
-        const Result<fs::path> path = confined_path(document.folder, uri);
-        std::error_code ignored;
-        if (path && !fs::exists(*path, ignored)) {
-          add_warning(findings, pointer + "/uri",
-                      "names " + uri.substr(0, 100) + ", which does not exist; shown as plain white");
-          document.images.emplace_back();
-          continue;
-        }
-      }
-      if (!foreign) {
-        std::optional<DataUri> data = fetch(uri, document.folder, pointer + "/uri", findings);
-        if (!data) return;
-        embedded = data->mime;
-        bytes = std::move(data->bytes);
-      }
-      if (extension == ".webp") claimed = "image/webp";
-    } else {
-      const Json& view = document.json["bufferViews"][image["bufferView"].get<std::size_t>()];
-      const Bytes& buffer = document.buffers[view["buffer"].get<std::size_t>()];
-      if (!buffer.empty()) {
-        const auto begin = buffer.begin() + value_of<std::ptrdiff_t>(view, "byteOffset", 0);
-        bytes.assign(begin, begin + view["byteLength"].get<std::ptrdiff_t>());
-      }
-    }
+    if (is_data_uri(uri)) embedded = uri.substr(5, uri.find_first_of(";,") - 5);
+    if (ending_of(uri) == ".webp") claimed = "image/webp";
+    Bytes& bytes = document.images[i];
+    if (bytes.empty() && is_missing(document, uri)) continue;
     const ImageFormat format = image_format(bytes);
     const bool webp =
         claimed == "image/webp" || embedded == "image/webp" ||
@@ -197,13 +212,12 @@ void resolve_images(SourceDocument& document, Findings& findings) {
       if (!mime.empty() && ((is_png && mime != "image/png") || (is_jpeg && mime != "image/jpeg")))
         add_error(findings, pointer, fmt::format("claims to be {} but is not; correct its type", mime.substr(0, 60)));
     if (!is_png && !is_jpeg) {
-      if (is_data_uri(value_of<std::string>(image, "uri", "")) && bytes.empty())
+      if (is_data_uri(uri) && bytes.empty())
         add_error(findings, pointer + "/uri", "holds no picture");
       else
         add_warning(findings, pointer, "is neither PNG nor JPEG and is shown as plain white; convert it");
       bytes.clear();
     }
-    document.images.push_back(std::move(bytes));
   }
 }
 

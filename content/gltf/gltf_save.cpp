@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "content/files/image.h"
+#include "content/gltf/gltf_model.h"
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
 
@@ -114,30 +115,6 @@ std::string as_uri(const std::string& name) {
   return uri;
 }
 
-void append(Bytes& out, std::uint32_t value) {
-  for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
-}
-
-// Header, JSON chunk padded with spaces, BIN chunk padded with zeros.
-Bytes as_glb(std::string json, Bytes bin) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  bin.resize((bin.size() + 3) / 4 * 4);
-  const std::size_t total = 12 + 8 + json.size() + (bin.empty() ? 0 : 8 + bin.size());
-  Bytes out;
-  out.reserve(total);
-  append(out, 0x46546c67);  // glTF
-  append(out, 2);
-  append(out, static_cast<std::uint32_t>(total));
-  append(out, static_cast<std::uint32_t>(json.size()));
-  append(out, 0x4e4f534a);  // JSON
-  out.insert(out.end(), json.begin(), json.end());
-  if (bin.empty()) return out;
-  append(out, static_cast<std::uint32_t>(bin.size()));
-  append(out, 0x004e4942);  // BIN
-  out.insert(out.end(), bin.begin(), bin.end());
-  return out;
-}
-
 }  // namespace
 
 Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
@@ -197,7 +174,7 @@ Result<Bytes> level_as_glb(const Level& level) {
   Result<SourceDocument> document = build_document(level);
   if (!document) return document.error();
   Bytes bin = pack_document(*document, false);
-  return as_glb(document->json.dump(), std::move(bin));
+  return as_glb(document->json.dump(), bin);
 }
 
 Status save_level(const Level& level, const fs::path& path, const SaveOptions& options) {
@@ -227,7 +204,7 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
       fs::equivalent(document.folder, path.parent_path().empty() ? "." : path.parent_path(), ignored);
   Bytes bin = pack_document(document, !glb && same_folder);
   if (glb) {
-    const Bytes whole = as_glb(document.json.dump(), std::move(bin));
+    const Bytes whole = as_glb(document.json.dump(), bin);
     return write_file(path, whole, options.existing);
   }
   std::vector<FileToWrite> files;
