@@ -1,5 +1,7 @@
 #include "content/generate/stage.h"
 
+#include "content/level_file.h"
+
 namespace pliant::generate {
 
 LevelNode& add_node(Level& level, const std::string& name) {
@@ -32,6 +34,17 @@ std::int32_t add_material(Level& level, const std::string& name, vec3 color, flo
   material.roughness = roughness;
   level.materials.push_back(material);
   return static_cast<std::int32_t>(level.materials.size()) - 1;
+}
+
+Status save_plain(const Level& level, const std::filesystem::path& path) {
+  SaveOptions options;
+  options.draco_bits = kBits;
+  if (Status s = save_level(level, path, options); !s) return s;
+  const Result<Level> rounded = load_level(path);
+  if (!rounded) return rounded.error();
+  options.draco_bits = 0;
+  options.no_draco = true;
+  return save_level(*rounded, path, options);
 }
 
 }  // namespace pliant::generate

@@ -5,6 +5,7 @@
 
 #include "content/gltf/gltf_check.h"
 #include "content/gltf/gltf_container.h"
+#include "content/gltf/gltf_mend.h"
 
 namespace pliant {
 
@@ -42,8 +43,9 @@ std::optional<SourceDocument> open_gltf(std::span<const std::uint8_t> bytes, boo
   if (any_error(findings)) return std::nullopt;
   resolve_images(document, findings);
   if (any_error(findings)) return std::nullopt;
-  check_data(document, findings);
+  const bool zero_directions = check_data(document, findings);
   if (any_error(findings)) return std::nullopt;
+  if (zero_directions) mend_directions(document);
   return document;
 }
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "content/gltf/gltf_accessor.h"
-#include "content/gltf/gltf_draco.h"
+#include "content/gltf/gltf_mend.h"
 #include "content/mesh/painted.h"
 
 namespace pliant {
@@ -85,11 +85,11 @@ std::vector<float> MeshReader::attribute(const Source& source, const char* name)
   return member == source.attributes->end() ? std::vector<float>{} : read_floats(document_, member->get<std::size_t>());
 }
 
-Status MeshReader::read_draco(const Json& json, const std::string& pointer, Source& source) {
+Result<DracoMesh> decode_primitive(const SourceDocument& document, const Json& json, const std::string& pointer) {
   const Json& extension = json["extensions"]["KHR_draco_mesh_compression"];
   const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
-  const Json& view = document_.json["bufferViews"][extension["bufferView"].get<std::size_t>()];
-  const Bytes& buffer = document_.buffers[view["buffer"].get<std::size_t>()];
+  const Json& view = document.json["bufferViews"][extension["bufferView"].get<std::size_t>()];
+  const Bytes& buffer = document.buffers[view["buffer"].get<std::size_t>()];
   if (buffer.empty()) return Error{here, "stands on a buffer without data"};
   std::vector<std::string> names;
   std::vector<std::uint32_t> ids;
@@ -102,12 +102,10 @@ Status MeshReader::read_draco(const Json& json, const std::string& pointer, Sour
       std::span(buffer).subspan(value_of<std::size_t>(view, "byteOffset", 0), view["byteLength"].get<std::size_t>()),
       ids);
   if (!mesh) return Error{here, mesh.error().message()};
-  source.draco = true;
-  source.vertices = mesh->vertices;
-  source.index = std::move(mesh->index);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const AccessorLayout layout =
-        layout_of(document_.json["accessors"][json["attributes"][names[i]].get<std::size_t>()]);
+        layout_of(document.json["accessors"][json["attributes"][names[i]].get<std::size_t>()]);
+    mesh->attributes[i].name = names[i];
     std::vector<float>& values = mesh->attributes[i].values;
     if (layout.components() != mesh->attributes[i].width || layout.count != mesh->vertices)
       return Error{here, fmt::format("holds {} x {} numbers for {}, its accessor says {} x {}", mesh->vertices,
@@ -119,8 +117,17 @@ Status MeshReader::read_draco(const Json& json, const std::string& pointer, Sour
                                                                  : 65535.0f;
       for (float& value : values) value = std::max(value / scale, -1.0f);
     }
-    source.decoded[names[i]] = std::move(values);
   }
+  return mesh;
+}
+
+Status MeshReader::read_draco(const Json& json, const std::string& pointer, Source& source) {
+  Result<DracoMesh> mesh = decode_primitive(document_, json, pointer);
+  if (!mesh) return mesh.error();
+  source.draco = true;
+  source.vertices = mesh->vertices;
+  source.index = std::move(mesh->index);
+  for (DracoAttribute& each : mesh->attributes) source.decoded[each.name] = std::move(each.values);
   return Done{};
 }
 
@@ -180,11 +187,13 @@ Result<Primitive> MeshReader::read_primitive(const Json& json, const std::string
     if (!all_finite(values)) return not_finite(name);
     const std::string_view which = name;
     if (which == "POSITION") out.position = as_vectors<vec3>(values);
-    // Directions of length zero are none: all of the primitive's are made anew at spawn.
-    if (which == "NORMAL" && all_directions(values, 3)) out.normal = as_vectors<vec3>(values);
+    if (which == "NORMAL") out.normal = as_vectors<vec3>(values);
     if (which == "TANGENT" && all_directions(values, 4)) out.tangent = as_vectors<vec4>(values);
     if (which == "TEXCOORD_0") out.uv = as_vectors<vec2>(values);
   }
+  // Those in Draco data; others have been mended in the document.
+  if (const std::size_t mended = mend_normals(out.position, out.index, out.normal); mended > 0)
+    notes_.insert(fmt::format("{}: {} normal{} of length 0 made anew", pointer, mended, mended == 1 ? "" : "s"));
   for (const PaintedAttribute& painted : kPainted) {
     std::vector<float> values = attribute(source, painted.name);
     if (!all_finite(values)) return not_finite(painted.name);
