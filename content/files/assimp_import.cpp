@@ -1,5 +1,7 @@
 #include "content/files/assimp_import.h"
 
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -48,6 +50,20 @@ class IndexComplaints : public Assimp::LogStream {
 
  private:
   std::string any_;
+};
+
+// Gives Assimp the bytes that were checked for the file that it opens, and the disk for those that it names.
+class CheckedFile : public Assimp::DefaultIOSystem {
+ public:
+  CheckedFile(std::string path, const Bytes& bytes) : path_(std::move(path)), bytes_(bytes) {}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (path_ != file) return DefaultIOSystem::Open(file, mode);
+    return new Assimp::MemoryIOStream(bytes_.data(), bytes_.size());
+  }
+
+ private:
+  std::string path_;
+  const Bytes& bytes_;
 };
 
 // One for the process: Assimp's logger is one, too.
@@ -189,6 +205,7 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   const unsigned steps =
       aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
   const bool in_memory = file->in_memory || path.empty();
+  if (!in_memory) importer.SetIOHandler(new CheckedFile(path.string(), file->bytes));  // the importer's from here on
   const aiScene* scene =
       in_memory ? importer.ReadFileFromMemory(file->bytes.data(), file->bytes.size(), steps, file->format.c_str())
                 : importer.ReadFile(path.string(), steps);

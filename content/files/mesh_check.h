@@ -19,7 +19,7 @@ struct MeshFile {
 Result<MeshFile> check_mesh_file(Bytes bytes, const std::string& format);
 
 // Of one format each.
-Status check_obj(const Bytes& bytes);
+Status check_obj(Bytes& bytes);  // comments behind numbers become blanks
 Result<Bytes> off_as_ply(
     const Bytes& bytes);  // Assimp's own reader of OFF knows no comments and no face of ten corners
 Status check_ply(const Bytes& bytes);

@@ -2,6 +2,7 @@
 // the last one backwards.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ constexpr const char* kNames[] = {"vertex", "texture coordinate", "normal"};
 
 class ObjCheck {
  public:
-  explicit ObjCheck(const Bytes& bytes) : text_(bytes, "") {}
+  explicit ObjCheck(Bytes& bytes) : bytes_(bytes), text_(bytes, "") {}
 
   Status all() {
     bool curve = false;  // free-form geometry, from `cstype` to `end`: left out
@@ -57,11 +58,19 @@ class ObjCheck {
       any = true;
       more = !line.empty() && line.back() == '\\';
       if (more) line.remove_suffix(1);
-      joined_.append(line.substr(0, line.find('#'))).append(" ");
+      const std::size_t comment = std::min(line.find('#'), line.size());
+      if (comment > 0 && (line[0] == 'v' || line[0] == 'f')) blank(line.substr(comment));
+      joined_.append(line.substr(0, comment)).append(" ");
     }
     TetText rest({reinterpret_cast<const std::uint8_t*>(joined_.data()), joined_.size()}, "");
     for (std::string_view word; rest.word(word);) words_.push_back(word);
     return any;
+  }
+
+  // Assimp takes a comment behind a face for one of its corners.
+  void blank(std::string_view comment) {
+    const auto begin = reinterpret_cast<const std::uint8_t*>(comment.data()) - bytes_.data();
+    std::fill_n(bytes_.begin() + begin, comment.size(), std::uint8_t{' '});
   }
 
   Status vertex() {
@@ -104,6 +113,7 @@ class ObjCheck {
     return at(fmt::format("has the corner '{}' in a face", whole));
   }
 
+  Bytes& bytes_;
   TetText text_;
   std::string joined_;
   std::vector<std::string_view> words_;
@@ -114,7 +124,7 @@ class ObjCheck {
 
 }  // namespace
 
-Status check_obj(const Bytes& bytes) {
+Status check_obj(Bytes& bytes) {
   return ObjCheck(bytes).all();
 }
 
