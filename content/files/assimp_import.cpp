@@ -305,6 +305,12 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
   return level;
 }
 
+Result<Level> import_mesh_here(const Bytes& bytes, const std::string& extension) {
+  const Result<Bytes> answer = import_scene({}, bytes, extension);
+  if (!answer) return answer.error();
+  return receive(*answer, "/nonexistent");
+}
+
 Result<Level> import_mesh(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

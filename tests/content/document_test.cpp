@@ -217,6 +217,23 @@ TEST_F(Document, WhatIsCompressedIsCompressedAnewOrWrittenPlainAsItDecodes) {
   EXPECT_FALSE(back.source->json.contains("extensionsRequired"));
 }
 
+TEST_F(Document, ABinOfSomethingElseIsNotReplaced) {
+  const auto text_of = [](const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  std::ofstream(folder_ / "a.bin") << "precious";
+  EXPECT_FALSE(save_level(everything(), folder_ / "a.gltf").ok());
+  EXPECT_EQ(text_of(folder_ / "a.bin"), "precious");
+  EXPECT_FALSE(fs::exists(folder_ / "a.gltf"));
+  std::ofstream(folder_ / "a.gltf")
+      << R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "b.bin", "byteLength": 8}]})";
+  EXPECT_FALSE(save_level(everything(), folder_ / "a.gltf").ok());
+  EXPECT_EQ(text_of(folder_ / "a.bin"), "precious");
+  ASSERT_TRUE(save_level(everything(), folder_ / "b.gltf").ok());
+  EXPECT_TRUE(save_level(everything(), folder_ / "b.gltf").ok()) << "its own";
+}
+
 TEST_F(Document, WhatTheEditorChangesIsSavedAndTheRestOfTheDocumentStays) {
   Gltf gltf;
   gltf.primitive({{"POSITION", gltf.positions(kSquare)}});
