@@ -20,7 +20,9 @@ Result<std::string> read_about(const std::filesystem::path& path);
 
 struct SaveOptions {
   static constexpr Range kDracoBits{8, 24};
-  int draco_bits = 0;  // position quantisation bits, in kDracoBits; 0: no Draco
+  // Position quantisation bits, in kDracoBits; what is compressed already is compressed anew. 0: as it is.
+  int draco_bits = 0;
+  bool no_draco = false;  // what is compressed is written plain
   Existing existing = Existing::kReplace;
 };
 // Writes .gltf (with a .bin beside it) or .glb by the extension; the file appears whole (written aside, then renamed).

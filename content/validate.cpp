@@ -61,6 +61,37 @@ Finding from_spawn(const Level& level, const Error& error) {
   return {Severity::kError, pointer_of(level, static_cast<std::size_t>(error.node)), error.what};
 }
 
+// An error of preparing names the node in its own words: `name`, or alone.
+Finding from_prepare(const Level& level, const Error& error) {
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const std::string& name = level.nodes[i].name;
+    if (level.nodes[i].in_scene && (error.where == name || error.where.find("`" + name + "`") != std::string::npos))
+      return {Severity::kError, pointer_of(level, i), error.what};
+  }
+  return {Severity::kError, scene_pointer(level), error.message()};
+}
+
+// What is written but never simulated, because no scene, or another one than is shown, has it.
+void find_outside(const Level& level, Findings& findings) {
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (node.in_scene || !node.has_pliant()) continue;
+    findings.push_back({Severity::kWarning, pointer_of(level, i),
+                        "has PLIANT extensions but is not in the scene that is shown, so they do nothing; add it to " +
+                            scene_pointer(level) + "/nodes, or to the children of a node there"});
+  }
+  if (!level.source) return;
+  const Json& scenes = array_of(level.source->json, "scenes");
+  for (std::size_t s = 0; s < scenes.size(); ++s) {
+    const std::string here = fmt::format("/scenes/{}", s);
+    if (here == scene_pointer(level) || !scenes[s].contains("extensions")) continue;
+    for (const auto& [name, value] : scenes[s]["extensions"].items())
+      if (name.rfind("PLIANT_", 0) == 0)
+        findings.push_back({Severity::kWarning, here + "/extensions/" + name,
+                            "is of a scene that is not shown, so it does nothing; move it to " + scene_pointer(level)});
+  }
+}
+
 // How a deformable will feel where its mesh does not suit it.
 void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::string& pointer, Findings& findings) {
   const Result<BuiltMesh> built =
@@ -145,7 +176,7 @@ void find_in_tissue(const Level& level, const World& world, Findings& findings) 
 
 }  // namespace
 
-Findings validate_level(const fs::path& path) {
+Findings validate_level(const fs::path& path, const std::function<Status(World&)>& prepare) {
   Findings findings;
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -156,19 +187,22 @@ Findings validate_level(const fs::path& path) {
     find_in_extensions(document->json, findings);
     if (any_error(findings)) return findings;
   }
-  const Result<Level> level = load_level(path);
+  Result<Level> level = load_level(path);
   if (!level) {
     findings.push_back({Severity::kError, level.error().pointer, level.error().what});
     return findings;
   }
   for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are among the findings
     findings.push_back({Severity::kNote, "", level->notes[i]});
-  if (!level->has_pliant())
+  if (!level->has_pliant()) {
     findings.push_back(
         {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
+    make_touchable(*level);
+  }
+  find_outside(*level, findings);
   for (std::size_t i = 0; i < level->nodes.size(); ++i) {
     const LevelNode& node = level->nodes[i];
-    if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable && !node.rigid_body)) continue;
+    if (!node.in_scene || node.mesh < 0 || (!node.deformable && !node.rigid_body)) continue;
     find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer_of(*level, i), findings);
   }
   for (const DeviceFault& fault : find_shared_devices(*level))
@@ -185,10 +219,14 @@ Findings validate_level(const fs::path& path) {
     for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
   }
   if (any_error(findings)) return findings;
-  if (const Result<World> world = spawn(*level); world)
-    find_in_tissue(*level, *world, findings);
-  else
+  Result<World> world = spawn(*level);
+  if (!world) {
     findings.push_back(from_spawn(*level, world.error()));
+    return findings;
+  }
+  find_in_tissue(*level, *world, findings);
+  if (prepare)
+    if (const Status status = prepare(*world); !status) findings.push_back(from_prepare(*level, status.error()));
   return findings;
 }
 

@@ -2,14 +2,18 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
+#include "components/world.h"
 #include "content/level/finding.h"
+#include "runtime/result.h"
 
 namespace pliant {
 
 // The document against glTF 2.0, the PLIANT_* extensions against their table, then what only shows when meshes are
 // built: each step relies on the one before. All findings, not only the first; the level can be loaded if none is an
-// error.
-Findings validate_level(const std::filesystem::path& path);
+// error. `prepare` is what a run does to a world before its first tick, and what it refuses then (content knows no
+// systems).
+Findings validate_level(const std::filesystem::path& path, const std::function<Status(World&)>& prepare = {});
 
 }  // namespace pliant

@@ -1,16 +1,22 @@
 #include "content/files/assimp_import.h"
 
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <cmath>
+#include <utility>
 
 #include "content/files/image.h"
 #include "content/files/isolation.h"
+#include "content/files/mesh_check.h"
 #include "content/gltf/gltf_document.h"
 #include "content/gltf/gltf_draco.h"
 #include "content/gltf/gltf_save.h"
@@ -24,31 +30,52 @@ namespace {
 constexpr std::uint64_t kMaxImportBytes = std::uint64_t{512} << 20;
 constexpr std::size_t kMaxNodes = 100'000;
 
-// Counts at the head of an OFF or PLY file, from which Assimp allocates before it has read anything else.
-Status check_claims(const Bytes& bytes, const std::string& extension) {
-  const std::string head(bytes.begin(),
-                         bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 4096)));
-  std::vector<double> claims;
-  if (extension == ".off") {
-    const std::size_t digits = head.find_first_of("0123456789");
-    double vertices = 0, faces = 0;
-    if (digits != std::string::npos && std::sscanf(head.c_str() + digits, "%lf %lf", &vertices, &faces) == 2)
-      claims = {vertices, faces};
-  }
-  if (extension == ".ply")
-    for (std::size_t at = head.find("element "); at != std::string::npos; at = head.find("element ", at + 1)) {
-      double count = 0;
-      if (std::sscanf(head.c_str() + at, "element %*63s %lf", &count) == 1) claims.push_back(count);
-    }
-  for (const double claim : claims)
-    if (!(claim <= static_cast<double>(bytes.size())))
-      return Error{"", fmt::format("claims {} elements in {} bytes; the file is damaged", claim, bytes.size())};
-  return Done{};
-}
-
 // Names in files are bytes; ours are UTF-8.
 std::string utf8(const std::string& bytes) {
   return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+}
+
+// What Assimp says of indices that it clamps or drops, in the formats that mesh_check.h does not know.
+class IndexComplaints : public Assimp::LogStream {
+ public:
+  void write(const char* message) override {
+    std::string text(message);
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (const char* phrase : {"vertex index", "triangle index", "face index is out of range", "index overflow",
+                               "index out of range", "out-of-range indices", "unexpected eof", "end of file"})
+      if (any_.empty() && text.find(phrase) != std::string::npos && text.find("material") == std::string::npos)
+        any_ = utf8(std::string(message).substr(0, 200));
+  }
+  std::string take() { return std::exchange(any_, {}); }
+
+ private:
+  std::string any_;
+};
+
+// Gives Assimp the bytes that were checked for the file that it opens, and the disk for those that it names.
+class CheckedFile : public Assimp::DefaultIOSystem {
+ public:
+  CheckedFile(std::string path, const Bytes& bytes) : path_(std::move(path)), bytes_(bytes) {}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (path_ != file) return DefaultIOSystem::Open(file, mode);
+    return new Assimp::MemoryIOStream(bytes_.data(), bytes_.size());
+  }
+
+ private:
+  std::string path_;
+  const Bytes& bytes_;
+};
+
+// One for the process: Assimp's logger is one, too.
+IndexComplaints& listen_to_assimp() {
+  static IndexComplaints* complaints = nullptr;
+  if (!complaints) {
+    complaints = new IndexComplaints;  // the logger's from here on
+    Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(complaints, Assimp::Logger::Err | Assimp::Logger::Warn);
+  }
+  complaints->take();
+  return *complaints;
 }
 
 LocalTransform decompose(const aiMatrix4x4& m) {
@@ -166,7 +193,9 @@ Status read_nodes(const aiScene& scene, Level& level) {
 
 // In the child: the scene as GLB, after a header that names each material's texture.
 Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
-  if (const Status status = check_claims(bytes, extension); !status) return status.error();
+  const Result<MeshFile> file = check_mesh_file(bytes, extension.empty() ? "" : extension.substr(1));
+  if (!file) return file.error();
+  IndexComplaints& complaints = listen_to_assimp();
   Assimp::Importer importer;
   // Only what is read below; skeletons, animations, lights and cameras are dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
@@ -175,13 +204,19 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const unsigned steps =
       aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
-  const aiScene* scene = importer.ReadFile(path.string(), steps);
+  const bool in_memory = file->in_memory || path.empty();
+  if (!in_memory) importer.SetIOHandler(new CheckedFile(path.string(), file->bytes));  // the importer's from here on
+  const aiScene* scene =
+      in_memory ? importer.ReadFileFromMemory(file->bytes.data(), file->bytes.size(), steps, file->format.c_str())
+                : importer.ReadFile(path.string(), steps);
   if (!scene || !scene->mRootNode) {
     std::string why = importer.GetErrorString();
     std::replace(why.begin(), why.end(), '\n', ' ');
     return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))) +
                          "; export it again, or as glTF"};
   }
+  if (const std::string said = complaints.take(); !said.empty())
+    return Error{"", "has a fault that would change its shape (" + said + "); export it again"};
   Level level;
   Json textures = Json::array();
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
@@ -268,6 +303,12 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
   node.mesh = 0;
   level.nodes.push_back(std::move(node));
   return level;
+}
+
+Result<Level> import_mesh_here(const Bytes& bytes, const std::string& extension) {
+  const Result<Bytes> answer = import_scene({}, bytes, extension);
+  if (!answer) return answer.error();
+  return receive(*answer, "/nonexistent");
 }
 
 Result<Level> import_mesh(const fs::path& path) {

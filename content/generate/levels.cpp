@@ -280,19 +280,18 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
 
   if (Status s = save_panorama(sky(detail.sky_width), environments / "sky.exr"); !s) return s;
   if (Status s = save_panorama(terrace(2 * detail.sky_width), environments / "terrace.exr"); !s) return s;
-  const SaveOptions draco{16};
   const Level organ_level = three_probes(detail), pad_level = inclusion(detail);
-  if (Status s = save_level(organ_level, levels / "three_probes.glb", draco); !s) return s;
+  if (Status s = save_plain(organ_level, levels / "three_probes.glb"); !s) return s;
   if (Status s = save_strokes(organ_level, organ(), organ_strokes(), levels); !s) return s;
-  if (Status s = save_level(pad_level, levels / "inclusion.glb", draco); !s) return s;
+  if (Status s = save_level(pad_level, levels / "inclusion.glb", SaveOptions{kBits}); !s) return s;
   if (Status s = save_strokes(pad_level, pad(), pad_strokes(), levels); !s) return s;
   const Level heart_level = glass_heart(detail), cushion_level = chrome_cushion(detail);
-  if (Status s = save_level(heart_level, levels / "glass_heart.glb", draco); !s) return s;
+  if (Status s = save_plain(heart_level, levels / "glass_heart.glb"); !s) return s;
   if (Status s = save_strokes(heart_level, heart(), heart_strokes(), levels); !s) return s;
-  if (Status s = save_level(cushion_level, levels / "chrome_cushion.glb", draco); !s) return s;
+  if (Status s = save_plain(cushion_level, levels / "chrome_cushion.glb"); !s) return s;
   if (Status s = save_strokes(cushion_level, cushion(), cushion_strokes(), levels); !s) return s;
   const Level ball_level = turning_ball(detail);
-  if (Status s = save_level(ball_level, levels / "turning_ball.glb", draco); !s) return s;
+  if (Status s = save_plain(ball_level, levels / "turning_ball.glb"); !s) return s;
   if (Status s = save_strokes(ball_level, ridged_ball(), ball_strokes(), levels); !s) return s;
   if (Status s = write_tool_levels(levels); !s) return s;
   if (Status s = write_instrument_levels(levels); !s) return s;

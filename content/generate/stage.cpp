@@ -1,5 +1,8 @@
 #include "content/generate/stage.h"
 
+#include "content/level_file.h"
+#include "content/mesh/mesh_draw.h"
+
 namespace pliant::generate {
 
 LevelNode& add_node(Level& level, const std::string& name) {
@@ -32,6 +35,45 @@ std::int32_t add_material(Level& level, const std::string& name, vec3 color, flo
   material.roughness = roughness;
   level.materials.push_back(material);
   return static_cast<std::int32_t>(level.materials.size()) - 1;
+}
+
+namespace {
+
+// Tangents as spawn makes them, for viewers that would make their own; false where vertices would have to be split.
+bool add_tangents(Primitive& primitive) {
+  DrawMesh draw;
+  for (std::size_t v = 0; v < primitive.position.size(); ++v) {
+    DrawVertex vertex;
+    vertex.position = primitive.position[v];
+    vertex.normal = primitive.normal[v];
+    vertex.uv = primitive.uv[v];
+    vertex.tangent.w = 0.0f;
+    draw.vertices.push_back(vertex);
+  }
+  draw.indices = primitive.index;
+  make_tangents(draw);
+  if (draw.vertices.size() != primitive.position.size()) return false;
+  for (const DrawVertex& vertex : draw.vertices) primitive.tangent.push_back(vertex.tangent);
+  return true;
+}
+
+}  // namespace
+
+Status save_plain(const Level& level, const std::filesystem::path& path) {
+  SaveOptions options;
+  options.draco_bits = kBits;
+  if (Status s = save_level(level, path, options); !s) return s;
+  Result<Level> rounded = load_level(path);
+  if (!rounded) return rounded.error();
+  for (LevelMesh& mesh : rounded->meshes)
+    for (Primitive& primitive : mesh.primitives)
+      if (primitive.material >= 0 &&
+          rounded->materials[static_cast<std::size_t>(primitive.material)].normal_texture >= 0 &&
+          add_tangents(primitive))
+        rounded->source.reset();
+  options.draco_bits = 0;
+  options.no_draco = true;
+  return save_level(*rounded, path, options);
 }
 
 }  // namespace pliant::generate

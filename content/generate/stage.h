@@ -1,6 +1,7 @@
 // What every level that ships is set up with: nodes, the view, lamps and surroundings.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "content/level/level.h"
@@ -17,5 +18,9 @@ void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "
               dvec3 to_light = {0.55, 0.62, 0.56});
 // Of one colour. The material's index is returned.
 std::int32_t add_material(Level& level, const std::string& name, vec3 color, float roughness);
+
+inline constexpr int kBits = 16;  // to which every level's positions are rounded, as Draco does it
+// Without required extensions, so that any viewer opens it; rounded all the same, so that runs keep their hashes.
+Status save_plain(const Level& level, const std::filesystem::path& path);
 
 }  // namespace pliant::generate

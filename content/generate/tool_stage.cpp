@@ -111,7 +111,7 @@ void place(LevelNode& node, const Waypoint& at) {
 }
 
 Status write_scene(const Level& level, const std::filesystem::path& folder) {
-  return save_level(level, folder / (level.name + ".glb"), SaveOptions{16});
+  return save_plain(level, folder / (level.name + ".glb"));
 }
 
 Status write_path(const std::vector<Waypoint>& path, const std::string& comment, const std::string& file,

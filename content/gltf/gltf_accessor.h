@@ -29,6 +29,11 @@ struct AccessorLayout {
 AccessorLayout layout_of(const Json& accessor);  // for the checks that stand before tinygltf
 AccessorLayout layout_of(const tinygltf::Accessor& accessor);
 
+// The largest number of an unsigned type, which is no index.
+constexpr std::uint32_t restart_index(int component_type) {
+  return component_type == kUnsignedByte ? 0xffu : component_type == kUnsignedShort ? 0xffffu : 0xffffffffu;
+}
+
 // Whether the accessor stands for bytes of this file: false for zeros, and where a buffer is a placeholder.
 bool has_data(const SourceDocument& document, std::size_t accessor);
 

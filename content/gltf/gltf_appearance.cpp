@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "content/files/image.h"
+#include "content/keys/json_integer.h"
 
 namespace pliant {
 
@@ -32,9 +33,9 @@ void read_relief(const SourceDocument& document, const Json& json, Material& out
   const Json& extras = json["extras"];
   if (!extras.contains("height_texture") || !extras["height_texture"].is_object()) return;
   if (!extras.contains("height_scale") || !extras["height_scale"].is_number()) return;
-  const Json& texture = extras["height_texture"];
+  Json texture = extras["height_texture"];
   const float scale = extras["height_scale"].get<float>();
-  if (!texture.contains("index") || !texture["index"].is_number_unsigned()) return;
+  if (!texture.contains("index") || !as_integer(texture["index"]) || !texture["index"].is_number_unsigned()) return;
   const std::size_t index = texture["index"].get<std::size_t>();
   if (index >= document.model.textures.size() || !(scale > 0.0f && scale < 1e3f)) return;
   out.height_texture = picture_of(document, index);

@@ -7,9 +7,11 @@
 
 namespace pliant {
 
-void check_structure(const Json& json, Findings& findings);
+// Writes integers that stand as 1.0 as 1; true: there were some.
+bool check_structure(Json& json, Findings& findings);
 void check_meaning(const Json& json, Findings& findings);
-void check_data(const SourceDocument& document, Findings& findings);
+// True: normals or tangents have length zero, and mend_directions has something to do.
+bool check_data(const SourceDocument& document, Findings& findings);
 
 bool extension_is_used(const Json& json, const std::string& name);
 

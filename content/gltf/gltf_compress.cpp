@@ -175,11 +175,15 @@ Status compress_document(SourceDocument& document, int bits) {
     }
   if (!any) return Done{};
   declare_extension(document.json, "KHR_draco_mesh_compression", true);
+  drop_unused_data(document);
+  return Done{};
+}
+
+void drop_unused_data(SourceDocument& document) {
   drop_unused(document.json, "accessors", [](Json& json, const auto& visit) { each_accessor(json, visit); });
   drop_unused(document.json, "bufferViews",
               [](Json& json, const auto& visit) { each_reference(json, "bufferView", visit); });
   split_buffers(document);
-  return Done{};
 }
 
 }  // namespace pliant

@@ -37,6 +37,7 @@ class DataCheck {
       if (skin.contains("inverseBindMatrices")) bind_matrices(skin["inverseBindMatrices"].get<std::size_t>());
     animations();
   }
+  bool zero_directions() const { return zero_directions_; }
 
  private:
   void error(const std::string& pointer, std::string message) { add(Severity::kError, pointer, std::move(message)); }
@@ -98,11 +99,16 @@ class DataCheck {
   // The first three of `width` components are a unit vector; with `sign`, the fourth is 1 or -1.
   void unit_vectors(std::size_t i, std::size_t width, bool sign) {
     const std::vector<float> values = read_floats(document_, i);
+    // Exporters write zeros where triangles are degenerate: mend_directions makes them anew.
+    std::size_t zeros = 0, first = 0;
+    for (std::size_t e = 0; e + width <= values.size(); e += width)
+      if (values[e] == 0.0f && values[e + 1] == 0.0f && values[e + 2] == 0.0f && zeros++ == 0) first = e / width;
+    zero_directions_ |= zeros > 0;
+    if (zeros > 0)
+      return warn(pointer_of(i), fmt::format("holds {} vector{} of length 0, the first in element {}; made anew", zeros,
+                                             zeros == 1 ? "" : "s", first));
     for (std::size_t e = 0; e + width <= values.size(); e += width) {
       const float norm = length(vec3(values[e], values[e + 1], values[e + 2]));
-      // Exporters write zeros where triangles are degenerate: such normals and tangents are made anew.
-      if (norm == 0.0f)
-        return warn(pointer_of(i), fmt::format("holds a vector of length 0 in element {}; made anew", e / width));
       if (std::abs(norm - 1.0f) > kUnitTolerance)
         return error(pointer_of(i),
                      fmt::format("holds a vector of length {:.3g} instead of 1 in element {}", norm, e / width));
@@ -134,7 +140,16 @@ class DataCheck {
       std::uint32_t& largest = largest_index_[i];
       for (const std::uint32_t index : read_integers(document_, i)) largest = std::max(largest, index);
     }
-    if (const auto largest = largest_index_.find(i); largest != largest_index_.end() && largest->second >= vertices)
+    const auto largest = largest_index_.find(i);
+    if (largest == largest_index_.end()) return;
+    // The largest number of a type begins a new strip in other formats, and on some graphics hardware (glTF 3.7.2.1).
+    if (const std::uint32_t restart = restart_index(accessor(i)["componentType"].get<int>());
+        largest->second == restart)
+      return error(pointer + "/indices",
+                   fmt::format("hold {}, the primitive restart of their type, which glTF forbids; export the mesh with "
+                               "{}",
+                               restart, restart < 65536 ? "wider indices" : "indices of vertices that are there"));
+    if (largest->second >= vertices)
       error(pointer + "/indices", fmt::format("refer to vertex {} of {}", largest->second, vertices));
   }
 
@@ -220,13 +235,16 @@ class DataCheck {
   Findings& findings_;
   std::set<std::pair<std::size_t, Role>> seen_;
   std::set<std::size_t> weights_seen_;
+  bool zero_directions_ = false;
   std::map<std::size_t, std::uint32_t> largest_index_;
 };
 
 }  // namespace
 
-void check_data(const SourceDocument& document, Findings& findings) {
-  DataCheck(document, findings).all();
+bool check_data(const SourceDocument& document, Findings& findings) {
+  DataCheck check(document, findings);
+  check.all();
+  return check.zero_directions();
 }
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "content/gltf/gltf_check.h"
+#include "content/gltf/gltf_mend.h"
 #include "content/gltf/gltf_model.h"
 
 namespace pliant {
@@ -34,7 +35,7 @@ std::optional<SourceDocument> open_gltf(std::span<const std::uint8_t> bytes, boo
   SourceDocument document;
   document.folder = folder;
   if (!parse_json(container.json, document.json, findings)) return std::nullopt;
-  check_structure(document.json, findings);
+  document.json_is_mended = check_structure(document.json, findings);
   if (any_error(findings)) return std::nullopt;
   check_meaning(document.json, findings);
   if (any_error(findings)) return std::nullopt;
@@ -44,8 +45,13 @@ std::optional<SourceDocument> open_gltf(std::span<const std::uint8_t> bytes, boo
   if (any_error(findings)) return std::nullopt;
   check_pictures(document, findings);
   if (any_error(findings)) return std::nullopt;
-  check_data(document, findings);
+  const bool zero_directions = check_data(document, findings);
   if (any_error(findings)) return std::nullopt;
+  if (zero_directions) {
+    mend_directions(document);
+    reread_model(document, findings);
+    if (any_error(findings)) return std::nullopt;
+  }
   return document;
 }
 

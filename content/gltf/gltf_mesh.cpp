@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "content/gltf/gltf_accessor.h"
-#include "content/gltf/gltf_draco.h"
+#include "content/gltf/gltf_mend.h"
 #include "content/mesh/painted.h"
 
 namespace pliant {
@@ -93,27 +93,27 @@ std::vector<float> MeshReader::attribute(const Source& source, const char* name)
                                             : read_floats(document_, static_cast<std::size_t>(member->second));
 }
 
-Status MeshReader::read_draco(const Json& extension, const std::string& pointer, Source& source) {
+Result<DracoMesh> decode_primitive(const SourceDocument& document, const Json& json, const std::string& pointer) {
+  const Json& extension = json["extensions"]["KHR_draco_mesh_compression"];
   const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
-  const tinygltf::BufferView& view = document_.model.bufferViews[extension["bufferView"].get<std::size_t>()];
-  const Bytes& buffer = document_.buffers[static_cast<std::size_t>(view.buffer)];
+  const Json& view = document.json["bufferViews"][extension["bufferView"].get<std::size_t>()];
+  const Bytes& buffer = document.buffers[view["buffer"].get<std::size_t>()];
   if (buffer.empty()) return Error{here, "stands on a buffer without data"};
   std::vector<std::string> names;
   std::vector<std::uint32_t> ids;
   for (const auto& [name, id] : extension["attributes"].items()) {
-    if (source.attributes->count(name) == 0)
-      return Error{here, "names " + name + ", which the primitive does not have"};
+    if (!json["attributes"].contains(name)) return Error{here, "names " + name + ", which the primitive does not have"};
     names.push_back(name);
     ids.push_back(id.get<std::uint32_t>());
   }
-  Result<DracoMesh> mesh = decode_draco(std::span(buffer).subspan(view.byteOffset, view.byteLength), ids);
+  Result<DracoMesh> mesh = decode_draco(
+      std::span(buffer).subspan(value_of<std::size_t>(view, "byteOffset", 0), view["byteLength"].get<std::size_t>()),
+      ids);
   if (!mesh) return Error{here, mesh.error().message()};
-  source.draco = true;
-  source.vertices = mesh->vertices;
-  source.index = std::move(mesh->index);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const AccessorLayout layout =
-        layout_of(document_.model.accessors[static_cast<std::size_t>(source.attributes->at(names[i]))]);
+        layout_of(document.json["accessors"][json["attributes"][names[i]].get<std::size_t>()]);
+    mesh->attributes[i].name = names[i];
     std::vector<float>& values = mesh->attributes[i].values;
     if (layout.components() != mesh->attributes[i].width || layout.count != mesh->vertices)
       return Error{here, fmt::format("holds {} x {} numbers for {}, its accessor says {} x {}", mesh->vertices,
@@ -125,8 +125,17 @@ Status MeshReader::read_draco(const Json& extension, const std::string& pointer,
                                                                  : 65535.0f;
       for (float& value : values) value = std::max(value / scale, -1.0f);
     }
-    source.decoded[names[i]] = std::move(values);
   }
+  return mesh;
+}
+
+Status MeshReader::read_draco(const Json& json, const std::string& pointer, Source& source) {
+  Result<DracoMesh> mesh = decode_primitive(document_, json, pointer);
+  if (!mesh) return mesh.error();
+  source.draco = true;
+  source.vertices = mesh->vertices;
+  source.index = std::move(mesh->index);
+  for (DracoAttribute& each : mesh->attributes) source.decoded[each.name] = std::move(each.values);
   return Done{};
 }
 
@@ -186,11 +195,13 @@ Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t numbe
     if (!all_finite(values)) return not_finite(name);
     const std::string_view which = name;
     if (which == "POSITION") out.position = as_vectors<vec3>(values);
-    // Directions of length zero are none: all of the primitive's are made anew at spawn.
-    if (which == "NORMAL" && all_directions(values, 3)) out.normal = as_vectors<vec3>(values);
+    if (which == "NORMAL") out.normal = as_vectors<vec3>(values);
     if (which == "TANGENT" && all_directions(values, 4)) out.tangent = as_vectors<vec4>(values);
     if (which == "TEXCOORD_0") out.uv = as_vectors<vec2>(values);
   }
+  // Those in Draco data; others have been mended in the document.
+  if (const std::size_t mended = mend_normals(out.position, out.index, out.normal); mended > 0)
+    notes_.insert(fmt::format("{}: {} normal{} of length 0 made anew", pointer, mended, mended == 1 ? "" : "s"));
   for (const PaintedAttribute& painted : kPainted) {
     std::vector<float> values = attribute(source, painted.name);
     if (!all_finite(values)) return not_finite(painted.name);

@@ -5,12 +5,16 @@
 #include <string>
 
 #include "content/gltf/gltf_document.h"
+#include "content/gltf/gltf_draco.h"
 
 namespace pliant {
 
 // A primitive's corners as triangles, counter-clockwise like the first, by its mode: 4 triangles, 5 a strip, 6 a fan
 // (glTF 2.0, 3.7.2.1).
 std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> corners);
+
+// The Draco data of a primitive that has any, its attributes by name; normalised integers as in read_floats.
+Result<DracoMesh> decode_primitive(const SourceDocument& document, const Json& primitive, const std::string& pointer);
 
 class MeshReader {
  public:

@@ -1,6 +1,7 @@
 // The one translation unit that holds tinygltf's code: its reader between callbacks of ours, its writers of JSON and of
 // GLB (which Debian's library does not let out).
 #include <fstream>  // tinygltf's writer needs it even without file access
+#include <utility>
 #define TINYGLTF_IMPLEMENTATION
 #include <fmt/format.h>
 
@@ -110,6 +111,20 @@ void read_model(SourceDocument& document, const Container& container, FetchedByt
   for (std::size_t i = 0; i < document.model.buffers.size(); ++i)
     document.buffers.push_back(fetched.is_placeholder[i] ? Bytes{} : std::move(document.model.buffers[i].data));
   for (tinygltf::Image& image : document.model.images) document.images.push_back(std::move(image.image));
+}
+
+void reread_model(SourceDocument& document, Findings& findings) {
+  FetchedBytes fetched;
+  fetched.buffers = std::exchange(document.buffers, {});
+  for (const Bytes& bytes : fetched.buffers) fetched.is_placeholder.push_back(bytes.empty());
+  fetched.images = document.images;
+  for (Bytes& bytes : fetched.images)
+    if (bytes.empty()) bytes.assign(1, 0);  // one that is not shown
+  const std::vector<Bytes> images = std::exchange(document.images, {});
+  document.model = {};
+  document.json_is_mended = true;
+  read_model(document, {}, std::move(fetched), findings);
+  document.images = images;
 }
 
 Json model_as_json(const tinygltf::Model& model) {

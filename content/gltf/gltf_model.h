@@ -11,6 +11,9 @@ namespace pliant {
 // Fills document.model, document.buffers and document.images. The JSON has been checked (check_meaning).
 void read_model(SourceDocument& document, const Container& container, FetchedBytes fetched, Findings& findings);
 
+// Fills document.model anew from a document whose JSON and buffers have been changed.
+void reread_model(SourceDocument& document, Findings& findings);
+
 // The JSON that tinygltf is to read instead of the file's own, where it cannot read that (gltf_rewrite.cpp says what);
 // every buffer is then in `fetched`. Nothing: the file as it is will do.
 std::optional<Json> rewritten_for_tinygltf(const SourceDocument& document, const Container& container,

@@ -73,7 +73,8 @@ class Rewriting {
     return *copy_;
   }
   bool in_bin(std::size_t buffer) const {
-    return !fetched_.is_placeholder[buffer] && !json_["buffers"][buffer].contains("uri");
+    return fetched_.buffers[buffer].empty() && !fetched_.is_placeholder[buffer] &&
+           !json_["buffers"][buffer].contains("uri");
   }
   bool without_data(const Json& image) const {
     const std::size_t view = image["bufferView"].get<std::size_t>();

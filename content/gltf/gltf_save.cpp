@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "content/files/image.h"
+#include "content/gltf/gltf_container.h"
 #include "content/gltf/gltf_model.h"
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
@@ -115,6 +116,20 @@ std::string as_uri(const std::string& name) {
   return uri;
 }
 
+// Refuses to replace a .bin that is there but is no buffer of the .gltf that is replaced.
+Status check_unrelated(const fs::path& bin, const fs::path& gltf) {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(bin, ignored))) return Done{};
+  Json json;
+  Findings findings;
+  if (const Result<Bytes> text = read_file(gltf); text && parse_json(*text, json, findings) && json.is_object())
+    for (const Json& buffer : array_of(json, "buffers"))
+      if (buffer.is_object() && buffer.contains("uri") && buffer["uri"] == as_uri(bin.filename().string()))
+        return Done{};
+  return Error{bin.string(), "is there already and belongs to something else than " + gltf.filename().string() +
+                                 "; move it away, or name another file"};
+}
+
 }  // namespace
 
 Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
@@ -194,6 +209,8 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
   write_nodes(level, document);
   write_scene(level, document);
   forget_unused(level, document.json);
+  if (options.no_draco || options.draco_bits != 0)
+    if (const Status status = decompress_document(document, options.no_draco); !status) return status;
   if (options.draco_bits != 0)
     if (const Status status = compress_document(document, options.draco_bits); !status) return status;
 
@@ -211,6 +228,7 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
   const fs::path beside = fs::path(path).replace_extension(".bin");
   if (!bin.empty()) {
     document.json["buffers"][0]["uri"] = as_uri(beside.filename().string());
+    if (const Status status = check_unrelated(beside, path); !status) return status;
     files.push_back({beside, bin});
   }
   const std::string text = document.json.dump(2) + "\n";

@@ -11,6 +11,11 @@ Result<SourceDocument> build_document(const Level& level);
 // Triangles of every primitive without morph targets go into Draco blobs; what nothing refers to any more is dropped.
 Status compress_document(SourceDocument& document, int bits);
 
+// The opposite: Draco blobs become plain accessors. `all`: also of primitives that compress_document would leave out.
+Status decompress_document(SourceDocument& document, bool all);
+// Drops accessors, bufferViews and bytes that nothing refers to.
+void drop_unused_data(SourceDocument& document);
+
 // Adds to extensionsUsed, and to extensionsRequired if `required`.
 void declare_extension(Json& json, const std::string& name, bool required);
 Json transform_json(const LocalTransform& local);  // translation, rotation, scale where they are not the default

@@ -8,10 +8,13 @@
 
 #include "content/gltf/gltf_check.h"
 #include "content/gltf/gltf_specification.h"
+#include "content/keys/json_integer.h"
 
 namespace pliant {
 
 namespace {
+
+constexpr const char* kPliant = "PLIANT_";
 
 struct Range {
   double min = -INFINITY, max = INFINITY;
@@ -83,23 +86,25 @@ struct Table {
 
 class Structure {
  public:
+  bool mended() const { return mended_; }  // an integer stood as 1.0
   Structure(const Json& root, Findings& findings) : root_(root), findings_(findings) {
     if (root.is_object() && array_of(root, "extensionsUsed").is_array())
       for (const Json& name : array_of(root, "extensionsUsed"))
         if (name.is_string()) used_.insert(name.get<std::string>());
   }
 
-  void check_object(const Json& json, const std::string& type, const std::string& pointer) {
+  void check_object(Json& json, const std::string& type, const std::string& pointer) {
     if (!json.is_object()) return mismatch(pointer, json, "an object");
     if (const auto rules = table().rules.find(type); rules != table().rules.end())
       for (const Rule& rule : rules->second) {
-        const auto member = json.find(rule.key);
+        auto member = json.find(rule.key);
         if (member != json.end())
           check_member(*member, rule, pointer + "/" + rule.key);
         else if (rule.required)
           error(pointer, "lacks '" + rule.key + "', which glTF requires here");
       }
     if (json.contains("name") && !json["name"].is_string()) mismatch(pointer + "/name", json["name"], "a string");
+    check_strays(json, type, pointer);
     if (json.contains("extensions")) check_extensions(json["extensions"], type, pointer + "/extensions");
   }
 
@@ -123,9 +128,40 @@ class Structure {
     error(pointer, fmt::format("is {}, not {}", shown(json), wanted));
   }
 
-  void check_extensions(const Json& extensions, const std::string& type, const std::string& pointer) {
+  // "on a node", in the words of the specification.
+  static std::string place(const std::string& type) {
+    if (type == "root") return "at the top level";
+    const bool vowel = std::string("aeiou").find(type[0]) != std::string::npos;
+    return fmt::format("on a{} {}", vowel ? "n" : "", type);
+  }
+  // Where the table has it, as what to do.
+  static std::string right_place(const std::string& name, const std::string& type) {
+    std::string places;
+    for (const auto& [object, names] : table().extensions)
+      if (names.count(name)) places += (places.empty() ? "" : " or ") + place(object);
+    std::string out = "it stands " + places;
+    if (places == "on a node" && (type == "mesh" || type == "primitive")) out += ": move it to the one with this mesh";
+    if (places == "on a node" && type == "root") out += ": move it to the one that it is about";
+    if (places == "on a scene") out += ": move it to the one that is shown";
+    return out;
+  }
+
+  // What is ours but does not stand among extensions is read by nobody.
+  void check_strays(const Json& json, const std::string& type, const std::string& pointer) {
+    const std::string target = type == "scene" || type == "root" ? "a scene's or node's" : "a node's";
+    const auto look = [&](const Json& object, const std::string& where) {
+      for (const auto& [name, value] : object.items())
+        if (name.rfind(kPliant, 0) == 0)
+          warn(where + "/" + escaped(name),
+               "is not read, because it stands outside of `extensions`; move it into " + target + " `extensions`");
+    };
+    look(json, pointer);
+    if (json.contains("extras") && json["extras"].is_object()) look(json["extras"], pointer + "/extras");
+  }
+
+  void check_extensions(Json& extensions, const std::string& type, const std::string& pointer) {
     if (!extensions.is_object()) return mismatch(pointer, extensions, "an object");
-    for (const auto& [name, json] : extensions.items()) {
+    for (auto& [name, json] : extensions.items()) {
       const std::string here = pointer + "/" + escaped(name);
       if (!json.is_object()) {
         mismatch(here, json, "an object");
@@ -138,10 +174,13 @@ class Structure {
         const auto found = allowed == table().extensions.end() ? std::map<std::string, std::string>::const_iterator{}
                                                                : allowed->second.find(name);
         if (allowed == table().extensions.end() || found == allowed->second.end()) {
-          error(here, "stands where this extension has no meaning; move or remove it");
+          error(here, fmt::format("has no meaning {}; {}", place(type), right_place(name, type)));
           continue;
         }
         content = found->second;
+      } else if (name.rfind(kPliant, 0) == 0 && type != "node" && type != "scene") {
+        error(here, fmt::format("has no meaning {}; PLIANT extensions stand on nodes and scenes", place(type)));
+        continue;
       }
       if (content != "any") check_object(json, content, here);
     }
@@ -149,7 +188,7 @@ class Structure {
 
   // Calls check(element, pointer) over an array of at least one element.
   template <class Check>
-  void each(const Json& json, const std::string& pointer, bool unique, const Check& check) {
+  void each(Json& json, const std::string& pointer, bool unique, const Check& check) {
     if (!json.is_array()) return mismatch(pointer, json, "an array");
     if (json.empty()) return error(pointer, "is empty; leave it out instead");
     std::set<Json> seen;
@@ -160,8 +199,14 @@ class Structure {
     }
   }
 
-  void check_index(const Json& json, const std::string& collection, const std::string& pointer) {
-    if (!json.is_number_integer()) return mismatch(pointer, json, "an integer");
+  // An integer may stand as 1.0; it is written as 1 then.
+  bool integer(Json& json) {
+    const bool is_float = json.is_number_float(), is_integer = as_integer(json);
+    mended_ = mended_ || (is_float && is_integer);
+    return is_integer;
+  }
+  void check_index(Json& json, const std::string& collection, const std::string& pointer) {
+    if (!integer(json)) return mismatch(pointer, json, "an integer");
     const Json* target = &root_;
     std::istringstream path(collection);
     for (std::string key; target && std::getline(path, key, '/');)
@@ -177,26 +222,24 @@ class Structure {
     if (!std::isfinite(static_cast<float>(value))) return error(pointer, "is too large a number");
     if (!range.holds(value)) error(pointer, fmt::format("is {}, out of the range {}", json.dump(), range.text));
   }
-  void check_map(const Json& json, const std::string& collection, const std::string& pointer) {
+  void check_map(Json& json, const std::string& collection, const std::string& pointer) {
     if (!json.is_object()) return mismatch(pointer, json, "an object");
     if (json.empty()) return error(pointer, "is empty");
-    for (const auto& [name, value] : json.items()) {
+    for (auto& [name, value] : json.items()) {
       const std::string here = pointer + "/" + escaped(name);
       if (!collection.empty())
         check_index(value, collection, here);
-      else if (!value.is_number_unsigned())
+      else if (!integer(value) || !value.is_number_unsigned())
         mismatch(here, value, "an integer of at least 0");
     }
   }
 
-  void check_member(const Json& json, const Rule& rule, const std::string& pointer) {
-    const auto nested = [&](const Json& element, const std::string& here) {
-      check_object(element, rule.argument, here);
-    };
-    const auto index = [&](const Json& element, const std::string& here) { check_index(element, rule.argument, here); };
-    const auto map = [&](const Json& element, const std::string& here) { check_map(element, rule.argument, here); };
-    const auto number = [&](const Json& element, const std::string& here) { check_number(element, rule.range, here); };
-    const auto string = [&](const Json& element, const std::string& here) {
+  void check_member(Json& json, const Rule& rule, const std::string& pointer) {
+    const auto nested = [&](Json& element, const std::string& here) { check_object(element, rule.argument, here); };
+    const auto index = [&](Json& element, const std::string& here) { check_index(element, rule.argument, here); };
+    const auto map = [&](Json& element, const std::string& here) { check_map(element, rule.argument, here); };
+    const auto number = [&](Json& element, const std::string& here) { check_number(element, rule.range, here); };
+    const auto string = [&](Json& element, const std::string& here) {
       if (!element.is_string()) mismatch(here, element, "a string");
     };
     if (rule.kind == "object") nested(json, pointer);
@@ -209,7 +252,7 @@ class Structure {
     if (rule.kind == "number") number(json, pointer);
     if (rule.kind == "bool" && !json.is_boolean()) mismatch(pointer, json, "true or false");
     if (rule.kind == "int") {
-      if (!json.is_number_integer())
+      if (!integer(json))
         mismatch(pointer, json, "an integer");
       else if (!rule.range.holds(json.get<double>()) || json.get<double>() > 4e9)
         error(pointer, fmt::format("is {}, out of the range {}", json.dump(), rule.range.text));
@@ -224,7 +267,7 @@ class Structure {
       if (json.is_string() && !rule.list.empty()) check_list(json.get<std::string>(), rule, pointer);
     }
     if (rule.kind == "ints") {
-      if (!json.is_number_integer())
+      if (!integer(json))
         mismatch(pointer, json, "an integer");
       else
         check_list(json.dump(), rule, pointer);
@@ -239,12 +282,15 @@ class Structure {
   const Json& root_;
   Findings& findings_;
   std::set<std::string> used_;  // extensionsUsed
+  bool mended_ = false;
 };
 
 }  // namespace
 
-void check_structure(const Json& json, Findings& findings) {
-  Structure(json, findings).check_object(json, "root", "");
+bool check_structure(Json& json, Findings& findings) {
+  Structure structure(json, findings);
+  structure.check_object(json, "root", "");
+  return structure.mended();
 }
 
 bool extension_is_used(const Json& json, const std::string& name) {

@@ -114,7 +114,8 @@ std::string extension_tables() {
   for (const Extension& extension : extension_table()) {
     Defaults defaults(extension);
     out += fmt::format(
-        "### {} extension `PLIANT_{}`\n\n{}\n\n| key | unit | range | default | meaning |\n|---|---|---|---|---|\n",
+        "### {} extension `PLIANT_{}`\n\n{}\n\n| key | unit | range | usual | default | meaning "
+        "|\n|---|---|---|---|---|---|\n",
         extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
     for (const Key& key : extension.keys) {
       std::string range;
@@ -125,7 +126,8 @@ std::string extension_tables() {
       const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
                                 : standard.is_string()                                  ? standard.get<std::string>()
                                                                                         : standard.dump();
-      out += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit, range, shown, key.doc);
+      out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.name, key.unit, range, usual_text(key), shown,
+                         key.doc);
     }
     out += "\n";
   }

@@ -47,6 +47,17 @@ Key number(std::string name, std::string unit, Range range, Access access, std::
   out.range = range;
   return out;
 }
+// What a number may be, and what it usually is.
+struct Ranges {
+  Ranges(Range may_be, Range usually) : hard(may_be), usual(usually) {}
+  Range hard, usual;
+};
+template <class Access>
+Key number(std::string name, std::string unit, Ranges ranges, Access access, std::string doc) {
+  Key out = number(std::move(name), std::move(unit), ranges.hard, access, std::move(doc));
+  out.usual = ranges.usual;
+  return out;
+}
 template <class Access>
 Key text(std::string name, KeyType type, Access access, std::string doc) {
   return key(
@@ -105,18 +116,19 @@ std::vector<Key> deformable_keys() {
   const auto d = [](auto member) { return at(&LevelNode::deformable, member); };
   std::vector<Key> keys;
   keys.push_back(choice("spring", d(&D::spring), "law of the normal force"));
-  keys.push_back(number("stiffness", "N/m", R::kStiffness, d(&D::stiffness),
+  keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 1e5}}, d(&D::stiffness),
                         "small-depth slope of normal force against depth at the probe"));
   keys.push_back(number("cubic", "N/m3", R::kCubic, d(&D::cubic), "k3 of the cubic law"));
-  keys.push_back(number("stiffening", "1/m", R::kStiffening, d(&D::stiffening), "alpha of the exponential law"));
-  keys.push_back(number("relaxation.stiffness", "N/m", R::kRelaxationStiffness, d(&D::relaxation_stiffness),
-                        "arm of the standard linear solid"));
   keys.push_back(
-      number("relaxation.time", "s", R::kRelaxationTime, d(&D::relaxation_time), "relaxation time of that arm"));
-  keys.push_back(
-      number("damping_ratio", "1", R::kDampingRatio, d(&D::damping_ratio), "damping ratio of the free surface"));
-  keys.push_back(
-      number("settling_time", "s", R::kSettlingTime, d(&D::settling_time), "2 % settling time of the free surface"));
+      number("stiffening", "1/m", {R::kStiffening, {1.0, 1e4}}, d(&D::stiffening), "alpha of the exponential law"));
+  keys.push_back(number("relaxation.stiffness", "N/m", {R::kRelaxationStiffness, {1.0, 1e5}},
+                        d(&D::relaxation_stiffness), "arm of the standard linear solid"));
+  keys.push_back(number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time),
+                        "relaxation time of that arm"));
+  keys.push_back(number("damping_ratio", "1", {R::kDampingRatio, {0.01, 20.0}}, d(&D::damping_ratio),
+                        "damping ratio of the free surface"));
+  keys.push_back(number("settling_time", "s", {R::kSettlingTime, {1e-3, 10.0}}, d(&D::settling_time),
+                        "2 % settling time of the free surface"));
   Key damping;
   damping.name = "contact_damping";
   damping.unit = "N s/m";
@@ -139,7 +151,7 @@ std::vector<Key> deformable_keys() {
   keys.push_back(
       choice("distance", d(&D::distance), "distance that the shape is a function of: straight, or along the surface"));
   keys.push_back(
-      number("reach", "m", R::kReach, d(&D::reach),
+      number("reach", "m", {R::kReach, {1e-4, 1.0}}, d(&D::reach),
              fmt::format("radius R of the field; 0: {} of the diagonal of the object's box", kDefaultReach)));
   keys.push_back(
       number("volume", "1", R::kVolume, d(&D::volume), "share of the volume conserved by the shape `volume`"));
@@ -159,11 +171,11 @@ std::vector<Key> deformable_keys() {
       "crease_angle", "rad", {0.0, 3.1416}, d(&D::crease_angle),
       fmt::format("edges whose faces turn by more are creases; 0: where the file's own normals are split, else {}",
                   kCreaseTurn)));
-  keys.push_back(
-      number("young", "Pa", {0.0, 1e12}, d(&D::young), "Young's modulus, instead of `stiffness`; 0: not given"));
+  keys.push_back(number("young", "Pa", {{0.0, 1e12}, {50.0, 1e9}}, d(&D::young),
+                        "Young's modulus, instead of `stiffness`; 0: not given"));
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
-  keys.push_back(
-      number("thickness", "m", {0.0, 1e6}, d(&D::thickness), "thickness of the layer, with `young`; 0: deep"));
+  keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
+                        "thickness of the layer, with `young`; 0: deep"));
   return keys;
 }
 
@@ -173,14 +185,17 @@ std::string settle_deformable(void* owner) {
     return fmt::format("friction_sliding ({}) is above friction_static ({}); lower it, or set `friction` for both",
                        it.friction_sliding, it.friction_static);
   if (it.young > 0.0) it.stiffness = calibrated_stiffness(it.young, it.poisson, it.thickness);
+  if (it.young > 0.0 && !DeformableRange::kStiffness.holds(it.stiffness))
+    return fmt::format("young ({:g} Pa) makes a stiffness of {:.3g} N/m; it must be in the range [{}, {}] N/m",
+                       it.young, it.stiffness, DeformableRange::kStiffness.min, DeformableRange::kStiffness.max);
   return "";
 }
 
 std::vector<Key> probe_keys() {
   std::vector<Key> keys;
-  keys.push_back(
-      number("radius", "m", kProbeLengths, at(&LevelNode::probe, &Probe::radius), "radius of every tip; 0: a point"));
-  keys.push_back(number("length", "m", kProbeLengths, at(&LevelNode::probe, &Probe::length),
+  keys.push_back(number("radius", "m", {kProbeLengths, {1e-4, 0.1}}, at(&LevelNode::probe, &Probe::radius),
+                        "radius of every tip; 0: a point"));
+  keys.push_back(number("length", "m", {kProbeLengths, {1e-3, 1.0}}, at(&LevelNode::probe, &Probe::length),
                         "length of a capsule's axis, from the node along its +Y; 0: none"));
   Key points = key(
       "points", "m", KeyType::kPoints,
@@ -199,6 +214,7 @@ std::vector<Key> probe_keys() {
         return places;
       });
   points.range = {-kProbeLengths.max, kProbeLengths.max};
+  points.usual = {-0.5, 0.5};
   keys.push_back(points);
   keys.push_back(
       choice("meets", at(&LevelNode::probe, &Probe::meets), "yielding surfaces, soft and rigid bodies, or both"));
@@ -226,12 +242,13 @@ std::vector<Key> device_keys() {
   keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
-  keys.push_back(number("scale", "1", DeviceRange::kScale, d(&H::scale), "workspace to world"));
-  keys.push_back(number("max_force", "N", DeviceRange::kMaxForce, d(&H::max_force), "norm of the force sent"));
-  keys.push_back(number("max_stiffness", "N/m", DeviceRange::kMaxStiffness, d(&H::max_stiffness),
-                        "limit on the rise of force with displacement; 0: none"));
+  keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale), "workspace to world"));
   keys.push_back(
-      number("max_slew", "N/s", DeviceRange::kMaxSlew, d(&H::max_slew), "limit on the change of force with time"));
+      number("max_force", "N", {DeviceRange::kMaxForce, {0.1, 50.0}}, d(&H::max_force), "norm of the force sent"));
+  keys.push_back(number("max_stiffness", "N/m", {DeviceRange::kMaxStiffness, {10.0, 1e5}}, d(&H::max_stiffness),
+                        "limit on the rise of force with displacement; 0: none"));
+  keys.push_back(number("max_slew", "N/s", {DeviceRange::kMaxSlew, {1.0, 1e6}}, d(&H::max_slew),
+                        "limit on the change of force with time"));
   return keys;
 }
 
@@ -239,13 +256,14 @@ std::vector<Key> soft_body_keys() {
   using S = SoftBody;
   const auto s = [](auto member) { return at(&LevelNode::soft_body, member); };
   std::vector<Key> keys;
-  keys.push_back(number("young", "Pa", SoftBodyRange::kYoung, s(&S::young), "Young's modulus"));
+  keys.push_back(number("young", "Pa", {SoftBodyRange::kYoung, {50.0, 1e9}}, s(&S::young), "Young's modulus"));
   keys.push_back(number(
       "poisson", "1", SoftBodyRange::kPoisson, s(&S::poisson),
       fmt::format("Poisson's ratio; from {} on the tetrahedra lock: tissue is over 10 % too stiff", kLockingPoisson)));
-  keys.push_back(number("density", "kg/m3", SoftBodyRange::kDensity, s(&S::density), "density"));
+  keys.push_back(number("density", "kg/m3", {SoftBodyRange::kDensity, {10.0, 25e3}}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
-  keys.push_back(number("cell", "m", SoftBodyRange::kCell, s(&S::cell), "lattice cell; 0: sized from the bounds"));
+  keys.push_back(
+      number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
   keys.push_back(
       text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
   keys.push_back(
@@ -268,10 +286,10 @@ std::vector<Key> handle_keys() {
   keys.push_back(
       pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
   keys.push_back(pair("coupling.rotation", "N m/rad, N m s/rad", h(&H::rotation), "the same for rotation"));
-  keys.push_back(
-      number("coupling.max_force", "N", kSaturationRange, h(&H::max_force), "saturation of the coupling's force"));
-  keys.push_back(
-      number("coupling.max_torque", "N m", kSaturationRange, h(&H::max_torque), "saturation of the coupling's torque"));
+  keys.push_back(number("coupling.max_force", "N", {kSaturationRange, {0.1, 50.0}}, h(&H::max_force),
+                        "saturation of the coupling's force"));
+  keys.push_back(number("coupling.max_torque", "N m", {kSaturationRange, {1e-3, 10.0}}, h(&H::max_torque),
+                        "saturation of the coupling's torque"));
   keys.push_back(flag("carried", h(&H::carried), "hold up the tool's weight, so that the hand does not feel it"));
   keys.push_back(choice("force", h(&H::force),
                         "how the touch clock makes its force: held from the last soft step, by the linear model, or "
@@ -285,8 +303,8 @@ std::vector<Key> rigid_body_keys() {
   using R = RigidBody;
   const auto r = [](auto member) { return at(&LevelNode::rigid_body, member); };
   std::vector<Key> keys;
-  keys.push_back(number("mass", "kg", SoftBodyRange::kMass, r(&R::mass), "mass; 0: from density"));
-  keys.push_back(number("density", "kg/m3", SoftBodyRange::kDensity, r(&R::density), "density"));
+  keys.push_back(number("mass", "kg", {SoftBodyRange::kMass, {1e-4, 100.0}}, r(&R::mass), "mass; 0: from density"));
+  keys.push_back(number("density", "kg/m3", {SoftBodyRange::kDensity, {10.0, 25e3}}, r(&R::density), "density"));
   keys.push_back(
       number("friction_static", "1", kFrictionRange, r(&R::friction_static), "coefficient of static friction"));
   keys.push_back(
@@ -304,7 +322,8 @@ std::vector<Key> motion_keys() {
   keys.push_back(text("animation", KeyType::kText, m(&M::animation),
                       "name of the glTF animation that moves it; left out: every one that names the node"));
   keys.push_back(flag("repeat", m(&M::repeat), "starts over at the end; else the end holds"));
-  keys.push_back(number("speed", "1", {0.0, 1e3}, m(&M::speed), "of the motion's clock; 0: stands at its beginning"));
+  keys.push_back(number("speed", "1", {{0.0, 1e3}, {0.01, 100.0}}, m(&M::speed),
+                        "of the motion's clock; 0: stands at its beginning"));
   return keys;
 }
 
@@ -314,8 +333,8 @@ std::vector<Key> environment_keys() {
   std::vector<Key> keys;
   keys.push_back(
       text("panorama", KeyType::kText, e(&E::panorama), "latitude-longitude OpenEXR file, relative to the level"));
-  keys.push_back(number("intensity", "1", {0.0, 1e6}, e(&E::intensity), "factor on the panorama"));
-  keys.push_back(number("rotation", "rad", {-1e3, 1e3}, e(&E::rotation), "about +Y"));
+  keys.push_back(number("intensity", "1", {{0.0, 1e6}, {1e-3, 1e3}}, e(&E::intensity), "factor on the panorama"));
+  keys.push_back(number("rotation", "rad", {{-1e3, 1e3}, {-6.3, 6.3}}, e(&E::rotation), "about +Y"));
   return keys;
 }
 
@@ -323,8 +342,9 @@ std::vector<Key> simulation_keys() {
   using S = Simulation;
   const auto s = [](auto member) { return at(&Level::simulation, member); };
   std::vector<Key> keys;
-  keys.push_back(number("touch_rate", "Hz", kTouchRateRange, s(&S::touch_rate), "rate of the touch clock"));
-  keys.push_back(number("soft_step", "s", kSoftStepRange, s(&S::soft_step), "step of the soft clock"));
+  keys.push_back(
+      number("touch_rate", "Hz", {kTouchRateRange, {100.0, 1e4}}, s(&S::touch_rate), "rate of the touch clock"));
+  keys.push_back(number("soft_step", "s", {kSoftStepRange, {5e-4, 0.05}}, s(&S::soft_step), "step of the soft clock"));
   Key gravity = key(
       "gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),
       [](dvec3 g) {
@@ -335,6 +355,7 @@ std::vector<Key> simulation_keys() {
                                 : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
       });
   gravity.range = kGravityRange;
+  gravity.usual = {-30.0, 30.0};
   keys.push_back(gravity);
   return keys;
 }

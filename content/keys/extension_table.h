@@ -20,6 +20,7 @@ struct Key {
   std::string unit;
   KeyType type = KeyType::kNumber;
   Range range;
+  Range usual;                                      // beyond it, other than 0, `validate` asks what was meant
   std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, registered ones included
   std::string doc;
   bool alias = false;  // sets other keys; never saved
@@ -44,6 +45,9 @@ const Key* find_key(const Extension& extension, const std::string& name);
 // "" or what is wrong with the value.
 std::string check_value(const Key& key, const Json& value);
 std::string range_text(const Key& key);
+// "" or that a number (each of a vector's or point's) is not what it usually is, and the unit that was perhaps meant.
+std::string doubt(const Key& key, const Json& value);
+std::string usual_text(const Key& key);
 // The closest of `names`, as "; did you mean X?", or "" if none is close.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 // "unknown `what` 'word' in `in`; did you mean X?", or, if none is close, "...; `all` are: A, B, C".

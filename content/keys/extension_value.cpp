@@ -11,11 +11,33 @@ namespace pliant {
 
 namespace {
 
+constexpr double kDegree = 0.017453292519943295;  // [rad]
+
 bool numbers(const Json& value, std::size_t count, const Range& range) {
   if (!value.is_array() || value.size() != count) return false;
   for (const Json& each : value)
     if (!each.is_number() || !range.holds(each.get<double>())) return false;
   return true;
+}
+
+struct Prefixed {
+  const char* unit;
+  const char* meant;
+  double factor;
+};
+// In what people measure what a key has in SI units.
+constexpr Prefixed kMeant[] = {
+    {"Pa", "kPa", 1e3},          {"Pa", "MPa", 1e6},      {"m", "mm", 1e-3},       {"m", "cm", 1e-2}, {"s", "ms", 1e-3},
+    {"rad", "degrees", kDegree}, {"N/m", "N/mm", 1e3},    {"kg/m3", "g/cm3", 1e3}, {"kg", "g", 1e-3}, {"N", "mN", 1e-3},
+    {"Hz", "kHz", 1e3},          {"m/s2", "cm/s2", 1e-2}, {"N m", "N mm", 1e-3}};
+
+// "; kPa meant? then write 5000", where that would be a usual value.
+std::string unit_question(const Key& key, double value) {
+  if (!std::isfinite(key.usual.min)) return "";
+  for (const Prefixed& each : kMeant)
+    if (key.unit == each.unit && key.usual.holds(value * each.factor) && key.range.holds(value * each.factor))
+      return fmt::format("; {} meant? then write {:.6g}", each.meant, value * each.factor);
+  return "";
 }
 
 // As much of a word as a sentence needs.
@@ -24,6 +46,23 @@ std::string cut(const std::string& word) {
 }
 
 }  // namespace
+
+std::string usual_text(const Key& key) {
+  if (!std::isfinite(key.usual.min)) return "";
+  return fmt::format("{:g} to {:g}", key.usual.min, key.usual.max);
+}
+
+std::string doubt(const Key& key, const Json& value) {
+  if (value.is_array()) {
+    for (const Json& each : value)
+      if (const std::string found = doubt(key, each); !found.empty()) return found;
+    return "";
+  }
+  if (!value.is_number() || value == 0 || key.usual.holds(value.get<double>())) return "";
+  const std::string unit = key.unit.empty() || key.unit == "1" ? "" : " " + key.unit;
+  return fmt::format("is {:g}{}, which is unusual ({}{})", value.get<double>(), unit, usual_text(key), unit) +
+         unit_question(key, value.get<double>());
+}
 
 std::string range_text(const Key& key) {
   const bool low = std::isfinite(key.range.min), high = std::isfinite(key.range.max);
@@ -36,7 +75,8 @@ std::string check_value(const Key& key, const Json& value) {
     const double it = value.get<double>();
     return key.range.holds(it) ? std::string()
                                : fmt::format("must be in the range {}{}; got {}", range_text(key),
-                                             key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump());
+                                             key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump()) +
+                                     unit_question(key, it);
   };
   const std::string given = value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
   const auto must_be = [&](const std::string& what) { return "must be " + what + "; got " + given; };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "content/keys/extension_table.h"
+#include "content/keys/json_integer.h"
 
 namespace pliant {
 
@@ -23,7 +24,10 @@ class Reader {
     walk(json, "", pointer);
     if (extension_.name == "deformable" && given("young") && given("stiffness"))
       report_(pointer, "gives both young and stiffness; keep one, young is calibrated to a stiffness");
-    if (const std::string clash = extension_.settle(owner_); !clash.empty()) report_(pointer, clash);
+    if (const std::string clash = extension_.settle(owner_); !clash.empty()) {
+      const std::string first = clash.substr(0, clash.find(' '));  // the key that it begins with, if any
+      report_(given(first.c_str()) ? pointer + "/" + first : pointer, clash);
+    }
   }
 
  private:
@@ -50,13 +54,14 @@ class Reader {
   }
 
   void take(const Key& key, Json value, const std::string& pointer) {
-    if (key.type == KeyType::kNode && value.is_number_unsigned()) {
+    if (key.type == KeyType::kNode && as_integer(value) && value.is_number_unsigned()) {
       if (value.get<std::uint64_t>() >= node_names_.size())
         return report_(pointer, fmt::format("refers to node {} of {}", value.dump(), node_names_.size()));
       value = node_names_[value.get<std::size_t>()];
     }
     const std::string wrong = check_value(key, value);
     if (!wrong.empty()) return report_(pointer, wrong);
+    if (const std::string found = doubt(key, value); !found.empty()) report_.doubt(pointer, found);
     key.set(owner_, value);
     given_.push_back(key.name);
   }
@@ -92,11 +97,15 @@ struct FirstFault {
   void operator()(const std::string& pointer, const std::string& message) const {
     if (!error) error = Error{pointer, message};
   }
+  void doubt(const std::string&, const std::string&) const {}  // only `validate` asks
 };
 struct AllFaults {
   Findings& findings;
   void operator()(const std::string& pointer, const std::string& message) const {
     findings.push_back({Severity::kError, pointer, message});
+  }
+  void doubt(const std::string& pointer, const std::string& message) const {
+    findings.push_back({Severity::kWarning, pointer, message});
   }
 };
 

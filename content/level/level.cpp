@@ -1,20 +1,39 @@
 #include "content/level/level.h"
 
+#include <algorithm>
+
 namespace pliant {
 
+bool LevelNode::has_pliant() const {
+  return deformable || probe || device || soft_body || handle || rigid_body || motion;
+}
+
 bool Level::has_pliant() const {
-  if (environment) return true;
-  for (const LevelNode& node : nodes)
-    if (node.deformable || node.probe || node.device || node.soft_body || node.handle || node.rigid_body || node.motion)
-      return true;
+  return environment ||
+         std::any_of(nodes.begin(), nodes.end(), [](const LevelNode& node) { return node.has_pliant(); });
+}
+
+bool has_area(const LevelMesh& mesh, const dmat3& frame) {
+  for (const Primitive& p : mesh.primitives)
+    for (std::size_t t = 0; t + 2 < p.index.size(); t += 3) {
+      const dvec3 a(p.position[p.index[t]]);
+      const dvec3 b = frame * (dvec3(p.position[p.index[t + 1]]) - a),
+                  c = frame * (dvec3(p.position[p.index[t + 2]]) - a);
+      if (cross(b, c) != dvec3(0)) return true;
+    }
   return false;
 }
 
 void make_touchable(Level& level) {
-  for (LevelNode& node : level.nodes)
-    if (node.in_scene && node.mesh >= 0 && !level.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty() &&
-        !node.deformable)
+  std::vector<dmat3> frame;  // of each node; parents stand before children
+  for (LevelNode& node : level.nodes) {
+    dmat3 own = glm::mat3_cast(dquat(node.local.rotation));
+    for (int i = 0; i < 3; ++i) own[i] *= static_cast<double>(node.local.scale[i]);
+    frame.push_back(node.parent < 0 ? own : frame[static_cast<std::size_t>(node.parent)] * own);
+    if (node.in_scene && node.mesh >= 0 && !node.deformable &&
+        has_area(level.meshes[static_cast<std::size_t>(node.mesh)], frame.back()))
       node.deformable = Deformable{};
+  }
 }
 
 }  // namespace pliant

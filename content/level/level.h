@@ -66,6 +66,8 @@ struct LevelNode {
   std::optional<Handle6> handle;         // PLIANT_handle
   std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
   std::optional<NodeMotion> motion;      // PLIANT_motion
+
+  bool has_pliant() const;  // any of those
 };
 
 // What an animation does to one node. Times in seconds from 0; values as glTF has them, rotations x, y, z, w.
@@ -110,7 +112,10 @@ struct Level {
   bool has_pliant() const;  // any PLIANT_* extension; false: a bare mesh
 };
 
-// A bare mesh becomes touchable: every mesh node gets a default Deformable.
+// Whether any triangle of a mesh has an area in a node's frame; false: a placeholder, neither shown nor touched.
+bool has_area(const LevelMesh& mesh, const dmat3& frame);
+
+// A bare mesh becomes touchable: every node whose mesh has an area gets a default Deformable.
 void make_touchable(Level& level);
 
 // Level -> World: nodes become entities (Name, transforms, Hierarchy), meshes are welded, cleaned, put in Hilbert order

@@ -68,6 +68,7 @@ class Spawner {
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = node(n); !s) return s;
     say_refinement();
+    say_placeholders();
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = link_probe(n); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
@@ -125,7 +126,10 @@ class Spawner {
         return at(n, "has PLIANT_deformable but no mesh; give the node a mesh, or remove the extension");
       return Done{};
     }
-    if (!is_touched(node) && level_.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty()) return Done{};
+    if (!is_touched(node) && !has_area(level_.meshes[static_cast<std::size_t>(node.mesh)], dmat3(motions_.world[n]))) {
+      if (placeholders_++ == 0) placeholder_ = node.name;
+      return Done{};
+    }
     // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
     const bool has_pose = is_touched(node) || !motions_.moves[n];
     const Pose pose = rigid_part(motions_.world[n]);
@@ -200,6 +204,12 @@ class Spawner {
     if (refined_.count == 0) return;
     notes_.push_back(refined_.names + refined_.more + ": " + with_commas(refined_.from) + " triangles refined to " +
                      with_commas(refined_.to) + " so that dents can show");
+  }
+
+  void say_placeholders() {
+    if (placeholders_ == 0) return;
+    const std::string more = placeholders_ == 1 ? "" : " and " + with_commas(placeholders_ - 1) + " more";
+    notes_.push_back("`" + placeholder_ + "`" + more + ": no triangle with an area; left out as a placeholder");
   }
 
   // Whether what was built for one node's dents is what another node wants.
@@ -311,6 +321,8 @@ class Spawner {
     std::size_t count = 0, from = 0, to = 0;  // nodes, triangles
     std::string names, more;
   } refined_;                       // meshes that were cut finer
+  std::size_t placeholders_ = 0;    // nodes whose mesh has no surface
+  std::string placeholder_;         // the first of them
   std::vector<std::string> notes_;  // of tetrahedra and winding, finer meshes
   Progress progress_;
 };

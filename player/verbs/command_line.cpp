@@ -146,8 +146,11 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
   verb->add_option("out", conversion.out, "what to write: .glb, .gltf, or .png for a panorama")
       ->required()
       ->check(named());
-  verb->add_option("--draco", conversion.draco_bits, "compress with this many bits per position (8 to 24)")
-      ->check(within(SaveOptions::kDracoBits.min, SaveOptions::kDracoBits.max));
+  CLI::Option* draco =
+      verb->add_option("--draco", conversion.draco_bits, "compress (anew) with this many bits per position (8 to 24)")
+          ->check(within(SaveOptions::kDracoBits.min, SaveOptions::kDracoBits.max));
+  verb->add_flag("--no-draco", conversion.no_draco, "write plain what is compressed, for every viewer")
+      ->excludes(draco);
   verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
   verb->add_flag("--force", conversion.force, "replace what is there");
   add_unit(verb, conversion.unit, "what one unit of the input is (m)");

@@ -118,6 +118,24 @@ int convert_panorama(const ConvertOptions& options) {
   return kDone;
 }
 
+// Files that PLIANT extensions name are not copied; where the level moves to another folder it misses them.
+void say_left_behind(const Level& level, const fs::path& out) {
+  std::set<std::string> names;
+  if (level.environment) names.insert(level.environment->panorama);
+  for (const LevelNode& node : level.nodes) {
+    if (node.device && node.device->driver == DriverKind::kScript) names.insert(node.device->file);
+    if (node.motion) names.insert(node.motion->script);
+    if (node.soft_body) names.insert(node.soft_body->mesh);
+  }
+  names.erase("");
+  std::string missing;
+  std::error_code ignored;
+  for (const std::string& name : names)
+    if (!fs::exists(out.parent_path() / name, ignored)) missing += (missing.empty() ? "`" : ", `") + name + "`";
+  if (!missing.empty())
+    note("the level names files that are not beside " + out.string() + ": " + missing + "; copy them there");
+}
+
 }  // namespace
 
 int convert(const ConvertOptions& options) {
@@ -130,14 +148,20 @@ int convert(const ConvertOptions& options) {
   if (!level) return fail(kFailed, level.error());
   if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
   for (const std::string& sentence : level->notes) note(sentence);
+  if (options.unit != 1.0 && level->has_pliant())
+    return fail(kUsage, {"--unit",
+                         "is for bare meshes; this level's PLIANT extensions name lengths in metres: scale its nodes"});
   scale_roots(*level, options.unit);
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
   const Interrupt interrupt(kWords);  // until the file is in place: nothing half-written stays behind
   remove_if_forced(interrupt, options.out);
-  if (const Status s = save_level(*level, options.out, SaveOptions{options.draco_bits, existing(options)}); !s)
+  if (const Status s =
+          save_level(*level, options.out, SaveOptions{options.draco_bits, options.no_draco, existing(options)});
+      !s)
     return fail(kFailed, s.error());
 
+  say_left_behind(*level, options.out);
   std::size_t triangles = 0;
   for (const LevelMesh& mesh : level->meshes)
     for (const Primitive& primitive : mesh.primitives) triangles += primitive.index.size() / 3;

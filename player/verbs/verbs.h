@@ -37,7 +37,8 @@ int inspect(const std::string& file, bool json);
 
 struct ConvertOptions {
   std::string in, out;
-  int draco_bits = 0;  // 0: no Draco
+  int draco_bits = 0;  // 0: as the input
+  bool no_draco = false;
   bool reorder = false;
   double unit = 1.0;   // [m] that one unit of the input is
   bool force = false;  // replaces what is there

@@ -194,9 +194,44 @@ TEST_F(Document, DracoKeepsEveryPositionWithinItsQuantisation) {
     ASSERT_LT(length(before.uv[nearest] - after.uv[v]), 2e-4f);
     ASSERT_LT(length(before.normal[nearest] - after.normal[v]), 2e-3f);
   }
-  // A second round finds the primitive compressed already and leaves it alone.
-  ASSERT_TRUE(save_level(small, folder_ / "again.glb", {16}).ok());
-  EXPECT_EQ(Difference::of(small, load(folder_ / "again.glb")), "");
+}
+
+TEST_F(Document, WhatIsCompressedIsCompressedAnewOrWrittenPlainAsItDecodes) {
+  Level level;
+  level.meshes.push_back({"sheet", {sheet(40)}});
+  level.meshes[0].primitives[0].material = -1;
+  level.nodes.resize(1);
+  level.nodes[0].name = "sheet";
+  level.nodes[0].mesh = 0;
+  level.nodes[0].deformable = Deformable{};
+  ASSERT_TRUE(save_level(level, folder_ / "fine.glb", {16}).ok());
+  const Level fine = load(folder_ / "fine.glb");
+  ASSERT_TRUE(save_level(fine, folder_ / "coarse.glb", {9}).ok());
+  EXPECT_LT(fs::file_size(folder_ / "coarse.glb"), fs::file_size(folder_ / "fine.glb"));
+  SaveOptions plain;
+  plain.no_draco = true;
+  ASSERT_TRUE(save_level(fine, folder_ / "plain.glb", plain).ok());
+  const Level back = load(folder_ / "plain.glb");
+  EXPECT_EQ(Difference::of(fine, back), "");
+  EXPECT_TRUE(back.nodes[0].deformable);
+  EXPECT_FALSE(back.source->json.contains("extensionsRequired"));
+}
+
+TEST_F(Document, ABinOfSomethingElseIsNotReplaced) {
+  const auto text_of = [](const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  std::ofstream(folder_ / "a.bin") << "precious";
+  EXPECT_FALSE(save_level(everything(), folder_ / "a.gltf").ok());
+  EXPECT_EQ(text_of(folder_ / "a.bin"), "precious");
+  EXPECT_FALSE(fs::exists(folder_ / "a.gltf"));
+  std::ofstream(folder_ / "a.gltf")
+      << R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "b.bin", "byteLength": 8}]})";
+  EXPECT_FALSE(save_level(everything(), folder_ / "a.gltf").ok());
+  EXPECT_EQ(text_of(folder_ / "a.bin"), "precious");
+  ASSERT_TRUE(save_level(everything(), folder_ / "b.gltf").ok());
+  EXPECT_TRUE(save_level(everything(), folder_ / "b.gltf").ok()) << "its own";
 }
 
 TEST_F(Document, WhatTheEditorChangesIsSavedAndTheRestOfTheDocumentStays) {

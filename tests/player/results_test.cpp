@@ -152,17 +152,27 @@ TEST_F(Results, ARecordingIsReplacedByForceOnlyAndOnlyIfItIsOne) {
 
 TEST_F(Results, ConvertReplacesByForceOnly) {
   const std::string sky = std::string(PLIANT_SOURCE_DIR) + "/content/environments/sky.exr";
-  for (const auto& [in, out, beside] : std::vector<std::array<std::string, 3>>{{"plate.obj", "a.glb", ""},
-                                                                               {"plate.obj", "b.gltf", ""},
-                                                                               {"plate.obj", "c.gltf", "c.bin"},
-                                                                               {sky, "d.png", ""}}) {
-    const std::string there = beside.empty() ? out : beside;
+  for (const auto& [in, out] :
+       std::vector<std::array<std::string, 2>>{{"plate.obj", "a.glb"}, {"plate.obj", "b.gltf"}, {sky, "d.png"}}) {
+    const std::string& there = out;
     write_text(folder / there, "mine");
     expect_refused({"convert", in, out}, 1, there);
     EXPECT_EQ(read_text(folder / there), "mine");
     ASSERT_EQ(pliant({"convert", in, out, "--force"}).status, 0) << out;
     EXPECT_NE(read_text(folder / there), "mine") << out;
   }
+  // A .bin goes with its own .gltf, and with nothing else.
+  write_text(folder / "c.bin", "mine");
+  for (const bool force : {false, true}) {
+    std::vector<std::string> convert{"convert", "plate.obj", "c.gltf"};
+    if (force) convert.push_back("--force");
+    expect_refused(convert, 1, "c.bin");
+    EXPECT_EQ(read_text(folder / "c.bin"), "mine");
+  }
+  ASSERT_EQ(pliant({"convert", "plate.obj", "e.gltf"}).status, 0);
+  write_text(folder / "e.bin", "damaged");
+  ASSERT_EQ(pliant({"convert", "plate.obj", "e.gltf", "--force"}).status, 0);
+  EXPECT_NE(read_text(folder / "e.bin"), "damaged");
 }
 
 }  // namespace

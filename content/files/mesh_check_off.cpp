@@ -1,0 +1,148 @@
+// OFF: [ST][C][N][4][n]OFF, counts, then a vertex and a face a line; '#' begins a comment.
+#include <fmt/format.h>
+
+#include <array>
+#include <vector>
+
+#include "content/files/mesh_check.h"
+#include "content/tets/tet_text.h"
+
+namespace pliant {
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+struct Header {
+  bool texture = false, normal = false, homogeneous = false;
+  std::int64_t vertices = 0, faces = 0;
+};
+
+// The words of the next line that has any; false at the end of the file.
+bool row(TetText& text, Words& words) {
+  words.clear();
+  std::string_view line;
+  while (words.empty()) {
+    if (!text.line(line)) return false;
+    line = line.substr(0, line.find('#'));
+    TetText rest({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()}, "");
+    for (std::string_view word; rest.word(word);) words.push_back(word);
+  }
+  return true;
+}
+
+Result<Header> read_header(TetText& text) {
+  Header header;
+  Words words;
+  if (!row(text, words)) return Error{"", "is empty; export it again"};
+  std::string_view key = words[0];
+  if (key.size() >= 3 && key.substr(key.size() - 3) == "OFF") {
+    const auto take = [&key](std::string_view letters) {
+      if (key.substr(0, letters.size()) != letters) return false;
+      key.remove_prefix(letters.size());
+      return true;
+    };
+    header.texture = take("ST");
+    take("C");
+    header.normal = take("N");
+    header.homogeneous = take("4");
+    const bool dimension = take("n");
+    if (key != "OFF") return Error{"", "begins with an unknown kind of OFF; export it again"};
+    words.erase(words.begin());
+    if (!words.empty() && words[0] == "BINARY") return Error{"", "is a binary OFF; export it as text"};
+    if (words.empty() && !row(text, words)) return Error{"", "ends within its header; the file is cut off"};
+    if (dimension) {
+      if (words[0] != "3") return Error{"", "has vertices of another dimension than 3; export it again"};
+      words.erase(words.begin());
+      if (words.empty() && !row(text, words)) return Error{"", "ends within its header; the file is cut off"};
+    }
+  }
+  if (words.size() < 2 || !to_integer(words[0], header.vertices) || !to_integer(words[1], header.faces))
+    return Error{"", "has no numbers of vertices and faces at its head; export it again"};
+  if (words.size() > 3)
+    return Error{"", "has more on the line of its counts than three numbers; write each vertex on a line of its own"};
+  const std::int64_t most = static_cast<std::int64_t>(text.left());
+  if (header.vertices < 1 || header.faces < 1 || header.vertices > most || header.faces > most)
+    return Error{"", fmt::format("claims {} vertices and {} faces in {} bytes; the file is damaged", header.vertices,
+                                 header.faces, most)};
+  return header;
+}
+
+void append(Bytes& out, std::string_view text) {
+  out.insert(out.end(), text.begin(), text.end());
+}
+
+Status copy_vertex(const Header& header, const Words& words, std::int64_t v, Bytes& out) {
+  const std::size_t normals = header.homogeneous ? 4 : 3, needed = normals + (header.normal ? 3 : 0);
+  if (words.size() < needed + (header.texture ? 2 : 0))
+    return Error{"", fmt::format("has too few numbers for vertex {}; the file is cut off or damaged", v)};
+  Words kept(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(needed));
+  if (header.texture) kept.insert(kept.end(), words.end() - 2, words.end());  // behind colours
+  std::array<double, 9> value{};
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    if (!to_number(kept[i], value[i]))
+      return Error{"", fmt::format("has something else than a finite number at vertex {}; repair the mesh", v)};
+  if (header.homogeneous && value[3] == 0.0)
+    return Error{"", fmt::format("has vertex {} at infinity; repair the mesh", v)};
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (header.homogeneous && i == 3) continue;
+    append(out, header.homogeneous && i < 3 ? fmt::format("{:.9g}", value[i] / value[3]) : std::string(kept[i]));
+    append(out, " ");
+  }
+  append(out, "\n");
+  return Done{};
+}
+
+Status copy_face(const Header& header, const Words& words, std::int64_t f, Bytes& out, std::int64_t& written) {
+  std::int64_t corners = 0;
+  if (!to_integer(words[0], corners) || corners < 1 || corners >= static_cast<std::int64_t>(words.size()))
+    return Error{"", fmt::format("has too few numbers for face {}; the file is cut off or damaged", f)};
+  for (std::int64_t c = 1; c <= corners; ++c) {
+    const std::string_view word = words[static_cast<std::size_t>(c)];
+    std::int64_t vertex = -1;
+    if (!to_integer(word, vertex) || vertex < 0 || vertex >= header.vertices)
+      return Error{"", fmt::format("has a face {} that names vertex {} of {}; export it again", f, word.substr(0, 20),
+                                   header.vertices)};
+  }
+  if (corners < 3) return Done{};  // points and lines
+  ++written;
+  for (std::int64_t c = 0; c <= corners; ++c) {
+    append(out, words[static_cast<std::size_t>(c)]);
+    append(out, " ");
+  }
+  append(out, "\n");
+  return Done{};
+}
+
+}  // namespace
+
+Result<Bytes> off_as_ply(const Bytes& bytes) {
+  TetText text(bytes, "");
+  const Result<Header> header = read_header(text);
+  if (!header) return header.error();
+  Bytes body;
+  body.reserve(bytes.size() + bytes.size() / 4);
+  Words words;
+  for (std::int64_t v = 0; v < header->vertices; ++v) {
+    if (!row(text, words))
+      return Error{"", fmt::format("ends before vertex {} of {}; the file is cut off", v, header->vertices)};
+    if (const Status status = copy_vertex(*header, words, v, body); !status) return status.error();
+  }
+  std::int64_t faces = 0;
+  for (std::int64_t f = 0; f < header->faces; ++f) {
+    if (!row(text, words))
+      return Error{"", fmt::format("ends before face {} of {}; the file is cut off", f, header->faces)};
+    if (const Status status = copy_face(*header, words, f, body, faces); !status) return status.error();
+  }
+  if (faces == 0) return Error{"", "has no triangles; points and lines cannot be touched"};
+  std::string head = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\n", header->vertices);
+  std::vector<const char*> names{"x", "y", "z"};
+  if (header->normal) names.insert(names.end(), {"nx", "ny", "nz"});
+  if (header->texture) names.insert(names.end(), {"s", "t"});
+  for (const char* name : names) head += fmt::format("property float {}\n", name);
+  head += fmt::format("element face {}\nproperty list int int vertex_indices\nend_header\n", faces);
+  Bytes out(head.begin(), head.end());
+  out.insert(out.end(), body.begin(), body.end());
+  return out;
+}
+
+}  // namespace pliant
