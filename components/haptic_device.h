@@ -1,5 +1,5 @@
-// A device that moves a probe and may push back. Drivers live in systems/device, one file each; this is all that the
-// rest of the house knows of them. Workspace-to-world is a scale about the node's own frame.
+// A device that moves a probe and may push back. Drivers (pliant/driver.h), paths and the mouse write its pose; this is
+// all that the touch tick knows of them. `scale` is for drivers: scripts are in metres, world.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct HapticDevice : DeviceParameters {
   std::string file;  // of the script, relative to the level
   std::string id;    // external drivers: which one
 
-  Handle<Path> path;  // script, orbit, replay
+  Handle<Path> path;  // script, orbit
   DeviceStatus status = DeviceStatus::kReady;
   dvec3 position{0};  // [m] world, as last sensed
   dquat rotation{1, 0, 0, 0};

@@ -118,13 +118,13 @@ struct ProbeParameters {
 
 // What may leave for the hand that holds the device. Keys of PLIANT_haptic_device.
 struct DeviceParameters {
-  double scale = 1.0;          // [1] workspace -> world
+  double scale = 1.0;          // [1] a driver's workspace -> world
   double max_force = 3.3;      // [N] norm of the force sent
   double max_stiffness = 0.0;  // [N/m] 0: no limit; else the force may not rise faster with displacement than this
   double max_slew = 1000.0;    // [N/s] of the norm of the change
 };
 
-// A path in time: script files, orbits, replays. Linear between rows, slerp for rotation; holds the last row.
+// A path in time: script files and orbits. Linear between rows, slerp for rotation; holds the last row.
 struct PathRow {
   double time = 0.0;  // [s] ascending
   dvec3 position{0};  // [m] world

@@ -1,4 +1,4 @@
-// Motion along a Path: script files, orbits and replays.
+// Motion along a Path: script files and orbits.
 #pragma once
 
 #include "components/haptic_device.h"
