@@ -40,8 +40,8 @@ struct AwakeStats {
 
 class Journal {
  public:
-  // Every probe, tool and deformable of a prepared world. Holds `seconds` of rows until they are drained. `bodies`:
-  // what tools touch, or null: nothing.
+  // Every probe, tool and deformable of a prepared world. Holds `seconds` of rows until they are drained, within
+  // limits::kJournal. `bodies`: what tools touch, or null: nothing.
   Journal(const World& world, double seconds, const BodyJournal* bodies = nullptr);
 
   void note(const World& world, Tick tick);

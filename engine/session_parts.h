@@ -68,12 +68,14 @@ class SessionRecorder {
   SessionRecorder(RecordingWriter writer, std::size_t hands);
   void note(std::uint64_t tick, const HapticDevice& device);  // touch clock: every hand, in order
   void drain();
-  void start();  // a thread drains from now on
+  std::size_t room() const { return room_; }  // [ticks] that may wait
+  void start();                               // a thread drains from now on
   Status finish();
 
  private:
   RecordingWriter writer_;
-  std::size_t hands_, written_ = 0;  // poses of the tick under way
+  std::size_t hands_, room_;
+  std::size_t written_ = 0;  // poses of the tick under way
   Recorder<PoseRow> rows_;
   std::vector<PoseRow> taken_;
   std::jthread thread_;

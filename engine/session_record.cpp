@@ -1,11 +1,13 @@
 // Recording and replaying a Session (pliant/session.h).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <span>
 
 #include "content/files/file_io.h"
 #include "engine/session_parts.h"
+#include "runtime/printable.h"
 
 namespace pliant {
 namespace {
@@ -13,10 +15,14 @@ namespace {
 constexpr std::size_t kRoom = 8192;  // ticks that may wait to be written
 constexpr auto kDrainEvery = std::chrono::milliseconds(20);
 
+std::size_t room_for(std::size_t hands) {
+  return std::clamp<std::size_t>(most(limits::kJournal) / (sizeof(PoseRow) * hands), 2, kRoom);
+}
+
 }  // namespace
 
 SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t hands)
-    : writer_(std::move(writer)), hands_(hands), rows_(kRoom * hands) {}
+    : writer_(std::move(writer)), hands_(hands), room_(room_for(hands)), rows_(room_ * hands) {}
 
 void SessionRecorder::note(std::uint64_t tick, const HapticDevice& device) {
   rows_.record({tick, {device.position, device.rotation, device.status == DeviceStatus::kReady}});
@@ -121,7 +127,7 @@ Status export_recording(const std::filesystem::path& file, const std::filesystem
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const RecordedPose& pose = recording->poses[n * probes.size() + i];
       std::string name;
-      for (const char c : probes[i]) name += c == '"' ? std::string("\"\"") : std::string(1, c);
+      for (const char c : printable(probes[i])) name += c == '"' ? std::string("\"\"") : std::string(1, c);
       text += fmt::format("{},{:.9g},\"{}\",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", recording->ticks[n],
                           static_cast<double>(recording->ticks[n]) / recording->header.rate, name, pose.position.x,
                           pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x, pose.rotation.y,

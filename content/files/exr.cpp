@@ -142,6 +142,16 @@ Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std:
   return out;
 }
 
+Result<Panorama> load_named_panorama(const std::filesystem::path& folder, const std::string& name,
+                                     std::vector<std::string>* notes) {
+  constexpr std::string_view kShared = "../environments/";
+  const bool shared = name.starts_with(kShared);
+  const Result<std::filesystem::path> path =
+      shared ? confined_path(folder / kShared, name.substr(kShared.size())) : confined_path(folder, name);
+  if (!path) return path.error();
+  return load_panorama(*path, notes);
+}
+
 Result<Panorama> load_panorama(const std::filesystem::path& path, std::vector<std::string>* notes) {
   const Result<Bytes> bytes = read_file(path);
   if (!bytes) return bytes.error();

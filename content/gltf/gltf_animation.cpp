@@ -60,9 +60,9 @@ class AnimationReader {
     }
     keys_ += std::max(layout_of(document_.json["accessors"][input]).count,
                       layout_of(document_.json["accessors"][output]).count);
-    if (keys_ > kMostKeys)
-      return Error{pointer,
-                   fmt::format("brings the level above {} keys; sample its animations more coarsely", kMostKeys)};
+    if (keys_ > most(limits::kKeys))
+      return Error{pointer, "brings the level to " + beyond(limits::kKeys, static_cast<double>(keys_),
+                                                            "sample its animations more coarsely")};
     LevelChannel channel{node_of_[target["node"].get<std::size_t>()], *property, {}};
     channel.track.interpolation = interpolation_of(sampler);
     if (const std::string fault = fill(channel, read_floats(document_, input), read_floats(document_, output));

@@ -8,8 +8,6 @@ namespace pliant {
 
 namespace {
 
-constexpr std::uint64_t kMaxDecodedPictures = std::uint64_t{768} << 20;  // [byte] of a level, all together
-
 // The picture of a texture slot, -1: none.
 std::int32_t texture_of(const SourceDocument& document, const Json& object, const char* key, Level& level) {
   if (!object.contains(key)) return -1;
@@ -115,7 +113,11 @@ std::optional<Camera> camera_of(const SourceDocument& document, const Json& node
 }
 
 Status read_images(const SourceDocument& document, Level& level) {
+  // All of them are looked at before the first is decoded: that takes a second for each hundred megabytes.
   std::uint64_t decoded = 0;
+  for (const Bytes& image : document.images) decoded += decoded_size(image);
+  if (decoded > most(limits::kPictures))
+    return Error{"/images", "make " + beyond(limits::kPictures, static_cast<double>(decoded), "shrink the pictures")};
   const Json& images = array_of(document.json, "images");
   for (std::size_t i = 0; i < images.size(); ++i) {
     std::string name = value_of<std::string>(images[i], "name", "");
@@ -125,9 +127,6 @@ Status read_images(const SourceDocument& document, Level& level) {
     }
     Result<Image> image = decode_image(document.images[i], "picture");
     if (!image) return Error{fmt::format("/images/{}", i), image.error().message()};
-    decoded += image->rgba.size();
-    if (decoded > kMaxDecodedPictures)
-      return Error{fmt::format("/images/{}", i), "makes the pictures too large together; shrink them"};
     image->name = std::move(name);
     level.images.push_back(std::move(*image));
   }

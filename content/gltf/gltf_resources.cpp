@@ -137,8 +137,9 @@ void resolve_buffers(SourceDocument& document, const Container& container, Findi
                        fmt::format("declares {} bytes but has {}; the file is cut off", length, bytes.size()));
     bytes.resize(length);
     total += length;
-    if (total > kMaxFileBytes)
-      return add_error(findings, pointer, "makes the buffers exceed 2 GiB together; split the level");
+    if (total > most(limits::kFile))
+      return add_error(findings, pointer,
+                       "makes the buffers " + beyond(limits::kFile, static_cast<double>(total), "split the level"));
     document.buffers.push_back(std::move(bytes));
   }
 }

@@ -1,11 +1,14 @@
 // Level -> World. Nodes become entities in order; meshes are built once for every way in which a node scales them.
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
 
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
+#include "content/files/file_io.h"
 #include "content/level/device_use.h"
 #include "content/level/level.h"
 #include "content/level/probe_shell.h"
@@ -19,8 +22,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFlat = 1e-9;                                // [1] of the diagonal cubed: no volume
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // over all instances: a small file can name a mesh often
+constexpr double kFlat = 1e-9;  // [1] of the diagonal cubed: no volume
 
 dmat4 inverse(const Pose& pose) {
   const dquat back = glm::conjugate(pose.rotation);
@@ -35,15 +37,30 @@ std::string with_commas(std::size_t number) {
   return text;
 }
 
-// A mesh as some node wants it. Nodes that bake the same frame into the same mesh share what was built.
-struct Baked {
+// What nodes have in common that share what was built of a mesh.
+struct Shape {
   bool touchable;
-  mat4 to_object;
-  double crease_angle;          // [rad]
+  double crease_angle;              // [rad]
+  std::array<float, 16> to_object;  // the frame that is baked into the mesh
+  auto operator<=>(const Shape&) const = default;
+};
+
+mat4 matrix_of(const Shape& shape) {
+  mat4 m;
+  for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = shape.to_object[i];
+  return m;
+}
+
+// A mesh as some node wants it.
+struct Baked {
   std::optional<double> reach;  // [m] of the dents that must show, 0: the default; nothing: none need
   bool refined = false;         // cut finer for that
   Handle<Mesh> touch;
   Handle<DrawMesh> draw;
+};
+
+struct Size {
+  double triangles = 0.0, vertices = 0.0;
 };
 
 class Spawner {
@@ -65,6 +82,7 @@ class Spawner {
     motions_ = std::move(*motions);
     notes_.insert(notes_.end(), motions_.notes.begin(), motions_.notes.end());
     baked_.resize(level_.meshes.size());
+    if (Status s = check_size(); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = node(n); !s) return s;
     say_refinement();
@@ -126,18 +144,19 @@ class Spawner {
       return Done{};
     }
     if (!is_touched(node) && level_.meshes[static_cast<std::size_t>(node.mesh)].primitives.empty()) return Done{};
-    // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
-    const bool has_pose = is_touched(node) || !motions_.moves[n];
     const Pose pose = rigid_part(motions_.world[n]);
-    Result<Baked> baked = bake(n, has_pose ? mat4(inverse(pose) * motions_.world[n]) : mat4(1));
+    Result<Baked> baked = bake(n);
     if (!baked) return baked.error();
-    if (has_pose) world_.registry.add<Pose>(entities_[n], pose);
+    if (has_pose(n)) world_.registry.add<Pose>(entities_[n], pose);
     world_.registry.add<Drawable>(entities_[n], {baked->draw});
     if (node.deformable) {
       Deformable& deformable = world_.registry.add<Deformable>(entities_[n], *node.deformable);
       deformable.mesh = baked->touch;
       deformable.field = world_.fields.add({});
       if (deformable.reach <= 0.0) deformable.reach = default_reach(world_.meshes[deformable.mesh]);
+      ++surfaces_;
+      built_.vertices += static_cast<double>(world_.meshes[deformable.mesh].vertex_count);
+      if (Status s = check_surfaces(n, surfaces_, built_.vertices); !s) return s;  // finer meshes have more
     }
     if (node.rigid_body) return rigid_body(n, baked->touch);
     return Done{};
@@ -150,6 +169,16 @@ class Spawner {
     const double box = std::pow(static_cast<double>(mesh.box.diagonal()), 3.0);
     if (body.fixed || mass_properties(mesh).volume > kFlat * box) return Done{};
     return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
+  }
+
+  // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
+  bool has_pose(std::size_t n) const { return is_touched(level_.nodes[n]) || !motions_.moves[n]; }
+  Shape shape_of(std::size_t n) const {
+    const LevelNode& node = level_.nodes[n];
+    const mat4 m = has_pose(n) ? mat4(inverse(rigid_part(motions_.world[n])) * motions_.world[n]) : mat4(1);
+    Shape shape{is_touched(node), node.deformable ? node.deformable->crease_angle : 0.0, {}};
+    for (std::size_t i = 0; i < 16; ++i) shape.to_object[i] = m[static_cast<int>(i / 4)][static_cast<int>(i % 4)];
+    return shape;
   }
 
   static bool is_touched(const LevelNode& node) { return node.deformable || node.rigid_body; }
@@ -174,11 +203,51 @@ class Spawner {
     return Done{};
   }
 
+  // A small file can name a mesh often. What the nodes want is counted before the first of it is built.
+  Status check_size() {
+    std::vector<Size> sizes;
+    for (const LevelMesh& mesh : level_.meshes) {
+      sizes.emplace_back();
+      for (const Primitive& p : mesh.primitives) {
+        sizes.back().triangles += static_cast<double>(p.index.size()) / 3.0;
+        sizes.back().vertices += static_cast<double>(p.position.size());
+      }
+      own_.triangles += sizes.back().triangles;
+      own_.vertices += sizes.back().vertices;
+    }
+    std::set<std::pair<std::int32_t, Shape>> shapes;
+    Size wanted;
+    double surfaces = 0.0;
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n) {
+      const LevelNode& node = level_.nodes[n];
+      if (!node.in_scene || node.mesh < 0) continue;
+      const Size& size = sizes[static_cast<std::size_t>(node.mesh)];
+      if (node.soft_body || shapes.insert({node.mesh, shape_of(n)}).second) wanted.triangles += size.triangles;
+      if (node.deformable) ++surfaces, wanted.vertices += size.vertices;
+      if (Status s = check_triangles(n, wanted.triangles); !s) return s;
+      if (Status s = check_surfaces(n, surfaces, wanted.vertices); !s) return s;
+    }
+    return Done{};
+  }
+
+  Status check_triangles(std::size_t n, double count) const {
+    constexpr const char* kCure = "use fewer instances, or give them one scale and rotation so that they share";
+    if (count > static_cast<double>(most(limits::kTriangles)))
+      return at(n, "brings the level to " + beyond(limits::kTriangles, count, kCure));
+    if (count - own_.triangles <= static_cast<double>(most(limits::kAddedTriangles))) return Done{};
+    return at(n, "brings the level to " + beyond(limits::kAddedTriangles, count - own_.triangles, kCure));
+  }
+  Status check_surfaces(std::size_t n, double surfaces, double vertices) const {
+    constexpr const char* kCure = "use fewer instances, or let fewer of them give way";
+    if (surfaces > static_cast<double>(most(limits::kSurfaces)))
+      return at(n, "brings the level to " + beyond(limits::kSurfaces, surfaces, kCure));
+    if (vertices - own_.vertices <= static_cast<double>(most(limits::kAddedVertices))) return Done{};
+    return at(n, "brings the level to " + beyond(limits::kAddedVertices, vertices - own_.vertices, kCure));
+  }
+
   Status count_triangles(std::size_t n, const LevelMesh& mesh) {
-    for (const Primitive& p : mesh.primitives) triangles_ += p.index.size() / 3;
-    if (triangles_ <= kMostTriangles) return Done{};
-    return at(n,
-              "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
+    for (const Primitive& p : mesh.primitives) built_.triangles += static_cast<double>(p.index.size() / 3);
+    return check_triangles(n, built_.triangles);
   }
 
   // Once a mesh, however many nodes show it.
@@ -210,27 +279,29 @@ class Spawner {
     return !is_coarse(mesh, *wanted.reach > 0.0 ? *wanted.reach : default_reach(mesh));
   }
 
-  Result<Baked> bake(std::size_t n, const mat4& to_object) {
+  Result<Baked> bake(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
-    Baked wanted{is_touched(node), to_object, node.deformable ? node.deformable->crease_angle : 0.0, {}, false, {}, {}};
+    const Shape shape = shape_of(n);
+    Baked wanted;
     if (node.deformable) wanted.reach = std::max(node.deformable->reach, 0.0);
-    std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)];
+    std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)][shape];
     for (const Baked& b : known)
-      if (b.touchable == wanted.touchable && b.to_object == to_object && b.crease_angle == wanted.crease_angle &&
-          serves(b, wanted))
-        return b;
+      if (serves(b, wanted)) return b;
 
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
     progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
     if (Status s = count_triangles(n, mesh); !s) return s.error();
-    Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, to_object,
-                                         {wanted.crease_angle, wanted.reach, wanted.touchable});
+    Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, matrix_of(shape),
+                                         {shape.crease_angle, wanted.reach, shape.touchable});
     if (!built) return at(n, built.error().message());
     note_winding(node.mesh, *built);
     note_refinement(node, *built);
     wanted.refined = built->report.refined_from != 0;
-    if (wanted.refined) triangles_ += built->mesh.triangles.size();
-    if (wanted.touchable)
+    if (wanted.refined) {
+      built_.triangles += static_cast<double>(built->mesh.triangles.size());
+      if (Status s = check_triangles(n, built_.triangles); !s) return s.error();
+    }
+    if (shape.touchable)
       wanted.touch = world_.meshes.add(std::move(built->mesh));
     else
       for (std::uint32_t v = 0; v < built->draw.vertices.size(); ++v) built->draw.vertices[v].touch_vertex = v;
@@ -245,7 +316,9 @@ class Spawner {
     if (device.driver == DriverKind::kScript) {
       if (device.file.empty())
         return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
-      Result<Path> path = load_script(folder_ / device.file);
+      const Result<std::filesystem::path> file = confined_path(folder_, device.file);
+      if (!file) return at(n, file.error().message());
+      Result<Path> path = load_script(*file);
       if (!path) return path.error();
       device.path = world_.paths.add(std::move(*path));
     }
@@ -303,10 +376,11 @@ class Spawner {
   World world_;
   std::vector<Entity> entities_;  // of each node; kNoEntity: not in the scene
   LevelMotions motions_;
-  std::unordered_map<std::string, std::size_t> by_name_;  // first node in the scene with this name
-  std::vector<std::vector<Baked>> baked_;                 // of each mesh of the level
-  std::set<std::int32_t> noted_;                          // meshes whose winding a note speaks of
-  std::size_t triangles_ = 0;                             // built so far
+  std::unordered_map<std::string, std::size_t> by_name_;    // first node in the scene with this name
+  std::vector<std::map<Shape, std::vector<Baked>>> baked_;  // of each mesh of the level
+  std::set<std::int32_t> noted_;                            // meshes whose winding a note speaks of
+  double surfaces_ = 0.0;
+  Size own_, built_;  // of the level's meshes, each once; built so far
   struct {
     std::size_t count = 0, from = 0, to = 0;  // nodes, triangles
     std::string names, more;

@@ -7,8 +7,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{512} << 20;
-
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -30,17 +28,28 @@ bool is_tet_file(const fs::path& path) {
   return extension == ".msh" || extension == ".vtk" || extension == ".node" || extension == ".ele";
 }
 
-Result<TetFile> load_tets(const fs::path& path) {
+Result<TetFile> load_named_tets(const fs::path& folder, const std::string& name) {
+  const Result<fs::path> path = confined_path(folder, name);
+  if (!path) return path.error();
+  return load_tets(*path, folder.empty() ? fs::path(".") : folder);
+}
+
+Result<TetFile> load_tets(const fs::path& path, const fs::path& within) {
   const std::string extension = lower_extension(path);
   if (!is_tet_file(path))
     return Error{path.string(), "is no tetrahedra file that is read; use .msh, .vtk, .node or .ele"};
-  Result<Bytes> bytes = read_file(path, kMostBytes);
+  Result<Bytes> bytes = read_file(path, limits::kTetFile);
   if (!bytes) return bytes.error();
   if (extension == ".msh") return parse_msh(*bytes, path.string());
   if (extension == ".vtk") return parse_vtk(*bytes, path.string());
   const bool is_node = extension == ".node";
-  Result<Bytes> other =
-      read_file(is_node ? partner(path, ".ele", ".ELE") : partner(path, ".node", ".NODE"), kMostBytes);
+  const fs::path beside = is_node ? partner(path, ".ele", ".ELE") : partner(path, ".node", ".NODE");
+  if (!within.empty()) {
+    std::error_code error;
+    const fs::path name = fs::relative(beside.parent_path(), within, error) / beside.filename();
+    if (const Result<fs::path> confined = confined_file(within, name); !confined) return confined.error();
+  }
+  Result<Bytes> other = read_file(beside, limits::kTetFile);
   if (!other) return other.error();
   const std::string stem = fs::path(path).replace_extension().string();
   return is_node ? parse_tetgen(*bytes, *other, stem) : parse_tetgen(*other, *bytes, stem);

@@ -156,7 +156,7 @@ std::string report_json(const RunFigures& figures) {
   json["hash"] = figures.hash;
   json["systems_us"] = systems(figures.schedule);
   // Names come from files and may not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
 }
 
 std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out) {

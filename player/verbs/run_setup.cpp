@@ -7,6 +7,7 @@
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
+#include "content/safety_cap.h"
 #include "engine/sources.h"
 #include "player/run/unfelt.h"
 #include "player/verbs/content_folder.h"
@@ -165,6 +166,9 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   }
   std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
+  SafetyCap cap;
+  if (options.max_force > 0.0) cap.max_force = options.max_force;
+  for (const std::string& sentence : cap_safety(level, cap)) say(run, sentence);
   if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
   if (!options.tool_force.empty())
     if (Outcome wrong = choose_tool_force(options, level)) return wrong;
