@@ -163,13 +163,14 @@ Findings validate_level(const fs::path& path) {
   }
   for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are among the findings
     findings.push_back({Severity::kNote, "", level->notes[i]});
-  if (!level->has_pliant())
+  const bool bare = !level->has_pliant();
+  if (bare)
     findings.push_back(
         {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
   std::set<std::tuple<std::int32_t, double, double>> seen;  // mesh, crease angle, reach
   for (std::size_t i = 0; i < level->nodes.size(); ++i) {
     const LevelNode& node = level->nodes[i];
-    if (!node.in_scene || node.mesh < 0 || (level->has_pliant() && !node.deformable && !node.rigid_body)) continue;
+    if (!node.in_scene || node.mesh < 0 || (!bare && !node.deformable && !node.rigid_body)) continue;
     // What instances have in common is said of the first: a mesh can be shown ten thousand times.
     const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
     if (seen.insert({node.mesh, crease, node.deformable ? node.deformable->reach : 0.0}).second)

@@ -11,19 +11,16 @@
 
 namespace pliant {
 
-namespace {
-
-// At least two ticks of every hand: in lockstep they leave after each.
-std::size_t rows_that_wait(const World& world, double seconds, std::size_t hands) {
-  const auto ticks = static_cast<std::size_t>(std::ceil(seconds * world.simulation.touch_rate));
-  const std::size_t bounded = most(limits::kJournal) / (sizeof(TickRow) * std::max<std::size_t>(hands, 1));
-  return std::min(ticks, std::max<std::size_t>(bounded, 2)) * std::max<std::size_t>(hands, 1);
+std::size_t rows_that_wait(double seconds, double rate, std::size_t hands) {
+  const std::size_t each = std::max<std::size_t>(hands, 1);
+  const auto ticks = static_cast<std::size_t>(std::ceil(seconds * rate));
+  return std::min(ticks, std::max<std::size_t>(most(limits::kJournal) / (sizeof(TickRow) * each), 2)) * each;
 }
 
-}  // namespace
-
 Journal::Journal(const World& world, double seconds, const BodyJournal* bodies)
-    : bodies_(bodies), probes_(hands(world)), recorder_(rows_that_wait(world, seconds, probes_.size())) {
+    : bodies_(bodies),
+      probes_(hands(world)),
+      recorder_(rows_that_wait(seconds, world.simulation.touch_rate, probes_.size())) {
   for (const Entity probe : probes_) safety_.push_back(find_safety(world, probe));
   for (auto [entity, deformable] : world.registry.view<Deformable>()) awake_.push_back({entity, 0, 0});
   for (const Entity hand : probes_) {

@@ -39,7 +39,9 @@ inline constexpr Limit kName{1000, "bytes", "names stand in every row of forces.
 // What a level may make of its files: a mesh can be shown often, and a small picture can unpack to a large one.
 inline constexpr Limit kTriangles{67108864, "triangles", "indices of corners have 32 bits", false};
 inline constexpr Limit kAddedTriangles{4194304, "triangles beyond those of its meshes", "each takes some 150 bytes"};
-inline constexpr Limit kSurfaces{4096, "surfaces that give way", "each has dents of its own to look after"};
+inline constexpr Limit kSurfaces{4096, "surfaces and rigid bodies", "each is looked after in every tick or step"};
+inline constexpr Limit kSoftBodies{200, "soft bodies", "each is filled with some 2,000 tetrahedra, in 50 ms"};
+inline constexpr Limit kHands{4096, "probes and tools", "a recording knows as many", false};
 inline constexpr Limit kAddedVertices{4194304, "vertices of surfaces beyond those of its meshes",
                                       "each has a height of its own"};
 inline constexpr Limit kKeys{1e6, "animation keys", "channels may share accessors"};
@@ -50,13 +52,14 @@ inline constexpr Limit kPictures{512 * kMiB, "bytes of decoded pictures",
                                  "four a pixel, in the level and in the world"};
 
 // Tetrahedra.
-inline constexpr Limit kTets{2e6, "tetrahedra", "each takes some 400 bytes, and 2,000 fill a step of a millisecond"};
+inline constexpr Limit kTets{2e6, "tetrahedra",
+                             "each of a level's takes some 400 bytes, and 2,000 fill a step of a millisecond"};
 inline constexpr Limit kLatticeNodes{16777216, "nodes of a lattice", "each takes some 20 bytes"};
 inline constexpr Limit kTetFileNodes{4e6, "nodes", "each takes 24 bytes, its tetrahedra 400"};
 inline constexpr Limit kTetFileEntries{5e7, "entries of a section", "each takes up to 32 bytes"};
 
 // What waits to be written while a picture is drawn. Rows beyond are counted as lost.
-inline constexpr Limit kJournal{128 * kMiB, "bytes of rows", "a few seconds of some hundred probes"};
+inline constexpr Limit kJournal{64 * kMiB, "bytes of rows", "8 s of thirty probes at 1 kHz"};
 }  // namespace limits
 
 // [1] What set_limit_factor takes.

@@ -11,6 +11,7 @@
 #include "content/files/file_io.h"
 #include "content/level/device_use.h"
 #include "content/level/level.h"
+#include "content/level/level_budget.h"
 #include "content/level/probe_shell.h"
 #include "content/level/progress.h"
 #include "content/level/script.h"
@@ -59,13 +60,9 @@ struct Baked {
   Handle<DrawMesh> draw;
 };
 
-struct Size {
-  double triangles = 0.0, vertices = 0.0;
-};
-
 class Spawner {
  public:
-  explicit Spawner(const Level& level) : level_(level), folder_(level.path.parent_path()) {}
+  explicit Spawner(const Level& level) : level_(level), folder_(level.path.parent_path()), budget_(level) {}
 
   Status run() {
     world_.name = level_.name;
@@ -154,9 +151,8 @@ class Spawner {
       deformable.mesh = baked->touch;
       deformable.field = world_.fields.add({});
       if (deformable.reach <= 0.0) deformable.reach = default_reach(world_.meshes[deformable.mesh]);
-      ++surfaces_;
       built_.vertices += static_cast<double>(world_.meshes[deformable.mesh].vertex_count);
-      if (Status s = check_surfaces(n, surfaces_, built_.vertices); !s) return s;  // finer meshes have more
+      if (Status s = within(n, budget_.ask_vertices(built_.vertices)); !s) return s;  // finer meshes have more
     }
     if (node.rigid_body) return rigid_body(n, baked->touch);
     return Done{};
@@ -188,11 +184,13 @@ class Spawner {
     const LevelNode& node = level_.nodes[n];
     const LevelMesh* mesh = node.mesh < 0 ? nullptr : &level_.meshes[static_cast<std::size_t>(node.mesh)];
     if (mesh)
-      if (Status s = count_triangles(n, *mesh); !s) return s;
+      if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s;
     const Pose pose = rigid_part(motions_.world[n]);
     progress_.say("preparing meshes, now `" + node.name + "`");
     Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
     if (!parts) return at(n, parts.error().message());
+    tetrahedra_ += static_cast<double>(parts->tets.tets.size());
+    if (Status s = within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
     for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
     note_winding(node.mesh, parts->surface);
     world_.registry.add<Pose>(entities_[n], pose);
@@ -203,51 +201,37 @@ class Spawner {
     return Done{};
   }
 
-  // A small file can name a mesh often. What the nodes want is counted before the first of it is built.
+  // What the nodes want is counted before the first of it is built.
   Status check_size() {
-    std::vector<Size> sizes;
-    for (const LevelMesh& mesh : level_.meshes) {
-      sizes.emplace_back();
-      for (const Primitive& p : mesh.primitives) {
-        sizes.back().triangles += static_cast<double>(p.index.size()) / 3.0;
-        sizes.back().vertices += static_cast<double>(p.position.size());
-      }
-      own_.triangles += sizes.back().triangles;
-      own_.vertices += sizes.back().vertices;
-    }
     std::set<std::pair<std::int32_t, Shape>> shapes;
-    Size wanted;
-    double surfaces = 0.0;
+    MeshSize wanted;
+    double surfaces = 0.0, soft_bodies = 0.0, hands = 0.0;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n) {
       const LevelNode& node = level_.nodes[n];
-      if (!node.in_scene || node.mesh < 0) continue;
-      const Size& size = sizes[static_cast<std::size_t>(node.mesh)];
-      if (node.soft_body || shapes.insert({node.mesh, shape_of(n)}).second) wanted.triangles += size.triangles;
-      if (node.deformable) ++surfaces, wanted.vertices += size.vertices;
-      if (Status s = check_triangles(n, wanted.triangles); !s) return s;
-      if (Status s = check_surfaces(n, surfaces, wanted.vertices); !s) return s;
+      if (!node.in_scene) continue;
+      hands += node.probe || node.handle;
+      soft_bodies += node.soft_body.has_value();
+      surfaces += is_touched(node);
+      if (node.mesh >= 0) {
+        const MeshSize& size = budget_.of(node.mesh);
+        if (node.soft_body || shapes.insert({node.mesh, shape_of(n)}).second) wanted.triangles += size.triangles;
+        if (node.deformable) wanted.vertices += size.vertices;
+      }
+      for (const std::string& over :
+           {LevelBudget::ask(limits::kHands, hands), LevelBudget::ask(limits::kSoftBodies, soft_bodies),
+            LevelBudget::ask(limits::kSurfaces, surfaces), budget_.ask_triangles(wanted.triangles),
+            budget_.ask_vertices(wanted.vertices)})
+        if (!over.empty()) return at(n, over);
     }
     return Done{};
   }
-
-  Status check_triangles(std::size_t n, double count) const {
-    constexpr const char* kCure = "use fewer instances, or give them one scale and rotation so that they share";
-    if (count > static_cast<double>(most(limits::kTriangles)))
-      return at(n, "brings the level to " + beyond(limits::kTriangles, count, kCure));
-    if (count - own_.triangles <= static_cast<double>(most(limits::kAddedTriangles))) return Done{};
-    return at(n, "brings the level to " + beyond(limits::kAddedTriangles, count - own_.triangles, kCure));
-  }
-  Status check_surfaces(std::size_t n, double surfaces, double vertices) const {
-    constexpr const char* kCure = "use fewer instances, or let fewer of them give way";
-    if (surfaces > static_cast<double>(most(limits::kSurfaces)))
-      return at(n, "brings the level to " + beyond(limits::kSurfaces, surfaces, kCure));
-    if (vertices - own_.vertices <= static_cast<double>(most(limits::kAddedVertices))) return Done{};
-    return at(n, "brings the level to " + beyond(limits::kAddedVertices, vertices - own_.vertices, kCure));
+  Status within(std::size_t n, const std::string& over) const {
+    if (over.empty()) return Done{};
+    return at(n, over);
   }
 
-  Status count_triangles(std::size_t n, const LevelMesh& mesh) {
-    for (const Primitive& p : mesh.primitives) built_.triangles += static_cast<double>(p.index.size() / 3);
-    return check_triangles(n, built_.triangles);
+  Status count_triangles(std::size_t n, double triangles) {
+    return within(n, budget_.ask_triangles(built_.triangles += triangles));
   }
 
   // Once a mesh, however many nodes show it.
@@ -290,17 +274,15 @@ class Spawner {
 
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
     progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
-    if (Status s = count_triangles(n, mesh); !s) return s.error();
+    if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s.error();
     Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, matrix_of(shape),
                                          {shape.crease_angle, wanted.reach, shape.touchable});
     if (!built) return at(n, built.error().message());
     note_winding(node.mesh, *built);
     note_refinement(node, *built);
     wanted.refined = built->report.refined_from != 0;
-    if (wanted.refined) {
-      built_.triangles += static_cast<double>(built->mesh.triangles.size());
-      if (Status s = check_triangles(n, built_.triangles); !s) return s.error();
-    }
+    if (wanted.refined)
+      if (Status s = count_triangles(n, static_cast<double>(built->mesh.triangles.size())); !s) return s.error();
     if (shape.touchable)
       wanted.touch = world_.meshes.add(std::move(built->mesh));
     else
@@ -379,8 +361,9 @@ class Spawner {
   std::unordered_map<std::string, std::size_t> by_name_;    // first node in the scene with this name
   std::vector<std::map<Shape, std::vector<Baked>>> baked_;  // of each mesh of the level
   std::set<std::int32_t> noted_;                            // meshes whose winding a note speaks of
-  double surfaces_ = 0.0;
-  Size own_, built_;  // of the level's meshes, each once; built so far
+  const LevelBudget budget_;
+  MeshSize built_;           // so far; vertices of surfaces that give way
+  double tetrahedra_ = 0.0;  // so far
   struct {
     std::size_t count = 0, from = 0, to = 0;  // nodes, triangles
     std::string names, more;

@@ -47,7 +47,7 @@ class Keeper {
   Status finish();  // closes the files and the recording; the first error of any
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
-  const std::vector<Trace>& traces() const { return traces_; }
+  const std::vector<Trace>& traces() const { return traces_; }  // of those that are plotted: the first kMaxPlotRows
 
  private:
   Keeper() = default;

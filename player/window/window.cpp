@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "runtime/printable.h"
+
 namespace pliant {
 namespace {
 
@@ -107,7 +109,7 @@ void Window::connect(GLFWwindow* handle) {
 }
 
 void Window::show(const std::string& title) {
-  glfwSetWindowTitle(handle_, title.c_str());
+  glfwSetWindowTitle(handle_, printable(title).c_str());
   glfwShowWindow(handle_);
 }
 

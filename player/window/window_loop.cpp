@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "player/exit.h"
+#include "runtime/printable.h"
 #include "systems/device/mouse.h"
 #include "systems/visual/viewpoint.h"
 
@@ -47,12 +48,14 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
       options_(renderer.options()),
       tint_(tint_of(session.world)),
       pictures_(session.window, session.world, renderer) {
-  state_.title = session.world.name;
+  // Text of files is shown as on a terminal: a control that reorders a line would do so here too.
+  state_.title = printable(session.world.name);
   state_.rate_wanted = session.rate;
   for (std::size_t i = 0; i < session.journal.probes().size(); ++i) {
     const ProbeSummary& summary = session.keeper.summaries()[i];
     const Probe* probe = session.world.registry.find<Probe>(session.journal.probes()[i]);
-    state_.probes.push_back({summary.name, summary.source, probe ? probe->color : kToolColor, {}});
+    state_.probes.push_back(
+        {printable(summary.name), printable(summary.source), probe ? probe->color : kToolColor, {}});
     if (summary.source == "mouse") mouse_probe_ = i;
     if (carrier_ && session.journal.probes()[i] == carrier_->tool()) carried_ = i;
   }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "runtime/printable.h"
+
 namespace pliant {
 namespace {
 
@@ -17,7 +19,7 @@ std::size_t imgui_button(MouseButton button) {
 }  // namespace
 
 void WindowLoop::say(std::string sentence, bool error) {
-  state_.message = std::move(sentence);
+  state_.message = printable(sentence);
   state_.message_is_error = error;
   said_at_ = seconds_;
 }
