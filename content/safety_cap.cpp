@@ -35,10 +35,10 @@ std::vector<std::string> cap_safety(Level& level, const SafetyCap& cap) {
   std::string names;
   for (std::size_t n = 0; n < level.nodes.size(); ++n) {
     if (!lower(level.nodes[n], cap)) continue;
-    if (level.source && n < level.source->nodes_as_read.size()) lower(level.source->nodes_as_read[n], cap);
     if (lowered++ < kNamed) names += (names.empty() ? "`" : ", `") + level.nodes[n].name + "`";
   }
   if (lowered == 0) return {};
+  if (level.source) level.source->cap = cap;
   if (lowered > kNamed) names += fmt::format(" and {} more", lowered - kNamed);
   return {
       fmt::format("{}: the file asks for more than max_force {:g} N, max_slew {:.4g} N/s or max_torque {:.3g} N m, "

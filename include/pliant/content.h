@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/scene.h"
@@ -28,6 +29,10 @@ Result<Scene> load_scene(const std::filesystem::path& file, std::vector<std::str
 Status save_scene(const Scene& scene, const std::filesystem::path& file);
 // NODE.EXTENSION.KEY=VALUE, say "tissue.deformable.stiffness=500", as `pliant run --set` has it (docs/cli.md).
 Status set_key(Scene& scene, const std::string& assignment);
+
+// Text of files (names in notes and errors) as it may stand on a terminal: controls, bidirectional ones too, and bytes
+// that are no UTF-8 are written as escapes.
+std::string printable(std::string_view text);
 
 // What a file may ask for is limited, so that a small one cannot fill the machine (docs/cli.md, Limits); this
 // multiplies the limits, by 1e-6 to 1000. Once, before anything is opened.
