@@ -50,9 +50,9 @@ class MemoryStream final : public Imf::IStream {
 Status check_header(const ExrHeader& header, std::size_t size, const std::string& name) {
   if (header.deep) return Error{name, "holds deep samples instead of a flat picture; flatten it"};
   if (header.width > kMaxPanoramaWidth || header.height > kMaxPanoramaHeight ||
-      static_cast<std::uint64_t>(header.width * header.height) > kMaxPanoramaPixels)
+      static_cast<std::uint64_t>(header.width * header.height) > most(limits::kPanoramaPixels))
     return Error{name, fmt::format("has {} x {} pixels; use at most {} x {}", header.width, header.height,
-                                   kMaxPanoramaWidth, kMaxPanoramaPixels / kMaxPanoramaWidth)};
+                                   kMaxPanoramaWidth, most(limits::kPanoramaPixels) / kMaxPanoramaWidth)};
   if (header.width * header.height > kFreePixels + kPixelsPerByte * static_cast<std::int64_t>(size))
     return Error{
         name, fmt::format("claims {} x {} pixels in {} bytes; the file is damaged", header.width, header.height, size)};

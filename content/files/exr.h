@@ -13,7 +13,6 @@
 namespace pliant {
 
 inline constexpr std::uint32_t kMaxPanoramaWidth = 8192, kMaxPanoramaHeight = 8192;  // [px]
-inline constexpr std::uint64_t kMaxPanoramaPixels = std::uint64_t{8192} * 4096;
 
 // Reads a latitude-longitude panorama: linear RGB, rows top (+Y) to bottom; luminance and luminance-chroma files become
 // RGB. What is not a number, infinite or negative becomes 0 and is counted in a note. Errors name the file.

@@ -91,10 +91,11 @@ void end_after(double seconds) {
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds,
                            double wall) {
   using Clock = std::chrono::steady_clock;
-  const double allowed = seconds + static_cast<double>(input_bytes) / 4e6;  // [s] of processor time
+  const double allowed =
+      (seconds + static_cast<double>(input_bytes) / 4e6) * std::max(limit_factor(), 1.0);  // [s] of processor time
   const double wait = wall > 0.0 ? wall : std::max(kPatience * allowed, kLeastPatience);
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(wait * 1e3));
-  const std::uint64_t memory = private_bytes() + (std::uint64_t{768} << 20) + 64 * std::uint64_t{input_bytes};
+  const std::uint64_t memory = private_bytes() + most(limits::kReaderMemory) + 64 * std::uint64_t{input_bytes};
   int ends[2];
   if (pipe(ends) != 0) return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno)};
   const pid_t pid = fork();

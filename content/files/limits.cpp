@@ -16,6 +16,10 @@ void set_limit_factor(double factor) {
   g_factor = kLimitFactor.holds(factor) ? factor : 1.0;
 }
 
+double limit_factor() {
+  return g_factor;
+}
+
 std::uint64_t most(const Limit& limit) {
   return static_cast<std::uint64_t>(limit.scales ? limit.most * g_factor : limit.most);
 }

@@ -30,6 +30,11 @@ inline constexpr Limit kInputFile{16 * kMiB, "bytes", "an event takes some 20"};
 inline constexpr Limit kRecordingFile{1024 * kMiB, "bytes", "a replay holds it in memory"};
 inline constexpr Limit kPictureFile{512 * kMiB, "bytes", "it is held in memory beside its pixels"};
 
+// What libraries may use that read a file in a process of their own, beside 64 bytes and a quarter of a microsecond for
+// each byte of it.
+inline constexpr Limit kReaderMemory{768 * kMiB, "bytes", "Assimp's and Draco's own structures"};
+inline constexpr Limit kReaderTime{4.0, "s of processor time", "a thousand times what small files take"};
+
 // JSON.
 inline constexpr Limit kJsonDepth{64, "levels", "trees are copied and written by recursion", false};
 inline constexpr Limit kJsonValues{4e6, "JSON values", "each takes up to 100 bytes"};
@@ -44,10 +49,13 @@ inline constexpr Limit kSoftBodies{200, "soft bodies", "each is filled with some
 inline constexpr Limit kHands{4096, "probes and tools", "a recording knows as many", false};
 inline constexpr Limit kAddedVertices{4194304, "vertices of surfaces beyond those of its meshes",
                                       "each has a height of its own"};
+inline constexpr Limit kDecoded{256 * kMiB, "bytes of accessors beyond a multiple of the buffers",
+                                "accessors may share a few bytes"};
 inline constexpr Limit kKeys{1e6, "animation keys", "channels may share accessors"};
 inline constexpr Limit kScriptRows{4e6, "rows", "each takes 64 bytes"};
 inline constexpr Limit kInputRows{1e5, "rows", "a hand makes some hundred events a second"};
 inline constexpr Limit kPicturePixels{8192.0 * 8192.0, "pixels", "what GPUs take", false};
+inline constexpr Limit kPanoramaPixels{8192.0 * 4096.0, "pixels", "twice as wide as high, as wide as GPUs take", false};
 inline constexpr Limit kPictures{512 * kMiB, "bytes of decoded pictures",
                                  "four a pixel, in the level and in the world"};
 
@@ -64,6 +72,8 @@ inline constexpr Limit kJournal{64 * kMiB, "bytes of rows", "8 s of thirty probe
 
 // [1] What set_limit_factor takes.
 inline constexpr Range kLimitFactor{1e-6, 1e3};
+
+double limit_factor();
 
 // Of a limit, at the factor that is set.
 std::uint64_t most(const Limit& limit);

@@ -131,7 +131,7 @@ void check_accessors(const Json& json, Meaning& check) {
     // Every accessor is read once to be checked: many of them over the same bytes, or sparse ones over nothing, would
     // make a small file take minutes.
     if (accessor.contains("bufferView") || accessor.contains("sparse")) read += layout.count * layout.components() * 4;
-    if (read > 16 * stored + (std::uint64_t{256} << 20))
+    if (read > 16 * stored + most(limits::kDecoded))
       return check.error(pointer, "makes the accessors far larger than the buffers they stand on; split the level");
   }
 }
