@@ -1,13 +1,15 @@
 // Level files as scenes (pliant/content.h).
 #include "content/level_file.h"
+#include "content/safety_cap.h"
 #include "pliant/content.h"
 
 namespace pliant {
 
-Result<Scene> load_scene(const std::filesystem::path& file, std::vector<std::string>* notes) {
+Result<Scene> load_scene(const std::filesystem::path& file, std::vector<std::string>* notes, const SafetyCap& cap) {
   auto level = load_level(file);
   if (!level) return level.error();
   if (!level->has_pliant()) make_touchable(*level);
+  for (std::string& note : cap_safety(*level, cap)) level->notes.push_back(std::move(note));
   if (notes) *notes = level->notes;
   return Scene(*level);
 }

@@ -6,7 +6,7 @@ namespace pliant {
 Result<World> spawn(const Level& level, std::vector<std::string>* notes) {
   Panorama panorama;
   if (level.environment && !level.environment->panorama.empty()) {
-    Result<Panorama> read = load_panorama(level.path.parent_path() / level.environment->panorama, notes);
+    Result<Panorama> read = load_named_panorama(level.path.parent_path(), level.environment->panorama, notes);
     if (!read) return read.error();
     panorama = std::move(*read);
   }

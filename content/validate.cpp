@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <tuple>
 
 #include "content/files/exr.h"
 #include "content/gltf/gltf_document.h"
@@ -127,9 +129,7 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
     if (const std::string fault = soft_fault(node); !fault.empty())
       findings.push_back({Severity::kError, pointer, fault});
     if (!node.soft_body || node.soft_body->mesh.empty()) continue;
-    const Result<fs::path> path = confined_path(folder, node.soft_body->mesh);
-    if (!path) continue;  // spawn says so
-    if (const Result<TetFile> file = load_tets(*path); file)
+    if (const Result<TetFile> file = load_named_tets(folder, node.soft_body->mesh); file)  // else spawn says so
       for (const std::string& note : file->notes) findings.push_back({Severity::kNote, pointer, note});
   }
 }
@@ -138,18 +138,18 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
 void find_in_scripts(const Level& level, const fs::path& folder, Findings& findings) {
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
-    if (node.motion && !node.motion->script.empty() && !fs::is_regular_file(folder / node.motion->script))
-      findings.push_back({Severity::kError, pointer_of(level, i) + "/extensions/PLIANT_motion/script",
-                          "names the script " + node.motion->script + ", which does not exist"});
-    if (!node.device || node.device->file.empty()) continue;
-    const std::string pointer = pointer_of(level, i) + "/extensions/PLIANT_haptic_device/file";
-    const fs::path file = folder / node.device->file;
-    if (!fs::is_regular_file(file))
-      findings.push_back(
-          {Severity::kError, pointer, "names the script " + node.device->file + ", which does not exist"});
-    else if (node.device->driver == DriverKind::kScript)
-      if (const Result<Path> script = load_script(file); !script)
-        findings.push_back({Severity::kError, pointer, script.error().message()});
+    const auto find = [&](const std::string& name, const char* key, bool reads) {
+      const std::string pointer = pointer_of(level, i) + "/extensions/" + key;
+      const auto error = [&](std::string what) { findings.push_back({Severity::kError, pointer, std::move(what)}); };
+      const Result<fs::path> file = confined_path(folder, name);
+      if (!file) return error(file.error().message());
+      if (!fs::is_regular_file(*file)) return error("names the script " + name + ", which does not exist");
+      if (!reads) return;
+      if (const Result<Path> script = load_script(*file); !script) error(script.error().message());
+    };
+    if (node.motion && !node.motion->script.empty()) find(node.motion->script, "PLIANT_motion/script", false);
+    if (node.device && !node.device->file.empty())
+      find(node.device->file, "PLIANT_haptic_device/file", node.device->driver == DriverKind::kScript);
   }
 }
 
@@ -194,16 +194,21 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   }
   for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are among the findings
     findings.push_back({Severity::kNote, "", level->notes[i]});
-  if (!level->has_pliant()) {
+  const bool bare = !level->has_pliant();
+  if (bare) {
     findings.push_back(
         {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
     make_touchable(*level);
   }
   find_outside(*level, findings);
+  std::set<std::tuple<std::int32_t, double, double>> seen;  // mesh, crease angle, reach
   for (std::size_t i = 0; i < level->nodes.size(); ++i) {
     const LevelNode& node = level->nodes[i];
     if (!node.in_scene || node.mesh < 0 || (!node.deformable && !node.rigid_body)) continue;
-    find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer_of(*level, i), findings);
+    // What instances have in common is said of the first: a mesh can be shown ten thousand times.
+    const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
+    if (seen.insert({node.mesh, crease, node.deformable ? node.deformable->reach : 0.0}).second)
+      find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer_of(*level, i), findings);
   }
   for (const DeviceFault& fault : find_shared_devices(*level))
     findings.push_back({Severity::kError, pointer_of(*level, fault.node), fault.what});
@@ -213,7 +218,7 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   find_in_scripts(*level, folder, findings);
   if (level->environment && !level->environment->panorama.empty()) {
     std::vector<std::string> notes;
-    const Result<Panorama> panorama = load_panorama(folder / level->environment->panorama, &notes);
+    const Result<Panorama> panorama = load_named_panorama(folder, level->environment->panorama, &notes);
     const std::string pointer = scene_pointer(*level) + "/extensions/PLIANT_environment/panorama";
     if (!panorama) findings.push_back({Severity::kError, pointer, panorama.error().message()});
     for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/soft_body.h"
+#include "content/files/limits.h"
 #include "systems/soft/body/rigid_state.h"
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/fem/polar.h"
@@ -11,7 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostRows = std::size_t{1} << 20;  // of the ring, whatever the steps and bodies
+// At least two steps of every body.
+std::size_t rows_that_wait(std::size_t steps, std::size_t bodies) {
+  const std::size_t each = std::max<std::size_t>(bodies, 1);
+  return std::min(steps, std::max<std::size_t>(most(limits::kJournal) / (sizeof(BodyRow) * each), 2)) * each;
+}
 
 dvec3 centre_of_mass(const std::vector<dvec3>& nodes, const std::vector<double>& mass) {
   dvec3 sum(0);
@@ -41,7 +46,7 @@ Pose mean_pose(const Tissue& tissue, const std::vector<dvec3>& rest, const dquat
 }  // namespace
 
 BodyJournal::BodyJournal(const World& world, std::size_t steps)
-    : soft_(*world.soft), recorder_(std::min(kMostRows, std::max<std::size_t>(steps * world.soft->moving.size(), 1))) {
+    : soft_(*world.soft), recorder_(rows_that_wait(steps, world.soft->moving.size())) {
   for (const std::uint32_t index : soft_.moving) {
     const Body& body = *soft_.bodies[index];
     if (body.kind == BodyKind::kProbe) continue;  // forces.csv says where it is

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "content/files/limits.h"
 #include "systems/device/hands.h"
 #include "systems/hash_state.h"
 #include "systems/tool/tool_touch_state.h"
@@ -10,11 +11,16 @@
 
 namespace pliant {
 
+std::size_t rows_that_wait(double seconds, double rate, std::size_t hands) {
+  const std::size_t each = std::max<std::size_t>(hands, 1);
+  const auto ticks = static_cast<std::size_t>(std::ceil(seconds * rate));
+  return std::min(ticks, std::max<std::size_t>(most(limits::kJournal) / (sizeof(TickRow) * each), 2)) * each;
+}
+
 Journal::Journal(const World& world, double seconds, const BodyJournal* bodies)
     : bodies_(bodies),
       probes_(hands(world)),
-      recorder_(static_cast<std::size_t>(std::ceil(seconds * world.simulation.touch_rate)) *
-                std::max<std::size_t>(probes_.size(), 1)) {
+      recorder_(rows_that_wait(seconds, world.simulation.touch_rate, probes_.size())) {
   for (const Entity probe : probes_) safety_.push_back(find_safety(world, probe));
   for (auto [entity, deformable] : world.registry.view<Deformable>()) awake_.push_back({entity, 0, 0});
   for (const Entity hand : probes_) {

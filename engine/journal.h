@@ -38,10 +38,14 @@ struct AwakeStats {
   std::uint32_t max = 0;
 };
 
+// [rows] That may wait: `seconds` of them, within limits::kJournal, but two ticks of every hand at least, since in
+// lockstep they leave after each.
+std::size_t rows_that_wait(double seconds, double rate, std::size_t hands);
+
 class Journal {
  public:
-  // Every probe, tool and deformable of a prepared world. Holds `seconds` of rows until they are drained. `bodies`:
-  // what tools touch, or null: nothing.
+  // Every probe, tool and deformable of a prepared world. Holds `seconds` of rows until they are drained, within
+  // limits::kJournal. `bodies`: what tools touch, or null: nothing.
   Journal(const World& world, double seconds, const BodyJournal* bodies = nullptr);
 
   void note(const World& world, Tick tick);

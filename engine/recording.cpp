@@ -18,7 +18,6 @@ namespace {
 constexpr char kMagic[8] = {'p', 'l', 'i', 'a', 'n', 't', 'r', 'c'};
 constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kMaxProbes = 4096, kMaxName = 4096, kMaxSettings = 4096;
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kPoseBytes = 7 * sizeof(double) + 1;
 
 // Takes values off untrusted bytes; after a short read everything is zero and `ok` false.
@@ -136,14 +135,9 @@ Result<Recording> read_recording(const fs::path& file) {
   std::error_code error;
   // Looked at before it is opened: a pipe would be waited for.
   if (!fs::is_regular_file(file, error)) return Error{file.string(), "is no file that can be read; check the path"};
-  const std::uint64_t size = fs::file_size(file, error);
-  std::ifstream in(file, std::ios::binary);
-  if (!in || error) return Error{file.string(), "cannot be read; check its permissions"};
-  if (size > kMaxBytes) return Error{file.string(), "is larger than 1 GiB; record a shorter run"};
-  std::string bytes(size, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (!in) return Error{file.string(), "cannot be read to its end; check the disk"};
-  return parse_recording(file.string(), bytes);
+  const Result<Bytes> bytes = read_file(file, limits::kRecordingFile);
+  if (!bytes) return bytes.error();
+  return parse_recording(file.string(), {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
 }
 
 Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const RecordingHeader& header, bool replace) {

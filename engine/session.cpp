@@ -164,7 +164,7 @@ Status Session::step(std::uint64_t ticks) {
       p.before(tick);
       p.schedule->run(p.world, tick);
       p.after(tick);
-      if (p.recorder && p.ticks % 1024 == 0) p.recorder->drain();
+      if (p.recorder && p.ticks % (p.recorder->room() / 2) == 0) p.recorder->drain();
       ++p.ticks;
       p.time = tick.time + dt;
     }

@@ -77,11 +77,13 @@ class SessionRecorder {
   // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh.
   void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready);
   void drain();
-  void start();  // a thread drains from now on
+  std::size_t room() const { return room_; }  // [ticks] that may wait
+  void start();                               // a thread drains from now on
   Status finish();
 
  private:
   RecordingWriter writer_;
+  std::size_t room_;                   // [ticks] that may wait
   std::vector<RecordedPose> last_;     // touch clock's: the last that was a pose, of each
   std::vector<RecordedPose> pending_;  // of the tick under way
   std::uint64_t pending_tick_ = 0;

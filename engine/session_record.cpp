@@ -1,6 +1,7 @@
 // Recording and replaying a Session (pliant/session.h).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -18,6 +19,10 @@ namespace {
 constexpr std::size_t kRoom = 8192;  // ticks that may wait to be written
 constexpr auto kDrainEvery = std::chrono::milliseconds(20);
 
+std::size_t room_for(std::size_t effectors) {
+  return std::clamp<std::size_t>(most(limits::kJournal) / (sizeof(PoseRow) * effectors), 2, kRoom);
+}
+
 // NODE.EXT.KEY=VALUE, of the keys that a session can change.
 Status apply_setting(Session& session, const std::string& setting) {
   const std::size_t equals = setting.find('='), key = setting.rfind('.', equals);
@@ -34,7 +39,7 @@ Status apply_setting(Session& session, const std::string& setting) {
 }  // namespace
 
 SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
-    : writer_(std::move(writer)), last_(effectors), rows_(kRoom * effectors) {}
+    : writer_(std::move(writer)), room_(room_for(effectors)), last_(effectors), rows_(room_ * effectors) {}
 
 void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready) {
   RecordedPose& last = last_[effector];

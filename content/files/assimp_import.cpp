@@ -27,9 +27,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMaxImportBytes = std::uint64_t{512} << 20;
-constexpr std::size_t kMaxNodes = 100'000;
-
 // Names in files are bytes; ours are UTF-8.
 std::string utf8(const std::string& bytes) {
   return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
@@ -159,7 +156,8 @@ Status read_nodes(const aiScene& scene, Level& level) {
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
-    if (level.nodes.size() >= kMaxNodes) return Error{"", "has more than 100000 nodes; simplify it"};
+    if (level.nodes.size() >= most(limits::kElements))
+      return Error{"", "has " + beyond(limits::kElements, static_cast<double>(level.nodes.size() + 1), "simplify it")};
     const std::int32_t here = static_cast<std::int32_t>(level.nodes.size());
     LevelNode node;
     node.parent = visit.parent;
@@ -191,12 +189,34 @@ Status read_nodes(const aiScene& scene, Level& level) {
   return Done{};
 }
 
+// Formats name other files (an .obj its materials): those are read where a level may reach, too.
+class ConfinedFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit ConfinedFiles(const fs::path& file) : file_(file.string()), folder_(file.parent_path()) {}
+  bool Exists(const char* name) const override { return allows(name) && DefaultIOSystem::Exists(name); }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    return allows(name) && mode[0] == 'r' ? DefaultIOSystem::Open(name, mode) : nullptr;
+  }
+
+ private:
+  bool allows(const std::string& name) const {
+    if (name == file_) return true;  // what the user named
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(folder_.empty() ? fs::path(".") : folder_, error);
+    const Result<fs::path> path = confined_file(folder_, fs::weakly_canonical(name, error).lexically_relative(folder));
+    return path && fs::is_regular_file(*path, error);
+  }
+  const std::string file_;
+  const fs::path folder_;
+};
+
 // In the child: the scene as GLB, after a header that names each material's texture.
 Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
   const Result<MeshFile> file = check_mesh_file(bytes, extension.empty() ? "" : extension.substr(1));
   if (!file) return file.error();
   IndexComplaints& complaints = listen_to_assimp();
   Assimp::Importer importer;
+  importer.SetIOHandler(new ConfinedFiles(path));  // which owns it from now on
   // Only what is read below; skeletons, animations, lights and cameras are dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
                                                           aiComponent_CAMERAS | aiComponent_LIGHTS |
@@ -315,7 +335,7 @@ Result<Level> import_mesh(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  Result<Bytes> bytes = read_file(path, kMaxImportBytes);
+  Result<Bytes> bytes = read_file(path, limits::kImport);
   if (!bytes) return bytes.error();
   try {
     if (extension == ".drc") return import_draco(*bytes, path.stem().string());

@@ -50,9 +50,9 @@ class MemoryStream final : public Imf::IStream {
 Status check_header(const ExrHeader& header, std::size_t size, const std::string& name) {
   if (header.deep) return Error{name, "holds deep samples instead of a flat picture; flatten it"};
   if (header.width > kMaxPanoramaWidth || header.height > kMaxPanoramaHeight ||
-      static_cast<std::uint64_t>(header.width * header.height) > kMaxPanoramaPixels)
+      static_cast<std::uint64_t>(header.width * header.height) > most(limits::kPanoramaPixels))
     return Error{name, fmt::format("has {} x {} pixels; use at most {} x {}", header.width, header.height,
-                                   kMaxPanoramaWidth, kMaxPanoramaPixels / kMaxPanoramaWidth)};
+                                   kMaxPanoramaWidth, most(limits::kPanoramaPixels) / kMaxPanoramaWidth)};
   if (header.width * header.height > kFreePixels + kPixelsPerByte * static_cast<std::int64_t>(size))
     return Error{
         name, fmt::format("claims {} x {} pixels in {} bytes; the file is damaged", header.width, header.height, size)};
@@ -140,6 +140,16 @@ Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std:
   if (mended > 0 && notes)
     notes->push_back(fmt::format("{}: {} values that were infinite, negative or no number are 0", name, mended));
   return out;
+}
+
+Result<Panorama> load_named_panorama(const std::filesystem::path& folder, const std::string& name,
+                                     std::vector<std::string>* notes) {
+  constexpr std::string_view kShared = "../environments/";
+  const bool shared = name.starts_with(kShared);
+  const Result<std::filesystem::path> path =
+      shared ? confined_path(folder / kShared, name.substr(kShared.size())) : confined_path(folder, name);
+  if (!path) return path.error();
+  return load_panorama(*path, notes);
 }
 
 Result<Panorama> load_panorama(const std::filesystem::path& path, std::vector<std::string>* notes) {

@@ -13,11 +13,15 @@
 namespace pliant {
 
 inline constexpr std::uint32_t kMaxPanoramaWidth = 8192, kMaxPanoramaHeight = 8192;  // [px]
-inline constexpr std::uint64_t kMaxPanoramaPixels = std::uint64_t{8192} * 4096;
 
 // Reads a latitude-longitude panorama: linear RGB, rows top (+Y) to bottom; luminance and luminance-chroma files become
 // RGB. What is not a number, infinite or negative becomes 0 and is counted in a note. Errors name the file.
 Result<Panorama> load_panorama(const std::filesystem::path& path, std::vector<std::string>* notes = nullptr);
+
+// The one that a level in `folder` names. It lies in that folder, or in `environments` beside it, where those that ship
+// are; a level reaches no further (confined_path).
+Result<Panorama> load_named_panorama(const std::filesystem::path& folder, const std::string& name,
+                                     std::vector<std::string>* notes = nullptr);
 
 // The same from memory; `name` stands in front of errors.
 Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std::string& name,

@@ -32,16 +32,15 @@ int hex_digit(char c) {
 
 }  // namespace
 
-Result<Bytes> read_file(const fs::path& path, std::uint64_t limit) {
+Result<Bytes> read_file(const fs::path& path, const Limit& limit) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (error || !fs::exists(status)) return Error{path.string(), "no such file; check the path"};
   if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file; name a file"};
   const std::uint64_t size = fs::file_size(path, error);
   if (error) return Error{path.string(), "its size cannot be told: " + error.message()};
-  if (size > limit)
-    return Error{path.string(),
-                 fmt::format("is {} bytes, more than the {} that are read; use a smaller file", size, limit)};
+  if (size > most(limit))
+    return Error{path.string(), "has " + beyond(limit, static_cast<double>(size), "use a smaller file")};
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file)
     return Error{path.string(), fmt::format("cannot be opened: {}; check its permissions", std::strerror(errno))};
@@ -126,7 +125,35 @@ Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, Exi
   return write_files({{path, bytes}}, existing);
 }
 
+Result<fs::path> confined_file(const fs::path& folder, const fs::path& file) {
+  const std::string name = file.string();
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
+  if (error) return Error{folder.string(), "cannot be resolved: " + error.message()};
+  const fs::path whole = fs::weakly_canonical(root / file, error);
+  if (error) return Error{name, "cannot be resolved: " + error.message()};
+  const fs::path from_root = whole.lexically_relative(root);
+  if (file.is_absolute() || from_root.empty() || *from_root.begin() == "..")
+    return Error{name, "lies outside the level's folder, where a level may not reach; copy the file beside the level"};
+  return whole;
+}
+
 Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
+  if (uri.empty()) return Error{uri, "is an empty URI; name a file"};
+  const auto confined = [&](const std::string& name) -> Result<fs::path> {
+    if (name.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte"};
+    // A colon before any slash makes a scheme (RFC 3986, 4.2).
+    const std::size_t colon = name.find(':');
+    if (colon != std::string::npos && name.find('/') > colon)
+      return Error{uri, "names another place than the level's folder; put the file beside the level"};
+    return confined_file(folder, name);
+  };
+  // A file's own name may hold a %, and scripts and panoramas are named as they are.
+  std::error_code ignored;
+  if (const Result<fs::path> as_it_is = confined(uri); uri.find('%') == std::string::npos || !as_it_is)
+    return as_it_is;
+  else if (fs::exists(*as_it_is, ignored))
+    return as_it_is;
   std::string decoded;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     if (uri[i] != '%') {
@@ -139,22 +166,7 @@ Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
     decoded += static_cast<char>(high * 16 + low);
     i += 2;
   }
-  if (decoded.empty()) return Error{uri, "is an empty URI; name a file"};
-  if (decoded.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte"};
-  // A colon before any slash makes a scheme (RFC 3986, 4.2).
-  const std::size_t colon = decoded.find(':');
-  if (colon != std::string::npos && decoded.find('/') > colon)
-    return Error{uri, "names another place than the level's folder; put the file beside the level"};
-  const fs::path relative(decoded);
-  std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  if (error) return Error{folder.string(), "cannot be resolved: " + error.message()};
-  const fs::path whole = fs::weakly_canonical(root / relative, error);
-  if (error) return Error{uri, "cannot be resolved: " + error.message()};
-  const fs::path from_root = whole.lexically_relative(root);
-  if (relative.is_absolute() || from_root.empty() || *from_root.begin() == "..")
-    return Error{uri, "lies outside the level's folder; put the file beside the level"};
-  return whole;
+  return confined(decoded);
 }
 
 }  // namespace pliant

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "content/files/limits.h"
 #include "runtime/result.h"
 
 namespace pliant {
 
 using Bytes = std::vector<std::uint8_t>;
-inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{2} << 30;  // of any file that content reads
 
-// Refuses what is not a regular file (a pipe would never end) or is larger than `limit` bytes.
-Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t limit = kMaxFileBytes);
+// Refuses what is not a regular file (a pipe would never end) or is larger than `limit`.
+Result<Bytes> read_file(const std::filesystem::path& path, const Limit& limit = limits::kFile);
 
 // Why a file cannot be written, and the cure, of an `errno`.
 std::string why_not_written(int error);
@@ -38,8 +38,11 @@ Status write_files(const std::vector<FileToWrite>& files, Existing existing = Ex
 Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
                   Existing existing = Existing::kReplace);
 
-// A relative URI of an untrusted file as a path below `folder`: percent-decoded, without scheme, and not outside the
-// folder, not even through a symbolic link.
+// What an untrusted file calls another one, as a path below `folder`: the name as it stands where there is such a file,
+// else percent-decoded; without scheme, and not outside the folder, not even through a symbolic link. Every path that
+// stands in a file goes through here.
 Result<std::filesystem::path> confined_path(const std::filesystem::path& folder, const std::string& uri);
+// The same for a name that is none of a URI, relative to `folder`.
+Result<std::filesystem::path> confined_file(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 }  // namespace pliant

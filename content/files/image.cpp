@@ -44,6 +44,15 @@ ImageFormat image_format(std::span<const std::uint8_t> bytes) {
   return ImageFormat::kUnknown;
 }
 
+std::uint64_t decoded_size(std::span<const std::uint8_t> bytes) {
+  int width = 0, height = 0, channels = 0;
+  if (image_format(bytes) == ImageFormat::kUnknown || bytes.size() > 0x7fffffff ||
+      !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
+    return 0;
+  return std::uint64_t{4} * static_cast<std::uint64_t>(std::max(width, 0)) *
+         static_cast<std::uint64_t>(std::max(height, 0));
+}
+
 Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
   if (image_format(bytes) == ImageFormat::kUnknown)
     return Error{name, "is neither PNG nor JPEG; convert the picture to one of them"};
@@ -55,7 +64,7 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) || width <= 0 || height <= 0)
     return Error{name, fmt::format("is a damaged picture ({}); save it again", stbi_failure_reason())};
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  const std::uint64_t allowed = stbi_is_16_bit_from_memory(bytes.data(), size) ? kMaxImagePixels / 2 : kMaxImagePixels;
+  const std::uint64_t allowed = most(limits::kPicturePixels) / (stbi_is_16_bit_from_memory(bytes.data(), size) ? 2 : 1);
   if (width > 16384 || height > 16384 || pixels > allowed)
     return Error{name, fmt::format("has {} x {} pixels, more than are read; use at most 8192 x 8192", width, height)};
   if (pixels > bytes.size() * kPixelsPerByte)
@@ -72,7 +81,7 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
 }
 
 Result<Image> load_image(const std::filesystem::path& path) {
-  Result<Bytes> bytes = read_file(path, std::uint64_t{512} << 20);
+  Result<Bytes> bytes = read_file(path, limits::kPictureFile);
   if (!bytes) return bytes.error();
   return decode_image(*bytes, path.string());
 }

@@ -14,10 +14,11 @@ namespace pliant {
 
 enum class ImageFormat { kUnknown, kPng, kJpeg };
 ImageFormat image_format(std::span<const std::uint8_t> bytes);  // by signature
+// [byte] That the picture takes when it is decoded, by its header; 0: no picture, which decode_image will say.
+std::uint64_t decoded_size(std::span<const std::uint8_t> bytes);
 
-inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{8192} * 8192;
-
-// At most kMaxImagePixels, at most 16384 on a side; sizes are checked against the header before anything is allocated.
+// At most limits::kPicturePixels, at most 16384 on a side; sizes are checked against the header before anything is
+// allocated.
 Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 Result<Image> load_image(const std::filesystem::path& path);
 

@@ -4,11 +4,13 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <fstream>
@@ -16,6 +18,9 @@
 namespace pliant {
 
 namespace {
+
+constexpr double kPatience = 30.0;       // [1] of its processor time that a child may take by the clock on the wall
+constexpr double kLeastPatience = 60.0;  // [s]
 
 constexpr char kDone = 'D', kRefused = 'R';
 
@@ -39,7 +44,18 @@ bool write_all(int end, const void* data, std::size_t size) {
   return true;
 }
 
-[[noreturn]] void child(int end, std::uint64_t memory, const std::function<Result<Bytes>()>& work) {
+// The kernel sends SIGPROF once this process has used so much processor time: to the microsecond, where RLIMIT_CPU
+// counts whole seconds. That stands behind it, against a library that takes SIGPROF for itself.
+void end_after(double seconds) {
+  const double whole = std::floor(seconds);
+  const itimerval timer{{0, 0}, {static_cast<time_t>(whole), static_cast<suseconds_t>((seconds - whole) * 1e6)}};
+  setitimer(ITIMER_PROF, &timer, nullptr);
+  const auto most = static_cast<rlim_t>(std::ceil(seconds)) + 1;
+  const rlimit limit{most, most + 1};
+  setrlimit(RLIMIT_CPU, &limit);
+}
+
+[[noreturn]] void child(int end, std::uint64_t memory, double seconds, const std::function<Result<Bytes>()>& work) {
 #ifndef PLIANT_SANITIZED  // sanitizers reserve more than any limit
   const rlimit limit{memory, memory};
   setrlimit(RLIMIT_DATA, &limit);
@@ -48,7 +64,13 @@ bool write_all(int end, const void* data, std::size_t size) {
 #endif
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGPIPE}) ::signal(signal, SIG_DFL);
+  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGPIPE, SIGPROF, SIGXCPU})
+    ::signal(signal, SIG_DFL);
+  sigset_t profile;
+  sigemptyset(&profile);
+  sigaddset(&profile, SIGPROF);
+  sigprocmask(SIG_UNBLOCK, &profile, nullptr);
+  end_after(seconds);
   // A library's last words are not for the user.
   (void)!std::freopen("/dev/null", "w", stderr);
   bool sent = false;
@@ -70,11 +92,14 @@ bool write_all(int end, const void* data, std::size_t size) {
 
 }  // namespace
 
-Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds) {
+Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds,
+                           double wall) {
   using Clock = std::chrono::steady_clock;
-  const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3) +
-                                                                 static_cast<std::int64_t>(input_bytes / 4000));
-  const std::uint64_t memory = private_bytes() + (std::uint64_t{768} << 20) + 64 * std::uint64_t{input_bytes};
+  const double allowed =
+      (seconds + static_cast<double>(input_bytes) / 4e6) * std::max(limit_factor(), 1.0);  // [s] of processor time
+  const double wait = wall > 0.0 ? wall : std::max(kPatience * allowed, kLeastPatience);
+  const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(wait * 1e3));
+  const std::uint64_t memory = private_bytes() + most(limits::kReaderMemory) + 64 * std::uint64_t{input_bytes};
   int ends[2];
   if (pipe(ends) != 0) return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno)};
   const pid_t pid = fork();
@@ -84,7 +109,7 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
   }
   if (pid == 0) {
     close(ends[0]);
-    child(ends[1], memory, work);
+    child(ends[1], memory, allowed, work);
   }
   close(ends[1]);
 
@@ -110,7 +135,8 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
   int status = 0;
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
-  if (late) return Error{"", "takes too long to read; the file is damaged, or too large"};
+  const bool spent = WIFSIGNALED(status) && (WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGXCPU);
+  if (late || spent) return Error{"", "takes too long to read; the file is damaged, or too large"};
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
     return Error{"", "crashed the importer; the file is damaged, export it again"};
   const char verdict = static_cast<char>(answer.front());

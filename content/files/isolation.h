@@ -11,9 +11,12 @@
 namespace pliant {
 
 // Runs `work` in a child and returns what it returned. `input_bytes`, the size of what it reads, sets the bounds:
-// `seconds` and one more for every 4 MB; 768 MiB and 64 bytes for each of them. The child must not touch threads or
+// `seconds` of its own processor time and one more for every 4 MB, times the factor of the limits where it is above 1;
+// kReaderMemory and 64 bytes for each of them. A busy machine takes nothing of that; a child that waits instead of
+// working is ended after `wall` seconds (0: thirty times as many, a minute at least). It must not touch threads or
 // devices.
-Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds = 4.0);
+Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work,
+                           double seconds = limits::kReaderTime.most, double wall = 0.0);
 
 // For handing arrays over: what was appended is taken in the same order. take() fails at the end of the bytes.
 void append_bytes(Bytes& out, const void* data, std::size_t size);

@@ -22,7 +22,7 @@ void add_hand(Level& level, const Waypoint& start) {
   node.handle->max_force = 12.0;
   node.handle->max_torque = 1.0;
   node.handle->device = "hand";
-  node.device = script_device(level.name + ".csv", 12.0);
+  node.device = script_device(level.name + ".csv", 10.0);
 }
 
 // On the organ: down with the fingers first, a stroke across, a roll about the fingers' axis, up.

@@ -6,10 +6,9 @@
 namespace pliant {
 
 // Reads every channel that moves a node into level.animations. The document has been checked (gltf_primitives.cpp,
-// gltf_data.cpp) and its nodes have been read. Refused: more keys than kMostKeys, values beyond kFarthest. Left out,
-// with a note: morph weights, what KHR_animation_pointer aims at, and what has no data in this file.
-inline constexpr std::uint64_t kMostKeys = 1'000'000;  // of a whole level: accessors may be shared by many channels
-inline constexpr double kFarthest = 1e6;               // [m], [1], and [s] for times
+// gltf_data.cpp) and its nodes have been read. Refused: more keys than limits::kKeys, values beyond kFarthest. Left
+// out, with a note: morph weights, what KHR_animation_pointer aims at, and what has no data in this file.
+inline constexpr double kFarthest = 1e6;  // [m], [1], and [s] for times
 Status read_animations(const SourceDocument& document, Level& level);
 
 }  // namespace pliant

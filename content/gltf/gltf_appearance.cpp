@@ -9,8 +9,6 @@ namespace pliant {
 
 namespace {
 
-constexpr std::uint64_t kMaxDecodedPictures = std::uint64_t{768} << 20;  // [byte] of a level, all together
-
 std::int32_t picture_of(const SourceDocument& document, std::size_t texture) {
   return document.model.textures[texture].source;
 }
@@ -121,7 +119,11 @@ std::optional<Camera> camera_of(const SourceDocument& document, std::size_t node
 }
 
 Status read_images(const SourceDocument& document, Level& level) {
+  // All of them are looked at before the first is decoded: that takes a second for each hundred megabytes.
   std::uint64_t decoded = 0;
+  for (const Bytes& image : document.images) decoded += decoded_size(image);
+  if (decoded > most(limits::kPictures))
+    return Error{"/images", "make " + beyond(limits::kPictures, static_cast<double>(decoded), "shrink the pictures")};
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     std::string name = value_of<std::string>(document.json["images"][i], "name", "");
     if (document.images[i].empty()) {
@@ -130,9 +132,6 @@ Status read_images(const SourceDocument& document, Level& level) {
     }
     Result<Image> image = decode_image(document.images[i], "picture");
     if (!image) return Error{fmt::format("/images/{}", i), image.error().message()};
-    decoded += image->rgba.size();
-    if (decoded > kMaxDecodedPictures)
-      return Error{fmt::format("/images/{}", i), "makes the pictures too large together; shrink them"};
     image->name = std::move(name);
     level.images.push_back(std::move(*image));
   }

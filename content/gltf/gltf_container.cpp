@@ -9,10 +9,6 @@ namespace pliant {
 
 namespace {
 
-// Limits that keep an untrusted file's JSON within a few hundred megabytes of memory, whatever it says.
-constexpr std::size_t kMaxJsonDepth = 64;
-constexpr std::size_t kMaxJsonValues = 4'000'000;
-
 std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::uint32_t value;
   std::memcpy(&value, bytes.data() + at, 4);
@@ -21,7 +17,7 @@ std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
 
 // Counts nesting and values without parsing: a parser's tree takes up to a hundred bytes for two of text.
 bool json_is_bounded(std::span<const std::uint8_t> text, Findings& findings) {
-  std::size_t depth = 0, values = 0;
+  std::size_t depth = 0, deepest = 0, values = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::uint8_t c = text[i];
@@ -36,12 +32,25 @@ bool json_is_bounded(std::span<const std::uint8_t> text, Findings& findings) {
     if (c == ',' || c == ':' || c == '[' || c == '{') ++values;
     if (c == '[' || c == '{') ++depth;
     if ((c == ']' || c == '}') && depth > 0) --depth;
-    if (depth > kMaxJsonDepth || values > kMaxJsonValues) {
-      add_error(findings, "",
-                fmt::format("nests deeper than {} levels or has more than {} JSON values; simplify the file",
-                            kMaxJsonDepth, kMaxJsonValues));
-      return false;
-    }
+    deepest = std::max(deepest, depth);
+  }
+  const auto within = [&](const Limit& limit, std::size_t found, const char* what) {
+    if (found <= most(limit)) return true;
+    add_error(findings, "", what + beyond(limit, static_cast<double>(found), "simplify the file"));
+    return false;
+  };
+  return within(limits::kJsonDepth, deepest, "nests ") && within(limits::kJsonValues, values, "has ");
+}
+
+// What is made of the elements of these lists takes far more than their text.
+bool lists_are_bounded(const Json& json, Findings& findings) {
+  if (!json.is_object()) return true;
+  for (const auto& [key, list] : json.items()) {
+    const bool small = key == "accessors" || key == "bufferViews";  // read where they lie
+    if (!list.is_array() || small || list.size() <= most(limits::kElements)) continue;
+    add_error(findings, "/" + escaped(key),
+              "has " + beyond(limits::kElements, static_cast<double>(list.size()), "simplify the file"));
+    return false;
   }
   return true;
 }
@@ -107,7 +116,7 @@ bool parse_json(std::span<const std::uint8_t> text, Json& json, Findings& findin
     add_error(findings, "", "is not valid JSON: " + what.substr(0, 200));
     return false;
   }
-  return true;
+  return lists_are_bounded(json, findings);
 }
 
 }  // namespace pliant

@@ -13,6 +13,7 @@
 #include "content/gltf/tinygltf.h"
 #include "content/level/finding.h"
 #include "content/level/level.h"
+#include "pliant/content.h"
 
 namespace pliant {
 
@@ -30,6 +31,7 @@ struct SourceDocument {
   std::vector<std::int32_t> json_node;   // Level node -> /nodes/i
   std::vector<LevelNode> nodes_as_read;  // without meshes: name, transform and extensions
   std::size_t mesh_count = 0;            // Level meshes
+  std::optional<SafetyCap> cap;          // what cap_safety lowered the nodes to since
 };
 
 // Opens .gltf or .glb and checks it against the glTF 2.0 specification. Every finding goes to `findings`; the document

@@ -131,7 +131,7 @@ void check_accessors(const Json& json, Meaning& check) {
     // Every accessor is read once to be checked: many of them over the same bytes, or sparse ones over nothing, would
     // make a small file take minutes.
     if (accessor.contains("bufferView") || accessor.contains("sparse")) read += layout.count * layout.components() * 4;
-    if (read > 16 * stored + (std::uint64_t{256} << 20))
+    if (read > 16 * stored + most(limits::kDecoded))
       return check.error(pointer, "makes the accessors far larger than the buffers they stand on; split the level");
   }
 }
@@ -212,9 +212,17 @@ void check_nodes(const Json& json, Meaning& check) {
 
 void check_skins(const Json& json, const std::vector<std::int32_t>& parent, Meaning& check) {
   const Json& skins = array_of(json, "skins");
+  // Each found root is kept for the nodes on the way to it: chains of many joints are climbed once.
+  std::vector<std::int32_t> known(parent.size(), -1);
   const auto root_of = [&](std::int32_t node) {
-    while (parent[static_cast<std::size_t>(node)] >= 0) node = parent[static_cast<std::size_t>(node)];
-    return node;
+    std::int32_t root = node;
+    while (known[static_cast<std::size_t>(root)] < 0 && parent[static_cast<std::size_t>(root)] >= 0)
+      root = parent[static_cast<std::size_t>(root)];
+    if (known[static_cast<std::size_t>(root)] >= 0) root = known[static_cast<std::size_t>(root)];
+    for (std::int32_t at = node; at >= 0 && known[static_cast<std::size_t>(at)] < 0;
+         at = parent[static_cast<std::size_t>(at)])
+      known[static_cast<std::size_t>(at)] = root;
+    return root;
   };
   for (std::size_t s = 0; s < skins.size(); ++s) {
     const std::string pointer = fmt::format("/skins/{}", s);

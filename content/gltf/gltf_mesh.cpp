@@ -77,7 +77,7 @@ MeshReader::MeshReader(const SourceDocument& document) : document_(document) {
   // Many primitives over the same few bytes would fill any memory; this is far more than a sound file decodes to.
   std::uint64_t stored = 0;
   for (const Bytes& buffer : document.buffers) stored += buffer.size();
-  budget_ = (std::uint64_t{256} << 20) + 64 * stored;
+  budget_ = most(limits::kDecoded) + 64 * stored;
 }
 
 Status MeshReader::spend(std::uint64_t bytes, const std::string& pointer) {

@@ -180,8 +180,9 @@ FetchedBytes fetch_bytes(const SourceDocument& document, const Container& contai
     const bool in_bin = i == 0 && container.has_bin && !buffers[i].contains("uri");
     out.is_placeholder.push_back(out.buffers.back().empty() && !in_bin);
     if (!out.is_placeholder.back()) total += buffers[i]["byteLength"].get<std::uint64_t>();
-    if (total > kMaxFileBytes) {
-      add_error(findings, fmt::format("/buffers/{}", i), "makes the buffers exceed 2 GiB together; split the level");
+    if (total > most(limits::kFile)) {
+      add_error(findings, fmt::format("/buffers/{}", i),
+                "makes the buffers " + beyond(limits::kFile, static_cast<double>(total), "split the level"));
       return out;
     }
   }

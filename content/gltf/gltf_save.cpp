@@ -41,6 +41,19 @@ void set_extensions(Json& json, Json& object, Json pliant) {
     object["extensions"] = std::move(extensions);
 }
 
+// A cap is the word of who opened the file and not its maker's: what it lowered is saved as it was read.
+LevelNode as_before_cap(LevelNode node, const LevelNode& read, const SafetyCap& cap) {
+  const auto restore = [](double& value, double before, double most) {
+    if (value == std::min(before, most)) value = before;
+  };
+  if (node.device && read.device) {
+    restore(node.device->max_force, read.device->max_force, cap.max_force);
+    restore(node.device->max_slew, read.device->max_slew, cap.max_slew());
+  }
+  if (node.handle && read.handle) restore(node.handle->max_torque, read.handle->max_torque, cap.max_torque());
+  return node;
+}
+
 void write_nodes(const Level& level, SourceDocument& document) {
   Json& json = document.json;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
@@ -64,7 +77,8 @@ void write_nodes(const Level& level, SourceDocument& document) {
       for (const char* key : {"matrix", "translation", "rotation", "scale"}) object.erase(key);
       object.update(transform_json(node.local));
     }
-    set_extensions(json, object, node_extensions(node, object.contains("extensions") ? object["extensions"] : Json()));
+    const LevelNode& saved = before && document.cap ? as_before_cap(node, *before, *document.cap) : node;
+    set_extensions(json, object, node_extensions(saved, object.contains("extensions") ? object["extensions"] : Json()));
   }
 }
 

@@ -103,12 +103,19 @@ class Structure {
         else if (rule.required)
           error(pointer, "lacks '" + rule.key + "', which glTF requires here");
       }
-    if (json.contains("name") && !json["name"].is_string()) mismatch(pointer + "/name", json["name"], "a string");
+    if (const auto name = json.find("name"); name != json.end()) check_name(*name, pointer + "/name");
     check_strays(json, type, pointer);
     if (json.contains("extensions")) check_extensions(json["extensions"], type, pointer + "/extensions");
   }
 
  private:
+  void check_name(const Json& name, const std::string& pointer) {
+    if (!name.is_string()) return mismatch(pointer, name, "a string");
+    const std::size_t size = name.get_ref<const std::string&>().size();
+    if (size > most(limits::kName))
+      error(pointer, "has " + beyond(limits::kName, static_cast<double>(size), "shorten it"));
+  }
+
   static const Table& table() {
     static const Table table;
     return table;

@@ -8,8 +8,6 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
-constexpr std::size_t kMostRows = 4'000'000;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, as spreadsheets write it
 constexpr std::string_view kPositions = "time_s,x,y,z", kPoses = "time_s,x,y,z,qw,qx,qy,qz";
 
@@ -75,8 +73,10 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
     const double norm = std::hypot(std::hypot(v[4], v[5]), std::hypot(v[6], v[7]));
     if (!(norm > 1e-6) || !std::isfinite(norm))
       return error("the quaternion has no length; write 1,0,0,0 for no rotation");
-    if (path.rows.size() == kMostRows)
-      return error("more than 4,000,000 rows; split the script or sample it more coarsely");
+    if (path.rows.size() >= most(limits::kScriptRows)) {
+      const double rows = static_cast<double>(path.rows.size() + 1);
+      return Error{where, "has " + beyond(limits::kScriptRows, rows, "split the script or sample it more coarsely")};
+    }
     path.rows.push_back({v[0], {v[1], v[2], v[3]}, rotation * (1.0 / norm)});
   }
   path.turns = columns == 8;
@@ -86,7 +86,7 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
 }
 
 Result<Path> load_script(const std::filesystem::path& path) {
-  const Result<Bytes> bytes = read_file(path, kMostBytes);
+  const Result<Bytes> bytes = read_file(path, limits::kScriptFile);
   if (!bytes) return bytes.error();
   return parse_script({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string());
 }

@@ -1,13 +1,17 @@
 // Level -> World. Nodes become entities in order; meshes are built once for every way in which a node scales them.
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
 
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
+#include "content/files/file_io.h"
 #include "content/level/device_use.h"
 #include "content/level/level.h"
+#include "content/level/level_budget.h"
 #include "content/level/probe_shell.h"
 #include "content/level/progress.h"
 #include "content/level/script.h"
@@ -19,8 +23,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFlat = 1e-9;                                // [1] of the diagonal cubed: no volume
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // over all instances: a small file can name a mesh often
+constexpr double kFlat = 1e-9;  // [1] of the diagonal cubed: no volume
 
 dmat4 inverse(const Pose& pose) {
   const dquat back = glm::conjugate(pose.rotation);
@@ -35,11 +38,22 @@ std::string with_commas(std::size_t number) {
   return text;
 }
 
-// A mesh as some node wants it. Nodes that bake the same frame into the same mesh share what was built.
-struct Baked {
+// What nodes have in common that share what was built of a mesh.
+struct Shape {
   bool touchable;
-  mat4 to_object;
-  double crease_angle;          // [rad]
+  double crease_angle;              // [rad]
+  std::array<float, 16> to_object;  // the frame that is baked into the mesh
+  auto operator<=>(const Shape&) const = default;
+};
+
+mat4 matrix_of(const Shape& shape) {
+  mat4 m;
+  for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = shape.to_object[i];
+  return m;
+}
+
+// A mesh as some node wants it.
+struct Baked {
   std::optional<double> reach;  // [m] of the dents that must show, 0: the default; nothing: none need
   bool refined = false;         // cut finer for that
   Handle<Mesh> touch;
@@ -48,7 +62,7 @@ struct Baked {
 
 class Spawner {
  public:
-  explicit Spawner(const Level& level) : level_(level), folder_(level.path.parent_path()) {}
+  explicit Spawner(const Level& level) : level_(level), folder_(level.path.parent_path()), budget_(level) {}
 
   Status run() {
     world_.name = level_.name;
@@ -65,6 +79,7 @@ class Spawner {
     motions_ = std::move(*motions);
     notes_.insert(notes_.end(), motions_.notes.begin(), motions_.notes.end());
     baked_.resize(level_.meshes.size());
+    if (Status s = check_size(); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = node(n); !s) return s;
     say_refinement();
@@ -130,18 +145,18 @@ class Spawner {
       if (placeholders_++ == 0) placeholder_ = node.name;
       return Done{};
     }
-    // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
-    const bool has_pose = is_touched(node) || !motions_.moves[n];
     const Pose pose = rigid_part(motions_.world[n]);
-    Result<Baked> baked = bake(n, has_pose ? mat4(inverse(pose) * motions_.world[n]) : mat4(1));
+    Result<Baked> baked = bake(n);
     if (!baked) return baked.error();
-    if (has_pose) world_.registry.add<Pose>(entities_[n], pose);
+    if (has_pose(n)) world_.registry.add<Pose>(entities_[n], pose);
     world_.registry.add<Drawable>(entities_[n], {baked->draw});
     if (node.deformable) {
       Deformable& deformable = world_.registry.add<Deformable>(entities_[n], *node.deformable);
       deformable.mesh = baked->touch;
       deformable.field = world_.fields.add({});
       if (deformable.reach <= 0.0) deformable.reach = default_reach(world_.meshes[deformable.mesh]);
+      built_.vertices += static_cast<double>(world_.meshes[deformable.mesh].vertex_count);
+      if (Status s = within(n, budget_.ask_vertices(built_.vertices)); !s) return s;  // finer meshes have more
     }
     if (node.rigid_body) return rigid_body(n, baked->touch);
     return Done{};
@@ -156,6 +171,16 @@ class Spawner {
     return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
   }
 
+  // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
+  bool has_pose(std::size_t n) const { return is_touched(level_.nodes[n]) || !motions_.moves[n]; }
+  Shape shape_of(std::size_t n) const {
+    const LevelNode& node = level_.nodes[n];
+    const mat4 m = has_pose(n) ? mat4(inverse(rigid_part(motions_.world[n])) * motions_.world[n]) : mat4(1);
+    Shape shape{is_touched(node), node.deformable ? node.deformable->crease_angle : 0.0, {}};
+    for (std::size_t i = 0; i < 16; ++i) shape.to_object[i] = m[static_cast<int>(i / 4)][static_cast<int>(i % 4)];
+    return shape;
+  }
+
   static bool is_touched(const LevelNode& node) { return node.deformable || node.rigid_body; }
 
   // Tissue is never shared: which of its nodes are held is the node's own.
@@ -163,11 +188,13 @@ class Spawner {
     const LevelNode& node = level_.nodes[n];
     const LevelMesh* mesh = node.mesh < 0 ? nullptr : &level_.meshes[static_cast<std::size_t>(node.mesh)];
     if (mesh)
-      if (Status s = count_triangles(n, *mesh); !s) return s;
+      if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s;
     const Pose pose = rigid_part(motions_.world[n]);
     progress_.say("preparing meshes, now `" + node.name + "`");
     Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
     if (!parts) return at(n, parts.error().message());
+    tetrahedra_ += static_cast<double>(parts->tets.tets.size());
+    if (Status s = within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
     for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
     note_winding(node.mesh, parts->surface);
     world_.registry.add<Pose>(entities_[n], pose);
@@ -178,11 +205,37 @@ class Spawner {
     return Done{};
   }
 
-  Status count_triangles(std::size_t n, const LevelMesh& mesh) {
-    for (const Primitive& p : mesh.primitives) triangles_ += p.index.size() / 3;
-    if (triangles_ <= kMostTriangles) return Done{};
-    return at(n,
-              "brings the level above 2^26 triangles; use fewer instances, or give them one scale so that they share");
+  // What the nodes want is counted before the first of it is built.
+  Status check_size() {
+    std::set<std::pair<std::int32_t, Shape>> shapes;
+    MeshSize wanted;
+    double surfaces = 0.0, soft_bodies = 0.0, hands = 0.0;
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n) {
+      const LevelNode& node = level_.nodes[n];
+      if (!node.in_scene) continue;
+      hands += node.probe || node.handle;
+      soft_bodies += node.soft_body.has_value();
+      surfaces += is_touched(node);
+      if (node.mesh >= 0) {
+        const MeshSize& size = budget_.of(node.mesh);
+        if (node.soft_body || shapes.insert({node.mesh, shape_of(n)}).second) wanted.triangles += size.triangles;
+        if (node.deformable) wanted.vertices += size.vertices;
+      }
+      for (const std::string& over :
+           {LevelBudget::ask(limits::kHands, hands), LevelBudget::ask(limits::kSoftBodies, soft_bodies),
+            LevelBudget::ask(limits::kSurfaces, surfaces), budget_.ask_triangles(wanted.triangles),
+            budget_.ask_vertices(wanted.vertices)})
+        if (!over.empty()) return at(n, over);
+    }
+    return Done{};
+  }
+  Status within(std::size_t n, const std::string& over) const {
+    if (over.empty()) return Done{};
+    return at(n, over);
+  }
+
+  Status count_triangles(std::size_t n, double triangles) {
+    return within(n, budget_.ask_triangles(built_.triangles += triangles));
   }
 
   // Once a mesh, however many nodes show it.
@@ -220,27 +273,27 @@ class Spawner {
     return !is_coarse(mesh, *wanted.reach > 0.0 ? *wanted.reach : default_reach(mesh));
   }
 
-  Result<Baked> bake(std::size_t n, const mat4& to_object) {
+  Result<Baked> bake(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
-    Baked wanted{is_touched(node), to_object, node.deformable ? node.deformable->crease_angle : 0.0, {}, false, {}, {}};
+    const Shape shape = shape_of(n);
+    Baked wanted;
     if (node.deformable) wanted.reach = std::max(node.deformable->reach, 0.0);
-    std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)];
+    std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)][shape];
     for (const Baked& b : known)
-      if (b.touchable == wanted.touchable && b.to_object == to_object && b.crease_angle == wanted.crease_angle &&
-          serves(b, wanted))
-        return b;
+      if (serves(b, wanted)) return b;
 
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
     progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
-    if (Status s = count_triangles(n, mesh); !s) return s.error();
-    Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, to_object,
-                                         {wanted.crease_angle, wanted.reach, wanted.touchable});
+    if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s.error();
+    Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, matrix_of(shape),
+                                         {shape.crease_angle, wanted.reach, shape.touchable});
     if (!built) return at(n, built.error().message());
     note_winding(node.mesh, *built);
     note_refinement(node, *built);
     wanted.refined = built->report.refined_from != 0;
-    if (wanted.refined) triangles_ += built->mesh.triangles.size();
-    if (wanted.touchable)
+    if (wanted.refined)
+      if (Status s = count_triangles(n, static_cast<double>(built->mesh.triangles.size())); !s) return s.error();
+    if (shape.touchable)
       wanted.touch = world_.meshes.add(std::move(built->mesh));
     else
       for (std::uint32_t v = 0; v < built->draw.vertices.size(); ++v) built->draw.vertices[v].touch_vertex = v;
@@ -255,7 +308,9 @@ class Spawner {
     if (device.driver == DriverKind::kScript) {
       if (device.file.empty())
         return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
-      Result<Path> path = load_script(folder_ / device.file);
+      const Result<std::filesystem::path> file = confined_path(folder_, device.file);
+      if (!file) return at(n, file.error().message());
+      Result<Path> path = load_script(*file);
       if (!path) return path.error();
       device.path = world_.paths.add(std::move(*path));
     }
@@ -313,10 +368,12 @@ class Spawner {
   World world_;
   std::vector<Entity> entities_;  // of each node; kNoEntity: not in the scene
   LevelMotions motions_;
-  std::unordered_map<std::string, std::size_t> by_name_;  // first node in the scene with this name
-  std::vector<std::vector<Baked>> baked_;                 // of each mesh of the level
-  std::set<std::int32_t> noted_;                          // meshes whose winding a note speaks of
-  std::size_t triangles_ = 0;                             // built so far
+  std::unordered_map<std::string, std::size_t> by_name_;    // first node in the scene with this name
+  std::vector<std::map<Shape, std::vector<Baked>>> baked_;  // of each mesh of the level
+  std::set<std::int32_t> noted_;                            // meshes whose winding a note speaks of
+  const LevelBudget budget_;
+  MeshSize built_;           // so far; vertices of surfaces that give way
+  double tetrahedra_ = 0.0;  // so far
   struct {
     std::size_t count = 0, from = 0, to = 0;  // nodes, triangles
     std::string names, more;

@@ -22,9 +22,7 @@ constexpr double kLongestEdge = 2.0;
 // The tetrahedra of the body's file, in the object frame.
 Result<TetMesh> read_tets(const std::string& name, const std::string& file, const mat4& to_object,
                           const std::filesystem::path& folder, std::vector<std::string>& notes) {
-  const Result<std::filesystem::path> path = confined_path(folder, file);
-  if (!path) return path.error();
-  Result<TetFile> read = load_tets(*path);
+  Result<TetFile> read = load_named_tets(folder, file);
   if (!read) return read.error();
   notes = std::move(read->notes);
   const dmat4 m(to_object);

@@ -4,18 +4,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "content/files/limits.h"
 #include "content/tets/lattice_grid.h"
 #include "content/tets/lattice_stuffing.h"
 #include "content/tets/tet_embed.h"
 #include "content/tets/tet_order.h"
 #include "content/tets/tet_quality.h"
+#include "runtime/parallel.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kMostNodes = 1 << 24;  // of the lattice over the surface's box
-constexpr int kTries = 10;              // at the usual number of tetrahedra
+constexpr int kTries = 10;          // at the usual number of tetrahedra
+constexpr double kSamples = 20000;  // places in the box that tell about how much of it is enclosed
+constexpr double kSure = 1.1;       // [1] of the limit: what is estimated above it is beyond it
+
+// [1] About how many tetrahedra a cell makes: twelve for each cube of it in the volume, by the share of a regular grid
+// of places that lie inside. Filling a box with millions only to find them too many takes half a minute.
+double estimated_tets(const Mesh& surface, const Inside& inside, double cell) {
+  const dvec3 low(surface.box.min), size(surface.box.size());
+  const double step = std::cbrt(size.x * size.y * size.z / kSamples);
+  if (!(step > 0.0)) return 0.0;
+  const glm::ivec3 count = glm::max(glm::ivec3(glm::ceil(glm::min(size / step, dvec3(kSamples)))), glm::ivec3(1));
+  const std::size_t all =
+      static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y) * static_cast<std::size_t>(count.z);
+  if (static_cast<double>(all) > 50 * kSamples) return 0.0;  // flat: counted as it is filled
+  std::vector<std::size_t> enclosed(static_cast<std::size_t>(count.z), 0);
+  parallel_for(enclosed.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t z = begin; z < end; ++z)
+      for (int y = 0; y < count.y; ++y)
+        for (int x = 0; x < count.x; ++x)
+          enclosed[z] += inside(low + size * (dvec3(x, y, static_cast<double>(z)) + 0.5) / dvec3(count));
+  });
+  const std::size_t sum = std::accumulate(enclosed.begin(), enclosed.end(), std::size_t{0});
+  const double share = static_cast<double>(sum) / static_cast<double>(all);
+  return 12.0 * share * size.x * size.y * size.z / (cell * cell * cell);
+}
 
 // The cell whose stuffing has about kUsualTets tetrahedra: their number goes with the cube of the cell. Begins where a
 // box filled by a third would need no change.
@@ -27,8 +53,8 @@ Result<Stuffing> stuff_usual(const Mesh& surface, const Inside& inside, Progress
   double cell = std::cbrt(12.0 * 0.33 * volume / static_cast<double>(kUsualTets));
   Stuffing best;
   for (int n = 0; n < kTries; ++n) {
-    if (LatticeGrid::node_count(surface.box, cell) > kMostNodes) break;
-    Result<Stuffing> stuffing = stuff(surface, inside, cell, kMostTets, progress);
+    if (LatticeGrid::node_count(surface.box, cell) > static_cast<double>(most(limits::kLatticeNodes))) break;
+    Result<Stuffing> stuffing = stuff(surface, inside, cell, most(limits::kTets), progress);
     if (!stuffing) return stuffing;
     const double share = static_cast<double>(stuffing->tets.size()) / static_cast<double>(kUsualTets);
     best = std::move(*stuffing);
@@ -39,11 +65,15 @@ Result<Stuffing> stuff_usual(const Mesh& surface, const Inside& inside, Progress
 }
 
 Result<Stuffing> stuff_cell(const Mesh& surface, const Inside& inside, double cell, Progress& progress) {
-  const Error too_many{"mesh `" + surface.name + "`",
-                       fmt::format("a cell of {:.3g} m makes more than {} cells over its box; choose a larger one",
-                                   cell, static_cast<int>(kMostNodes) / 2)};
-  if (LatticeGrid::node_count(surface.box, cell) > kMostNodes) return too_many;
-  return stuff(surface, inside, cell, kMostTets, progress);
+  const auto too_many = [&](const Limit& limit, double count) {
+    return Error{"mesh `" + surface.name + "`", fmt::format("a cell of {:.3g} m makes {}", cell,
+                                                            beyond(limit, std::ceil(count), "choose a larger one"))};
+  };
+  const double nodes = LatticeGrid::node_count(surface.box, cell);
+  if (nodes > static_cast<double>(most(limits::kLatticeNodes))) return too_many(limits::kLatticeNodes, nodes);
+  const double tets = estimated_tets(surface, inside, cell);
+  if (tets > kSure * static_cast<double>(most(limits::kTets))) return too_many(limits::kTets, tets);
+  return stuff(surface, inside, cell, most(limits::kTets), progress);
 }
 
 }  // namespace

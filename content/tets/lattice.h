@@ -13,12 +13,11 @@
 
 namespace pliant {
 
-inline constexpr std::size_t kMostTets = 2'000'000;
 inline constexpr std::size_t kUsualTets = 2'000;  // aimed at where the level names no cell
 
 // Fills what the surface encloses (small holes do not matter) with tetrahedra of about `cell` [m]; 0: about kUsualTets
 // of them. Every vertex of the surface is embedded. All nodes are free, in Hilbert order. Errors: a cell that is not
-// positive and finite, nothing enclosed, too many cells. Progress over a second goes to stderr.
+// positive and finite, nothing enclosed, more than limits::kTets. Progress over a second goes to stderr.
 Result<TetMesh> make_lattice(const Mesh& surface, double cell = 0.0);
 
 }  // namespace pliant

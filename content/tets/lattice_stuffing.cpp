@@ -139,7 +139,8 @@ class Stuffer {
             for (std::size_t e = 0; e < 4; ++e) clip({here, here + 2 * along, ring[e], ring[(e + 1) % 4]});
             if (out_.tets.size() > most_)
               return Error{"mesh `" + name_ + "`",
-                           fmt::format("a cell of {:.3g} m makes more than {} tetrahedra; choose a larger one",
+                           fmt::format("a cell of {:.3g} m makes more than {} tetrahedra; choose a larger one, or "
+                                       "allow it with --limits 2",
                                        grid_.cell(), most_)};
           }
     return Done{};

@@ -34,9 +34,8 @@ Result<TetFile> clean(RawTets raw, const std::string& name) {
   const auto note = [&](std::size_t n, const char* one, const char* many) {
     if (n > 0) out.notes.push_back(count(n, one, many));
   };
-  if (raw.tets.size() > kMostTets)
-    return Error{name,
-                 fmt::format("holds {} tetrahedra, more than {}; make a coarser mesh", raw.tets.size(), kMostTets)};
+  if (raw.tets.size() > most(limits::kTets))
+    return Error{name, "holds " + beyond(limits::kTets, static_cast<double>(raw.tets.size()), "make a coarser mesh")};
   for (const dvec3& p : raw.nodes)
     if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthest))
       return Error{name, "has a node that is not a finite number within 1e9 m; repair it, or scale it down"};

@@ -5,8 +5,6 @@
 
 namespace pliant {
 
-inline constexpr std::size_t kMostFileNodes = 4'000'000;
-
 struct RawTets {
   std::vector<dvec3> nodes;        // finite
   std::vector<Tet> tets;           // indices below nodes.size(), any orientation
@@ -16,7 +14,7 @@ struct RawTets {
 };
 
 // Turns inverted tetrahedra, drops flat ones and nodes that none names, and notes it. Errors: nothing left, more than
-// kMostTets, a node beyond 1e9 m.
+// limits::kTets, a node beyond 1e9 m.
 Result<TetFile> clean(RawTets raw, const std::string& name);
 
 }  // namespace pliant

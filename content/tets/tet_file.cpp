@@ -7,8 +7,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{512} << 20;
-
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -24,26 +22,33 @@ fs::path partner(fs::path path, const char* lower, const char* upper) {
 }
 
 template <Result<TetFile> (*parse)(std::span<const std::uint8_t>, const std::string&)>
-Result<TetFile> read_one(const fs::path& path) {
-  Result<Bytes> bytes = read_file(path, kMostBytes);
+Result<TetFile> read_one(const fs::path& path, const fs::path&) {
+  Result<Bytes> bytes = read_file(path, limits::kTetFile);
   if (!bytes) return bytes.error();
   return parse(*bytes, path.string());
 }
 
 // TetGen writes two files; either may be named.
-Result<TetFile> read_tetgen(const fs::path& path) {
-  Result<Bytes> nodes =
-      read_file(lower_extension(path) == ".node" ? path : partner(path, ".node", ".NODE"), kMostBytes);
-  if (!nodes) return nodes.error();
-  Result<Bytes> tets = read_file(lower_extension(path) == ".ele" ? path : partner(path, ".ele", ".ELE"), kMostBytes);
-  if (!tets) return tets.error();
-  return parse_tetgen(*nodes, *tets, fs::path(path).replace_extension().string());
+Result<TetFile> read_tetgen(const fs::path& path, const fs::path& within) {
+  const bool is_node = lower_extension(path) == ".node";
+  Result<Bytes> bytes = read_file(path, limits::kTetFile);
+  if (!bytes) return bytes.error();
+  const fs::path beside = is_node ? partner(path, ".ele", ".ELE") : partner(path, ".node", ".NODE");
+  if (!within.empty()) {
+    std::error_code error;
+    const fs::path name = fs::relative(beside.parent_path(), within, error) / beside.filename();
+    if (const Result<fs::path> confined = confined_file(within, name); !confined) return confined.error();
+  }
+  Result<Bytes> other = read_file(beside, limits::kTetFile);
+  if (!other) return other.error();
+  const std::string stem = fs::path(path).replace_extension().string();
+  return is_node ? parse_tetgen(*bytes, *other, stem) : parse_tetgen(*other, *bytes, stem);
 }
 
-// A new format is a file with its parser and a line here.
+// A new format is a file with its parser and a line here. `within`: load_tets.
 struct Format {
   const char* extension;
-  Result<TetFile> (*read)(const fs::path&);
+  Result<TetFile> (*read)(const fs::path& path, const fs::path& within);
 };
 constexpr Format kFormats[] = {
     {".msh", read_one<parse_msh>},  // Gmsh 2 and 4
@@ -65,8 +70,14 @@ bool is_tet_file(const fs::path& path) {
   return format_of(path) != nullptr;
 }
 
-Result<TetFile> load_tets(const fs::path& path) {
-  if (const Format* format = format_of(path)) return format->read(path);
+Result<TetFile> load_named_tets(const fs::path& folder, const std::string& name) {
+  const Result<fs::path> path = confined_path(folder, name);
+  if (!path) return path.error();
+  return load_tets(*path, folder.empty() ? fs::path(".") : folder);
+}
+
+Result<TetFile> load_tets(const fs::path& path, const fs::path& within) {
+  if (const Format* format = format_of(path)) return format->read(path, within);
   std::string known;
   for (const Format& format : kFormats) known += (known.empty() ? "" : ", ") + std::string(format.extension);
   return Error{path.string(), "is no tetrahedra file that is read; formats are: " + known};

@@ -20,8 +20,11 @@ struct TetFile {
 
 bool is_tet_file(const std::filesystem::path& path);  // by its extension
 
-// Of TetGen's pair either file may be named; the other lies beside it. Errors name the line or the byte.
-Result<TetFile> load_tets(const std::filesystem::path& path);
+// Of TetGen's pair either file may be named; the other lies beside it, and not outside of `within` where that is said
+// (confined_file). Errors name the line or the byte.
+Result<TetFile> load_tets(const std::filesystem::path& path, const std::filesystem::path& within = {});
+// What a level in `folder` names, which lies there.
+Result<TetFile> load_named_tets(const std::filesystem::path& folder, const std::string& name);
 
 // From memory, for tests and fuzzers; `name` stands in errors.
 Result<TetFile> parse_msh(std::span<const std::uint8_t> bytes, const std::string& name);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "content/files/limits.h"
 #include "content/tets/tet_clean.h"
 #include "content/tets/tet_text.h"
 
@@ -15,7 +16,6 @@ namespace {
 constexpr std::uint8_t kNodesOf[] = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                      8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 constexpr std::int64_t kTetTypes[] = {4, 11, 29, 30, 31};
-constexpr std::uint64_t kMostElements = 50'000'000;
 
 std::size_t nodes_of(std::int64_t type) {
   return type > 0 && static_cast<std::size_t>(type) < std::size(kNodesOf) ? kNodesOf[type] : 0;
@@ -107,8 +107,9 @@ class Msh {
   Status begin_nodes(std::uint64_t count) {
     if (!raw_.nodes.empty()) return text_.fault("has $Nodes twice; save the mesh again");
     // In either form a node takes at least eight bytes.
-    if (count > std::min<std::uint64_t>(kMostFileNodes, text_.left() / 8 + 1))
-      return text_.fault(fmt::format("claims {} nodes, more than it holds or than {}", count, kMostFileNodes));
+    if (count > std::min<std::uint64_t>(most(limits::kTetFileNodes), text_.left() / 8 + 1))
+      return text_.fault(
+          fmt::format("claims {} nodes, more than it holds or than {}", count, most(limits::kTetFileNodes)));
     raw_.nodes.reserve(count);
     tags_.reserve(count);
     return Done{};
@@ -179,8 +180,9 @@ class Msh {
   // Elements take at least two bytes in ASCII; a block's own size is met by what is really there.
   Status begin_elements(std::uint64_t count) {
     if (raw_.nodes.empty()) return text_.fault("has $Elements before $Nodes; save the mesh again");
-    if (count > std::min<std::uint64_t>(kMostElements, text_.left() / 2 + 1))
-      return text_.fault(fmt::format("claims {} elements, more than it holds or than {}", count, kMostElements));
+    if (count > std::min<std::uint64_t>(most(limits::kTetFileEntries), text_.left() / 2 + 1))
+      return text_.fault(
+          fmt::format("claims {} elements, more than it holds or than {}", count, most(limits::kTetFileEntries)));
     has_elements_ = true;
     return Done{};
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "content/files/limits.h"
 #include "content/tets/tet_clean.h"
 #include "content/tets/tet_text.h"
 
@@ -46,8 +47,9 @@ Result<TetFile> parse_tetgen(std::span<const std::uint8_t> node, std::span<const
   std::array<std::int64_t, 4> head;  // points, dimension, attributes, markers
   if (!read_head(nodes, head) || head[1] != 3 || head[2] > kMostColumns || head[3] > 1)
     return nodes.fault("does not begin with `points 3 attributes markers`; save it with TetGen again");
-  if (static_cast<std::uint64_t>(head[0]) > std::min<std::uint64_t>(nodes.left() / 2, kMostFileNodes))
-    return nodes.fault(fmt::format("claims {} nodes, more than the file can hold or than {}", head[0], kMostFileNodes));
+  if (static_cast<std::uint64_t>(head[0]) > std::min<std::uint64_t>(nodes.left() / 2, most(limits::kTetFileNodes)))
+    return nodes.fault(
+        fmt::format("claims {} nodes, more than the file can hold or than {}", head[0], most(limits::kTetFileNodes)));
   std::int64_t first = 0;
   for (std::int64_t i = 0; i < head[0]; ++i) {
     std::int64_t number = 0;

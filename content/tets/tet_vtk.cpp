@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "content/files/limits.h"
 #include "content/tets/tet_clean.h"
 #include "content/tets/tet_text.h"
 
@@ -12,8 +13,6 @@ namespace pliant {
 namespace {
 
 enum CellType : std::int64_t { kTetra = 10, kQuadraticTetra = 24, kLagrangeTetra = 71, kBezierTetra = 78 };
-
-constexpr std::int64_t kMostEntries = 50'000'000;  // in a section
 
 struct DataType {
   std::string_view name;
@@ -81,7 +80,8 @@ class Vtk {
 
   // The count at the head of a section, not more than its values could fill.
   bool count(std::int64_t& out) {
-    return text_.integer(out) && out >= 0 && out <= kMostEntries && static_cast<std::uint64_t>(out) <= text_.left();
+    return text_.integer(out) && out >= 0 && out <= static_cast<std::int64_t>(most(limits::kTetFileEntries)) &&
+           static_cast<std::uint64_t>(out) <= text_.left();
   }
   // Binary values begin after the end of their header's line.
   void end_header() {
@@ -122,8 +122,8 @@ class Vtk {
     std::int64_t size = 0;
     std::string_view type_name;
     if (!raw_.nodes.empty()) return text_.fault("has POINTS twice; save it again");
-    if (!count(size) || static_cast<std::size_t>(size) > kMostFileNodes || !text_.word(type_name))
-      return text_.fault(fmt::format("claims more POINTS than the file holds or than {}", kMostFileNodes));
+    if (!count(size) || static_cast<std::size_t>(size) > most(limits::kTetFileNodes) || !text_.word(type_name))
+      return text_.fault(fmt::format("claims more POINTS than the file holds or than {}", most(limits::kTetFileNodes)));
     const DataType* type = find_type(type_name);
     if (!type) return text_.fault("has POINTS of an unknown type; save them as double");
     end_header();

@@ -9,8 +9,8 @@ int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: %s LEVEL.gltf [PROBE]\n", argv[0]), 2;
   std::vector<std::string> notes;
   auto scene = pliant::load_scene(argv[1], &notes);
-  if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message().c_str()), 1;
-  for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  if (!scene) return std::fprintf(stderr, "%s\n", pliant::printable(scene.error().message()).c_str()), 1;
+  for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", pliant::printable(note).c_str());
   const std::string probe = argc > 2 ? argv[2] : "sweep";
   if (argc <= 2) scene->add_probe(probe);
   auto session = pliant::Session::open(*scene);

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "player/record/csv.h"
+#include "player/record/plot.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/body/rotation_vector.h"
 
@@ -41,7 +42,7 @@ Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& pro
     keeper.names_.push_back(csv_text(summary.name));
     keeper.summaries_.push_back(summary);
   }
-  keeper.traces_.resize(probes.size());
+  keeper.traces_.resize(std::min(probes.size(), kMaxPlotRows));
   keeper.last_.resize(probes.size());
   keeper.touchable_ = touchable_boxes(world);
   for (auto [object, deformable] : world.registry.view<Deformable>()) {
@@ -107,7 +108,7 @@ void Keeper::keep(const TickRow& row) {
 
   if (placed && summary.contact_ticks == 0) summary.approach.add(r.position, touchable_);
 
-  traces_[row.probe].add(row.tick, r, row.limited);
+  if (row.probe < traces_.size()) traces_[row.probe].add(row.tick, r, row.limited);
   if (recording_) record(row);
 }
 

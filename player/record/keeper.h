@@ -50,7 +50,7 @@ class Keeper {
   bool recorded_nothing() const { return recording_ && recording_->ticks() == 0; }  // so far
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
-  const std::vector<Trace>& traces() const { return traces_; }
+  const std::vector<Trace>& traces() const { return traces_; }  // of those that are plotted: the first kMaxPlotRows
 
  private:
   Keeper() = default;

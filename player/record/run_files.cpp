@@ -44,6 +44,8 @@ Staged state_of(const fs::path& staging) {
 
 std::set<std::string> listed_files(const fs::path& folder) {
   std::set<std::string> names;
+  std::error_code error;
+  if (!fs::is_regular_file(folder / kRunList, error)) return names;  // a link to what has no end
   std::ifstream in(folder / kRunList);
   std::string line;
   if (!std::getline(in, line) || line + '\n' != kTitle) return names;

@@ -156,7 +156,7 @@ std::string report_json(const RunFigures& figures) {
   json["hash"] = figures.hash;
   json["systems_us"] = systems(figures.schedule);
   // Names come from files and may not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
 }
 
 std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out) {
@@ -172,7 +172,8 @@ std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out)
     std::vector<PlotRow> rows;
     for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i)
       rows.push_back({figures.keeper.summaries()[i].name, figures.keeper.summaries()[i].source,
-                      &figures.keeper.traces()[i], figures.keeper.summaries()[i].tool});
+                      i < figures.keeper.traces().size() ? &figures.keeper.traces()[i] : nullptr,
+                      figures.keeper.summaries()[i].tool});
     const double dt = 1.0 / figures.rate;
     const double seconds = static_cast<double>(figures.journal.ticks() + figures.overruns) * dt;
     note_first(plot_forces(out.stage("forces.png"), figures.world.name, rows, dt, seconds));

@@ -400,7 +400,7 @@ Status study_linearisation(OutputFolder& out, bool quick, const Interrupt& inter
     if (const Status status = write_text(out, name + ".csv", to_csv(*figures)); !status) return status;
     if (const Status status = plot_linearisation(out.stage(name + ".png"), *figures); !status) return status;
   }
-  return write_text(out, "linearisation.json", json.dump(2) + "\n");
+  return write_text(out, "linearisation.json", json.dump(2, ' ', true) + "\n");
 }
 
 }  // namespace pliant

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <exception>
 
+#include "components/haptic_device.h"
 #include "components/world.h"
+#include "content/files/limits.h"
 #include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
@@ -15,6 +17,7 @@
 #include "player/study/study.h"
 #include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"
+#include "pliant/content.h"
 
 namespace pliant {
 namespace {
@@ -76,6 +79,14 @@ void add_unit(CLI::App* verb, double& unit, const char* what) {
       ->type_name("m|cm|mm|in|METRES");
 }
 
+// --limits of every verb that reads files.
+void add_limits(CLI::App* verb) {
+  verb->add_option_function<double>("--limits", set_limit_factor,
+                                    "multiplies what a file may ask for: nodes, instances, pictures, tetrahedra (1)")
+      ->check(within(kLimitFactor.min, kLimitFactor.max))
+      ->type_name("N");
+}
+
 void add_run(CLI::App& app, RunOptions& run) {
   CLI::App* verb = app.add_subcommand("run", "run a level or touch a bare mesh; writes forces, plot, pictures, report");
   CLI::Option* level =
@@ -101,6 +112,9 @@ void add_run(CLI::App& app, RunOptions& run) {
   verb->add_option("--tool-force", run.tool_force,
                    "how every tool's force is made: " + joined(words_of<ToolForce>()) + "; default: each tool's key")
       ->check(one_of(words_of<ToolForce>()));
+  verb->add_option("--max-force", run.max_force, "the most that the level may ask of a device [N] (10)")
+      ->check(within(1e-3, DeviceRange::kMaxForce.max));
+  add_limits(verb);
   verb->add_option("--out", run.out,
                    "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results")
       ->check(named());
@@ -139,6 +153,7 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
   CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
   verb->add_option("file", inspected, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
   verb->add_flag("--json", inspect_json, "as JSON");
+  add_limits(verb);
   verb->footer("Example:\n  pliant inspect organ.glb");
 
   verb = app.add_subcommand("convert", "any mesh format to glTF or GLB; an EXR panorama to a cube map preview (PNG)");
@@ -153,12 +168,14 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
       ->excludes(draco);
   verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
   verb->add_flag("--force", conversion.force, "replace what is there");
+  add_limits(verb);
   add_unit(verb, conversion.unit, "what one unit of the input is (m)");
   verb->footer(
       "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
 
   verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
   verb->add_option("level", validated, "level")->required()->check(named());
+  add_limits(verb);
   verb->footer("Example:\n  pliant validate level.gltf");
 }
 

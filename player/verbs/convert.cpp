@@ -74,8 +74,9 @@ Status reorder(Level& level) {
   level.source.reset();  // the document it came from holds the meshes in their old order
   // What is only drawn keeps its winding: a room is seen from within.
   std::set<std::ptrdiff_t> touched;
+  const bool bare = !level.has_pliant();
   for (const LevelNode& node : level.nodes)
-    if (!level.has_pliant() || node.deformable || node.rigid_body || node.soft_body) touched.insert(node.mesh);
+    if (bare || node.deformable || node.rigid_body || node.soft_body) touched.insert(node.mesh);
   for (LevelMesh& mesh : level.meshes) {
     if (mesh.primitives.empty()) continue;
     MeshOptions as_touched;

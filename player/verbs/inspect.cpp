@@ -6,6 +6,7 @@
 #include <set>
 
 #include "content/keys/enum_words.h"
+#include "content/level/level_budget.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/tet_file.h"
@@ -37,6 +38,9 @@ struct ObjectReport {
 std::vector<ObjectReport> inspect_objects(const Level& level) {
   std::vector<ObjectReport> objects;
   const std::vector<mat4> world = world_matrices(level);
+  const bool bare = !level.has_pliant();
+  const LevelBudget budget(level);
+  double triangles = 0.0, surfaces = 0.0;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
     if (node.mesh < 0 || !node.in_scene) continue;
@@ -49,7 +53,14 @@ std::vector<ObjectReport> inspect_objects(const Level& level) {
       object.file_triangles += primitive.index.size() / 3;
     }
     // A room that is only drawn is seen from within.
-    const bool touched = !level.has_pliant() || node.deformable || node.rigid_body || node.soft_body;
+    const bool touched = bare || node.deformable || node.rigid_body || node.soft_body;
+    // A run refuses as many, and here each would be built for itself.
+    const std::string many = LevelBudget::ask(limits::kSurfaces, surfaces += touched);
+    object.refused = many.empty() ? budget.ask_triangles(triangles += budget.of(node.mesh).triangles) : many;
+    if (!object.refused.empty()) {
+      objects.push_back(std::move(object));
+      continue;
+    }
     auto built = build_mesh(object.name, source.primitives, world[i],
                             {node.deformable ? node.deformable->crease_angle : 0.0, std::nullopt, touched});
     if (built) {

@@ -8,6 +8,7 @@
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
+#include "content/safety_cap.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "player/run/unfelt.h"
@@ -216,6 +217,9 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   }
   std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
+  SafetyCap cap;
+  if (options.max_force > 0.0) cap.max_force = options.max_force;
+  for (const std::string& sentence : cap_safety(level, cap)) say(run, sentence);
   if (Outcome wrong = apply_settings(options, *unit, level, run)) return wrong;
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;

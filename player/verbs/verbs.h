@@ -20,6 +20,7 @@ struct RunOptions {
   bool window = false, headless = false;  // forced, forbidden; else a window where there is a display
   std::string field = "auto";
   std::string tool_force;         // held, linear, contacts; empty: each tool's key
+  double max_force = 0.0;         // [N] the most that the level may ask of a device; 0: the usual cap
   std::string out;                // folder; empty: out/<level name>
   int frames = -1;                // -1: not said
   double fps = 0.0;               // [1/s] of simulated time; 0: not said

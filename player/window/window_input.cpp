@@ -7,14 +7,14 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <sstream>
+
+#include "content/files/file_io.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostRows = 100000;
 constexpr std::size_t kLongestLine = 4096;  // [bytes]
 
 std::optional<double> number(const std::string& text) {
@@ -97,14 +97,17 @@ std::optional<InputEvent> parse_event(const std::string& name, const std::string
 }  // namespace
 
 Result<InputScript> InputScript::load(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) return Error{file, "cannot be read; check the path"};
+  const Result<Bytes> bytes = read_file(file, limits::kInputFile);  // never what has no end, a pipe or /dev/zero
+  if (!bytes) return bytes.error();
+  std::istringstream in(std::string(bytes->begin(), bytes->end()));
   InputScript script;
   std::string line;
   for (std::size_t row = 1; std::getline(in, line); ++row) {
     const std::string where = file + ":" + std::to_string(row);
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.size() > kLongestLine || row > kMostRows) return Error{where, "is too long; shorten it"};
+    if (line.size() > kLongestLine) return Error{where, "is too long; shorten it"};
+    if (row > most(limits::kInputRows))
+      return Error{file, "has " + beyond(limits::kInputRows, static_cast<double>(row), "shorten it")};
     if (row == 1) {
       if (line != "time_s,event,args") return Error{where, "is not the header; begin with time_s,event,args"};
       continue;

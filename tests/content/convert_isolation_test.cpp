@@ -1,5 +1,6 @@
 // The child process that libraries run in: whatever happens there, the parent gets an answer.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <stdexcept>
@@ -38,6 +39,29 @@ TEST(Isolation, ACrashAHangAndAnExceptionInTheChildAreSentencesInTheParent) {
             }).find("too long"),
             std::string::npos);
   EXPECT_NE(refusal([]() -> Result<Bytes> { throw std::runtime_error("no good"); }).find("no good"), std::string::npos);
+}
+
+TEST(Isolation, AChildIsChargedForItsOwnProcessorTimeAndNotForABusyMachine) {
+  const Result<Bytes> waited = in_isolation(
+      0,
+      []() -> Result<Bytes> {
+        usleep(600'000);  // another process has the processor
+        return Bytes{1};
+      },
+      0.05);
+  ASSERT_TRUE(waited.ok()) << waited.error().message();
+  EXPECT_EQ(*waited, Bytes{1});
+}
+
+TEST(Isolation, AChildThatOnlyWaitsIsEndedAllTheSame) {
+  const Result<Bytes> answer = in_isolation(
+      0,
+      []() -> Result<Bytes> {
+        for (;;) pause();
+      },
+      0.05, 0.3);
+  ASSERT_FALSE(answer.ok());
+  EXPECT_NE(answer.error().message().find("too long"), std::string::npos);
 }
 
 #ifndef PLIANT_SANITIZED

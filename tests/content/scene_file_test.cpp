@@ -46,5 +46,38 @@ TEST(SceneFile, WhatWasMadeInCodeIsSavedAndReadAgain) {
   std::filesystem::remove(file);
 }
 
+TEST(SceneFile, ForceLimitsOfAFileAreCappedAndThoseOfTheProgramAreNot) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "safety_cap_test.gltf";
+  Scene strong("strong");
+  strong.add_surface("tissue", {.position = {{0, 0, 0}, {0, 0, 0.1f}, {0.1f, 0, 0}}, .index = {0, 1, 2}});
+  strong.add_probe("finger", {}, {.max_force = 80.0, .max_slew = 1e6});
+  EXPECT_EQ(*Session::open(strong)->get("finger", "max_force"), 80.0) << "a scene in code is the program's word";
+  ASSERT_TRUE(save_scene(strong, file));
+
+  std::vector<std::string> notes;
+  auto scene = load_scene(file, &notes);
+  ASSERT_TRUE(scene) << scene.error().message();
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("`finger`: the file asks for more than max_force 10 N"), std::string::npos) << notes[0];
+  auto session = Session::open(*scene);
+  ASSERT_TRUE(session);
+  EXPECT_EQ(*session->get("finger", "max_force"), 10.0);
+  EXPECT_EQ(*session->get("finger", "max_slew"), SafetyCap{}.max_slew());
+  EXPECT_NEAR(SafetyCap{3.3}.max_slew(), DeviceParameters().max_slew, 1e-9) << "as quick as the usual device";
+  EXPECT_FALSE(session->notes().empty());
+  ASSERT_TRUE(session->restart());
+  EXPECT_EQ(*session->get("finger", "max_force"), 10.0);
+  ASSERT_TRUE(session->set("finger", "max_force", 20.0)) << "the program's word";
+  EXPECT_EQ(*session->get("finger", "max_force"), 20.0);
+
+  ASSERT_TRUE(save_scene(*scene, file)) << "saved, it still says what it said";
+  EXPECT_EQ(*Session::open(*load_scene(file, nullptr, {100.0}))->get("finger", "max_force"), 80.0);
+  EXPECT_EQ(*Session::open(*load_scene(file, nullptr, {2.0}))->get("finger", "max_force"), 2.0);
+  ASSERT_TRUE(set_key(*scene, "finger.haptic_device.max_force=30"));
+  EXPECT_EQ(*Session::open(*scene)->get("finger", "max_force"), 30.0);
+  std::filesystem::remove(file);
+  std::filesystem::remove(std::filesystem::path(file).replace_extension(".bin"));
+}
+
 }  // namespace
 }  // namespace pliant

@@ -53,7 +53,8 @@ TEST_F(HostileNames, ARunEscapesThemOnTheTerminalAndInItsTables) {
   EXPECT_NE(csv.find(",tip " + kShown + ","), std::string::npos);
   EXPECT_NE(csv.find(",plate " + kShown + ","), std::string::npos) << "touched";
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 601) << "a row is a line";
-  // JSON says names as they are.
+  // JSON says names as they are, in ASCII.
+  expect_plain(read_text(folder / "out" / "report.json"), "report.json");
   EXPECT_EQ(report("out")["probes"][0]["name"], Json::parse("\"tip " + kJsonName + "\""));
   EXPECT_GT(fs::file_size(folder / "out" / "forces.png"), 1000u);
 }

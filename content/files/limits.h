@@ -1,0 +1,84 @@
+// What a file may ask for, in one table: a small file can name a large world, and whoever opens it has a machine of
+// ordinary size. Each limit has its unit and its reason; `pliant --limits N` (set_limit_factor) raises or lowers all
+// that scale. A program sets it before it opens anything (pliant/content.h).
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "components/range.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct Limit {
+  double most = 0.0;        // at a factor of 1
+  const char* unit = "";    // "nodes", "bytes"
+  const char* reason = "";  // why there is a limit, and why this one
+  bool scales = true;       // false: what lies behind it cannot do more, whatever memory there is
+};
+
+namespace limits {
+inline constexpr double kMiB = 1048576.0;
+
+// Files. Each is held in memory as a whole.
+inline constexpr Limit kFile{2048 * kMiB, "bytes", "a file is held in memory, and lengths in a GLB have 32 bits"};
+inline constexpr Limit kImport{512 * kMiB, "bytes", "an importer takes up to 64 times as much"};
+inline constexpr Limit kTetFile{512 * kMiB, "bytes", "text is held in memory beside what is read of it"};
+inline constexpr Limit kScriptFile{64 * kMiB, "bytes", "a quarter of an hour at 1 kHz"};
+inline constexpr Limit kInputFile{16 * kMiB, "bytes", "an event takes some 20"};
+inline constexpr Limit kRecordingFile{1024 * kMiB, "bytes", "a replay holds it in memory"};
+inline constexpr Limit kPictureFile{512 * kMiB, "bytes", "it is held in memory beside its pixels"};
+
+// What libraries may use that read a file in a process of their own, beside 64 bytes and a quarter of a microsecond for
+// each byte of it.
+inline constexpr Limit kReaderMemory{768 * kMiB, "bytes", "Assimp's and Draco's own structures"};
+inline constexpr Limit kReaderTime{4.0, "s of processor time", "a thousand times what small files take"};
+
+// JSON.
+inline constexpr Limit kJsonDepth{64, "levels", "trees are copied and written by recursion", false};
+inline constexpr Limit kJsonValues{4e6, "JSON values", "each takes up to 100 bytes"};
+inline constexpr Limit kElements{1e5, "elements", "each takes up to 5 kB in all that is made of it"};
+inline constexpr Limit kName{1000, "bytes", "names stand in every row of forces.csv"};
+
+// What a level may make of its files: a mesh can be shown often, and a small picture can unpack to a large one.
+inline constexpr Limit kTriangles{67108864, "triangles", "indices of corners have 32 bits", false};
+inline constexpr Limit kAddedTriangles{4194304, "triangles beyond those of its meshes", "each takes some 150 bytes"};
+inline constexpr Limit kSurfaces{4096, "surfaces and rigid bodies", "each is looked after in every tick or step"};
+inline constexpr Limit kSoftBodies{200, "soft bodies", "each is filled with some 2,000 tetrahedra, in 50 ms"};
+inline constexpr Limit kHands{4096, "probes and tools", "a recording knows as many", false};
+inline constexpr Limit kAddedVertices{4194304, "vertices of surfaces beyond those of its meshes",
+                                      "each has a height of its own"};
+inline constexpr Limit kDecoded{256 * kMiB, "bytes of accessors beyond a multiple of the buffers",
+                                "accessors may share a few bytes"};
+inline constexpr Limit kKeys{1e6, "animation keys", "channels may share accessors"};
+inline constexpr Limit kScriptRows{4e6, "rows", "each takes 64 bytes"};
+inline constexpr Limit kInputRows{1e5, "rows", "a hand makes some hundred events a second"};
+inline constexpr Limit kPicturePixels{8192.0 * 8192.0, "pixels", "what GPUs take", false};
+inline constexpr Limit kPanoramaPixels{8192.0 * 4096.0, "pixels", "twice as wide as high, as wide as GPUs take", false};
+inline constexpr Limit kPictures{512 * kMiB, "bytes of decoded pictures",
+                                 "four a pixel, in the level and in the world"};
+
+// Tetrahedra.
+inline constexpr Limit kTets{2e6, "tetrahedra",
+                             "each of a level's takes some 400 bytes, and 2,000 fill a step of a millisecond"};
+inline constexpr Limit kLatticeNodes{16777216, "nodes of a lattice", "each takes some 20 bytes"};
+inline constexpr Limit kTetFileNodes{4e6, "nodes", "each takes 24 bytes, its tetrahedra 400"};
+inline constexpr Limit kTetFileEntries{5e7, "entries of a section", "each takes up to 32 bytes"};
+
+// What waits to be written while a picture is drawn. Rows beyond are counted as lost.
+inline constexpr Limit kJournal{64 * kMiB, "bytes of rows", "8 s of thirty probes at 1 kHz"};
+}  // namespace limits
+
+// [1] What set_limit_factor takes.
+inline constexpr Range kLimitFactor{1e-6, 1e3};
+
+double limit_factor();
+
+// Of a limit, at the factor that is set.
+std::uint64_t most(const Limit& limit);
+
+// "1900000 elements, more than the 100000 that are read (REASON); CURE, or allow it with --limits 19".
+std::string beyond(const Limit& limit, double found, const std::string& cure);
+
+}  // namespace pliant
