@@ -154,6 +154,8 @@ Status check_row(Row& row, const Element& element, std::int64_t number, const He
     if (property.list && !row.value(property.count_kind, count)) return cut();
     if (!(count >= 0.0) || count != static_cast<double>(static_cast<std::int64_t>(std::min(count, 1e15))))
       return damaged(fmt::format("has a list of {} numbers in {} {}", count, element.name, number));
+    if (property.vertices && count == 0.0)
+      return Error{"", fmt::format("has {} {} without a corner; export it again", element.name, number)};
     for (double i = 0.0; i < count; ++i) {
       if (!row.value(property.kind, value)) return cut();
       if (property.axis && !std::isfinite(value))

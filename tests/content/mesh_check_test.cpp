@@ -129,6 +129,7 @@ TEST_F(MeshCheck, BrokenPlyIsRefused) {
                   {"d.ply", ply("ascii", 4, 1) + kVertices + "3 0 1 2\n", "before face 0 of 1"},
                   {"e.ply", ply("ascii", 3, 1) + kVertices + "3 0 1\n", "face 0"},
                   {"f.ply", ply("ascii", 3, 1) + "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "vertex 1"},
+                  {"n.ply", ply("ascii", 3, 2) + kVertices + "0\n3 0 1 2\n", "without a corner"},
                   {"g.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "header"},
                   {"h.ply", ply("utf8", 3, 1), "format"}});
   for (const bool big : {false, true}) {
