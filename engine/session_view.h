@@ -21,7 +21,7 @@ class SessionView {
   const SoftObjectSnapshot* soft(Entity object) const;   // null: nothing that moves, or not seen yet
   mat4 to_world(const World& world, Entity object) const;
 
-  // Called for every snapshot that is taken: a renderer follows them (engine/picture/camera.cpp).
+  // Called for every snapshot that is taken: a renderer follows them (engine/picture/pictures.cpp).
   std::function<void(const Snapshot&)> seen;
   std::function<void(const SoftSnapshot&)> soft_seen;
 

@@ -37,7 +37,7 @@ echo "$said" | grep -q 'closed; the last force was 0.000 N' || { echo "the last 
 said=$("$work/build/own_law")
 echo "$said"
 echo "$said" | grep -q 'softening  4.0 mm deep: 1.140 N' || { echo "300 N/m * 10 mm * tanh(0.4) is 1.140 N"; exit 1; }
-said=$("$work/build/headless_sweep "$work/installed/share/pliant/content/levels/minimal.gltf" 2>&1)
+said=$("$work/build/headless_sweep" "$work/installed/share/pliant/content/levels/minimal.gltf" 2>&1)
 [[ $(echo "$said" | wc -l) -gt 100 ]] || { echo "$said" | head; echo "the sweep is too short"; exit 1; }
 if [[ -x $work/build/own_renderer ]] && command -v xvfb-run >/dev/null; then
   said=$(xvfb-run -a "$work/build/own_renderer" 40)

@@ -49,17 +49,28 @@ class IndexComplaints : public Assimp::LogStream {
   std::string any_;
 };
 
-// Gives Assimp the bytes that were checked for the file that it opens, and the disk for those that it names.
+// Gives Assimp the bytes that were checked for the file that it opens. Formats name other files (an .obj its
+// materials): those are read from the disk, where a level may reach, too.
 class CheckedFile : public Assimp::DefaultIOSystem {
  public:
-  CheckedFile(std::string path, const Bytes& bytes) : path_(std::move(path)), bytes_(bytes) {}
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    if (path_ != file) return DefaultIOSystem::Open(file, mode);
-    return new Assimp::MemoryIOStream(bytes_.data(), bytes_.size());
+  CheckedFile(const fs::path& file, const Bytes& bytes)
+      : file_(file.string()), folder_(file.parent_path()), bytes_(bytes) {}
+  bool Exists(const char* name) const override { return allows(name) && DefaultIOSystem::Exists(name); }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (name == file_) return new Assimp::MemoryIOStream(bytes_.data(), bytes_.size());
+    return allows(name) && mode[0] == 'r' ? DefaultIOSystem::Open(name, mode) : nullptr;
   }
 
  private:
-  std::string path_;
+  bool allows(const std::string& name) const {
+    if (name == file_) return true;  // what the user named
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(folder_.empty() ? fs::path(".") : folder_, error);
+    const Result<fs::path> path = confined_file(folder_, fs::weakly_canonical(name, error).lexically_relative(folder));
+    return path && fs::is_regular_file(*path, error);
+  }
+  const std::string file_;
+  const fs::path folder_;
   const Bytes& bytes_;
 };
 
@@ -189,34 +200,12 @@ Status read_nodes(const aiScene& scene, Level& level) {
   return Done{};
 }
 
-// Formats name other files (an .obj its materials): those are read where a level may reach, too.
-class ConfinedFiles : public Assimp::DefaultIOSystem {
- public:
-  explicit ConfinedFiles(const fs::path& file) : file_(file.string()), folder_(file.parent_path()) {}
-  bool Exists(const char* name) const override { return allows(name) && DefaultIOSystem::Exists(name); }
-  Assimp::IOStream* Open(const char* name, const char* mode) override {
-    return allows(name) && mode[0] == 'r' ? DefaultIOSystem::Open(name, mode) : nullptr;
-  }
-
- private:
-  bool allows(const std::string& name) const {
-    if (name == file_) return true;  // what the user named
-    std::error_code error;
-    const fs::path folder = fs::weakly_canonical(folder_.empty() ? fs::path(".") : folder_, error);
-    const Result<fs::path> path = confined_file(folder_, fs::weakly_canonical(name, error).lexically_relative(folder));
-    return path && fs::is_regular_file(*path, error);
-  }
-  const std::string file_;
-  const fs::path folder_;
-};
-
 // In the child: the scene as GLB, after a header that names each material's texture.
 Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
   const Result<MeshFile> file = check_mesh_file(bytes, extension.empty() ? "" : extension.substr(1));
   if (!file) return file.error();
   IndexComplaints& complaints = listen_to_assimp();
   Assimp::Importer importer;
-  importer.SetIOHandler(new ConfinedFiles(path));  // which owns it from now on
   // Only what is read below; skeletons, animations, lights and cameras are dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
                                                           aiComponent_CAMERAS | aiComponent_LIGHTS |
@@ -225,7 +214,7 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   const unsigned steps =
       aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
   const bool in_memory = file->in_memory || path.empty();
-  if (!in_memory) importer.SetIOHandler(new CheckedFile(path.string(), file->bytes));  // the importer's from here on
+  if (!in_memory) importer.SetIOHandler(new CheckedFile(path, file->bytes));  // the importer's from here on
   const aiScene* scene =
       in_memory ? importer.ReadFileFromMemory(file->bytes.data(), file->bytes.size(), steps, file->format.c_str())
                 : importer.ReadFile(path.string(), steps);

@@ -39,6 +39,7 @@ inline constexpr Limit kReaderTime{4.0, "s of processor time", "a thousand times
 inline constexpr Limit kJsonDepth{64, "levels", "trees are copied and written by recursion", false};
 inline constexpr Limit kJsonValues{4e6, "JSON values", "each takes up to 100 bytes"};
 inline constexpr Limit kElements{1e5, "elements", "each takes up to 5 kB in all that is made of it"};
+inline constexpr Limit kAccessors{2e5, "elements", "each takes up to 1.5 kB"};
 inline constexpr Limit kName{1000, "bytes", "names stand in every row of forces.csv"};
 
 // What a level may make of its files: a mesh can be shown often, and a small picture can unpack to a large one.

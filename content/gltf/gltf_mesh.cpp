@@ -29,8 +29,11 @@ bool has_triangles(const tinygltf::Primitive& primitive) {
 }
 
 // Extensions are read from the checked JSON: SourceDocument.
-const Json* draco_of(const SourceDocument& document, std::size_t mesh, std::size_t primitive) {
-  return extension_of(document.json["meshes"][mesh]["primitives"][primitive], "KHR_draco_mesh_compression");
+const Json& json_of(const SourceDocument& document, std::size_t mesh, std::size_t primitive) {
+  return document.json["meshes"][mesh]["primitives"][primitive];
+}
+bool is_draco(const Json& primitive) {
+  return extension_of(primitive, "KHR_draco_mesh_compression") != nullptr;
 }
 
 bool all_finite(const std::vector<float>& values) {
@@ -154,8 +157,8 @@ Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t numbe
   }
   Source source;
   source.attributes = &primitive.attributes;
-  if (const Json* draco = draco_of(document_, mesh, number)) {
-    if (const Status status = read_draco(*draco, pointer, source); !status) return status.error();
+  if (const Json& json = json_of(document_, mesh, number); is_draco(json)) {
+    if (const Status status = read_draco(json, pointer, source); !status) return status.error();
   } else {
     const std::size_t position = static_cast<std::size_t>(primitive.attributes.at("POSITION"));
     const tinygltf::Accessor& accessor = document_.model.accessors[position];
@@ -256,8 +259,8 @@ Result<LevelMesh> MeshReader::read_skinned(std::size_t mesh, std::size_t skin, c
     Primitive& out = read_mesh->primitives[next++];
     Source source;
     source.attributes = &primitive.attributes;
-    if (const Json* draco = draco_of(document_, mesh, p))
-      if (const Status status = read_draco(*draco, "", source); !status) return status.error();
+    if (const Json& json = json_of(document_, mesh, p); is_draco(json))
+      if (const Status status = read_draco(json, "", source); !status) return status.error();
     std::vector<dmat4> blend(out.position.size(), dmat4(0.0));
     std::vector<double> sum(out.position.size(), 0.0);
     for (int set = 0; primitive.attributes.count(fmt::format("JOINTS_{}", set)) != 0; ++set) {

@@ -1,8 +1,8 @@
 // Pictures of a Session by the renderer of the command: materials, bump maps, surroundings, reflection, refraction,
 // shadows (component `visual`). A program with a renderer of its own takes Session::stream instead.
 //
-//   auto camera = pliant::Camera::headless(*session);
-//   auto picture = camera->picture(camera->view(), 1280, 720);
+//   auto pictures = pliant::Pictures::headless(*session);
+//   auto picture = pictures->picture(pictures->view(), 1280, 720);
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace pliant {
 
 // Where a picture is taken from.
-struct View {
+struct PictureView {
   dvec3 eye{0, 0, 1};  // [m] world
   dvec3 target{0};     // [m]
   dvec3 up{0, 1, 0};
@@ -27,27 +27,27 @@ struct Picture {
 };
 
 // Belongs to the thread that owns the session, and to one run of it: after Session::restart() or the session's end
-// every call is an error, and a new camera is made. Made before start(); pictures may be taken while the clocks run.
-class Camera {
+// every call is an error, and they are made anew. Made before start(); pictures may be taken while the clocks run.
+class Pictures {
  public:
   // With a context of its own, without a window (EGL): on the GPU, or by Mesa's software renderer.
-  static Result<Camera> headless(Session& session);
-  // In the OpenGL 4.5 core context that is current on this thread, here and in every later call of Camera.
-  static Result<Camera> in_current_context(Session& session);
-  Camera(Camera&&) noexcept;
-  Camera& operator=(Camera&&) noexcept;
-  ~Camera();
+  static Result<Pictures> headless(Session& session);
+  // In the OpenGL 4.5 core context that is current on this thread, here and in every later call of Pictures.
+  static Result<Pictures> in_current_context(Session& session);
+  Pictures(Pictures&&) noexcept;
+  Pictures& operator=(Pictures&&) noexcept;
+  ~Pictures();
 
   // The level's own, or one that sees everything that gives way.
-  View view() const;
+  PictureView view() const;
   // At most 16384 pixels wide and high.
-  Result<Picture> picture(const View& view, int width, int height);
+  Result<Picture> picture(const PictureView& view, int width, int height);
   // Into a framebuffer of the current context: 0 is the window's.
-  Status draw(const View& view, unsigned framebuffer, int width, int height);
+  Status draw(const PictureView& view, unsigned framebuffer, int width, int height);
 
  private:
   struct Parts;
-  explicit Camera(std::unique_ptr<Parts> parts);
+  explicit Pictures(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };
 

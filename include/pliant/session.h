@@ -147,7 +147,7 @@ class Session {
   struct Parts;  // engine/session_parts.h; not part of the public interface
 
  private:
-  friend class Camera;
+  friend class Pictures;
   explicit Session(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };

@@ -149,7 +149,7 @@ TEST(TetFile, FaultsAreToldInOneSentenceWithTheirPlace) {
   expect(tetgen, pair, "1 1 2 3 4", "1 1 2 3 5", "f.ele:2", "names node 5");
   expect(tetgen, pair, "1 4 0", "1 5 0", "f.ele:1", "tetrahedra 4");
   expect(tetgen, pair, "1 1 2 3 4", "1 1 2 3 3", "f", "without volume");
-  EXPECT_THAT(load_tets("mesh.obj").error().message(), HasSubstr("use .msh"));
+  EXPECT_THAT(load_tets("mesh.obj").error().message(), HasSubstr("formats are: .msh"));
   EXPECT_THAT(load_tets("no/such.msh").error().message(), HasSubstr("no such file"));
 }
 

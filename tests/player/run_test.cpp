@@ -377,7 +377,7 @@ TEST_F(Run, ASignalBeforeTheFirstTickLeavesNothingHalfWrittenBehind) {
   const std::string line =
       "cd " + quoted(folder.string()) + " && { env -u DISPLAY -u WAYLAND_DISPLAY " + quoted(PLIANT_BINARY) +
       " run plate.obj --probe p=orbit --seconds 600 --out out --record out.rec >.said 2>&1 & } && pid=$! && "
-      "while kill -0 $pid && [ ! -e out.rec.partial-$pid ]; do :; done && kill -TERM $pid && wait $pid";
+      "while kill -0 $pid && [ ! -e out.rec.partial-$pid-0 ]; do :; done && kill -TERM $pid && wait $pid";
   EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0) << read_text(folder / ".said");
   EXPECT_LT(report("out")["ticks"], 600000);
   EXPECT_TRUE(fs::exists(folder / "out.rec"));

@@ -41,15 +41,15 @@ std::size_t differing(const Picture& a, const Picture& b) {
   return count;
 }
 
-TEST(Camera, SeesTheDentAndOutlivesNeitherARestartNorItsSession) {
+TEST(Pictures, SeesTheDentAndOutlivesNeitherARestartNorItsSession) {
   std::optional<Session> session(opened());
-  auto camera = Camera::headless(*session);
-  if (!camera) GTEST_SKIP() << camera.error().message();
-  EXPECT_THAT(Camera::headless(*session).error().message(), HasSubstr("has a camera"));
+  auto pictures = Pictures::headless(*session);
+  if (!pictures) GTEST_SKIP() << pictures.error().message();
+  EXPECT_THAT(Pictures::headless(*session).error().message(), HasSubstr("has Pictures"));
   ASSERT_TRUE(session->move("finger", {0, 0.03, 0}));
   ASSERT_TRUE(session->step());
-  const View above{{0, 0.1, 0.1}, {0, 0, 0}};
-  const auto before = camera->picture(above, 160, 90);
+  const PictureView above{{0, 0.1, 0.1}, {0, 0, 0}};
+  const auto before = pictures->picture(above, 160, 90);
   ASSERT_TRUE(before) << before.error().message();
   ASSERT_EQ(before->rgba.size(), 160u * 90u * 4u);
   for (int i = 0; i <= 300; ++i) {
@@ -60,20 +60,20 @@ TEST(Camera, SeesTheDentAndOutlivesNeitherARestartNorItsSession) {
   }
   ASSERT_TRUE(session->move("finger", {0, 0.03, 0}));  // out of the way: only the dent is left to see
   ASSERT_TRUE(session->step());
-  const auto dented = camera->picture(above, 160, 90);
+  const auto dented = pictures->picture(above, 160, 90);
   ASSERT_TRUE(dented);
   EXPECT_GT(differing(*before, *dented), 20u);
   ASSERT_TRUE(session->step(3000));
-  const auto after = camera->picture(above, 160, 90);
+  const auto after = pictures->picture(above, 160, 90);
   ASSERT_TRUE(after);
   EXPECT_LT(differing(*before, *after), 5u) << "it has come back";
 
-  EXPECT_FALSE(camera->picture(above, 0, 90));
-  EXPECT_FALSE(camera->picture(above, 160, 100000));
-  EXPECT_FALSE(camera->picture({{0, 0, 0}, {0, 0, 0}}, 160, 90));
+  EXPECT_FALSE(pictures->picture(above, 0, 90));
+  EXPECT_FALSE(pictures->picture(above, 160, 100000));
+  EXPECT_FALSE(pictures->picture({{0, 0, 0}, {0, 0, 0}}, 160, 90));
   ASSERT_TRUE(session->restart());
-  EXPECT_THAT(camera->picture(above, 160, 90).error().message(), HasSubstr("restarted"));
-  auto second = Camera::headless(*session);
+  EXPECT_THAT(pictures->picture(above, 160, 90).error().message(), HasSubstr("restarted"));
+  auto second = Pictures::headless(*session);
   ASSERT_TRUE(second) << second.error().message();
   EXPECT_TRUE(second->picture(second->view(), 64, 36));
   session.reset();
