@@ -119,7 +119,8 @@ std::string extension_tables() {
         extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
     for (const Key& key : extension.keys) {
       std::string range;
-      for (const std::string& each : key.choices()) range += (range.empty() ? "`" : " · `") + each + "`";
+      if (key.choices)
+        for (const std::string& each : key.choices()) range += (range.empty() ? "`" : " · `") + each + "`";
       if (range.empty() && key.type != KeyType::kText && key.type != KeyType::kNode && key.type != KeyType::kFlag)
         range = range_text(key);
       const Json standard = key.get(defaults.owner);
