@@ -245,6 +245,16 @@ PLIANT_KERNEL void finish_exponential(const Exponential& law, const Motion& moti
   finish(law, motion, w, h, v);
 }
 
+void begin_own(const Own& law, const Motion& motion, Work& w, bool forced) {
+  begin(law, motion, w, forced);
+}
+void newton_own(const Own& law, Work& w) {
+  newton(law, w);
+}
+void finish_own(const Own& law, const Motion& motion, Work& w, float* h, float* v) {
+  finish(law, motion, w, h, v);
+}
+
 // What has not settled takes its time.
 void settle(const Motion& motion, const ZoneTargets* targets, Work& w) {
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
@@ -287,7 +297,7 @@ void step_nonlinear(const Motion& motion, const PaintedMotion& painted, std::uin
   };
   const RestoringLaw& law = motion.law;
   if (law.own) {
-    step(Own{law}, begin<Own>, newton<Own>, finish<Own>);
+    step(Own{law}, begin_own, newton_own, finish_own);
   } else if (law.kind == SpringLaw::kCubic) {
     step(Cubic{law.cubic}, begin_cubic, newton_cubic, finish_cubic);
   } else {
