@@ -61,6 +61,27 @@ void Session::Parts::look() {
     view.take_all(world, {ticks, 1.0 / world.simulation.touch_rate, time});
 }
 
+Status Session::body_contacts(std::vector<BodyContact>& out) {
+  Parts& p = *parts_;
+  p.look();
+  out.clear();
+  for (const ContactMark& mark : p.view.contacts())
+    out.push_back({dvec3(mark.position), dvec3(mark.normal), dvec3(mark.force), mark.sliding});
+  return Done{};
+}
+
+Status Session::handles(std::vector<HandleReading>& out) {
+  Parts& p = *parts_;
+  p.look();
+  out.clear();
+  for (const HandleMark& mark : p.view.handles()) {
+    const Name* name = p.world.registry.find<Name>(mark.tool);
+    out.push_back({name ? name->value : std::string(), mark.pose.position, mark.pose.rotation, dvec3(mark.force),
+                   dvec3(mark.torque)});
+  }
+  return Done{};
+}
+
 Status Session::vertices(const std::string& object, std::vector<vec3>& out) {
   Parts& p = *parts_;
   const auto entity = p.find_object(object);

@@ -9,6 +9,8 @@ namespace pliant {
 void SessionView::reset(const World& world) {
   shown_.clear();
   soft_.clear();
+  contacts_.clear();
+  handles_.clear();
   seen = {};
   soft_seen = {};
   for (auto [entity, pose] : world.registry.view<const Pose>()) {
@@ -43,6 +45,8 @@ void SessionView::take(World& world) {
   }
   if (!world.soft_snapshots || !world.soft_snapshots->acquire()) return;
   soft_ = world.soft_snapshots->read().objects;
+  contacts_ = world.soft_snapshots->read().contacts;
+  handles_ = world.soft_snapshots->read().handles;
   if (soft_seen) soft_seen(world.soft_snapshots->read());
 }
 

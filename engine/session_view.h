@@ -20,6 +20,8 @@ class SessionView {
   const std::vector<vec4>* stream(Entity object) const;  // null: no surface that gives way
   const SoftObjectSnapshot* soft(Entity object) const;   // null: nothing that moves, or not seen yet
   mat4 to_world(const World& world, Entity object) const;
+  const std::vector<ContactMark>& contacts() const { return contacts_; }
+  const std::vector<HandleMark>& handles() const { return handles_; }
 
   // Called for every snapshot that is taken: a renderer follows them (engine/picture/pictures.cpp).
   std::function<void(const Snapshot&)> seen;
@@ -34,6 +36,8 @@ class SessionView {
   };
   std::vector<Shown> shown_;
   std::vector<SoftObjectSnapshot> soft_;
+  std::vector<ContactMark> contacts_;
+  std::vector<HandleMark> handles_;
 };
 
 }  // namespace pliant

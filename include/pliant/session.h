@@ -40,6 +40,21 @@ struct ContactReading {
   std::uint32_t object = 0;  // into Session::objects()
 };
 
+// Where soft and rigid bodies, tools among them, press on each other and on surfaces.
+struct BodyContact {
+  dvec3 position{0};  // [m] world
+  dvec3 normal{0};    // [1] world, unit, towards the body that `force` is on
+  dvec3 force{0};     // [N] world, with friction; its reaction is on the other body
+  bool sliding = false;
+};
+// What tissue and contacts did to a tool's handle in a soft step.
+struct HandleReading {
+  std::string tool;
+  dvec3 position{0};  // [m] world
+  dquat rotation{1, 0, 0, 0};
+  dvec3 force{0}, torque{0};  // [N], [N m] world, about its middle
+};
+
 // One probe or tool after a tick.
 struct Reading {
   static constexpr std::uint32_t kMostContacts = 16;
@@ -132,6 +147,10 @@ class Session {
   // slewed, poses that were no numbers, contacts that were dropped, each in a sentence with its cure. Not while the
   // clocks run.
   Result<std::vector<std::string>> findings() const;
+  // Of the newest soft step: at most 512 contacts, of probes among bodies too; every tool's handle. Empty in a scene
+  // without bodies. A surface is felt by probes without these: Reading::contact.
+  Status body_contacts(std::vector<BodyContact>& out);
+  Status handles(std::vector<HandleReading>& out);
   // Deformed vertices, world frame [m], in the order in which the object's MeshData or file has them. One that no
   // triangle uses is at the object's origin.
   Status vertices(const std::string& object, std::vector<vec3>& out);

@@ -192,6 +192,22 @@ TEST(Session, AToolIsHeldByItsHandleAndLiesOnARigidFloor) {
   std::vector<vec3> vertices;
   ASSERT_TRUE(session.vertices("stylus", vertices));
   for (const vec3 p : vertices) EXPECT_GT(p.y, -2e-4f);
+  // The floor holds it up: what its contacts push is what its handle is pushed by, and what the device feels.
+  std::vector<BodyContact> contacts;
+  ASSERT_TRUE(session.body_contacts(contacts));
+  ASSERT_GE(contacts.size(), 3u);
+  double push = 0.0;
+  for (const BodyContact& contact : contacts) {
+    EXPECT_NEAR(std::abs(contact.normal.y), 1.0, 1e-3);
+    EXPECT_NEAR(contact.position.y, 0.0, 1e-3);
+    push += std::abs(contact.force.y);
+  }
+  EXPECT_NEAR(push, felt.force.y, 0.05 * felt.force.y);
+  std::vector<HandleReading> handles;
+  ASSERT_TRUE(session.handles(handles));
+  ASSERT_EQ(handles.size(), 1u);
+  EXPECT_EQ(handles[0].tool, "stylus");
+  EXPECT_NEAR(handles[0].position.y, 0.01, 1e-3);
 }
 
 TEST(Session, ADriverIsReadAndWrittenEveryTickWithinItsLimit) {
