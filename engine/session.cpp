@@ -191,7 +191,7 @@ Status Session::start() {
   p.ended = "it has run in real time";
   if (p.recorder) p.recorder->start();
   TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
-                   [&p] { p.end("it has run in real time"); }};
+                   [&p] { p.clock_ended(); }};
   p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,
                                          std::numeric_limits<std::uint64_t>::max(), std::move(hooks));
   p.clock->start();

@@ -118,8 +118,9 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   schedule.emplace(touch_schedule());
   soft = std::make_unique<SoftClock>(world);
   ticks = overruns = 0;
-  time = 0.0;
   after_pause = false;
+  shown = true;
+  time = 0.0;
   edits = std::make_unique<Ring<Edit>>(kMostEdits);
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
@@ -231,8 +232,21 @@ void Session::Parts::end(const char* why) noexcept {
   ended = why;
   let_go(world, {ticks, 1.0 / world.simulation.touch_rate, time});
   zero_drivers();
-  for (EffectorRow& row : rows.write()) row = {};
+  show_let_go();
+}
+
+void Session::Parts::show_let_go() noexcept {
+  for (EffectorRow& row : rows.write()) {
+    row = {};
+    row.reading.tick = last.index;
+    row.reading.time = last.time;
+  }
   rows.publish();
+}
+
+void Session::Parts::clock_ended() noexcept {
+  zero_drivers();
+  if (!shown) show_let_go();
 }
 
 void Session::Parts::close_driver(SessionEffector& effector) noexcept {
@@ -291,6 +305,8 @@ void Session::Parts::read_driver(SessionEffector& effector, Tick tick) {
 }
 
 void Session::Parts::before(Tick tick) {
+  last = tick;
+  shown = false;
   Edit edit;
   while (edits->pop(edit)) apply_edit(world, edit);
   for (SessionEffector& effector : effectors) {

@@ -125,6 +125,8 @@ struct Session::Parts {
   std::optional<Recording> replayed;
   std::map<std::string, std::string> settings;  // NODE.EXT.KEY -> value: what set() changed
   bool after_pause = false;                     // touch clock's: the next tick is the first after a pause
+  Tick last;                                    // touch clock's: the tick under way, or the last
+  bool shown = true;                            // touch clock's: its readings are published
   std::map<std::string, std::map<std::uint32_t, SourcePlace>> places;  // by object, of vertices that were pressed
 
   explicit Parts(const Scene& from) : scene(from) {}
@@ -144,6 +146,8 @@ struct Session::Parts {
   void close_driver(SessionEffector& effector) noexcept;
   void zero_drivers() noexcept;
   void end(const char* why) noexcept;                             // every device is lost, and written zero
+  void show_let_go() noexcept;                                    // readings without force
+  void clock_ended() noexcept;                                    // last of all on the touch clock
   DeviceWrench wrench_of(const SessionEffector& effector) const;  // what its device can render of the force sent
   DeviceParameters limits_of(
       const SessionEffector& effector) const;  // the level's or the driver's, whichever are smaller

@@ -36,6 +36,8 @@ dvec3 at_most(dvec3 v, double most) {
 }  // namespace
 
 void Session::Parts::after(Tick tick) {
+  last = tick;
+  shown = false;
   std::vector<EffectorRow>& out = rows.write();
   for (std::size_t i = 0; i < effectors.size(); ++i) {
     SessionEffector& effector = effectors[i];
@@ -62,6 +64,7 @@ void Session::Parts::after(Tick tick) {
   }
   after_pause = false;
   rows.publish();
+  shown = true;
 }
 
 DeviceWrench Session::Parts::wrench_of(const SessionEffector& effector) const {
