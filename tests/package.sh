@@ -24,6 +24,37 @@ cmake -S "$work/examples" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -
   >"$work/configure.log" || { cat "$work/configure.log"; exit 1; }
 cmake --build "$work/build" -j 2 >"$work/build.log" || { cat "$work/build.log"; exit 1; }
 
+# Pictures by Pliant's own renderer: component `visual`.
+mkdir "$work/picture"
+cat >"$work/picture/CMakeLists.txt" <<'TEXT'
+cmake_minimum_required(VERSION 3.25)
+project(picture LANGUAGES CXX)
+find_package(pliant REQUIRED COMPONENTS engine visual)
+add_executable(picture main.cpp)
+target_link_libraries(picture PRIVATE pliant::picture)
+TEXT
+cat >"$work/picture/main.cpp" <<'TEXT'
+#include <pliant/picture.h>
+#include <pliant/pliant.h>
+
+#include <cstdio>
+
+int main() {
+  pliant::Scene scene;
+  scene.add_surface("sheet", {.position = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, .index = {0, 1, 2}});
+  auto session = pliant::Session::open(scene);
+  auto pictures = session ? pliant::Pictures::headless(*session) : pliant::Result<pliant::Pictures>(session.error());
+  if (!pictures) return std::printf("none: %s\n", pictures.error().message().c_str()), 0;
+  std::printf("%zu bytes\n", pictures->picture(pictures->view(), 64, 36)->rgba.size());
+}
+TEXT
+cmake -S "$work/picture" -B "$work/picture/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/installed" \
+  >"$work/configure.log" || { cat "$work/configure.log"; exit 1; }
+cmake --build "$work/picture/build" >"$work/build.log" || { cat "$work/build.log"; exit 1; }
+said=$("$work/picture/build/picture")
+echo "$said"
+echo "$said" | grep -qE '^(9216 bytes|none: .*(EGL|OpenGL|graphics))' || { echo "a picture of 64 x 36 has 9216 bytes"; exit 1; }
+
 # Touch alone drags in neither graphics nor readers of files.
 libraries=$(ldd "$work/build/hello_touch")
 echo "$libraries" | grep -E 'libGL|libEGL|epoxy|assimp|draco|OpenEXR|hidapi|glfw' && { echo "hello_touch needs too much"; exit 1; }
