@@ -6,8 +6,10 @@
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -21,6 +23,8 @@ namespace {
 
 constexpr double kPatience = 30.0;       // [1] of its processor time that a child may take by the clock on the wall
 constexpr double kLeastPatience = 60.0;  // [s]
+constexpr auto kStandsStill = std::chrono::seconds(4);
+constexpr int kAttempts = 3;  // the last one is waited for to the end
 
 constexpr char kDone = 'D', kRefused = 'R';
 
@@ -90,58 +94,94 @@ void end_after(double seconds) {
   _exit(sent ? 0 : 1);
 }
 
+using Clock = std::chrono::steady_clock;
+
+// [s] of processor time that a process has used; negative: not known.
+double processor_time(pid_t pid) {
+  clockid_t clock;
+  timespec used{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &used) != 0) return -1.0;
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+// How a child ended.
+struct Ended {
+  Bytes answer;
+  int status = 0;
+  bool late = false;   // killed at the deadline
+  bool stuck = false;  // killed because it stood still
+};
+
+// Reads what a child writes until it ends. `watch`: one that neither writes nor uses the processor for kStandsStill was
+// born while another thread held a lock that it waits for now.
+Ended wait_for(pid_t pid, int end, Clock::time_point deadline, bool watch) {
+  Ended out;
+  std::vector<std::uint8_t> buffer(1 << 20);
+  double used = 0.0;
+  Clock::time_point moved = Clock::now();
+  while (true) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    pollfd ready{end, POLLIN, 0};
+    const int polled = left > 0 ? poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left, 500))) : 0;
+    if (polled < 0 && errno == EINTR) continue;
+    if (polled < 0 || left <= 0) {
+      out.late = true;
+      break;
+    }
+    if (polled == 0) {
+      const double now = processor_time(pid);
+      if (now < 0.0 || now > used + 1e-3) used = now, moved = Clock::now();
+      out.stuck = watch && Clock::now() - moved > kStandsStill;
+      if (out.stuck) break;
+      continue;
+    }
+    const ssize_t got = read(end, buffer.data(), buffer.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    out.answer.insert(out.answer.end(), buffer.begin(), buffer.begin() + got);
+    moved = Clock::now();
+  }
+  if (out.late || out.stuck) kill(pid, SIGKILL);
+  while (waitpid(pid, &out.status, 0) < 0 && errno == EINTR) {
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds,
                            double wall) {
-  using Clock = std::chrono::steady_clock;
   const double allowed =
       (seconds + static_cast<double>(input_bytes) / 4e6) * std::max(limit_factor(), 1.0);  // [s] of processor time
   const double wait = wall > 0.0 ? wall : std::max(kPatience * allowed, kLeastPatience);
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(wait * 1e3));
   const std::uint64_t memory = private_bytes() + most(limits::kReaderMemory) + 64 * std::uint64_t{input_bytes};
-  int ends[2];
-  if (pipe(ends) != 0) return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno)};
-  const pid_t pid = fork();
-  if (pid < 0) {
-    close(ends[0]), close(ends[1]);
-    return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno)};
-  }
-  if (pid == 0) {
-    close(ends[0]);
-    child(ends[1], memory, allowed, work);
-  }
-  close(ends[1]);
-
-  Bytes answer;
-  bool late = false;
-  std::vector<std::uint8_t> buffer(1 << 20);
-  while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    pollfd ready{ends[0], POLLIN, 0};
-    const int polled = left > 0 ? poll(&ready, 1, static_cast<int>(left)) : 0;
-    if (polled < 0 && errno == EINTR) continue;
-    if (polled <= 0) {
-      late = true;
-      break;
+  Ended ended;
+  for (int attempt = 1; attempt == 1 || ended.stuck; ++attempt) {
+    int ends[2];
+    if (pipe(ends) != 0) return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno)};
+    const pid_t pid = fork();
+    if (pid < 0) {
+      close(ends[0]), close(ends[1]);
+      return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno)};
     }
-    const ssize_t got = read(ends[0], buffer.data(), buffer.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) break;
-    answer.insert(answer.end(), buffer.begin(), buffer.begin() + got);
+    if (pid == 0) {
+      close(ends[0]);
+      child(ends[1], memory, allowed, work);
+    }
+    close(ends[1]);
+    ended = wait_for(pid, ends[0], deadline, attempt < kAttempts);
+    close(ends[0]);
   }
-  close(ends[0]);
-  if (late) kill(pid, SIGKILL);
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = ended.status;
   const bool spent = WIFSIGNALED(status) && (WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGXCPU);
-  if (late || spent) return Error{"", "takes too long to read; the file is damaged, or too large"};
+  if (ended.late || spent) return Error{"", "takes too long to read; the file is damaged, or too large"};
+  Bytes& answer = ended.answer;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
     return Error{"", "crashed the importer; the file is damaged, export it again"};
   const char verdict = static_cast<char>(answer.front());
   answer.erase(answer.begin());
-  if (verdict == kDone) return answer;
+  if (verdict == kDone) return std::move(answer);
   const std::string sentence(answer.begin(), answer.end());
   const std::size_t line = std::min(sentence.find('\n'), sentence.size());
   return Error{sentence.substr(0, line), sentence.substr(std::min(line + 1, sentence.size()))};

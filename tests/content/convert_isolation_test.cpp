@@ -1,5 +1,6 @@
 // The child process that libraries run in: whatever happens there, the parent gets an answer.
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -62,6 +63,23 @@ TEST(Isolation, AChildThatOnlyWaitsIsEndedAllTheSame) {
       0.05, 0.3);
   ASSERT_FALSE(answer.ok());
   EXPECT_NE(answer.error().message().find("too long"), std::string::npos);
+}
+
+// A child that is born while another thread holds a lock may wait for it for ever: another one is made.
+TEST(Isolation, AChildThatStandsStillIsReplaced) {
+  void* const shared = mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(shared, MAP_FAILED);
+  auto* const born = static_cast<volatile int*>(shared);
+  const Result<Bytes> answer = in_isolation(0, [&]() -> Result<Bytes> {
+    *born = *born + 1;
+    if (*born == 1)
+      for (;;) pause();
+    return Bytes{2};
+  });
+  EXPECT_EQ(*born, 2);
+  munmap(shared, sizeof(int));
+  ASSERT_TRUE(answer.ok()) << answer.error().message();
+  EXPECT_EQ(*answer, Bytes{2});
 }
 
 #ifndef PLIANT_SANITIZED
