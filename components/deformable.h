@@ -1,4 +1,4 @@
-// A surface that gives way: P1's local model, authored by what a person can feel (methods.md 1.1 to 1.4).
+// A deformable surface: P1's local model, authored by what a person can feel (methods.md 1.1 to 1.4).
 // Rate: touch (read). Writer: content at spawn; editor and --set between ticks. Keys of PLIANT_deformable.
 #pragma once
 

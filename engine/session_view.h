@@ -17,7 +17,7 @@ class SessionView {
   // Real time: what has come since.
   void take(World& world);
 
-  const std::vector<vec4>* stream(Entity object) const;  // null: no surface that gives way
+  const std::vector<vec4>* stream(Entity object) const;  // null: no deformable surface
   const SoftObjectSnapshot* soft(Entity object) const;   // null: nothing that moves, or not seen yet
   mat4 to_world(const World& world, Entity object) const;
   const std::vector<ContactMark>& contacts() const { return contacts_; }

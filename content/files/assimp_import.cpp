@@ -157,7 +157,8 @@ Material read_material(const aiMaterial& in, std::string& texture_name) {
 }
 
 // One Level node a scene node; its meshes become the primitives of one Level mesh.
-Status read_nodes(const aiScene& scene, Level& level) {
+// `name`: of what an OBJ does not name.
+Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
   struct Visit {
     const aiNode* node;
     std::int32_t parent;
@@ -173,6 +174,7 @@ Status read_nodes(const aiScene& scene, Level& level) {
     LevelNode node;
     node.parent = visit.parent;
     node.name = visit.node->mName.length > 0 ? utf8(visit.node->mName.C_Str()) : fmt::format("node_{}", here);
+    if (node.name == "defaultobject" && !name.empty()) node.name = name;  // Assimp's word
     node.local = decompose(visit.node->mTransformation);
     if (!finite(node.local)) return Error{"", "has a transformation that is not finite; repair the file"};
     if (visit.node->mNumMeshes > 0) {
@@ -233,7 +235,7 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
     level.materials.push_back(read_material(*scene->mMaterials[m], texture));
     textures.push_back(texture);
   }
-  if (const Status status = read_nodes(*scene, level); !status) return status.error();
+  if (const Status status = read_nodes(*scene, utf8(path.stem().string()), level); !status) return status.error();
   for (LevelMesh& mesh : level.meshes)
     for (Primitive& primitive : mesh.primitives)
       if (primitive.material >= static_cast<std::int32_t>(level.materials.size())) primitive.material = -1;

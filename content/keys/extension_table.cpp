@@ -392,7 +392,8 @@ std::string settle_motion(void* owner) {
 
 std::vector<Extension> make_table() {
   std::vector<Extension> table;
-  table.push_back(extension("deformable", "The node's mesh gives way.", &LevelNode::deformable, deformable_keys()));
+  table.push_back(extension("deformable", "The node's mesh is a deformable surface (P1).", &LevelNode::deformable,
+                            deformable_keys()));
   table.back().settle = settle_deformable;
   table.push_back(extension("probe", "What a person holds against the surface.", &LevelNode::probe, probe_keys()));
   table.push_back(extension("haptic_device", "Moves a probe, and may push back.", &LevelNode::device, device_keys()));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "content/keys/extension_table.h"
 #include "runtime/assert.h"
@@ -128,16 +129,17 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   std::string best;
   std::size_t least = 1 + std::min<std::size_t>(3, word.size() / 2);
   for (const std::string& name : names) {
-    // Levenshtein's distance, one row at a time.
-    std::vector<std::size_t> row(name.size() + 1);
+    // Letters changed, added, left out or swapped with their neighbour (optimal string alignment), row by row.
+    std::vector<std::size_t> row(name.size() + 1), before, before_that;
     for (std::size_t j = 0; j <= name.size(); ++j) row[j] = j;
     for (std::size_t i = 1; i <= std::min<std::size_t>(word.size(), 64); ++i) {
-      std::size_t diagonal = row[0];
+      before_that = std::exchange(before, row);
       row[0] = i;
       for (std::size_t j = 1; j <= name.size(); ++j) {
-        const std::size_t kept = diagonal + (word[i - 1] == name[j - 1] ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({kept, row[j] + 1, row[j - 1] + 1});
+        const std::size_t kept = before[j - 1] + (word[i - 1] == name[j - 1] ? 0 : 1);
+        row[j] = std::min({kept, before[j] + 1, row[j - 1] + 1});
+        if (i > 1 && j > 1 && word[i - 1] == name[j - 2] && word[i - 2] == name[j - 1])
+          row[j] = std::min(row[j], before_that[j - 2] + 1);
       }
     }
     if (row.back() < least) {

@@ -21,7 +21,7 @@ std::string LevelBudget::ask_triangles(double count) const {
 }
 
 std::string LevelBudget::ask_vertices(double count) const {
-  return ask(limits::kAddedVertices, count - own_.vertices, "use fewer instances, or let fewer of them give way");
+  return ask(limits::kAddedVertices, count - own_.vertices, "use fewer instances, or make fewer of them deformable");
 }
 
 std::string LevelBudget::ask(const Limit& limit, double count, const char* cure) {

@@ -20,7 +20,7 @@ class LevelBudget {
   explicit LevelBudget(const Level& level);
   const MeshSize& of(std::int32_t mesh) const { return sizes_[static_cast<std::size_t>(mesh)]; }
 
-  // Triangles built; vertices of surfaces that give way.
+  // Triangles built; vertices of deformable surfaces.
   std::string ask_triangles(double count) const;
   std::string ask_vertices(double count) const;
   static std::string ask(const Limit& limit, double count, const char* cure = "use fewer of them");

@@ -372,7 +372,7 @@ class Spawner {
   std::vector<std::map<Shape, std::vector<Baked>>> baked_;  // of each mesh of the level
   std::set<std::int32_t> noted_;                            // meshes whose winding a note speaks of
   const LevelBudget budget_;
-  MeshSize built_;           // so far; vertices of surfaces that give way
+  MeshSize built_;           // so far; vertices of deformable surfaces
   double tetrahedra_ = 0.0;  // so far
   struct {
     std::size_t count = 0, from = 0, to = 0;  // nodes, triangles

@@ -21,7 +21,7 @@ struct SafetyCap {
   double max_torque() const { return 0.1 * max_force; }
 };
 
-// A bare mesh becomes a surface that gives way. `notes` gets what was read differently than one might expect. The
+// A bare mesh becomes a deformable surface. `notes` gets what was read differently than one might expect. The
 // error names file and JSON pointer. Devices and tools get no more than `cap`; a note says where the file asked for it.
 Result<Scene> load_scene(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr,
                          const SafetyCap& cap = {});

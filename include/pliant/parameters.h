@@ -24,7 +24,7 @@ enum class Shape : std::uint8_t { kPunch, kHertz, kGaussian, kWendland, kVolume,
 enum class Response : std::uint8_t { kFollow, kLag };     // methods.md 1.8
 enum class Distance : std::uint8_t { kChord, kSurface };  // methods.md 1.3
 
-// A surface that gives way: P1's local model, authored by what a person can feel. Keys of PLIANT_deformable.
+// A deformable surface: P1's local model, authored by what a person can feel. Keys of PLIANT_deformable.
 struct DeformableParameters {
   SpringLaw spring = SpringLaw::kLinear;
   double stiffness = 300.0;               // [N/m] slope of the normal force against depth at depth 0

@@ -38,7 +38,7 @@ class Pictures {
   Pictures& operator=(Pictures&&) noexcept;
   ~Pictures();
 
-  // The level's own, or one that sees everything that gives way.
+  // The level's own, or one that sees every deformable surface.
   PictureView view() const;
   // At most 16384 pixels wide and high.
   Result<Picture> picture(const PictureView& view, int width, int height);

@@ -1,4 +1,4 @@
-// A level in code: surfaces that give way, soft and rigid bodies, tools, probes. A level file becomes one too
+// A level in code: deformable surfaces, soft and rigid bodies, tools, probes. A level file becomes one too
 // (pliant/content.h).
 #pragma once
 
@@ -47,7 +47,7 @@ class Scene {
 
   Simulation& simulation();
 
-  // A surface that gives way where it is pressed (P1).
+  // A deformable surface (P1).
   void add_surface(const std::string& name, MeshData mesh, const DeformableParameters& parameters = {},
                    const Placement& placement = {});
   // FEM on tetrahedra made from the mesh (P2).

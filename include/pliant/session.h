@@ -69,7 +69,7 @@ struct Reading {
   double depth = 0.0;            // [m] below the undeformed surface, of the strongest contact
   dvec3 normal{0};               // [1] world, of the strongest contact
   std::uint32_t object = kNone;  // into Session::objects(): of the strongest contact
-  std::uint32_t contacts = 0;    // of a probe with surfaces that give way: how many `contact` holds
+  std::uint32_t contacts = 0;    // of a probe with deformable surfaces: how many `contact` holds
   std::array<ContactReading, kMostContacts> contact;
 };
 
@@ -102,7 +102,7 @@ class Session {
   // What was read or made differently than one might expect.
   const std::vector<std::string>& notes() const;
   std::vector<std::string> effectors() const;       // probes, then tools
-  const std::vector<std::string>& objects() const;  // surfaces that give way, soft and rigid bodies
+  const std::vector<std::string>& objects() const;  // deformable surfaces, soft and rigid bodies
 
   // --- What moves a probe or tool. Each has one source: a second one is an error until release().
   // Where it is from now on. In real time it goes there in the time since it was last set (at most 0.1 s), so
@@ -155,10 +155,10 @@ class Session {
   // triangle uses is at the object's origin.
   Status vertices(const std::string& object, std::vector<vec3>& out);
   // The force on each of these vertices, world frame [N]: that of the contacts of probes (Reading::kMostContacts each),
-  // by their barycentric coordinates. Of surfaces that give way.
+  // by their barycentric coordinates. Of deformable surfaces.
   Status vertex_forces(const std::string& object, std::vector<vec3>& out);
   // What a renderer of one's own draws: geometry once, the stream (nx, ny, nz, h) every frame, to_world every frame.
-  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of surfaces that give way.
+  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of deformable surfaces.
   Result<Geometry> geometry(const std::string& object) const;
   Status stream(const std::string& object, std::vector<vec4>& out);
   Result<mat4> to_world(const std::string& object);

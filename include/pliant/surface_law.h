@@ -1,4 +1,4 @@
-// A spring law or a shape of one's own for surfaces that give way: derive, register under a name, and use what
+// A spring law or a shape of one's own for deformable surfaces: derive, register under a name, and use what
 // registering returns in DeformableParameters, or the name in a level file (`spring`, `shape`).
 //
 //   struct Quintic : pliant::SpringFunction { ... };

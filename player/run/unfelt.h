@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-// A sentence where the level has point probes but nothing for them: no surface that gives way at all, or none where a
+// A sentence where the level has point probes but nothing for them: no deformable surface at all, or none where a
 // probe's path goes, but soft or rigid bodies. Call after paths are made.
 std::optional<std::string> unfelt_bodies(const World& world);
 

@@ -191,14 +191,10 @@ TEST(SessionEnd, YoungsModulusSetsTheStiffnessOfAPointAsInAFile) {
 
 // A closed box of 12 triangles is refined to be felt; the forces are on the eight corners that were given.
 TEST(SessionEnd, ForcesOfARefinedMeshAreOnTheVerticesThatWereGiven) {
-  MeshData box;
-  const float half = 0.05f;
-  for (int i = 0; i < 8; ++i)
-    box.position.push_back({i & 1 ? half : -half, i & 2 ? 0 : -2 * half, i & 4 ? half : -half});
-  box.index = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 1, 3, 0, 3, 2,
-               4, 6, 7, 4, 7, 5, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
+  MeshData block = box(0.05f);
+  for (vec3& p : block.position) p.y -= 0.05f;  // its top in y = 0
   Scene scene;
-  scene.add_surface("block", box, {.stiffness = 300.0});
+  scene.add_surface("block", block, {.stiffness = 300.0});
   scene.add_probe("finger");
   Session session = opened(scene);
   for (int i = 0; i <= 300; ++i) {
@@ -213,7 +209,7 @@ TEST(SessionEnd, ForcesOfARefinedMeshAreOnTheVerticesThatWereGiven) {
   dvec3 sum(0), moment(0);
   for (std::size_t i = 0; i < 8; ++i) {
     sum += dvec3(force[i]);
-    moment += cross(dvec3(box.position[i]), dvec3(force[i]));
+    moment += cross(dvec3(block.position[i]), dvec3(force[i]));
   }
   EXPECT_NEAR(length(sum + felt), 0.0, 1e-5) << "action and reaction";
   const dvec3 lever = moment / -felt.y;  // of a force along y at (x, ., z): (-z, 0, x) per newton
@@ -232,14 +228,9 @@ TEST(SessionEnd, WhatIsReleasedStaysReleasedThroughARestart) {
 }
 
 TEST(SessionEnd, ARigidToolHasAnOrbitToo) {
-  MeshData box;
-  for (int i = 0; i < 8; ++i)
-    box.position.push_back({i & 1 ? .01f : -.01f, i & 2 ? .01f : -.01f, i & 4 ? .01f : -.01f});
-  box.index = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 1, 3, 0, 3, 2,
-               4, 6, 7, 4, 7, 5, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
   Scene scene;
   scene.add_surface("tissue", sheet());
-  scene.add_rigid_body("stylus", box, {}, {.position = {0, 0.03, 0}});
+  scene.add_rigid_body("stylus", box(0.01f), {}, {.position = {0, 0.03, 0}});
   ASSERT_TRUE(scene.add_handle("stylus"));
   Session session = opened(scene);
   ASSERT_TRUE(session.orbit("stylus"));
@@ -249,14 +240,9 @@ TEST(SessionEnd, ARigidToolHasAnOrbitToo) {
 // Bodies that press a surface feel it with parameters that change, as probes do.
 TEST(SessionEnd, AToolFeelsAStiffnessThatChanges) {
   const auto pressed = [](double stiffness) {
-    MeshData box;
-    for (int i = 0; i < 8; ++i)
-      box.position.push_back({i & 1 ? .01f : -.01f, i & 2 ? .01f : -.01f, i & 4 ? .01f : -.01f});
-    box.index = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 1, 3, 0, 3, 2,
-                 4, 6, 7, 4, 7, 5, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
     Scene scene;
     scene.add_surface("tissue", sheet(), {.stiffness = 20.0});
-    scene.add_rigid_body("stylus", box, {}, {.position = {0, 0.02, 0}});
+    scene.add_rigid_body("stylus", box(0.01f), {}, {.position = {0, 0.02, 0}});
     EXPECT_TRUE(scene.add_handle("stylus", {.translation = {5000.0, 20.0}, .max_force = 50.0}, {.max_force = 50.0}));
     Session session = opened(scene);
     EXPECT_TRUE(session.set("tissue", "stiffness", stiffness));

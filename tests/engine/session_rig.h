@@ -26,6 +26,16 @@ inline MeshData sheet(double half = 0.05, std::uint32_t cells = 50) {
   return mesh;
 }
 
+// Twelve triangles round the origin.
+inline MeshData box(float half) {
+  MeshData mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.position.push_back({i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half});
+  mesh.index = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 1, 3, 0, 3, 2,
+                4, 6, 7, 4, 7, 5, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
+  return mesh;
+}
+
 inline Scene press_scene() {
   Scene scene("press");
   scene.add_surface("tissue", sheet(), {.stiffness = 300.0});

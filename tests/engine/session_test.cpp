@@ -164,14 +164,6 @@ TEST(Session, AnUnusableSceneIsASentence) {
 }
 
 TEST(Session, AToolIsHeldByItsHandleAndLiesOnARigidFloor) {
-  const auto box = [](float half) {
-    MeshData mesh;
-    for (int i = 0; i < 8; ++i)
-      mesh.position.push_back({i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half});
-    mesh.index = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 1, 3, 0, 3, 2,
-                  4, 6, 7, 4, 7, 5, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
-    return mesh;
-  };
   Scene scene;
   scene.add_rigid_body("floor", box(0.1f), {.fixed = true}, {.position = {0, -0.1, 0}});
   scene.add_rigid_body("stylus", box(0.01f), {.density = 500.0}, {.position = {0, 0.02, 0}});

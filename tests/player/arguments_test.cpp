@@ -81,6 +81,7 @@ TEST_F(Arguments, WhatIsMisspelledIsAnsweredWithWhatWasMeant) {
   expect_refused({"inspect", "hnd"}, 1, "did you mean hand?");
   expect_refused({"run", "zzzzzzzzz"}, 1, "pliant run --list");
   expect_refused({"inspct", "x"}, 2, "did you mean inspect?");
+  expect_refused({"rnu", "x"}, 2, "did you mean run?");
   expect_refused({"run", "--lockstop"}, 2, "unknown option '--lockstop'; did you mean --lockstep?");
   expect_refused({"run", "--frame=2"}, 2, "unknown option '--frame'; did you mean --frames?");
   expect_refused({"study", "linearization"}, 2, "did you mean linearisation?");
