@@ -15,6 +15,7 @@
 #include "content/mesh/mesh_weld.h"
 #include "content/mesh/mesh_winding.h"
 #include "content/mesh/painted.h"
+#include "content/mesh/touch_mesh.h"
 #include "runtime/hash.h"
 
 namespace pliant {
@@ -193,45 +194,57 @@ Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
 
 }  // namespace
 
-Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object,
-                             const MeshOptions& options) {
+Result<TouchMesh> build_touch_mesh(const std::string& name, std::span<const Primitive> primitives,
+                                   const mat4& to_object, const MeshOptions& options, const std::atomic<bool>* stop) {
+  const Error stopped{"mesh `" + name + "`", "reading it was stopped"};
+  const auto stops = [&] { return stop != nullptr && stop->load(std::memory_order_relaxed); };
   Result<Gathered> gathered = gather(name, primitives, to_object);
   if (!gathered) return gathered.error();
-  BuiltMesh built;
-  Mesh& mesh = built.mesh;
+  TouchMesh touch;
+  touch.gathered = std::move(*gathered);
+  Mesh& mesh = touch.mesh;
   mesh.name = name;
+  if (stops()) return stopped;
 
-  Welded welded = weld(*gathered, built.report);
-  if (welded.triangle.empty())
+  touch.welded = weld(touch.gathered, touch.report);
+  if (touch.welded.triangle.empty())
     return Error{"mesh `" + name + "`",
                  "no triangle with an area is left; give it a surface, or remove the mesh from its node"};
-  lay_out(welded, mesh);
-  {
-    Corners corners = corners_of(mesh);
-    const std::vector<SideAgainst> against = connect_triangles(mesh, corners, built.report);
-    if (options.mend_winding) {
-      const std::vector<std::uint8_t> turned =
-          find_wrong_winding(primitives, to_object, welded, against, mesh, *gathered, built.report);
-      if (!turned.empty()) {
-        turn_over(turned, mesh, welded, *gathered);
-        corners = corners_of(mesh);
-        connect_triangles(mesh, corners, built.report);
-      }
+  lay_out(touch.welded, mesh);
+  if (stops()) return stopped;
+  touch.corners = corners_of(mesh);
+  const std::vector<SideAgainst> against = connect_triangles(mesh, touch.corners, touch.report);
+  if (options.mend_winding) {
+    const std::vector<std::uint8_t> turned =
+        find_wrong_winding(primitives, to_object, touch.welded, against, mesh, touch.gathered, touch.report);
+    if (!turned.empty()) {
+      turn_over(turned, mesh, touch.welded, touch.gathered);
+      touch.corners = corners_of(mesh);
+      connect_triangles(mesh, touch.corners, touch.report);
     }
-    measure_vertices(mesh, corners, built.report);
-    find_creases(primitives, to_object, *gathered, welded, options.crease_angle, mesh);
-    split_at_creases(corners, mesh);
   }
+  if (stops()) return stopped;
+  measure_vertices(mesh, touch.corners, touch.report);
+  find_creases(primitives, to_object, touch.gathered, touch.welded, options.crease_angle, mesh);
+  split_at_creases(touch.corners, mesh);
+  mesh.of_source = touch.welded.touch_vertex;
+  return touch;
+}
+
+Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object,
+                             const MeshOptions& options) {
+  Result<TouchMesh> touch = build_touch_mesh(name, primitives, to_object, options);
+  if (!touch) return touch.error();
+  BuiltMesh built;
+  built.mesh = std::move(touch->mesh);
+  built.report = touch->report;
+  touch->corners = {};
   if (options.reach) {
-    const double reach = *options.reach > 0.0 ? *options.reach : default_reach(mesh);
-    const FinerMesh finer = make_finer(primitives, to_object, *gathered, welded, mesh, reach);
-    if (!finer.primitives.empty()) {
-      mesh.of_source = welded.touch_vertex;
-      return build_finer(finer, std::move(built));
-    }
+    const double reach = *options.reach > 0.0 ? *options.reach : default_reach(built.mesh);
+    const FinerMesh finer = make_finer(primitives, to_object, touch->gathered, touch->welded, built.mesh, reach);
+    if (!finer.primitives.empty()) return build_finer(finer, std::move(built));
   }
-  if (Status s = finish(primitives, to_object, *gathered, welded, built); !s) return s.error();
-  mesh.of_source = std::move(welded.touch_vertex);
+  if (Status s = finish(primitives, to_object, touch->gathered, touch->welded, built); !s) return s.error();
   return built;
 }
 

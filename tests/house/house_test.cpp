@@ -29,7 +29,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"engine", {"runtime", "components", "systems", "content"}},
     {"player", {"runtime", "components", "systems", "content", "engine"}},
     {"editor", {"runtime", "components", "systems", "content", "engine", "player"}},
-    {"bench", {"runtime", "components", "systems", "content", "engine", "player", "tests", "shaders"}},
+    {"bench", {"runtime", "components", "systems", "content", "engine", "player", "editor", "tests", "shaders"}},
     {"tests", {"runtime", "components", "systems", "content", "engine", "player", "editor", "shaders"}},
     {"examples", {}},
     {"fuzz", {"runtime", "components", "systems", "content", "engine"}},
@@ -46,6 +46,7 @@ const std::map<std::string, std::set<std::string>> kRooms{
     {"content/mesh", {"content/level"}},
     {"content/tets", {"content/level", "content/mesh", "content/files"}},
     {"content/level", {"content/mesh", "content/tets", "content/files"}},
+    {"editor/paint", {}},
 };
 
 // "systems/touch" of "systems/touch/foot.h".

@@ -1,0 +1,46 @@
+// What is painted on one primitive: a persistent array of floats. It never changes; `with` makes a new one that shares
+// every chunk that is not touched, so an undo stack pays for a stroke what the stroke touched.
+// Copies are cheap and may be read on any thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace pliant {
+
+struct IndexedValue {
+  std::uint32_t index;
+  float value;
+};
+
+class PaintLayer {
+ public:
+  static constexpr std::size_t kChunk = 4096;  // values
+
+  PaintLayer() = default;
+  static PaintLayer from(std::span<const float> values);
+  static PaintLayer constant(std::size_t count, float value);  // all chunks are one
+
+  std::size_t size() const { return size_; }
+  float value(std::size_t i) const { return (*chunks_[i / kChunk])[i % kChunk]; }
+  // In order: of several values for one index the last counts. A chunk whose bits stay as they are stays shared.
+  PaintLayer with(std::span<const IndexedValue> changes) const;
+  std::vector<float> flatten() const;
+
+  // To the bit: NaN equals itself, 0 differs from -0. Shared chunks are not read.
+  friend bool operator==(const PaintLayer& a, const PaintLayer& b);
+
+  // [bytes] of the chunks that only this layer holds, seen from `other`: what keeping both costs over `other` alone.
+  std::size_t bytes_not_shared_with(const PaintLayer& other) const;
+
+ private:
+  using Chunk = std::array<float, kChunk>;  // values behind the last are 0
+  std::size_t size_ = 0;
+  std::vector<std::shared_ptr<const Chunk>> chunks_;
+};
+
+}  // namespace pliant

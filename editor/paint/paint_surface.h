@@ -1,0 +1,166 @@
+// The surface that is painted: a level's mesh, welded, with its creases and its triangle tree, and which vertices of
+// the file stand behind each welded one. Made once per mesh, on any thread; never changes; read by every stroke.
+//
+// Surface frame: the mesh frame through the node's linear part, so that lengths are those of the world [m].
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "components/mesh.h"
+#include "content/level/level.h"
+#include "content/mesh/mesh_surface.h"
+#include "content/mesh/mesh_weld.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// A vertex of the file.
+struct SourceVertex {
+  std::uint32_t primitive, index;
+  friend bool operator==(const SourceVertex&, const SourceVertex&) = default;
+};
+
+// A triangle of the file: its corners are index[3 * triangle ...] of the primitive.
+struct SourceTriangle {
+  std::uint32_t primitive, triangle;
+};
+
+// A place on the surface.
+struct SurfaceHit {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t triangle = kNone;  // of PaintSurface::mesh()
+  SourceTriangle source{kNone, kNone};
+  dvec3 barycentric{1, 0, 0};  // [1] of the corners of mesh().triangles[triangle]
+  dvec3 point{0};              // [m] surface frame
+  dvec3 normal{0, 1, 0};       // [1] of the flat triangle: unit, outward
+  bool back = false;           // seen from behind
+
+  bool valid() const { return triangle != kNone; }
+};
+
+struct Ray {
+  dvec3 origin{0};            // [m] surface frame
+  dvec3 direction{0, 0, -1};  // of any length but 0
+};
+
+// Where paint stops. It never leaps a gap nor goes through the surface, whatever the mask.
+struct PaintMask {
+  bool creases = false;    // at creases
+  bool primitive = false;  // at the rim of the primitive; a stroke stays on the one where it began
+  bool part = false;       // a stroke stays on the connected part where it began
+};
+
+struct ReachedVertex {
+  std::uint32_t vertex;  // of PaintSurface::mesh()
+  std::uint32_t node;    // of the topology that the mask asks for (PaintSurface::neighbours)
+  float distance;        // [m] along the surface
+};
+
+// Working memory of marches over surfaces. One per thread; any surface.
+class MarchWork {
+  friend class PaintSurface;
+  struct Item {
+    float distance;  // [m]
+    std::uint32_t node;
+  };
+  std::vector<float> distance_;         // [m] by node; infinity between calls
+  std::vector<std::uint32_t> touched_;  // nodes with a distance
+  std::vector<Item> heap_;
+};
+
+class PaintSurface {
+ public:
+  // `frame` is the linear part of the node's world matrix, or only its scale. Fails as build_mesh does, and where
+  // `frame` flattens. Once `stop` is set it soon returns an error, which nobody needs to read.
+  static Result<PaintSurface> make(const LevelMesh& mesh, const dmat3& frame, const std::atomic<bool>* stop = nullptr);
+
+  const Mesh& mesh() const { return mesh_; }  // surface frame; without zones and painted factors
+  const dmat3& frame() const { return frame_; }
+  const MeshReport& report() const { return report_; }
+
+  // The nearest front face along the ray; where it meets none, the nearest back face. Invalid: it meets nothing.
+  SurfaceHit hit(const Ray& ray) const;
+  // The closest place that is not farther than `within` [m]; invalid where there is none.
+  SurfaceHit closest(dvec3 point, double within) const;
+
+  // Welded vertices not farther than `radius` [m] from the hit along the surface, each once, about nearest first. Of
+  // the mask, `creases` and `primitive` count.
+  std::vector<ReachedVertex> footprint(const SurfaceHit& hit, double radius, const PaintMask& mask,
+                                       MarchWork& work) const;
+  // Triangles that lie in reach of the hit: at least partly within `radius` of it in space, and not reached through the
+  // surface or over a gap. Ascending.
+  std::vector<std::uint32_t> triangles_under(const SurfaceHit& hit, double radius, MarchWork& work) const;
+
+  // Welded vertices of all triangles that hang together with the hit's; ascending. Of the mask, `creases` and
+  // `primitive` count.
+  std::vector<std::uint32_t> connected(const SurfaceHit& hit, const PaintMask& mask = {}) const;
+  // Welded vertices of a primitive's triangles; ascending.
+  std::vector<std::uint32_t> of_primitive(std::uint32_t primitive) const;
+  // Welded vertices in a box (surface frame); where it holds none, the one nearest to it. Ascending.
+  std::vector<std::uint32_t> in_box(const Box& box) const;
+
+  // Vertices of the file at a welded vertex. A seam has several: what is painted on one is painted on all.
+  std::span<const SourceVertex> sources(std::uint32_t vertex) const {
+    return {sources_.data() + source_first_[vertex], sources_.data() + source_first_[vertex + 1]};
+  }
+  // Nothing: no triangle that is touched uses it.
+  std::optional<std::uint32_t> welded(SourceVertex source) const;
+
+  std::size_t primitive_count() const { return first_vertex_.size() - 1; }
+  std::size_t vertices_of(std::uint32_t primitive) const {
+    return first_vertex_[primitive + 1] - first_vertex_[primitive];
+  }
+  SourceTriangle source_triangle(std::uint32_t triangle) const { return source_triangle_[triangle]; }
+  std::uint32_t part_count() const { return part_count_; }
+  std::uint32_t part_of(std::uint32_t triangle) const { return part_[mesh_.triangles[triangle].x]; }  // < part_count
+
+  // Calls visit(vertex) for the welded vertices around a node that a footprint has returned, once per triangle and
+  // corner: those inside the surface twice, on a rim once.
+  template <class Visit>
+  void neighbours(std::uint32_t node, const PaintMask& mask, Visit visit) const {
+    const Topology& topology = topology_of(mask);
+    for (std::uint32_t c = topology.corners.first[node]; c < topology.corners.first[node + 1]; ++c) {
+      const uvec3 t = mesh_.triangles[topology.corners.corner[c] / 3];
+      const auto i = static_cast<int>(topology.corners.corner[c] % 3);
+      visit(t[(i + 1) % 3]);
+      visit(t[(i + 2) % 3]);
+    }
+  }
+
+ private:
+  // How the triangles hang together. A node stands for a welded vertex. Where creases stop, a vertex is one node for
+  // each fan of triangles between creases.
+  struct Topology {
+    Corners corners;                    // of nodes
+    std::vector<uvec3> triangle;        // nodes; empty: those of the mesh
+    std::vector<std::uint32_t> vertex;  // of each node; empty: itself
+  };
+
+  static Topology split_at_creases(const Mesh& mesh, const Corners& corners);
+  const Topology& topology_of(const PaintMask& mask) const {
+    return mask.creases && !smooth_.triangle.empty() ? smooth_ : whole_;
+  }
+  const uvec3& nodes_of(const Topology& topology, std::uint32_t triangle) const {
+    return topology.triangle.empty() ? mesh_.triangles[triangle] : topology.triangle[triangle];
+  }
+  void find_sources(const Gathered& gathered, const Welded& welded);
+  void find_parts();
+  SurfaceHit at(std::uint32_t triangle, const dvec3& barycentric) const;
+  void march(const SurfaceHit& hit, double radius, const PaintMask& mask, MarchWork& work) const;
+
+  Mesh mesh_;
+  dmat3 frame_{1};
+  MeshReport report_;
+  Topology whole_, smooth_;                      // smooth_ is empty where the mesh has no creases
+  std::vector<SourceTriangle> source_triangle_;  // of each triangle
+  std::vector<std::uint32_t> first_vertex_;      // of each primitive in mesh_.of_source, and one past the last
+  std::vector<std::uint32_t> source_first_;      // vertices + 1: run of each welded vertex in sources_
+  std::vector<SourceVertex> sources_;
+  std::vector<std::uint32_t> part_;  // of each welded vertex
+  std::uint32_t part_count_ = 0;
+};
+
+}  // namespace pliant
