@@ -47,6 +47,7 @@ struct NodeMotion {       // PLIANT_motion
 struct LevelMesh {
   std::string name;
   std::vector<Primitive> primitives;
+  std::int32_t source = -1;  // /meshes/i of Level::source; -1: new
 };
 
 struct LevelNode {
@@ -66,6 +67,7 @@ struct LevelNode {
   std::optional<Handle6> handle;         // PLIANT_handle
   std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
   std::optional<NodeMotion> motion;      // PLIANT_motion
+  std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, as a copy of a node is
 
   bool has_pliant() const;  // any of those
 };

@@ -26,6 +26,9 @@ class PaintLayer {
   static PaintLayer constant(std::size_t count, float value);  // all chunks are one
 
   std::size_t size() const { return size_; }
+  std::size_t chunk_count() const { return chunks_.size(); }
+  // kChunk values; two chunks at the same address are the same.
+  const float* chunk(std::size_t i) const { return chunks_[i]->data(); }
   float value(std::size_t i) const { return (*chunks_[i / kChunk])[i % kChunk]; }
   // In order: of several values for one index the last counts. A chunk whose bits stay as they are stays shared.
   PaintLayer with(std::span<const IndexedValue> changes) const;

@@ -11,11 +11,12 @@
 #include "content/files/limits.h"
 #include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
+#include "content/level/unit.h"
 #include "content/level_file.h"
+#include "editor/edit.h"
 #include "player/exit.h"
 #include "player/standard_streams.h"
 #include "player/study/study.h"
-#include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"
 #include "pliant/content.h"
 
@@ -192,11 +193,23 @@ void add_study(CLI::App& app, StudyOptions& options) {
   verb->footer("Example:\n  pliant study all --quick");
 }
 
-// Verbs that are promised and not there yet: whatever they are given, they say so.
-void add_not_yet(CLI::App& app, const char* name, const char* what, const char* footer) {
-  CLI::App* verb = app.add_subcommand(name, what);
-  verb->allow_extras()->prefix_command(false);
-  verb->footer(footer);
+void add_edit(CLI::App& app, EditOptions& options, std::string& unit) {
+  CLI::App* verb = app.add_subcommand("edit", "the editor: from a mesh to a level that can be touched");
+  verb->add_option("file", options.file, "a level, or any mesh; none: the start page");
+  verb->add_option("--unit", unit, "of a bare mesh: m, cm, mm, in, or metres for one unit")->capture_default_str();
+  verb->add_option_function<std::string>(
+      "--size",
+      [&options](const std::string& text) {
+        RunOptions size;
+        if (const std::string wrong = parse_size(text, size); !wrong.empty()) throw CLI::ValidationError(wrong);
+        options.width = size.width;
+        options.height = size.height;
+      },
+      "of the window, WxH [1600x900]");
+  verb->add_option("--input", options.input, "a script of what a hand does (docs/editor.md)");
+  verb->add_option("--out", options.out, "folder of the script's screenshots")->capture_default_str();
+  verb->add_option("--config", options.config, "folder of settings; else ~/.config/pliant");
+  verb->footer("Examples:\n  pliant edit\n  pliant edit organ.glb --unit mm");
 }
 
 // The option that is not known and the one that was probably meant; "" where none is near.
@@ -255,7 +268,9 @@ int parse_and_run(int argc, const char* const* argv) {
   verb->footer("Example:\n  pliant devices --json");
   StudyOptions study_options;
   add_study(app, study_options);
-  add_not_yet(app, "edit", "the editor (not yet built)", "Example:\n  pliant edit level.gltf");
+  EditOptions edit_options;
+  std::string edit_unit = "m";
+  add_edit(app, edit_options, edit_unit);
 
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const auto is_asked = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
@@ -274,7 +289,11 @@ int parse_and_run(int argc, const char* const* argv) {
   if (name == "validate") return validate(validated);
   if (name == "devices") return devices(devices_json);
   if (name == "study") return study(study_options);
-  return fail(kUsage, {name, "not yet built; see `pliant --help` for what is"});
+  const Result<double> unit = parse_unit(edit_unit);
+  if (!unit) return fail(kUsage, unit.error());
+  edit_options.unit = *unit;
+  const Status edited = edit(edit_options);
+  return edited ? kDone : fail(kFailed, edited.error());
 }
 
 }  // namespace

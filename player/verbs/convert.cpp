@@ -6,13 +6,13 @@
 #include "content/files/exr.h"
 #include "content/files/file_io.h"
 #include "content/files/image.h"
+#include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "player/exit.h"
 #include "player/interrupt.h"
 #include "player/print.h"
 #include "player/verbs/panorama_preview.h"
-#include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {

@@ -7,6 +7,7 @@
 
 #include "content/keys/enum_words.h"
 #include "content/level/level_budget.h"
+#include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/tet_file.h"
@@ -16,7 +17,6 @@
 #include "player/verbs/content_folder.h"
 #include "player/verbs/inspect_panorama.h"
 #include "player/verbs/inspect_tets.h"
-#include "player/verbs/unit.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {

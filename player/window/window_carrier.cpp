@@ -42,7 +42,7 @@ void Carrier::grab(const dvec3& point, const dvec3& device) {
   led_ = false;
 }
 
-void Carrier::follow(const Ray& ray, const Viewpoint& view) {
+void Carrier::follow(const ViewRay& ray, const Viewpoint& view) {
   if (!held_) return;
   const dvec3 forward = normalize(view.target - view.eye);
   const double along = dot(ray.along, forward);

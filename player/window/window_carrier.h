@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "components/world.h"
-#include "player/window/camera_control.h"
+#include "window/camera_control.h"
 
 namespace pliant {
 
@@ -25,7 +25,7 @@ class Carrier {
   Entity taken() const { return led_ ? kNoEntity : device_; }  // the device, once it is the mouse's
   void release();
   bool holds() const { return held_.has_value(); }
-  void follow(const Ray& ray, const Viewpoint& view);
+  void follow(const ViewRay& ray, const Viewpoint& view);
   void push(double clicks, const Viewpoint& view);  // > 0: away from the eye
   void update(double dt);                           // [s] since the last time; the device glides on
   dvec3 position() const { return position_; }      // [m] world, of the device

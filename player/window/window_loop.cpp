@@ -83,7 +83,7 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     say("drag `" + session.keeper.summaries()[*carried_].name + "` with the left button to move it", false);
 }
 
-Ray WindowLoop::ray() const {
+ViewRay WindowLoop::ray() const {
   return ray_through(camera_.viewpoint(), cursor_.x(), cursor_.y(), s_.window.width(), s_.window.height());
 }
 

@@ -5,12 +5,12 @@
 #include <future>
 #include <optional>
 
-#include "player/window/camera_control.h"
 #include "player/window/overlay.h"
 #include "player/window/window_carrier.h"
 #include "player/window/window_picture.h"
 #include "player/window/window_pointer.h"
 #include "player/window/window_session.h"
+#include "window/camera_control.h"
 
 namespace pliant {
 
@@ -45,7 +45,7 @@ class WindowLoop {
   Status learn(const PictureDone& done);
   std::filesystem::path next_frame();
   std::filesystem::path next_screenshot() const;
-  Ray ray() const;
+  ViewRay ray() const;
   bool looks_around() const { return drag_ == Drag::kOrbit || drag_ == Drag::kPan; }
 
   WindowSession& s_;
@@ -67,7 +67,7 @@ class WindowLoop {
   MouseButton dragging_ = MouseButton::kLeft;
   double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed
   std::optional<PickAnswer> answer_;           // the newest
-  Ray asked_ray_;                              // of the question under way
+  ViewRay asked_ray_;                          // of the question under way
   std::uint64_t questions_ = 0, decides_ = 0;  // asked so far; the one whose answer decides a press
   bool pointed_ = false, close_ = false, wants_mouse_ = false;
   bool begun_ = false;                    // a picture that is shown has been ordered

@@ -198,7 +198,11 @@ void WindowLoop::handle(const InputEvent& event) {
       wheel(event);
       break;
     case InputKind::kKey:
-      key(event.key);
+      if (!event.repeated) key(event.key);
+      break;
+    case InputKind::kKeyUp:
+    case InputKind::kText:
+    case InputKind::kFocus:
       break;
     case InputKind::kDrop:
       open(event.file);

@@ -11,8 +11,8 @@
 
 #include "components/world.h"
 #include "player/window/overlay.h"
-#include "player/window/window.h"
 #include "systems/visual/gpu/framebuffer.h"
+#include "window/window.h"
 
 namespace pliant {
 

@@ -67,7 +67,7 @@ double Pointer::depth_goal() const {
   return kStep * reach_ * (held_ ? std::max(deep_, standing_) : standing_);
 }
 
-void Pointer::see(const std::optional<Picked>& seen, const Ray& ray) {
+void Pointer::see(const std::optional<Picked>& seen, const ViewRay& ray) {
   if (!seen) {
     hit_.reset();
     aside_ = ray.from + away_ * ray.along;  // this ray passes everything, so all of it is outside

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "components/world.h"
-#include "player/window/camera_control.h"
+#include "window/camera_control.h"
 
 namespace pliant {
 
@@ -38,7 +38,7 @@ class Pointer {
   Pointer(const World& world, double radius, const Viewpoint& view);
 
   // What the picture shows along a ray; nothing: the surroundings.
-  void see(const std::optional<Picked>& seen, const Ray& ray);
+  void see(const std::optional<Picked>& seen, const ViewRay& ray);
   bool over_touchable() const { return hit_ && hit_->reach > 0; }  // of the deformables, from outside
 
   void hold(bool held) { held_ = held; }

@@ -14,7 +14,7 @@
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
 #include "player/run/frames.h"
-#include "player/window/window.h"
+#include "window/window.h"
 
 namespace pliant {
 

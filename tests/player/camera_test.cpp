@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "player/window/camera_control.h"
 #include "systems/visual/viewpoint.h"
+#include "window/camera_control.h"
 
 namespace pliant {
 namespace {
@@ -140,7 +140,7 @@ TEST(Camera, FollowsSmoothlyAtAnyFrameRate) {
 TEST(Camera, ARayThroughAPixelMeetsWhatIsDrawnThere) {
   for (const double x : {0.0, 200.5, 640.0})
     for (const double y : {0.0, 111.0, 480.0}) {
-      const Ray ray = ray_through(kHome, x, y, kWidth, kHeight);
+      const ViewRay ray = ray_through(kHome, x, y, kWidth, kHeight);
       EXPECT_NEAR(length(ray.along), 1.0, 1e-12);
       const dvec2 at = pixel_of(kHome, ray.from + 3.0 * ray.along);
       EXPECT_NEAR(at.x, x, 2e-3);

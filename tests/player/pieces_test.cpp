@@ -9,6 +9,7 @@
 
 #include "components/soft_body.h"
 #include "content/files/image.h"
+#include "content/level/unit.h"
 #include "engine/recording.h"
 #include "engine/soft_clock.h"
 #include "engine/sources.h"
@@ -20,7 +21,6 @@
 #include "player/run/frames.h"
 #include "player/run/tool_words.h"
 #include "player/verbs/panorama_preview.h"
-#include "player/verbs/unit.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/soft/soft_state.h"

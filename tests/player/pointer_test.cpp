@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kReach = 0.04;  // [m]
 const Viewpoint kAbove{.eye = {0, 1, 0.2}, .target = {0, 0, 0}};
-const Ray kDown{{0, 1, 0}, {0, -1, 0}};
+const ViewRay kDown{{0, 1, 0}, {0, -1, 0}};
 
 // A plate of 0.2 m in y = 0 that gives way, and a table that does not.
 struct Scene {
@@ -99,7 +99,7 @@ TEST(Pointer, WhereNothingIsSeenTheProbeGoesWithTheRayThatSawNothing) {
   Pointer pointer(scene.world, 0.0, kAbove);
   pointer.see(on(scene.plate, {0, 0, 0}, {0, 0, 0}), kDown);
   settled(pointer);
-  const Ray aside{{0, 1, 0}, normalize(dvec3(0.5, -1, 0))};
+  const ViewRay aside{{0, 1, 0}, normalize(dvec3(0.5, -1, 0))};
   pointer.see(std::nullopt, aside);
   const dvec3 at = pointer.update(0.01) - aside.from;
   EXPECT_LT(length(cross(at, aside.along)), 1e-12);
@@ -176,7 +176,7 @@ TEST(Carrier, WhatWasTakenHoldOfStaysUnderTheCursorAtItsDistance) {
   carrier->follow(ray_through(view, 10, 10, 640, 480), view);
   EXPECT_EQ(carrier->position(), before) << "it moves without being held";
   carrier->grab(grabbed, before);
-  const Ray ray = ray_through(view, 400, 150, 640, 480);
+  const ViewRay ray = ray_through(view, 400, 150, 640, 480);
   const auto arrive = [&] {
     for (int i = 0; i < 100; ++i) carrier->update(0.1);
   };
@@ -203,7 +203,7 @@ TEST(Carrier, AJumpOfThePointerBecomesAGlideThatStopsWhereItIsLetGo) {
   ASSERT_TRUE(carrier);
   const Viewpoint view{.eye = {0.1, 0, 1}, .target = {0.1, 0, 0}};
   carrier->grab({0.1, 0, 0}, {0.1, 0, 0});
-  const Ray right{view.eye, normalize(dvec3(0.25, 0, -1))};  // 0.25 m aside, in the tool's plane
+  const ViewRay right{view.eye, normalize(dvec3(0.25, 0, -1))};  // 0.25 m aside, in the tool's plane
   carrier->follow(right, view);
   EXPECT_EQ(carrier->position(), dvec3(0.1, 0, 0));
   int turns = 0;

@@ -1,4 +1,4 @@
-#include "player/window/camera_control.h"
+#include "window/camera_control.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kNearest = 0.05, kFarthestAway = 20.0;  // [1] of the scene's s
 
 }  // namespace
 
-Ray ray_through(const Viewpoint& view, double x, double y, int width, int height) {
+ViewRay ray_through(const Viewpoint& view, double x, double y, int width, int height) {
   const dvec3 forward = normalize(view.target - view.eye);
   const dvec3 right = normalize(cross(forward, view.up)), up = cross(right, forward);
   const double slope = std::tan(0.5 * static_cast<double>(view.yfov));
@@ -59,6 +59,18 @@ void CameraControl::look_from(double azimuth, double elevation) {
 void CameraControl::frame() {
   if (!scene_.empty()) goal_.target = dvec3(scene_.center());
   goal_.distance = 0.5 * size_ / std::sin(0.5 * static_cast<double>(yfov_));
+}
+
+void CameraControl::frame(const Box& box) {
+  scene_ = box;
+  size_ = std::max(1e-6, static_cast<double>(box.diagonal()));
+  frame();
+}
+
+bool CameraControl::moving() const {
+  return length(goal_.target - shown_.target) > 1e-4 * goal_.distance ||
+         std::abs(goal_.distance / shown_.distance - 1.0) > 1e-4 || std::abs(goal_.azimuth - shown_.azimuth) > 1e-4 ||
+         std::abs(goal_.elevation - shown_.elevation) > 1e-4;
 }
 
 void CameraControl::home() {

@@ -1,4 +1,4 @@
-#include "player/window/window_input.h"
+#include "window/window_input.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -7,12 +7,12 @@
 namespace pliant {
 
 // From the eye through a pixel.
-struct Ray {
+struct ViewRay {
   dvec3 from{0};          // [m] world
   dvec3 along{0, 0, -1};  // [1] unit
 };
 // Pixels count from the upper left corner.
-Ray ray_through(const Viewpoint& view, double x, double y, int width, int height);
+ViewRay ray_through(const Viewpoint& view, double x, double y, int width, int height);
 
 class CameraControl {
  public:
@@ -26,7 +26,9 @@ class CameraControl {
   void zoom(double steps);                           // of a wheel, > 0: nearer
   void look_from(double azimuth, double elevation);  // [rad]
   void frame();                                      // all of the scene, from where it is looked at now
+  void frame(const Box& box);                        // this from now on
   void home();
+  bool moving() const;     // what it shows is not yet what was asked for
   void update(double dt);  // [s] since the last call
 
   Viewpoint viewpoint() const;

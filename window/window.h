@@ -5,12 +5,28 @@
 #include <string>
 #include <vector>
 
-#include "player/window/window_input.h"
 #include "runtime/result.h"
+#include "window/window_input.h"
 
 struct GLFWwindow;
 
 namespace pliant {
+
+// A context without a window that has the textures and buffers of a window's, for pictures on another thread.
+class SharedContext {
+ public:
+  ~SharedContext();  // on the window's thread, before the window
+  SharedContext(const SharedContext&) = delete;
+  SharedContext& operator=(const SharedContext&) = delete;
+  // Current on the calling thread until give().
+  void take();
+  void give();
+
+ private:
+  friend class Window;
+  SharedContext() = default;
+  GLFWwindow* handle_ = nullptr;
+};
 
 class Window {
  public:
@@ -36,7 +52,10 @@ class Window {
   void give_context();
   void take_context();
   void present();  // shows what was drawn; waits for the display's next picture. From the context's thread
+  Result<std::unique_ptr<SharedContext>> share();
   void hide_cursor(bool hidden);
+  std::string clipboard() const;
+  void set_clipboard(const std::string& text);
   int width() const;    // [pixel] of what is drawn into
   int height() const;   // [pixel]
   float scale() const;  // [1] of text, 1 on an ordinary display

@@ -1,4 +1,4 @@
-#include "player/window/display_loss.h"
+#include "window/display_loss.h"
 
 #include <dlfcn.h>
 

@@ -1,4 +1,4 @@
-// What a hand does to the window: the same events whether they come from GLFW or from a file.
+// What a hand does to a window: the same events whether they come from GLFW or from a file.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,16 @@
 
 namespace pliant {
 
-enum class InputKind : std::uint8_t { kMove, kPress, kRelease, kWheel, kKey, kDrop, kClose };
+enum class InputKind : std::uint8_t { kMove, kPress, kRelease, kWheel, kKey, kKeyUp, kText, kDrop, kFocus, kClose };
 enum class MouseButton : std::uint8_t { kLeft, kMiddle, kRight };
-enum ModifierBit : std::uint8_t { kShift = 1, kControl = 2, kAlt = 4 };
+enum ModifierBit : std::uint8_t { kShift = 1, kControl = 2, kAlt = 4, kSuper = 8 };
 
 struct InputEvent {
   InputKind kind = InputKind::kMove;
   double x = 0, y = 0;  // [pixel] from the upper left corner; of a wheel, y: clicks, > 0 away from the hand
   MouseButton button = MouseButton::kLeft;
-  int key = 0;                 // as GLFW numbers them
+  int key = 0;                 // as GLFW numbers them; of kText: the code point
+  bool repeated = false;       // of kKey: held down
   std::uint8_t modifiers = 0;  // ModifierBit
   std::string file;            // that was dropped
 };

@@ -1,4 +1,4 @@
-#include "player/verbs/unit.h"
+#include "content/level/unit.h"
 
 #include <fmt/format.h>
 

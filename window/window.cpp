@@ -1,4 +1,4 @@
-#include "player/window/window.h"
+#include "window/window.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "player/window/display_loss.h"
 #include "runtime/printable.h"
+#include "window/display_loss.h"
 
 namespace pliant {
 namespace {
@@ -19,7 +19,7 @@ Window& window_of(GLFWwindow* handle) {
 
 std::uint8_t modifiers_of(int mods) {
   return static_cast<std::uint8_t>((mods & GLFW_MOD_SHIFT ? kShift : 0) | (mods & GLFW_MOD_CONTROL ? kControl : 0) |
-                                   (mods & GLFW_MOD_ALT ? kAlt : 0));
+                                   (mods & GLFW_MOD_ALT ? kAlt : 0) | (mods & GLFW_MOD_SUPER ? kSuper : 0));
 }
 
 std::uint8_t modifiers_now(GLFWwindow* handle) {
@@ -112,8 +112,16 @@ void Window::connect(GLFWwindow* handle) {
     window_of(w).add({.kind = InputKind::kWheel, .y = clicks, .modifiers = modifiers_now(w)});
   });
   glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int, int action, int mods) {
-    if (action == GLFW_PRESS) window_of(w).add({.kind = InputKind::kKey, .key = key, .modifiers = modifiers_of(mods)});
+    window_of(w).add({.kind = action == GLFW_RELEASE ? InputKind::kKeyUp : InputKind::kKey,
+                      .key = key,
+                      .repeated = action == GLFW_REPEAT,
+                      .modifiers = modifiers_of(mods)});
   });
+  glfwSetCharCallback(handle, [](GLFWwindow* w, unsigned code_point) {
+    window_of(w).add({.kind = InputKind::kText, .key = static_cast<int>(code_point)});
+  });
+  glfwSetWindowFocusCallback(
+      handle, [](GLFWwindow* w, int focused) { window_of(w).add({.kind = InputKind::kFocus, .key = focused}); });
   glfwSetDropCallback(handle, [](GLFWwindow* w, int count, const char** files) {
     if (count > 0) window_of(w).add({.kind = InputKind::kDrop, .file = files[0]});
   });
@@ -145,6 +153,36 @@ void Window::take_context() {
 
 void Window::present() {
   glfwSwapBuffers(handle_);
+}
+
+std::string Window::clipboard() const {
+  const char* text = glfwGetClipboardString(handle_);
+  return text ? text : "";
+}
+
+void Window::set_clipboard(const std::string& text) {
+  glfwSetClipboardString(handle_, text.c_str());
+}
+
+Result<std::unique_ptr<SharedContext>> Window::share() {
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  std::unique_ptr<SharedContext> context(new SharedContext());
+  context->handle_ = glfwCreateWindow(1, 1, "Pliant", nullptr, handle_);
+  if (!context->handle_)
+    return Error{"window", "the display gives no second OpenGL context" + reason() + "; update the GPU's driver"};
+  return context;
+}
+
+SharedContext::~SharedContext() {
+  if (handle_ && !Window::lost()) glfwDestroyWindow(handle_);
+}
+
+void SharedContext::take() {
+  glfwMakeContextCurrent(handle_);
+}
+
+void SharedContext::give() {
+  glfwMakeContextCurrent(nullptr);
 }
 
 void Window::hide_cursor(bool hidden) {

@@ -1,0 +1,645 @@
+#include "editor/app/app.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/files/image.h"
+#include "editor/ui/widgets.h"
+#include "runtime/clock.h"
+#include "runtime/printable.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kTop = 44, kBar = 26;              // [point]
+constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
+constexpr double kToastSeconds = 6.0;
+constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
+constexpr float kClick = 4;                        // [point] a press that moves farther is a drag
+
+vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
+  return {c.x, c.y, c.z, alpha};
+}
+
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+bool begin_fixed(const char* name, ImVec2 low, ImVec2 high, ImGuiWindowFlags flags = 0) {
+  ImGui::SetNextWindowPos(low);
+  ImGui::SetNextWindowSize({high.x - low.x, high.y - low.y});
+  return ImGui::Begin(name, nullptr, kFixed | flags);
+}
+
+}  // namespace
+
+App::App(const EditOptions& options, Window& window) : options_(options), window_(window) {
+  std::string note;
+  settings = Settings::load(options.config, note);
+  host_.emplace(window_);
+  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
+                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
+  editor.request_close = [this] { close(); };
+  editor.jobs.wake = [] { glfwPostEmptyEvent(); };
+  actions_ = make_actions(*this);
+  tools_ = make_tools(*this);
+  panels_ = make_panels(*this);
+  if (!note.empty()) editor.say(note, Severity::kWarning);
+}
+
+App::~App() {
+  stage_.reset();
+  host_.reset();
+}
+
+Status App::run() {
+  auto stage = Stage::create(window_, [] { glfwPostEmptyEvent(); });
+  if (!stage) return stage.error();
+  stage_ = *std::move(stage);
+  if (!options_.input.empty()) {
+    auto script = ui::Script::load(options_.input);
+    if (!script) return script.error();
+    script_ = *std::move(script);
+  }
+  if (!options_.file.empty()) {
+    auto document = Document::open(options_.file, options_.unit);
+    if (!document) return document.error();
+    editor.take(*std::move(document));
+    settings.used(options_.file);
+  }
+  window_.show("Pliant");
+  std::uint64_t before = now_ns();
+  const std::uint64_t began = before;
+  std::vector<InputEvent> events;
+  while (!closing_) {
+    const bool busy = script_ || !settled() || editor.playing || dragging_view_;
+    events.clear();
+    window_.poll(events, busy ? kBusyWait : kIdleWait);
+    if (Window::lost()) return Window::loss();
+    const std::uint64_t now = now_ns();
+    editor.now = static_cast<double>(now - began) * 1e-9;
+    if (script_) {
+      ui::Script::Surroundings at;
+      at.settled = settled();
+      at.now = editor.now;
+      at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
+      at.has_said = [this](const std::string& text) {
+        return std::any_of(editor.said.begin(), editor.said.end(),
+                           [&](const Said& said) { return said.text.find(text) != std::string::npos; });
+      };
+      if (Status s = script_->next(at, events); !s) {
+        take_screenshot(fs::path(options_.out) / "failed.png");
+        return s;
+      }
+      if (script_->done() && settled()) script_.reset();
+    }
+    frame(events, static_cast<double>(now - before) * 1e-9);
+    before = now;
+    window_.present();
+  }
+  return settings.save();
+}
+
+bool App::settled() const {
+  return editor.jobs.idle() && !stage_->busy() && picture_.order == order_ && !editor.camera.moving() &&
+         !dirty_picture_;
+}
+
+ViewTool* App::tool() {
+  for (const auto& each : tools_)
+    if (editor.tool == each->name()) return each.get();
+  return tools_.empty() ? nullptr : tools_.front().get();
+}
+
+void App::take_tool(const std::string& name) {
+  if (editor.tool == name) return;
+  if (ViewTool* before = tool()) before->leave(editor);
+  editor.tool = name;
+}
+
+Panel* App::panel(const std::string& name) {
+  for (const auto& each : panels_)
+    if (name == each->name()) return each.get();
+  return nullptr;
+}
+
+void App::show_panel(const std::string& name) {
+  wanted_tab_ = name;
+  open_[name] = true;
+}
+
+std::string App::keys_of(const Action& action) const {
+  const auto bound = settings.keys.find(action.id);
+  return bound == settings.keys.end() ? action.keys : bound->second;
+}
+
+void App::do_action(const std::string& id) {
+  for (const Action& each : actions_)
+    if (each.id == id && each.enabled(editor)) {
+      each.run(editor);
+      return;
+    }
+}
+
+void App::leave_document(std::function<void()> then) {
+  if (!editor.document.dirty()) {
+    then();
+    return;
+  }
+  after_leaving_ = std::move(then);
+}
+
+void App::open(const fs::path& file) {
+  leave_document([this, file] {
+    editor.jobs.start("open", "Opening " + file.filename().string(), [file](const Jobs::Stop&) {
+      auto document = std::make_shared<Result<Document>>(Document::open(file));
+      return [document, file](Editor& to) {
+        if (!*document) {
+          to.say(document->error().message(), Severity::kError);
+          return;
+        }
+        to.take(std::move(**document));
+        to.say("Opened " + file.filename().string());
+      };
+    });
+    settings.used(file);
+  });
+}
+
+void App::new_document() {
+  leave_document([this] { editor.take(Document()); });
+}
+
+bool App::save() {
+  if (editor.document.file().empty()) {
+    do_action("file.save_as");
+    return false;
+  }
+  if (Status s = editor.document.save(); !s) {
+    editor.say(s.error().message(), Severity::kError);
+    return false;
+  }
+  settings.used(editor.document.file());
+  editor.say("Saved " + editor.document.file().filename().string());
+  return true;
+}
+
+void App::close() {
+  leave_document([this] { closing_ = true; });
+}
+
+void App::screenshot(const fs::path& file) {
+  shot_ = file;
+}
+
+void App::keys(std::span<const InputEvent> events) {
+  for (const InputEvent& event : events) {
+    if (event.kind == InputKind::kClose) close();
+    if (event.kind == InputKind::kDrop) open(event.file);
+    if (event.kind != InputKind::kKey) continue;
+    const bool typing = ImGui::GetIO().WantTextInput;
+    const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    for (const Action& action : actions_) {
+      if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
+      if (event.repeated && action.id != "edit.undo" && action.id != "edit.redo") continue;
+      if (action.enabled(editor)) action.run(editor);
+      break;
+    }
+  }
+}
+
+void App::frame(std::span<const InputEvent> events, double dt) {
+  const std::uint64_t began = now_ns();
+  host_->begin(events, dt);
+  ui::begin_widgets();
+  editor.jobs.deliver(editor);
+  keys(events);
+  if (editor.document.revision() != shown_revision_) {
+    shown_revision_ = editor.document.revision();
+    dirty_picture_ = true;
+  }
+  if (!ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive()) editor.document.end_gesture();
+  const bool was_moving = editor.camera.moving();
+  editor.camera.update(std::min(dt, 0.1));
+  dirty_picture_ |= was_moving;
+
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float scale = ui::scale();
+  const auto within = [&](double& value, float least, float most) {
+    value = std::clamp(value, static_cast<double>(least), static_cast<double>(std::max(most, least)));
+  };
+  within(settings.left, kLeastLeft, size.x / scale - kLeastRight - kLeastView);
+  within(settings.right, kLeastRight, size.x / scale - static_cast<float>(settings.left) - kLeastView);
+  within(settings.bottom, kLeastBottom, size.y / scale - kTop - kBar - kLeastView);
+  const float left = ui::px(static_cast<float>(settings.left)), right = size.x - ui::px(static_cast<float>(settings.right)),
+              top = ui::px(kTop), bar = size.y - ui::px(kBar),
+              bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
+
+  picture_ = stage_->picture();
+  draw_top();
+  draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
+  draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
+  draw_side(Panel::Place::kBottom, {left, bottom + seam}, {right, bar});
+  draw_viewport({left, top}, {right, bottom}, dt);
+  draw_bottom_bar();
+  splitter("Left edge", settings.left, true, {left - seam, top}, {left, bar}, 1);
+  splitter("Right edge", settings.right, true, {right, top}, {right + seam, bar}, -1);
+  splitter("Bottom edge", settings.bottom, false, {left, bottom}, {right, bottom + seam}, -1);
+  for (const auto& each : panels_)
+    if (each->place() == Panel::Place::kOver && open_[each->name()]) {
+      const ui::Scope scope(each->name());
+      each->draw(editor);
+    }
+  draw_toasts();
+  ask_to_leave();
+  wanted_tab_.clear();
+  host_->end();
+  order_picture();
+  extra_lines.clear();
+  if (!shot_.empty()) take_screenshot(std::exchange(shot_, {}));
+  frame_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
+  slowest_ms_ = std::max(slowest_ms_, frame_ms_);
+}
+
+void App::draw_top() {
+  const ui::Palette& p = ui::palette();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(7)));
+  begin_fixed("top", {0, 0}, {ImGui::GetIO().DisplaySize.x, ui::px(kTop)}, ImGuiWindowFlags_NoScrollbar);
+  ImGui::PopStyleVar();
+  {
+    const ui::Scope scope("Menu");
+    std::vector<std::string> groups;
+    for (const Action& action : actions_)
+      if (std::find(groups.begin(), groups.end(), action.group) == groups.end()) groups.push_back(action.group);
+    for (const std::string& group : groups) {
+      if (group.empty()) continue;
+      const std::string popup = "menu " + group;
+      ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0, 0, 0, 0));
+      if (ui::button(group.c_str())) ImGui::OpenPopup(popup.c_str());
+      ImGui::PopStyleColor();
+      ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + ui::px(2)});
+      if (ImGui::BeginPopup(popup.c_str())) {
+        for (const Action& action : actions_) {
+          if (action.group != group) continue;
+          if (action.separator) ImGui::Separator();
+          if (ui::menu_item(action.label.c_str(), keys_of(action).c_str(), action.checked && action.checked(editor),
+                            action.enabled(editor)))
+            action.run(editor);
+        }
+        ImGui::EndPopup();
+      }
+      ImGui::SameLine(0, ui::px(2));
+    }
+  }
+  // What the mouse does in the viewport.
+  ImGui::SameLine(0, ui::px(ui::kWide));
+  {
+    const ui::Scope scope("Tools");
+    for (const auto& each : tools_) {
+      if (ui::choice_button(each->name(), tool() == each.get(), each->hint(), each->usable(editor)))
+        take_tool(each->name());
+      ImGui::SameLine(0, ui::px(2));
+    }
+  }
+  // The document, in the middle of what is left; how it is shown at the right.
+  const std::string title = editor.document.title() + (editor.document.dirty() ? "  \u2022" : "");
+  const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
+  {
+    const ui::Scope scope("View mode");
+    const bool rendered = editor.view.shading == Shading::kRendered;
+    const float buttons = ui::px(160);
+    ImGui::SameLine(all - buttons - ui::px(ui::kPad));
+    if (ui::choice_button("Solid", !rendered, "The level as it is edited, with painted values as colour")) {
+      editor.view.shading = Shading::kSolid;
+      dirty_picture_ = true;
+    }
+    ImGui::SameLine(0, ui::px(2));
+    if (ui::choice_button("Rendered", rendered, "The level as it is played: materials, surroundings, shadows")) {
+      editor.view.shading = Shading::kRendered;
+      dirty_picture_ = true;
+    }
+    const float room = all - buttons - ui::px(3 * ui::kWide) - wide;
+    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(7)});
+    if (room > ui::px(620)) {
+      ImGui::AlignTextToFramePadding();
+      ImGui::PushStyleColor(ImGuiCol_Text, editor.document.dirty() ? p.text : p.dim);
+      ImGui::TextUnformatted(title.c_str());
+      ImGui::PopStyleColor();
+      ui::hint(editor.document.file().empty() ? "This level has no file yet."
+                                              : editor.document.file().string().c_str());
+    }
+  }
+  ImGui::End();
+}
+
+void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
+  const char* const kNames[] = {"left", "right", "bottom"};
+  begin_fixed(kNames[static_cast<std::size_t>(place)], low, high);
+  if (place == Panel::Place::kLeft) {
+    for (const auto& each : panels_) {
+      if (each->place() != place || !each->shown(editor)) continue;
+      const ui::Scope scope(each->name());
+      each->draw(editor);
+    }
+    ImGui::End();
+    return;
+  }
+  if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
+    for (const auto& each : panels_) {
+      if (each->place() != place || !each->shown(editor)) continue;
+      const std::string badge = each->badge(editor);
+      const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
+      const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
+                                            wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
+      ui::known_as(std::string("Tab/") + each->name());
+      if (!open) continue;
+      ImGui::BeginChild(each->name());
+      {
+        const ui::Scope scope(each->name());
+        each->draw(editor);
+      }
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    }
+    ImGui::EndTabBar();
+  }
+  ImGui::End();
+}
+
+void App::splitter(const char* name, double& place, bool vertical, ImVec2 low, ImVec2 high, double sign) {
+  begin_fixed(name, low, high, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground);
+  ImGui::SetCursorScreenPos(low);
+  ImGui::InvisibleButton("handle", {std::max(high.x - low.x, 1.0f), std::max(high.y - low.y, 1.0f)});
+  ui::known_as(name);
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive())
+    ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+  if (ImGui::IsItemActive()) {
+    const ImVec2 moved = ImGui::GetIO().MouseDelta;
+    place += sign * static_cast<double>((vertical ? moved.x : moved.y) / ui::scale());
+  }
+  const ImVec4& line = ImGui::IsItemActive() || ImGui::IsItemHovered() ? ui::palette().accent : ui::palette().line;
+  ImGui::GetWindowDrawList()->AddRectFilled(low, high, ui::color(line));
+  ImGui::End();
+}
+
+void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
+  viewport_low_ = low;
+  viewport_high_ = high;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+  begin_fixed("viewport", low, high,
+              ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
+  ImGui::PopStyleVar();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (picture_.texture != 0)
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture_.texture)), low, high, {0, 1},
+                  {1, 0});
+  ImGui::SetCursorScreenPos(low);
+  ImGui::InvisibleButton("Viewport", {high.x - low.x, high.y - low.y},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  ui::known_as("Viewport");
+  const ImGuiIO& io = ImGui::GetIO();
+  ViewportInput in;
+  in.corner = low;
+  in.x = static_cast<double>(io.MousePos.x - low.x);
+  in.y = static_cast<double>(io.MousePos.y - low.y);
+  in.dx = static_cast<double>(io.MouseDelta.x);
+  in.dy = static_cast<double>(io.MouseDelta.y);
+  in.width = std::max(1, static_cast<int>(high.x - low.x));
+  in.height = std::max(1, static_cast<int>(high.y - low.y));
+  in.over = ImGui::IsItemHovered();
+  const bool active = ImGui::IsItemActive();
+  in.pressed = in.over && ImGui::IsMouseClicked(0);
+  if (in.pressed) pressed_in_view_ = true;
+  in.held = pressed_in_view_ && ImGui::IsMouseDown(0);
+  in.released = pressed_in_view_ && ImGui::IsMouseReleased(0);
+  in.shift = io.KeyShift;
+  in.control = io.KeyCtrl;
+  in.alt = io.KeyAlt;
+  in.view = editor.camera.viewpoint();
+  in.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  in.under = picture_.picked.node;
+  in.under_at = picture_.picked.point;
+  in.dt = dt;
+  if (in.pressed) {
+    pressed_at_ = io.MousePos;
+    moved_since_press_ = false;
+  }
+  const ImVec2 away(io.MousePos.x - pressed_at_.x, io.MousePos.y - pressed_at_.y);
+  if (std::hypot(away.x, away.y) > ui::px(kClick)) moved_since_press_ = true;
+
+  // The tool has the first word, then the camera, then selecting.
+  const bool start = editor.state().nodes.empty() && editor.document.file().empty();
+  bool taken = false;
+  if (!start && !in.alt)
+    if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
+  const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
+                                                                    (in.alt || moved_since_press_) && !in.shift));
+  const bool shifts = active && (ImGui::IsMouseDragging(2, 1.0f) ||
+                                 (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
+                                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
+  dragging_view_ = turns || shifts;
+  if (shifts)
+    editor.camera.pan(in.dx, in.dy, in.height);
+  else if (turns)
+    editor.camera.orbit(in.dx, in.dy, in.height);
+  if (in.over && io.MouseWheel != 0 && !taken) editor.camera.zoom(static_cast<double>(io.MouseWheel));
+  if (in.released && !taken && !moved_since_press_) {
+    asked_ = dvec2(in.x, in.y);
+    selects_ = ++question_;
+    select_adds_ = in.shift || in.control;
+    dirty_picture_ = true;
+  } else if (in.over && (in.dx != 0 || in.dy != 0) && !dragging_view_ && !stage_->busy()) {
+    asked_ = dvec2(in.x, in.y);
+    ++question_;
+    dirty_picture_ = true;
+  }
+  if (in.released) pressed_in_view_ = false;
+  if (selects_ && picture_.question >= *selects_) {
+    editor.select(picture_.picked.node, select_adds_);
+    selects_.reset();
+    dirty_picture_ = true;
+  }
+  const NodeId hovered = in.over && !dragging_view_ ? picture_.picked.node : kNoNode;
+  if (hovered != editor.hovered) {
+    editor.hovered = hovered;
+    dirty_picture_ = true;
+  }
+  if (taken) dirty_picture_ = true;
+
+  list.PushClipRect(low, high, true);
+  if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
+  for (const auto& each : panels_) (void)each;
+  if (!picture_.trouble.empty())
+    list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
+                 picture_.trouble.c_str());
+  list.PopClipRect();
+  ImGui::End();
+  if (start) draw_start(low, high);
+}
+
+void App::draw_start(ImVec2 low, ImVec2 high) {
+  Panel* const page = panel("Start");
+  if (!page) return;
+  begin_fixed("start", low, high);
+  const ui::Scope scope("Start");
+  page->draw(editor);
+  ImGui::End();
+}
+
+void App::order_picture() {
+  if (editor.playing) dirty_picture_ = true;
+  if (!dirty_picture_ && order_ > 0) return;
+  dirty_picture_ = false;
+  const ui::Palette& p = ui::palette();
+  StageOrder order;
+  order.width = std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x));
+  order.height = std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y));
+  order.solid.state = editor.state();
+  order.solid.view = editor.camera.viewpoint();
+  order.solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  order.solid.settings = editor.view;
+  order.solid.selected = editor.selected;
+  order.solid.hovered = editor.hovered;
+  order.solid.lines = extra_lines;
+  if (ViewTool* t = tool()) t->lines(editor, order.solid.lines);
+  order.solid.above = as_vec(p.raised);
+  order.solid.below = as_vec(p.window);
+  order.solid.grid = as_vec(p.text, 0.16f);
+  order.solid.selected_color = as_vec(p.accent);
+  order.solid.hovered_color = as_vec(p.text, 0.55f);
+  if (asked_) {
+    order.question = asked_;
+    order.question_number = question_;
+    asked_.reset();
+  }
+  order_ = stage_->order(std::move(order));
+}
+
+void App::draw_bottom_bar() {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const ui::Palette& p = ui::palette();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(4)));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, p.window);
+  begin_fixed("bar", {0, size.y - ui::px(kBar)}, size, ImGuiWindowFlags_NoScrollbar);
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+  ImGui::PushFont(ui::font(ui::Type::kSmall));
+  const std::vector<std::string> under_way = editor.jobs.under_way();
+  std::string left = under_way.empty() ? (tool() ? tool()->hint() : "") : under_way.front() + " \u2026";
+  if (!editor.said.empty() && editor.now - editor.said.back().time < kToastSeconds && under_way.empty())
+    left = editor.said.back().text;
+  ImGui::PushStyleColor(ImGuiCol_Text, p.dim);
+  ImGui::TextUnformatted(printable(left).c_str());
+  const std::string right =
+      fmt::format("{} node{}   {:L} triangles   picture {:.0f} ms{}   interface {:.0f} ms", editor.state().nodes.size(),
+                  editor.state().nodes.size() == 1 ? "" : "s", picture_.triangles, picture_.draw_ms,
+                  picture_.share < 1.0 ? fmt::format(" at {:.0f} %", 100 * picture_.share) : "", frame_ms_);
+  ImGui::SameLine(size.x - ImGui::CalcTextSize(right.c_str()).x - ui::px(ui::kPad));
+  ImGui::TextUnformatted(right.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  ImGui::End();
+}
+
+// What went wrong stays in sight until it has been read.
+void App::draw_toasts() {
+  if (editor.said.empty()) return;
+  const Said& last = editor.said.back();
+  if (last.severity == Severity::kNote || editor.now - last.time > 2 * kToastSeconds) return;
+  const ui::Palette& p = ui::palette();
+  const bool error = last.severity == Severity::kError;
+  ImGui::SetNextWindowPos({0.5f * (viewport_low_.x + viewport_high_.x), viewport_high_.y - ui::px(ui::kPad)},
+                          ImGuiCond_Always, {0.5f, 1.0f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {0.8f * (viewport_high_.x - viewport_low_.x), ui::px(200)});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, p.raised);
+  ImGui::Begin("said", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PushTextWrapPos(0.75f * (viewport_high_.x - viewport_low_.x));
+  ImGui::PushStyleColor(ImGuiCol_Text, error ? p.bad : p.warning);
+  ImGui::TextUnformatted(error ? "Error" : "Warning");
+  ImGui::PopStyleColor();
+  ImGui::SameLine();
+  ImGui::TextUnformatted(printable(last.text).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+  ImGui::PopStyleColor();
+}
+
+void App::ask_to_leave() {
+  if (!after_leaving_) return;
+  const ui::Scope scope("Unsaved");
+  ImGui::OpenPopup("Unsaved changes");
+  ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 0.4f * ImGui::GetIO().DisplaySize.y}, ImGuiCond_Always,
+                          {0.5f, 0.5f});
+  if (!ImGui::BeginPopupModal("Unsaved changes", nullptr,
+                              ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar |
+                                  ImGuiWindowFlags_NoMove))
+    return;
+  ui::title("Save the changes?");
+  ui::gap();
+  ImGui::TextUnformatted(fmt::format("{} has changes that are in no file.", editor.document.title()).c_str());
+  ui::gap(ui::kPad);
+  const auto go = [&] {
+    auto then = std::exchange(after_leaving_, nullptr);
+    ImGui::CloseCurrentPopup();
+    then();
+  };
+  if (ui::strong_button("Save", nullptr, true, 110)) {
+    if (editor.document.file().empty()) {
+      after_leaving_ = nullptr;
+      ImGui::CloseCurrentPopup();
+      do_action("file.save_as");
+    } else if (save()) {
+      go();
+    }
+  }
+  ImGui::SameLine();
+  if (ui::button("Discard", "Undo could not bring them back.", true, 110)) go();
+  ImGui::SameLine();
+  if (ui::button("Cancel", nullptr, true, 110)) {
+    after_leaving_ = nullptr;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void App::take_screenshot(const fs::path& file) {
+  const int width = window_.width(), height = window_.height();
+  std::vector<std::uint8_t> bottom_up(std::size_t{4} * static_cast<std::size_t>(width * height)), rgba;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
+  const std::size_t row = std::size_t{4} * static_cast<std::size_t>(width);
+  for (std::size_t y = static_cast<std::size_t>(height); y-- > 0;)
+    rgba.insert(rgba.end(), bottom_up.begin() + static_cast<std::ptrdiff_t>(y * row),
+                bottom_up.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
+  for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
+  std::error_code ignored;
+  if (!file.parent_path().empty()) fs::create_directories(file.parent_path(), ignored);
+  const Status written = write_file(
+      file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
+  editor.say(written ? "Screenshot in " + file.string() : written.error().message(),
+             written ? Severity::kNote : Severity::kError);
+}
+
+Status edit(const EditOptions& options) {
+  auto window = Window::create(options.width, options.height);
+  if (!window) {
+    Error error = window.error();
+    error.where = "pliant edit";
+    return error;
+  }
+  App app(options, **window);
+  return app.run();
+}
+
+}  // namespace pliant

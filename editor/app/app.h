@@ -1,0 +1,92 @@
+// The program `pliant edit`: a window, its panels around the viewport, and a turn of its loop.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "editor/app/panel.h"
+#include "editor/app/settings.h"
+#include "editor/edit.h"
+#include "editor/ui/host.h"
+#include "editor/ui/script.h"
+#include "editor/viewport/stage.h"
+
+namespace pliant {
+
+class App {
+ public:
+  App(const EditOptions& options, Window& window);
+  ~App();
+  Status run();
+
+  Editor editor;
+  Settings settings;
+  Stage& stage() { return *stage_; }
+  Window& window() { return window_; }
+  const std::vector<Action>& actions() const { return actions_; }
+  const std::vector<std::unique_ptr<ViewTool>>& tools() const { return tools_; }
+  ViewTool* tool();
+  void take_tool(const std::string& name);
+  Panel* panel(const std::string& name);
+  void show_panel(const std::string& name);  // its tab comes to the front; a dialog opens
+  bool is_open(const std::string& name) const { return open_.contains(name) && open_.at(name); }  // of a dialog
+  void close_panel(const std::string& name) { open_[name] = false; }
+  std::string keys_of(const Action& action) const;  // as bound now
+  void do_action(const std::string& id);
+
+  // Opens a file, asking first where something is not saved.
+  void open(const std::filesystem::path& file);
+  void new_document();
+  bool save();  // false: asks for a name, or failed
+  // Runs `then` at once, or after asking what to do with unsaved changes.
+  void leave_document(std::function<void()> then);
+  void close();  // the window, asking first
+  ImVec2 viewport_corner() const { return viewport_low_; }
+  ImVec2 viewport_size() const { return {viewport_high_.x - viewport_low_.x, viewport_high_.y - viewport_low_.y}; }
+  const StagePicture& picture() const { return picture_; }
+  void screenshot(const std::filesystem::path& file);  // of the next frame
+  std::vector<ViewLine> extra_lines;                   // of panels, for the next picture; cleared every frame
+
+ private:
+  void frame(std::span<const InputEvent> events, double dt);
+  void keys(std::span<const InputEvent> events);
+  void draw_top();
+  void draw_bottom_bar();
+  void draw_side(Panel::Place place, ImVec2 low, ImVec2 high);
+  void draw_viewport(ImVec2 low, ImVec2 high, double dt);
+  void draw_start(ImVec2 low, ImVec2 high);
+  void draw_toasts();
+  void splitter(const char* name, double& place, bool vertical, ImVec2 low, ImVec2 high, double sign);
+  void order_picture();
+  void ask_to_leave();
+  bool settled() const;
+  void take_screenshot(const std::filesystem::path& file);
+
+  EditOptions options_;
+  Window& window_;
+  std::optional<ui::Host> host_;
+  std::unique_ptr<Stage> stage_;
+  std::vector<std::unique_ptr<Panel>> panels_;
+  std::vector<std::unique_ptr<ViewTool>> tools_;
+  std::vector<Action> actions_;
+  std::optional<ui::Script> script_;
+  std::map<std::string, bool> open_;          // dialogs
+  std::string wanted_tab_;                    // comes to the front in the next frame
+  StagePicture picture_;
+  std::uint64_t order_ = 0, question_ = 0;
+  std::optional<dvec2> asked_;
+  ImVec2 viewport_low_{0, 0}, viewport_high_{1, 1};
+  bool dragging_view_ = false, pressed_in_view_ = false, moved_since_press_ = false;
+  ImVec2 pressed_at_{0, 0};
+  std::optional<std::uint64_t> selects_;      // the question whose answer is selected
+  bool select_adds_ = false;
+  bool closing_ = false, dirty_picture_ = true;
+  std::function<void()> after_leaving_;       // what waits for an answer about unsaved changes
+  std::filesystem::path shot_;
+  std::uint64_t shown_revision_ = ~std::uint64_t{0};
+  double frame_ms_ = 0.0, slowest_ms_ = 0.0;  // of the interface
+};
+
+}  // namespace pliant

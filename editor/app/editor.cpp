@@ -1,0 +1,143 @@
+#include "editor/app/editor.h"
+
+#include <algorithm>
+
+#include "editor/viewport/solid_view.h"
+
+namespace pliant {
+
+Editor::Editor() = default;
+Editor::~Editor() = default;
+
+bool Editor::apply(const std::string& what, Result<State> next, const std::string& gesture) {
+  const State before = state();
+  const std::uint64_t revision = document.revision();
+  if (const Status status = document.change(what, std::move(next), gesture); !status) {
+    say(status.error().message(), Severity::kError);
+    return false;
+  }
+  if (document.revision() != revision)
+    for (const auto& each : on_change) each(before, state());
+  forget_gone();
+  return true;
+}
+
+void Editor::take(Document next) {
+  const State before = state();
+  document = std::move(next);
+  selected.clear();
+  hovered = kNoNode;
+  surfaces_.clear();
+  findings.clear();
+  found_at = ~std::uint64_t{0};
+  camera.home(scene_box());
+  for (const auto& each : on_change) each(before, state());
+  for (const std::string& note : document.notes()) say(note);
+}
+
+void Editor::undo() {
+  if (!document.can_undo()) return;
+  const State before = state();
+  const std::string what = document.undo_what();
+  document.undo();
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+  say("Undone: " + what);
+}
+
+void Editor::redo() {
+  if (!document.can_redo()) return;
+  const State before = state();
+  const std::string what = document.redo_what();
+  document.redo();
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+  say("Done again: " + what);
+}
+
+bool Editor::is_selected(NodeId id) const {
+  return std::find(selected.begin(), selected.end(), id) != selected.end();
+}
+
+void Editor::select(NodeId id, bool add) {
+  if (!add) selected.clear();
+  if (id == kNoNode) return;
+  const auto it = std::find(selected.begin(), selected.end(), id);
+  if (it != selected.end())
+    selected.erase(it);
+  else
+    selected.push_back(id);
+}
+
+void Editor::forget_gone() {
+  std::erase_if(selected, [this](NodeId id) { return !state().find(id); });
+  if (!state().find(hovered)) hovered = kNoNode;
+  std::erase_if(view.isolated, [this](NodeId id) { return !state().find(id); });
+}
+
+void Editor::say(const std::string& text, Severity severity) {
+  if (!said.empty() && said.back().text == text && said.back().severity == severity) {
+    ++said.back().times;
+    said.back().time = now;
+    return;
+  }
+  said.push_back({now, severity, text});
+  if (said.size() > kMostSaid) said.pop_front();
+}
+
+Box Editor::scene_box() const {
+  return bounds_of(state());
+}
+
+void Editor::frame_selected() {
+  camera.frame(bounds_of(state(), selected));
+}
+
+std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {
+  const DocumentNode* const node = state().find(id);
+  if (!node || node->node.mesh < 0) return nullptr;
+  const auto mesh = state().meshes[static_cast<std::size_t>(node->node.mesh)];
+  const dmat3 frame(state().to_world(id));
+  for (const auto& each : surfaces_)
+    if (each->mesh == mesh && each->frame == frame) return each->surface;
+  if (surfaces_.size() > 32) surfaces_.erase(surfaces_.begin());
+  auto made = std::make_shared<Surface>();
+  made->mesh = mesh;
+  made->frame = frame;
+  surfaces_.push_back(made);
+  jobs.start("surface " + std::to_string(id), "Preparing " + node->node.name, [made](const Jobs::Stop& stop) {
+    auto surface = PaintSurface::make(*made->mesh, made->frame, &stop);
+    std::shared_ptr<const PaintSurface> ready;
+    std::string fault;
+    if (surface)
+      ready = std::make_shared<const PaintSurface>(*std::move(surface));
+    else
+      fault = surface.error().message();
+    return [made, ready, fault](Editor& editor) {
+      made->surface = ready;
+      made->failed = !ready;
+      if (!fault.empty()) editor.say(fault, Severity::kWarning);
+    };
+  });
+  return nullptr;
+}
+
+void Editor::copy() {
+  if (selected.empty()) return;
+  clipboard = state();
+  copied = selected;
+}
+
+void Editor::cut() {
+  copy();
+  if (!selected.empty()) apply("Cut", without(state(), selected));
+}
+
+void Editor::paste() {
+  std::vector<NodeId> ids;
+  const DocumentNode* const active_one = active_node();
+  const NodeId parent = active_one ? active_one->parent : kNoNode;
+  if (apply("Paste", pasted(state(), clipboard, copied, parent, document.next_id(), &ids))) selected = ids;
+}
+
+}  // namespace pliant

@@ -1,0 +1,110 @@
+// What the editor holds and every panel sees: the document, what is selected, how it is shown, what is being done. No
+// window is needed for it, so tests drive it as panels do.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "content/level/finding.h"
+#include "editor/app/jobs.h"
+#include "editor/document/document.h"
+#include "editor/document/edits.h"
+#include "editor/paint/paint_surface.h"
+#include "editor/viewport/view_settings.h"
+#include "editor/viewport/view_camera.h"
+
+namespace pliant {
+
+// A line of the console; the newest is shown over the viewport for a while.
+struct Said {
+  double time = 0.0;  // [s] since the editor began
+  Severity severity = Severity::kNote;
+  std::string text;
+  int times = 1;  // the same, in a row
+};
+
+// What a finding offers to do about it.
+struct QuickFix {
+  std::string label;
+  std::function<Result<State>(const State&, NodeId& next_id)> fix;
+};
+struct EditorFinding {
+  Finding finding;
+  NodeId node = kNoNode;  // that it is about
+  std::optional<QuickFix> fix;
+};
+
+class Editor {
+ public:
+  Editor();
+  ~Editor();
+
+  // --- Document
+  Document document;
+  const State& state() const { return document.state(); }
+  // The one way of every panel and tool to change the level: says what went wrong. True: it is as was asked.
+  bool apply(const std::string& what, Result<State> next, const std::string& gesture = {});
+  // Replaces the document; asks nothing. `frame`: the camera goes to where all is seen.
+  void take(Document next);
+  void undo();
+  void redo();
+  // Called after every change of what is shown, undo and redo included.
+  std::vector<std::function<void(const State& before, const State& after)>> on_change;
+
+  // --- Selection
+  std::vector<NodeId> selected;  // the last is the active one
+  NodeId hovered = kNoNode;
+  NodeId active() const { return selected.empty() ? kNoNode : selected.back(); }
+  const DocumentNode* active_node() const { return document.state().find(active()); }
+  bool is_selected(NodeId id) const;
+  void select(NodeId id, bool add = false);  // kNoNode: nothing; `add` turns one on or off
+  void forget_gone();                        // what is selected but not there any more
+
+  // --- What is said
+  void say(const std::string& text, Severity severity = Severity::kNote);
+  std::deque<Said> said;  // oldest first, at most kMostSaid
+  static constexpr std::size_t kMostSaid = 2000;
+  double now = 0.0;  // [s] since the editor began; the frame's
+
+  // --- Findings of the document as it stands
+  std::vector<EditorFinding> findings;
+  std::uint64_t found_at = ~std::uint64_t{0};  // the revision that they are of
+
+  // --- View
+  ViewSettings view;
+  ViewCamera camera;
+  Box scene_box() const;   // [m] world
+  void frame_selected();   // or all
+
+  // --- Surfaces to paint and to point at, by mesh and scale; made in the background
+  // Null: not ready yet (it has been begun); the error is said once.
+  std::shared_ptr<const PaintSurface> surface_of(NodeId id);
+
+  // --- Clipboard
+  State clipboard;
+  std::vector<NodeId> copied;
+  void copy();
+  void cut();
+  void paste();
+
+  Jobs jobs;
+  std::string tool = "Select";         // the active one of the viewport
+  bool playing = false;                // a session runs on the stage
+  std::function<void()> request_close;  // set by the program
+
+ private:
+  struct Surface {
+    std::shared_ptr<const DocumentMesh> mesh;
+    dmat3 frame{1};
+    std::shared_ptr<const PaintSurface> surface;  // null: under way, or it failed
+    bool failed = false;
+  };
+  std::vector<std::shared_ptr<Surface>> surfaces_;
+};
+
+}  // namespace pliant

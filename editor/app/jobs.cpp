@@ -1,0 +1,67 @@
+#include "editor/app/jobs.h"
+
+#include <algorithm>
+#include <exception>
+
+#include "editor/app/editor.h"
+
+namespace pliant {
+
+Jobs::~Jobs() {
+  for (const auto& job : jobs_) job->stop = true;
+  for (const auto& job : jobs_)
+    if (job->thread.joinable()) job->thread.join();
+}
+
+void Jobs::start(const std::string& key, const std::string& what, Work work) {
+  cancel(key);
+  auto job = std::make_unique<Job>();
+  job->key = key;
+  job->what = what;
+  Job* const it = job.get();
+  jobs_.push_back(std::move(job));
+  it->thread = std::thread([this, it, work = std::move(work)] {
+    try {
+      it->result = work(it->stop);
+    } catch (const std::exception& error) {
+      it->result = [what = it->what, why = std::string(error.what())](Editor& editor) {
+        editor.say(what + " failed: " + why, Severity::kError);
+      };
+    }
+    it->done = true;
+    if (wake) wake();
+  });
+}
+
+void Jobs::cancel(const std::string& key) {
+  for (const auto& job : jobs_)
+    if (job->key == key) job->stop = true;
+}
+
+bool Jobs::running(const std::string& key) const {
+  return std::any_of(jobs_.begin(), jobs_.end(), [&](const auto& job) { return job->key == key && !job->stop; });
+}
+
+bool Jobs::idle() const {
+  return std::none_of(jobs_.begin(), jobs_.end(), [](const auto& job) { return !job->stop.load(); });
+}
+
+std::vector<std::string> Jobs::under_way() const {
+  std::vector<std::string> all;
+  for (const auto& job : jobs_)
+    if (!job->stop && !job->done && !job->what.empty()) all.push_back(job->what);
+  return all;
+}
+
+void Jobs::deliver(Editor& editor) {
+  std::vector<std::unique_ptr<Job>> ended;
+  for (auto& job : jobs_)
+    if (job->done) ended.push_back(std::move(job));
+  std::erase(jobs_, nullptr);
+  for (const auto& job : ended) {
+    job->thread.join();
+    if (!job->stop && job->result) job->result(editor);
+  }
+}
+
+}  // namespace pliant

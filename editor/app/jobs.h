@@ -1,0 +1,45 @@
+// Work that takes longer than a frame, on threads of its own. What it found comes back on the interface's thread.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace pliant {
+
+class Editor;
+
+class Jobs {
+ public:
+  using Stop = std::atomic<bool>;
+  // Called on a thread; must end soon after `stop` is set. What it returns is called on the interface's thread unless
+  // the job was cancelled; it may be empty.
+  using Work = std::function<std::function<void(Editor&)>(const Stop& stop)>;
+
+  ~Jobs();  // stops all and waits
+  // `key`: a job of the same key that is under way is cancelled. `what` is shown while it lasts.
+  void start(const std::string& key, const std::string& what, Work work);
+  void cancel(const std::string& key);
+  bool running(const std::string& key) const;
+  bool idle() const;
+  std::vector<std::string> under_way() const;  // what each does, for the status line
+  // On the interface's thread, once a frame.
+  void deliver(Editor& editor);
+  std::function<void()> wake;  // called when a job is done, on its thread
+
+ private:
+  struct Job {
+    std::string key, what;
+    Stop stop{false};
+    std::atomic<bool> done{false};
+    std::function<void(Editor&)> result;
+    std::thread thread;
+  };
+  std::vector<std::unique_ptr<Job>> jobs_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,84 @@
+// Every panel, tool and action of the editor. A new one is a line here.
+#include <numbers>
+
+#include "editor/app/app.h"
+#include "editor/panels/panels.h"
+#include "editor/tools/tools.h"
+
+namespace pliant {
+
+std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
+  std::vector<std::unique_ptr<Panel>> panels;
+  panels.push_back(make_tree_panel());
+  panels.push_back(make_inspector_panel(app));
+  panels.push_back(make_console_panel());
+  panels.push_back(make_start_page(app));
+  return panels;
+}
+
+std::vector<std::unique_ptr<ViewTool>> make_tools(App&) {
+  std::vector<std::unique_ptr<ViewTool>> tools;
+  tools.push_back(make_select_tool());
+  return tools;
+}
+
+std::vector<Action> make_actions(App& app) {
+  constexpr double kRight = std::numbers::pi / 2;
+  const auto something = [](const Editor& e) { return !e.selected.empty(); };
+  const auto look = [](double azimuth, double elevation) {
+    return [=](Editor& e) { e.camera.look_from(azimuth, elevation); };
+  };
+  std::vector<Action> all;
+  const auto add = [&](Action action) { all.push_back(std::move(action)); };
+  const auto toggle = [&](const char* id, const char* label, const char* keys, bool ViewSettings::*of) {
+    all.push_back({id, "View", label, keys, [of](Editor& e) { e.view.*of = !(e.view.*of); },
+                   [](const Editor&) { return true; }, [of](const Editor& e) { return e.view.*of; }});
+  };
+  add({"file.new", "File", "New", "Ctrl+N", [&app](Editor&) { app.new_document(); }});
+  add({"file.save", "File", "Save", "Ctrl+S", [&app](Editor&) { app.save(); }});
+  all.back().while_typing = true;
+  add({"file.quit", "File", "Quit", "Ctrl+Q", [&app](Editor&) { app.close(); }});
+  all.back().separator = true;
+
+  add({"edit.undo", "Edit", "Undo", "Ctrl+Z", [](Editor& e) { e.undo(); },
+       [](const Editor& e) { return e.document.can_undo(); }});
+  add({"edit.redo", "Edit", "Redo", "Ctrl+Shift+Z", [](Editor& e) { e.redo(); },
+       [](const Editor& e) { return e.document.can_redo(); }});
+  add({"edit.cut", "Edit", "Cut", "Ctrl+X", [](Editor& e) { e.cut(); }, something});
+  all.back().separator = true;
+  add({"edit.copy", "Edit", "Copy", "Ctrl+C", [](Editor& e) { e.copy(); }, something});
+  add({"edit.paste", "Edit", "Paste", "Ctrl+V", [](Editor& e) { e.paste(); },
+       [](const Editor& e) { return !e.copied.empty(); }});
+  add({"edit.duplicate", "Edit", "Duplicate", "Ctrl+D",
+       [](Editor& e) {
+         std::vector<NodeId> ids;
+         if (e.apply("Duplicate", duplicated(e.state(), e.selected, e.document.next_id(), &ids))) e.selected = ids;
+       },
+       something});
+  add({"edit.delete", "Edit", "Delete", "Delete", [](Editor& e) { e.apply("Delete", without(e.state(), e.selected)); },
+       something});
+  add({"edit.all", "Edit", "Select all", "Ctrl+A", [](Editor& e) {
+         e.selected.clear();
+         for (const auto& each : e.state().nodes) e.selected.push_back(each->id);
+       }});
+  all.back().separator = true;
+
+  add({"view.frame", "View", "Frame selected", "F", [](Editor& e) { e.frame_selected(); }});
+  add({"view.home", "View", "Frame all", "Home", [](Editor& e) { e.camera.frame(e.scene_box()); }});
+  add({"view.front", "View", "From the front", "1", look(0, 0)});
+  all.back().separator = true;
+  add({"view.right", "View", "From the right", "3", look(kRight, 0)});
+  add({"view.top", "View", "From above", "7", look(0, kRight)});
+  add({"view.back", "View", "From behind", "9", look(2 * kRight, 0)});
+  toggle("view.orthographic", "Orthographic", "5", &ViewSettings::orthographic);
+  toggle("view.grid", "Grid", "G", &ViewSettings::grid);
+  all.back().separator = true;
+  toggle("view.wireframe", "Wireframe", "W", &ViewSettings::wireframe);
+  toggle("view.normals", "Normals", "N", &ViewSettings::normals);
+  add({"view.isolate", "View", "Isolate selected", "I",
+       [](Editor& e) { e.view.isolated = e.view.isolated.empty() ? e.selected : std::vector<NodeId>{}; },
+       [](const Editor&) { return true; }, [](const Editor& e) { return !e.view.isolated.empty(); }});
+  return all;
+}
+
+}  // namespace pliant

@@ -1,0 +1,139 @@
+#include "editor/document/document.h"
+
+#include "content/level/unit.h"
+#include "content/level_file.h"
+
+namespace pliant {
+
+namespace fs = std::filesystem;
+
+Document::Document() : Document(State(), 1) {}
+
+Document::Document(State state, NodeId next) : next_id_(next) {
+  if (!state.rest) state.rest = std::make_shared<const Level>();
+  steps_.push_back({"", std::move(state), 0});
+}
+
+Result<Document> Document::open(const fs::path& file, double unit) {
+  Result<Level> level = load_level(file);
+  if (!level) return level.error();
+  const bool is_level = level->source && level->has_pliant();
+  if (unit != 1.0) scale_roots(*level, unit);
+  std::vector<std::string> notes = level->notes;
+  NodeId next = 1;
+  State state = state_of(std::move(*level), next);
+  Document document(std::move(state), next);
+  document.notes_ = std::move(notes);
+  document.folder_ = file.parent_path();
+  if (is_level) {
+    document.file_ = file;
+    document.remember_file();
+  } else {
+    document.saved_ = ~std::uint64_t{0};  // what stands here is nowhere yet
+  }
+  return document;
+}
+
+Result<Document> Document::recover(const fs::path& copy, const fs::path& file) {
+  Result<Document> document = open(copy);
+  if (!document) return document;
+  document->file_ = file;
+  document->folder_ = file.empty() ? copy.parent_path() : file.parent_path();
+  document->saved_ = ~std::uint64_t{0};
+  document->remember_file();
+  return document;
+}
+
+Status Document::change(const std::string& what, Result<State> next, const std::string& gesture) {
+  if (!next) return next.error();
+  if (same(state(), *next)) return Done{};
+  const bool goes_on = !gesture.empty() && gesture == gesture_ && now_ > 0 && now_ + 1 == steps_.size();
+  gesture_ = gesture;
+  if (goes_on) {
+    steps_[now_].state = std::move(*next);
+    steps_[now_].revision = next_revision_++;
+    return Done{};
+  }
+  steps_.resize(now_ + 1);
+  steps_.push_back({what, std::move(*next), next_revision_++});
+  ++now_;
+  return Done{};
+}
+
+void Document::undo() {
+  gesture_.clear();
+  if (can_undo()) --now_;
+}
+
+void Document::redo() {
+  gesture_.clear();
+  if (can_redo()) ++now_;
+}
+
+void Document::go_to_step(std::size_t i) {
+  gesture_.clear();
+  if (i < steps_.size()) now_ = i;
+}
+
+std::string Document::title() const {
+  if (!file_.empty()) return file_.filename().string();
+  return state().rest->name.empty() ? "untitled" : state().rest->name + " (not saved)";
+}
+
+Status Document::write(const fs::path& file, const State& state) const {
+  return save_state(state, file);
+}
+
+Status Document::save() {
+  if (file_.empty()) return Error{"save", "the level has no file yet; use Save as"};
+  return save_as(file_);
+}
+
+Status Document::save_as(const fs::path& file) {
+  if (Status s = write(file, state()); !s) return s;
+  file_ = file;
+  folder_ = file.parent_path();
+  saved_ = revision();
+  remember_file();
+  return Done{};
+}
+
+Status Document::save_copy(const fs::path& file) const {
+  return write(file, state());
+}
+
+Status Document::revert() {
+  if (file_.empty()) return Error{"revert", "the level has no file yet; undo instead"};
+  Result<Level> level = load_level(file_);
+  if (!level) return level.error();
+  notes_ = level->notes;
+  State state = state_of(std::move(*level), next_id_);
+  gesture_.clear();
+  steps_.resize(now_ + 1);
+  steps_.push_back({"Revert", std::move(state), next_revision_++});
+  ++now_;
+  saved_ = revision();
+  remember_file();
+  return Done{};
+}
+
+void Document::remember_file() {
+  std::error_code gone;
+  file_time_ = fs::last_write_time(file_, gone);
+  file_size_ = fs::file_size(file_, gone);
+}
+
+bool Document::file_changed() const {
+  if (file_.empty()) return false;
+  std::error_code gone;
+  const auto time = fs::last_write_time(file_, gone);
+  if (gone) return false;  // taken away: what is here is still here
+  const auto size = fs::file_size(file_, gone);
+  return !gone && (time != file_time_ || size != file_size_);
+}
+
+void Document::accept_file() {
+  remember_file();
+}
+
+}  // namespace pliant

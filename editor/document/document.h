@@ -1,0 +1,86 @@
+// The level that is edited: one path for every change, undo and redo without limit but memory, saved or not.
+//
+//   document.change("Rename", renamed(document.state(), id, "liver"));
+//
+// A change is a new State. What belongs to one gesture of the hand (a slider that is dragged, a stroke) becomes one
+// step: changes that name the same gesture in a row replace each other's result until end_gesture().
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "editor/document/state.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+class Document {
+ public:
+  // Of an empty level that has no file yet.
+  Document();
+  // A level or a mesh. A bare mesh is a level without anything that can be touched yet, which has no file: saving asks
+  // for one. `unit` [m] that one unit of a bare mesh is.
+  static Result<Document> open(const std::filesystem::path& file, double unit = 1.0);
+  // As `open` of `copy`, but what was saved last is `file`: after a crash. `file` may be empty.
+  static Result<Document> recover(const std::filesystem::path& copy, const std::filesystem::path& file);
+
+  const State& state() const { return steps_[now_].state; }
+  // Another number for every state that was ever shown; the same number is the same state.
+  std::uint64_t revision() const { return steps_[now_].revision; }
+
+  // The one way to change. An error changes nothing and comes back; nothing happens where nothing differs.
+  Status change(const std::string& what, Result<State> next, const std::string& gesture = {});
+  void end_gesture() { gesture_.clear(); }
+  NodeId new_id() { return next_id_++; }
+  NodeId& next_id() { return next_id_; }
+
+  bool can_undo() const { return now_ > 0; }
+  bool can_redo() const { return now_ + 1 < steps_.size(); }
+  const std::string& undo_what() const { return steps_[now_].what; }
+  const std::string& redo_what() const { return steps_[now_ + 1].what; }
+  void undo();
+  void redo();
+  std::size_t step_count() const { return steps_.size(); }  // undone ones included
+  std::size_t step() const { return now_; }
+  const std::string& step_what(std::size_t i) const { return steps_[i].what; }
+  void go_to_step(std::size_t i);
+
+  bool dirty() const { return revision() != saved_; }
+  const std::filesystem::path& file() const { return file_; }      // empty: it has none yet
+  const std::filesystem::path& folder() const { return folder_; }  // where files that it names are sought
+  std::string title() const;                                       // the file's name; "untitled"
+  Status save();                                                   // where it came from
+  Status save_as(const std::filesystem::path& file);               // and from now on there
+  Status save_copy(const std::filesystem::path& file) const;
+  Status revert();  // as the file is now; one step that can be undone
+  // Whether the file is another than the one that was read or written here last.
+  bool file_changed() const;
+  void accept_file();  // keep what is here, whatever the file is now
+
+  // What was read differently than one might expect.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  struct Step {
+    std::string what;  // that led here
+    State state;
+    std::uint64_t revision;
+  };
+  explicit Document(State state, NodeId next);
+  Status write(const std::filesystem::path& file, const State& state) const;
+  void remember_file();
+
+  std::vector<Step> steps_;
+  std::size_t now_ = 0;
+  std::string gesture_;
+  NodeId next_id_ = 1;
+  std::uint64_t next_revision_ = 1, saved_ = 0;
+  std::filesystem::path file_, folder_;
+  std::vector<std::string> notes_;
+  std::filesystem::file_time_type file_time_;  // of the file as read or written last
+  std::uintmax_t file_size_ = 0;
+};
+
+}  // namespace pliant

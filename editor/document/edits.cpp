@@ -1,0 +1,503 @@
+#include "editor/document/edits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <set>
+
+#include "content/keys/extension_table.h"
+
+namespace pliant {
+namespace {
+
+const Error kNoSuchNode{"edit", "the node is not there any more"};
+
+// A copy of the node to be changed, in a copy of the state.
+struct Change {
+  State state;
+  std::shared_ptr<DocumentNode> node;
+};
+std::optional<Change> changing(const State& state, NodeId id) {
+  const std::size_t at = state.place(id);
+  if (at >= state.nodes.size()) return {};
+  Change change{state, std::make_shared<DocumentNode>(*state.nodes[at])};
+  change.state.nodes[at] = change.node;
+  return change;
+}
+
+// Every reference to a node by its name.
+void rename_references(State& state, const std::string& from, const std::string& to) {
+  for (auto& each : state.nodes) {
+    const LevelNode& node = each->node;
+    const bool probe = node.probe && node.probe_device == from, handle = node.handle && node.handle->device == from;
+    if (!probe && !handle) continue;
+    auto changed = std::make_shared<DocumentNode>(*each);
+    if (probe) changed->node.probe_device = to;
+    if (handle) changed->node.handle->device = to;
+    each = std::move(changed);
+  }
+}
+
+std::optional<std::string> fault_of_name(const std::string& name) {
+  if (name.empty()) return "a node needs a name";
+  if (name.size() > 200) return "the name is longer than 200 bytes; choose a shorter one";
+  return {};
+}
+
+// Parents before children, siblings as they stand.
+void put_in_order(State& state) {
+  std::map<NodeId, std::vector<std::shared_ptr<const DocumentNode>>> below;
+  for (const auto& each : state.nodes) below[each->parent].push_back(each);
+  std::vector<std::shared_ptr<const DocumentNode>> order;
+  const std::function<void(NodeId)> add = [&](NodeId id) {
+    for (const auto& each : below[id]) {
+      order.push_back(each);
+      add(each->id);
+    }
+  };
+  add(kNoNode);
+  state.nodes = std::move(order);
+}
+
+LocalTransform local_of(const dmat4& m) {
+  LocalTransform local;
+  dmat3 axes(m);
+  dvec3 scale(length(axes[0]), length(axes[1]), length(axes[2]));
+  if (glm::determinant(axes) < 0.0) scale.x = -scale.x;
+  for (int i = 0; i < 3; ++i) axes[i] /= scale[i];
+  local.translation = vec3(dvec3(m[3]));
+  local.rotation = quat(glm::normalize(glm::quat_cast(axes)));
+  local.scale = vec3(scale);
+  return local;
+}
+
+// The ids that no other one of them stands above.
+std::vector<NodeId> topmost(const State& state, NodeIds ids) {
+  std::vector<NodeId> top;
+  for (const NodeId id : ids) {
+    const DocumentNode* const node = state.find(id);
+    if (!node || std::find(top.begin(), top.end(), id) != top.end()) continue;
+    bool inside = false;
+    for (const NodeId other : ids) inside |= other != id && state.below(id, other);
+    if (!inside) top.push_back(id);
+  }
+  return top;
+}
+
+template <class Change>
+Result<State> each_with(const State& state, NodeIds ids, const Change& change) {
+  State next = state;
+  bool any = false;
+  for (const NodeId id : ids) {
+    const std::size_t at = next.place(id);
+    if (at >= next.nodes.size()) continue;
+    auto node = std::make_shared<DocumentNode>(*next.nodes[at]);
+    const Result<bool> changed = change(node->node);
+    if (!changed) return changed.error();
+    any = true;
+    if (*changed) next.nodes[at] = std::move(node);
+  }
+  if (!any) return kNoSuchNode;
+  return next;
+}
+
+void remove_from(LevelNode& node, const std::string& extension) {
+  if (extension == "deformable") node.deformable.reset();
+  if (extension == "probe") {
+    node.probe.reset();
+    node.probe_device.clear();
+  }
+  if (extension == "haptic_device") node.device.reset();
+  if (extension == "soft_body") node.soft_body.reset();
+  if (extension == "handle") node.handle.reset();
+  if (extension == "rigid_body") node.rigid_body.reset();
+  if (extension == "motion") node.motion.reset();
+}
+
+Result<const Key*> find_both(const std::string& extension, const std::string& key) {
+  const Extension* const of = find_extension(extension);
+  if (!of) return Error{extension, "is no component"};
+  const Key* const found = find_key(*of, key);
+  if (!found) return Error{extension, unknown_key(*of, key)};
+  return found;
+}
+
+// What a document's scene extensions are set in.
+Level scene_of(const State& state) {
+  Level level;
+  level.environment = state.environment;
+  level.simulation = state.simulation;
+  return level;
+}
+
+State add_copies(State next, const State& from, NodeIds ids, std::optional<NodeId> under, NodeId& next_id,
+                 std::vector<NodeId>* ids_out, const std::map<std::int32_t, std::int32_t>* mesh_of) {
+  std::map<NodeId, NodeId> copy_of;
+  std::vector<std::pair<std::string, std::string>> names;
+  std::vector<std::size_t> copies;
+  for (const NodeId top : topmost(from, ids))
+    for (const auto& each : from.nodes) {
+      if (!from.below(each->id, top)) continue;
+      auto copy = std::make_shared<DocumentNode>(*each);
+      copy->id = next_id++;
+      copy_of[each->id] = copy->id;
+      if (each->id == top) {
+        if (under) copy->parent = *under;
+        if (ids_out) ids_out->push_back(copy->id);
+      } else {
+        copy->parent = copy_of[each->parent];
+      }
+      if (mesh_of && copy->node.mesh >= 0) copy->node.mesh = mesh_of->at(copy->node.mesh);
+      copy->node.source = -1;
+      copy->node.name = unique_name(next, each->node.name);
+      names.emplace_back(each->node.name, copy->node.name);
+      copies.push_back(next.nodes.size());
+      next.nodes.push_back(std::move(copy));
+    }
+  const auto follow = [&](std::string& reference) {
+    for (const auto& [before, after] : names)
+      if (reference == before) {
+        reference = after;
+        return;
+      }
+  };
+  for (const std::size_t at : copies) {
+    auto copy = std::make_shared<DocumentNode>(*next.nodes[at]);
+    follow(copy->node.probe_device);
+    if (copy->node.handle) follow(copy->node.handle->device);
+    next.nodes[at] = std::move(copy);
+  }
+  put_in_order(next);
+  return next;
+}
+
+}  // namespace
+
+std::string unique_name(const State& state, const std::string& wanted) {
+  const std::string base = wanted.empty() ? "node" : wanted;
+  if (!state.find(base)) return base;
+  // "probe 2" is followed by "probe 3".
+  std::string stem = base;
+  const std::size_t space = stem.find_last_of(' ');
+  if (space != std::string::npos && space + 1 < stem.size() && stem.size() - space < 8 &&
+      std::all_of(stem.begin() + static_cast<std::ptrdiff_t>(space) + 1, stem.end(),
+                  [](unsigned char c) { return std::isdigit(c); }))
+    stem.resize(space);
+  for (int n = 2;; ++n)
+    if (std::string name = fmt::format("{} {}", stem, n); !state.find(name)) return name;
+}
+
+Result<State> renamed(const State& state, NodeId id, const std::string& name) {
+  if (const auto fault = fault_of_name(name)) return Error{"rename", *fault};
+  const DocumentNode* const other = state.find(name);
+  if (other && other->id != id)
+    return Error{"rename",
+                 "another node is called '" + name + "'; nodes are referred to by their names, choose another"};
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  const std::string before = change->node->node.name;
+  change->node->node.name = name;
+  State next = std::move(change->state);
+  if (!next.find(before)) rename_references(next, before, name);
+  return next;
+}
+
+Result<State> with_node(const State& state, NodeId id, NodeId parent, LevelNode node) {
+  if (parent != kNoNode && !state.find(parent)) return kNoSuchNode;
+  State next = state;
+  auto added = std::make_shared<DocumentNode>();
+  added->id = id;
+  added->parent = parent;
+  node.name = unique_name(state, node.name);
+  node.in_scene = true;
+  added->node = std::move(node);
+  next.nodes.push_back(std::move(added));
+  put_in_order(next);
+  return next;
+}
+
+Result<State> without(const State& state, NodeIds ids) {
+  State next = state;
+  std::set<std::string> gone;
+  std::erase_if(next.nodes, [&](const auto& each) {
+    const bool goes = std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return state.below(each->id, id); });
+    if (goes) gone.insert(each->node.name);
+    return goes;
+  });
+  if (gone.empty()) return kNoSuchNode;
+  for (const auto& each : next.nodes) gone.erase(each->node.name);
+  for (const std::string& name : gone) rename_references(next, name, "");
+  return next;
+}
+
+Result<State> duplicated(const State& state, NodeIds ids, NodeId& next_id, std::vector<NodeId>* ids_out) {
+  if (topmost(state, ids).empty()) return kNoSuchNode;
+  return add_copies(state, state, ids, {}, next_id, ids_out, nullptr);
+}
+
+Result<State> pasted(const State& state, const State& from, NodeIds ids, NodeId parent, NodeId& next_id,
+                     std::vector<NodeId>* ids_out) {
+  if (parent != kNoNode && !state.find(parent)) return kNoSuchNode;
+  const std::vector<NodeId> tops = topmost(from, ids);
+  if (tops.empty()) return Error{"paste", "there is nothing to paste; copy a node first"};
+  // A mesh that this document has already is shared; another one comes along.
+  State next = state;
+  std::map<std::int32_t, std::int32_t> mesh_of;
+  for (const auto& each : from.nodes) {
+    const std::int32_t mesh = each->node.mesh;
+    const bool comes = std::any_of(tops.begin(), tops.end(), [&](NodeId top) { return from.below(each->id, top); });
+    if (!comes || mesh < 0 || mesh_of.contains(mesh)) continue;
+    const auto at = static_cast<std::size_t>(mesh);
+    if (at < next.meshes.size() && next.meshes[at] == from.meshes[at]) {
+      mesh_of[mesh] = mesh;
+      continue;
+    }
+    const auto number = static_cast<std::uint32_t>(next.meshes.size());
+    mesh_of[mesh] = static_cast<std::int32_t>(number);
+    LevelMesh copy = *from.meshes[at];
+    copy.source = -1;
+    const bool same_materials = from.rest == next.rest;
+    for (Primitive& primitive : copy.primitives)
+      if (!same_materials) primitive.material = -1;
+    next.meshes.push_back(std::make_shared<const DocumentMesh>(std::move(copy)));
+    for (const auto& [key, layer] : from.paint)
+      if (key.mesh == at) next.paint.emplace(LayerKey{number, key.primitive, key.channel}, layer);
+  }
+  return add_copies(std::move(next), from, ids, parent, next_id, ids_out, &mesh_of);
+}
+
+Result<State> reparented(const State& state, NodeIds ids, NodeId parent, NodeId before) {
+  const std::vector<NodeId> tops = topmost(state, ids);
+  if (tops.empty() || (parent != kNoNode && !state.find(parent))) return kNoSuchNode;
+  for (const NodeId id : tops)
+    if (state.below(parent, id)) return Error{"reparent", "a node cannot be put below itself"};
+  const dmat4 from_world = glm::inverse(state.to_world(parent));
+  State next = state;
+  std::vector<std::shared_ptr<const DocumentNode>> moved;
+  for (const NodeId id : tops) {
+    auto node = std::make_shared<DocumentNode>(*state.find(id));
+    if (node->parent != parent) {
+      node->node.local = local_of(from_world * state.to_world(id));
+      if (const DocumentNode* above = state.find(parent)) node->node.in_scene = above->node.in_scene;
+    }
+    node->parent = parent;
+    moved.push_back(std::move(node));
+  }
+  std::erase_if(next.nodes,
+                [&](const auto& each) { return std::find(tops.begin(), tops.end(), each->id) != tops.end(); });
+  const std::size_t at = before == kNoNode ? next.nodes.size() : next.place(before);
+  next.nodes.insert(next.nodes.begin() + static_cast<std::ptrdiff_t>(at), moved.begin(), moved.end());
+  put_in_order(next);
+  return next;
+}
+
+Result<State> placed(const State& state, NodeId id, const LocalTransform& local) {
+  for (int i = 0; i < 3; ++i)
+    if (!std::isfinite(local.translation[i]) || !std::isfinite(local.scale[i]) || local.scale[i] == 0.0f)
+      return Error{"transform", "a position must be finite and a scale other than 0"};
+  if (!(std::abs(glm::length(local.rotation) - 1.0f) < 1e-3f))
+    return Error{"transform", "a rotation must be a unit quaternion"};
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  change->node->node.local = local;
+  return std::move(change->state);
+}
+
+Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light) {
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  change->node->node.light = light;
+  return std::move(change->state);
+}
+
+Result<State> with_camera(const State& state, NodeId id, const std::optional<Camera>& camera) {
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  change->node->node.camera = camera;
+  return std::move(change->state);
+}
+
+bool has_component(const State& state, NodeId id, const std::string& extension) {
+  const Extension* const of = find_extension(extension);
+  if (!of) return false;
+  if (of->on_scene) {
+    const Level scene = scene_of(state);
+    return of->present(&scene);
+  }
+  const DocumentNode* const node = state.find(id);
+  return node && of->present(&node->node);
+}
+
+Result<State> with_component(const State& state, NodeIds ids, const std::string& extension) {
+  const Extension* const of = find_extension(extension);
+  if (!of) return Error{extension, "is no component"};
+  if (of->on_scene) {
+    Level scene = scene_of(state);
+    State next = state;
+    if (!of->present(&scene)) of->add(&scene);
+    next.environment = scene.environment;
+    next.simulation = scene.simulation;
+    return next;
+  }
+  return each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
+    if (of->present(&node)) return false;
+    of->add(&node);
+    // What moves a probe or a tool is by default on the same node.
+    if (node.probe && extension == "probe" && node.device) node.probe_device = node.name;
+    if (node.handle && extension == "handle" && node.device) node.handle->device = node.name;
+    if (extension == "haptic_device") {
+      if (node.probe && node.probe_device.empty()) node.probe_device = node.name;
+      if (node.handle && node.handle->device.empty()) node.handle->device = node.name;
+    }
+    return true;
+  });
+}
+
+Result<State> without_component(const State& state, NodeIds ids, const std::string& extension) {
+  const Extension* const of = find_extension(extension);
+  if (!of) return Error{extension, "is no component"};
+  if (of->on_scene) {
+    State next = state;
+    if (extension == "environment") next.environment.reset();
+    if (extension == "simulation") next.simulation = {};
+    return next;
+  }
+  Result<State> next = each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
+    if (!of->present(&node)) return false;
+    remove_from(node, extension);
+    return true;
+  });
+  if (next && extension == "haptic_device")
+    for (const NodeId id : ids)
+      if (const DocumentNode* node = next->find(id); node && !node->node.device)
+        rename_references(*next, node->node.name, "");
+  return next;
+}
+
+Result<State> with_value(const State& state, NodeIds ids, const std::string& extension, const std::string& key,
+                         const Json& value) {
+  const Result<const Key*> found = find_both(extension, key);
+  if (!found) return found.error();
+  const Extension& of = *find_extension(extension);
+  if (const std::string wrong = check_value(**found, value); !wrong.empty()) return Error{key, wrong};
+  if ((*found)->type == KeyType::kNode && !value.get_ref<const std::string&>().empty() &&
+      !state.find(value.get<std::string>()))
+    return Error{key, "names the node '" + value.get<std::string>() + "', which is not there"};
+  if (of.on_scene) {
+    Level scene = scene_of(state);
+    if (!of.present(&scene)) of.add(&scene);
+    (*found)->set(&scene, value);
+    if (const std::string clash = of.settle(&scene); !clash.empty()) return Error{key, clash};
+    State next = state;
+    next.environment = scene.environment;
+    next.simulation = scene.simulation;
+    return next;
+  }
+  return each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
+    if (!of.present(&node)) return false;
+    // Stiffness and Young's modulus stand for each other: the one that is set last holds.
+    if (extension == "deformable" && key == "stiffness") node.deformable->young = 0.0;
+    (*found)->set(&node, value);
+    if (const std::string clash = of.settle(&node); !clash.empty()) return Error{node.name, clash};
+    return true;
+  });
+}
+
+Json value_of_key(const State& state, NodeId id, const std::string& extension, const std::string& key) {
+  const Result<const Key*> found = find_both(extension, key);
+  if (!found || !has_component(state, id, extension)) return {};
+  if (find_extension(extension)->on_scene) {
+    const Level scene = scene_of(state);
+    return (*found)->get(&scene);
+  }
+  return (*found)->get(&state.find(id)->node);
+}
+
+Json default_of_key(const std::string& extension, const std::string& key) {
+  const Result<const Key*> found = find_both(extension, key);
+  if (!found) return {};
+  const Extension& of = *find_extension(extension);
+  if (of.on_scene) {
+    Level scene;
+    of.add(&scene);
+    return (*found)->get(&scene);
+  }
+  LevelNode node;
+  of.add(&node);
+  return (*found)->get(&node);
+}
+
+Result<State> with_default(const State& state, NodeIds ids, const std::string& extension, const std::string& key) {
+  const Result<const Key*> found = find_both(extension, key);
+  if (!found) return found.error();
+  return with_value(state, ids, extension, key, default_of_key(extension, key));
+}
+
+Result<State> with_layer(const State& state, const LayerKey& key, PaintLayer layer) {
+  if (key.mesh >= state.meshes.size() || key.primitive >= state.meshes[key.mesh]->primitives.size() ||
+      layer.size() != state.meshes[key.mesh]->primitives[key.primitive].position.size())
+    return Error{"paint", "does not fit the mesh"};
+  State next = state;
+  next.paint.insert_or_assign(key, std::move(layer));
+  return next;
+}
+
+Result<State> without_layer(const State& state, std::uint32_t mesh, Channel channel) {
+  State next = state;
+  std::erase_if(next.paint, [&](const auto& each) { return each.first.mesh == mesh && each.first.channel == channel; });
+  return next;
+}
+
+Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh) {
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  State& next = change->state;
+  const auto number = static_cast<std::uint32_t>(next.meshes.size());
+  for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p)
+    for (const Channel channel : kChannels) {
+      std::vector<float>& values = painted(mesh.primitives[p], channel);
+      if (!values.empty()) next.paint.insert_or_assign({number, p, channel}, PaintLayer::from(values));
+      values = {};
+    }
+  mesh.source = -1;
+  next.meshes.push_back(std::make_shared<const DocumentMesh>(std::move(mesh)));
+  change->node->node.mesh = static_cast<std::int32_t>(number);
+  return std::move(change->state);
+}
+
+Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
+  Level level = level_of(state);
+  if (Status s = edit(level); !s) return s.error();
+  if (level.nodes.size() < state.nodes.size() || level.meshes.size() < state.meshes.size())
+    return Error{"edit", "an edit of a level may not remove nodes or meshes"};
+  const std::size_t mesh_count = state.meshes.size();
+  // Meshes that were there stay shared; what was painted on them is looked at.
+  NodeId ids = next_id;
+  State after = state_of(std::move(level), ids);
+  State next = after;
+  for (std::size_t i = 0; i < mesh_count; ++i) next.meshes[i] = state.meshes[i];
+  for (auto& [key, layer] : next.paint)
+    if (const auto before = state.paint.find(key); before != state.paint.end() && before->second == layer)
+      layer = before->second;
+  // Nodes keep their ids; new ones get theirs.
+  std::map<NodeId, NodeId> id_of{{kNoNode, kNoNode}};
+  NodeId fresh = next_id;
+  for (std::size_t i = 0; i < after.nodes.size(); ++i)
+    id_of[after.nodes[i]->id] = i < state.nodes.size() ? state.nodes[i]->id : fresh++;
+  for (auto& each : next.nodes) {
+    auto node = std::make_shared<DocumentNode>(*each);
+    node->id = id_of.at(each->id);
+    node->parent = id_of.at(each->parent);
+    each = std::move(node);
+  }
+  next_id = fresh;
+  next.rest = state.rest;
+  if (after.rest->materials.size() != state.rest->materials.size() ||
+      after.rest->images.size() != state.rest->images.size())
+    next.rest = after.rest;
+  return next;
+}
+
+}  // namespace pliant

@@ -1,0 +1,59 @@
+// What can be done to a level: each function makes another State of one, or says in a sentence why not.
+// Document::change takes it. Several nodes at once are one edit.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "editor/document/state.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+using Json = nlohmann::json;
+using NodeIds = std::span<const NodeId>;
+
+// --- The tree
+// A name that no node has: "probe", "probe 2", "probe 3" ...
+std::string unique_name(const State& state, const std::string& wanted);
+// References to the node by its name follow it. A name that another node has is an error.
+Result<State> renamed(const State& state, NodeId id, const std::string& name);
+Result<State> with_node(const State& state, NodeId id, NodeId parent, LevelNode node);  // its name is made unique
+Result<State> without(const State& state, NodeIds ids);                                 // with all below them
+// Copies with all below them, under the same parents; `ids_out` gets the copies' own. References among what is copied
+// lead to the copies.
+Result<State> duplicated(const State& state, NodeIds ids, NodeId& next_id, std::vector<NodeId>* ids_out = nullptr);
+// The nodes of another state (the clipboard), with their meshes, below `parent`.
+Result<State> pasted(const State& state, const State& from, NodeIds ids, NodeId parent, NodeId& next_id,
+                     std::vector<NodeId>* ids_out = nullptr);
+// Below another parent (kNoNode: a root) and before a sibling (kNoNode: last); where it stands in the world is kept.
+Result<State> reparented(const State& state, NodeIds ids, NodeId parent, NodeId before = kNoNode);
+
+// --- One node
+Result<State> placed(const State& state, NodeId id, const LocalTransform& local);
+Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light);
+Result<State> with_camera(const State& state, NodeId id, const std::optional<Camera>& camera);
+
+// --- Components, by the key table: `extension` without PLIANT_, `key` as in the level format
+Result<State> with_component(const State& state, NodeIds ids, const std::string& extension);
+Result<State> without_component(const State& state, NodeIds ids, const std::string& extension);
+// Of every one of `ids` that has the component; of the scene's extensions `ids` is not looked at.
+Result<State> with_value(const State& state, NodeIds ids, const std::string& extension, const std::string& key,
+                         const Json& value);
+Result<State> with_default(const State& state, NodeIds ids, const std::string& extension, const std::string& key);
+// The value; null: the node does not have the component. kNoNode: of the scene.
+Json value_of_key(const State& state, NodeId id, const std::string& extension, const std::string& key);
+Json default_of_key(const std::string& extension, const std::string& key);
+bool has_component(const State& state, NodeId id, const std::string& extension);
+
+// --- Paint and meshes
+Result<State> with_layer(const State& state, const LayerKey& key, PaintLayer layer);
+Result<State> without_layer(const State& state, std::uint32_t mesh, Channel channel);  // of all its primitives
+// The node gets a mesh of its own (refined, say); other nodes keep theirs. Painted values are the mesh's own arrays.
+Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh);
+
+// An edit that is written for Levels (content/author): it may change nodes and scene and append nodes and meshes.
+Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit);
+
+}  // namespace pliant

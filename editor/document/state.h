@@ -1,0 +1,81 @@
+// A level as the editor has it: everything that can be changed, in parts that copies share. A State is a value: an edit
+// makes another one and leaves the first as it was, so that undo keeps states, and other threads may read one while the
+// hand goes on.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "content/level/level.h"
+#include "editor/paint/paint_layer.h"
+
+namespace pliant {
+
+// Stands for a node as long as the document is open, whatever is renamed, moved, deleted and brought back.
+using NodeId = std::uint32_t;
+inline constexpr NodeId kNoNode = 0;
+
+struct DocumentNode {
+  NodeId id = kNoNode;
+  NodeId parent = kNoNode;
+  LevelNode node;  // its `parent` and `children` are not used
+};
+
+// A mesh without its painted values.
+struct DocumentMesh : LevelMesh {
+  Box box;  // [m] mesh frame
+  explicit DocumentMesh(LevelMesh mesh);
+};
+
+// What is painted on a mesh, one value a vertex of a primitive.
+enum class Channel : std::uint8_t { kStiffness, kFriction, kDamping, kRelaxation, kPinned, kHandle };
+inline constexpr Channel kChannels[] = {Channel::kStiffness,  Channel::kFriction, Channel::kDamping,
+                                        Channel::kRelaxation, Channel::kPinned,   Channel::kHandle};
+const char* name_of(Channel channel);  // "stiffness"
+bool is_share(Channel channel);        // 0 to 1, 0 where nothing is painted; else a factor, 1 there
+inline float unpainted(Channel channel) {
+  return is_share(channel) ? 0.0f : 1.0f;
+}
+std::vector<float>& painted(Primitive& primitive, Channel channel);
+
+struct LayerKey {
+  std::uint32_t mesh = 0, primitive = 0;  // into State::meshes, its primitives
+  Channel channel = Channel::kStiffness;
+  auto operator<=>(const LayerKey&) const = default;
+};
+
+struct State {
+  std::vector<std::shared_ptr<const DocumentNode>> nodes;  // parents before children
+  // Only ever added to, so that a number stands for the same mesh in every state.
+  std::vector<std::shared_ptr<const DocumentMesh>> meshes;
+  std::map<LayerKey, PaintLayer> paint;  // absent: nothing is painted
+  std::shared_ptr<const Level> rest;     // materials, images, animations, notes, source; without nodes and meshes
+  std::string about;                     // what the level shows
+  std::optional<LevelEnvironment> environment;
+  Simulation simulation;
+
+  const DocumentNode* find(NodeId id) const;
+  const DocumentNode* find(const std::string& name) const;  // the first of that name
+  std::size_t place(NodeId id) const;                       // into `nodes`; their number: none
+  std::vector<NodeId> children(NodeId id) const;            // kNoNode: roots
+  bool below(NodeId id, NodeId ancestor) const;             // or the same
+  dmat4 to_world(NodeId id) const;                          // of its frame; of kNoNode the identity
+};
+
+// `next_id` gives ids and is moved on.
+State state_of(Level level, NodeId& next_id);
+// The whole level, painted values in its meshes: what is saved and played.
+Level level_of(const State& state);
+// The same without meshes' contents and painted values: names, frames and components, for what asks only for those.
+Level outline_of(const State& state);
+
+// Whether both are the same document to the bit: nodes, components, painted values, scene.
+bool same(const State& a, const State& b);
+
+// Writes a document's level where it is, or elsewhere; the file appears whole.
+Status save_state(const State& state, const std::filesystem::path& file);
+
+}  // namespace pliant

@@ -1,0 +1,173 @@
+#include "editor/panels/key_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/ui/widgets.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kUnbounded = 1e12;
+
+double least_of(const Key& key) {
+  return std::max(key.range.above_min ? std::nextafter(key.range.min, 1e300) : key.range.min, -kUnbounded);
+}
+double most_of(const Key& key) {
+  return std::min(key.range.max, kUnbounded);
+}
+
+bool number_field(const Key& key, const char* label, Json& value, float width = 0) {
+  double number = value.is_number() ? value.get<double>() : 0.0;
+  if (!ui::number(label, number, least_of(key), most_of(key), key.unit.c_str(), most_of(key) > 1e3, width)) return false;
+  value = number;
+  return true;
+}
+
+// Several numbers in a row; a press into one of them is an edit of the whole.
+bool row_field(const Key& key, Json& value, std::size_t count) {
+  const float wide = (ImGui::GetContentRegionAvail().x - ui::px(4) * static_cast<float>(count - 1)) /
+                     static_cast<float>(count) / ui::scale();
+  bool changed = false;
+  Json next = value.is_array() && value.size() == count ? value : Json(std::vector<double>(count, 0.0));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i) ImGui::SameLine(0, ui::px(4));
+    double number = next[i].is_number() ? next[i].get<double>() : 0.0;
+    if (ui::number(fmt::format("{} {}", key.name, i + 1).c_str(), number, least_of(key), most_of(key), "", false,
+                   wide)) {
+      next[i] = number;
+      changed = true;
+    }
+  }
+  if (changed) value = std::move(next);
+  return changed;
+}
+
+bool node_field(Editor& editor, const Key& key, Json& value) {
+  std::string name = value.is_string() ? value.get<std::string>() : "";
+  std::vector<std::string> names{""};
+  for (const auto& each : editor.state().nodes)
+    if (each->node.device) names.push_back(each->node.name);
+  if (!ui::combo(key.name.c_str(), name, names)) return false;
+  value = name;
+  return true;
+}
+
+bool box_field(const Key& key, Json& value) {
+  const bool has = value.is_object();
+  bool changed = false;
+  if (!has) {
+    if (!ui::button(fmt::format("Set##{}", key.name).c_str())) return false;
+    value = Json{{"min", {-0.01, -0.01, -0.01}}, {"max", {0.01, 0.01, 0.01}}};
+    return true;
+  }
+  Json next = value;
+  for (const char* corner : {"min", "max"}) {
+    Key part = key;
+    part.name = key.name + " " + corner;
+    part.range = {};
+    changed |= row_field(part, next[corner], 3);
+  }
+  if (ui::button(fmt::format("None##{}", key.name).c_str())) {
+    value = nullptr;
+    return true;
+  }
+  if (changed) value = std::move(next);
+  return changed;
+}
+
+bool points_field(const Key& key, Json& value) {
+  Json next = value.is_array() ? value : Json::array();
+  bool changed = false;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    Key part = key;
+    part.name = fmt::format("{} {}", key.name, i + 1);
+    changed |= row_field(part, next[i], 3);
+  }
+  if (next.size() < kMostPoints && ui::button(fmt::format("Add##{}", key.name).c_str())) {
+    next.push_back({0.0, 0.0, 0.0});
+    changed = true;
+  }
+  if (!next.empty()) {
+    ImGui::SameLine();
+    if (ui::button(fmt::format("Remove##{}", key.name).c_str())) {
+      next.erase(next.size() - 1);
+      changed = true;
+    }
+  }
+  if (changed) value = std::move(next);
+  return changed;
+}
+
+}  // namespace
+
+bool key_field(Editor& editor, const Key& key, Json& value) {
+  ImGui::PushID(key.name.c_str());
+  bool changed = false;
+  switch (key.type) {
+    case KeyType::kNumber:
+      changed = number_field(key, key.name.c_str(), value);
+      break;
+    case KeyType::kFlag: {
+      bool on = value.is_boolean() && value.get<bool>();
+      changed = ImGui::Checkbox("##flag", &on);
+      ui::known_as(key.name);
+      if (changed) value = on;
+      break;
+    }
+    case KeyType::kText: {
+      std::string text = value.is_string() ? value.get<std::string>() : "";
+      changed = ui::text_field(key.name.c_str(), text, "none", 0, ImGuiInputTextFlags_EnterReturnsTrue);
+      if (changed) value = text;
+      break;
+    }
+    case KeyType::kChoice: {
+      std::string word = value.is_string() ? value.get<std::string>() : "";
+      changed = ui::combo(key.name.c_str(), word, key.choices());
+      if (changed) value = word;
+      break;
+    }
+    case KeyType::kColor: {
+      float rgb[3] = {0, 0, 0};
+      for (std::size_t i = 0; i < 3 && value.is_array() && i < value.size(); ++i) rgb[i] = value[i].get<float>();
+      ImGui::SetNextItemWidth(-1);
+      changed = ImGui::ColorEdit3("##colour", rgb, ImGuiColorEditFlags_Float);
+      ui::known_as(key.name);
+      if (changed) value = Json::array({rgb[0], rgb[1], rgb[2]});
+      break;
+    }
+    case KeyType::kPair:
+      changed = row_field(key, value, 2);
+      break;
+    case KeyType::kVector:
+      changed = row_field(key, value, 3);
+      break;
+    case KeyType::kPoints:
+      changed = points_field(key, value);
+      break;
+    case KeyType::kBox:
+      changed = box_field(key, value);
+      break;
+    case KeyType::kNode:
+      changed = node_field(editor, key, value);
+      break;
+    case KeyType::kNumberOrMaterial: {
+      // A number, or the word that stands for what follows from the material.
+      bool material = value.is_string();
+      changed = ImGui::Checkbox("material##of", &material);
+      ui::known_as(key.name + " material");
+      if (changed) value = material ? Json("material") : Json(0.0);
+      if (!material && !changed) {
+        ImGui::SameLine();
+        changed = number_field(key, key.name.c_str(), value);
+      }
+      break;
+    }
+  }
+  ImGui::PopID();
+  return changed;
+}
+
+}  // namespace pliant

@@ -1,0 +1,13 @@
+// Every panel, each in a file of its own.
+#pragma once
+
+#include "editor/app/panel.h"
+
+namespace pliant {
+
+std::unique_ptr<Panel> make_tree_panel();
+std::unique_ptr<Panel> make_inspector_panel(App& app);
+std::unique_ptr<Panel> make_console_panel();
+std::unique_ptr<Panel> make_start_page(App& app);
+
+}  // namespace pliant

@@ -1,0 +1,204 @@
+// The scene tree: every node, what it is, and how they hang together.
+#include "editor/panels/panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "content/keys/extension_table.h"
+#include "editor/ui/widgets.h"
+#include "runtime/printable.h"
+
+namespace pliant {
+namespace {
+
+bool holds(const std::string& text, const std::string& part) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
+}
+
+class TreePanel : public Panel {
+ public:
+  const char* name() const override { return "Scene"; }
+  Place place() const override { return Place::kLeft; }
+
+  void draw(Editor& editor) override {
+    ui::gap(2);
+    ImGui::PushFont(ui::font(ui::Type::kStrong));
+    ImGui::TextUnformatted("Scene");
+    ImGui::PopFont();
+    ImGui::SameLine();
+    ui::text_field("Search", search_, "Search nodes and components");
+    ui::gap(2);
+    ImGui::BeginChild("nodes");
+    const State& state = editor.state();
+    // Children by parent once a frame: a level may have thousands.
+    below_.clear();
+    for (const auto& each : state.nodes) below_[each->parent].push_back(each.get());
+    order_.clear();
+    if (search_.empty())
+      for (const DocumentNode* root : below_[kNoNode]) draw_node(editor, *root);
+    else
+      for (const auto& each : state.nodes)
+        if (matches(*each)) draw_row(editor, *each, true);
+    if (state.nodes.empty()) ui::dim("Nothing here yet. Open an organ, or add something from the menu Add.");
+    // What is dropped below everything becomes a root.
+    const ImVec2 rest = ImGui::GetContentRegionAvail();
+    ImGui::InvisibleButton("below", {std::max(rest.x, 1.0f), std::max(rest.y, ui::px(24))});
+    ui::known_as("below");
+    if (ImGui::IsItemClicked()) editor.selected.clear();
+    take_drop(editor, kNoNode);
+    ImGui::EndChild();
+    if (dropped_) {
+      editor.apply("Move in the tree", reparented(editor.state(), dropped_->first, dropped_->second));
+      dropped_.reset();
+    }
+  }
+
+ private:
+  static std::string what(const LevelNode& node) {
+    std::string text;
+    const auto add = [&](const char* word) { text += (text.empty() ? "" : ", ") + std::string(word); };
+    for (const Extension& each : extension_table())
+      if (!each.on_scene && each.present(&node)) {
+        std::string word = each.name;
+        std::replace(word.begin(), word.end(), '_', ' ');
+        add(word.c_str());
+      }
+    if (node.light) add("light");
+    if (node.camera) add("camera");
+    return text.empty() && node.mesh >= 0 ? "mesh" : text;
+  }
+  bool matches(const DocumentNode& node) const {
+    return holds(node.node.name, search_) || holds(what(node.node), search_);
+  }
+
+  void draw_node(Editor& editor, const DocumentNode& node) {
+    const bool open = draw_row(editor, node, below_[node.id].empty());
+    if (!open || below_[node.id].empty()) return;
+    for (const DocumentNode* child : below_[node.id]) draw_node(editor, *child);
+    ImGui::TreePop();
+  }
+
+  bool draw_row(Editor& editor, const DocumentNode& node, bool leaf) {
+    const std::string shown = printable(node.node.name);
+    ImGui::PushID(static_cast<int>(node.id));
+    const ui::Scope scope(node.node.name);
+    order_.push_back(node.id);
+    if (renaming_ == node.id) {
+      if (starts_) ImGui::SetKeyboardFocusHere();
+      starts_ = false;
+      const bool done = ui::text_field("Name", new_name_, "", 0,
+                                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+      if (done || ImGui::IsItemDeactivated()) {
+        if (done && new_name_ != node.node.name)
+          editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
+        renaming_ = kNoNode;
+      }
+      ImGui::PopID();
+      return false;
+    }
+    ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth |
+                               ImGuiTreeNodeFlags_FramePadding | ImGuiTreeNodeFlags_DefaultOpen;
+    if (editor.is_selected(node.id)) flags |= ImGuiTreeNodeFlags_Selected;
+    if (leaf) flags |= ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
+    if (!node.node.in_scene) ImGui::PushStyleColor(ImGuiCol_Text, ui::palette().faint);
+    const bool open = ImGui::TreeNodeEx("node", flags, "%s", shown.c_str());
+    if (!node.node.in_scene) ImGui::PopStyleColor();
+    ui::known_as("row");
+    const bool toggled = ImGui::IsItemToggledOpen();
+    if (ImGui::IsItemHovered()) {
+      editor.hovered = node.id;
+      if (ImGui::IsMouseDoubleClicked(0)) {
+        editor.select(node.id);
+        editor.frame_selected();
+      }
+    }
+    if (ImGui::IsItemClicked() && !toggled) {
+      const ImGuiIO& io = ImGui::GetIO();
+      if (io.KeyShift && editor.active() != kNoNode)
+        select_range(editor, node.id);
+      else
+        editor.select(node.id, io.KeyCtrl);
+    }
+    if (ImGui::BeginPopupContextItem("row menu")) {
+      if (!editor.is_selected(node.id)) editor.select(node.id);
+      row_menu(editor, node);
+      ImGui::EndPopup();
+    }
+    if (ImGui::BeginDragDropSource()) {
+      if (!editor.is_selected(node.id)) editor.select(node.id);
+      ImGui::SetDragDropPayload("node", &node.id, sizeof(node.id));
+      ImGui::TextUnformatted(shown.c_str());
+      ImGui::EndDragDropSource();
+    }
+    take_drop(editor, node.id);
+    const std::string kind = what(node.node);
+    if (!kind.empty()) {
+      ImGui::PushFont(ui::font(ui::Type::kSmall));
+      const float wide = ImGui::CalcTextSize(kind.c_str()).x,
+                  room = ImGui::GetWindowContentRegionMax().x - ImGui::GetItemRectMin().x + ImGui::GetWindowPos().x -
+                         ImGui::CalcTextSize(shown.c_str()).x - ui::px(56);
+      if (wide < room) {
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - wide - ui::px(4));
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextColored(ui::palette().faint, "%s", kind.c_str());
+      }
+      ImGui::PopFont();
+    }
+    ImGui::PopID();
+    return open;
+  }
+
+  void row_menu(Editor& editor, const DocumentNode& node) {
+    if (ui::menu_item("Rename")) {
+      renaming_ = node.id;
+      new_name_ = node.node.name;
+      starts_ = true;
+    }
+    if (ui::menu_item("Duplicate")) {
+      std::vector<NodeId> ids;
+      if (editor.apply("Duplicate", duplicated(editor.state(), editor.selected, editor.document.next_id(), &ids)))
+        editor.selected = ids;
+    }
+    if (ui::menu_item("Frame")) editor.frame_selected();
+    if (ui::menu_item("Isolate", nullptr, !editor.view.isolated.empty()))
+      editor.view.isolated = editor.view.isolated.empty() ? editor.selected : std::vector<NodeId>{};
+    ImGui::Separator();
+    if (ui::menu_item("Delete")) editor.apply("Delete", without(editor.state(), editor.selected));
+  }
+
+  void select_range(Editor& editor, NodeId to) {
+    const auto from = std::find(order_before_.begin(), order_before_.end(), editor.active()),
+               here = std::find(order_before_.begin(), order_before_.end(), to);
+    if (from == order_before_.end() || here == order_before_.end()) return editor.select(to);
+    editor.selected.assign(std::min(from, here), std::max(from, here) + 1);
+    if (here < from) std::reverse(editor.selected.begin(), editor.selected.end());
+  }
+
+  void take_drop(const Editor& editor, NodeId onto) {
+    if (ImGui::BeginDragDropTarget()) {
+      if (ImGui::AcceptDragDropPayload("node")) dropped_ = {editor.selected, onto};
+      ImGui::EndDragDropTarget();
+    }
+    if (onto == kNoNode) order_before_ = order_;
+  }
+
+  std::string search_, new_name_;
+  NodeId renaming_ = kNoNode;
+  bool starts_ = false;
+  std::map<NodeId, std::vector<const DocumentNode*>> below_;
+  std::vector<NodeId> order_, order_before_;
+  std::optional<std::pair<std::vector<NodeId>, NodeId>> dropped_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_tree_panel() {
+  return std::make_unique<TreePanel>();
+}
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+// A hand from a file: what it does is said by the names of widgets, so that a script survives a change of the layout.
+// Each step begins when the editor has come to rest after the one before: what was pressed has been answered, pictures
+// show the document as it stands.
+//
+// One step a line; # begins a comment. PLACE is a widget's address (ui/widgets.h), with @X,Y a share of its width and
+// height (Viewport@0.5,0.5), or two numbers of pixels.
+//   click PLACE [right] [double] [shift] [control] [alt]     press and let go
+//   drag PLACE to PLACE [MODIFIER...] [in SECONDS]           with the left button; `right`, `middle`
+//   press PLACE / move PLACE / release                       the same in parts
+//   wheel PLACE CLICKS
+//   key Ctrl+Shift+S                                         pressed and let go
+//   type TEXT                                                the rest of the line
+//   set PLACE VALUE                                          types VALUE into a number or text field
+//   wait SECONDS
+//   await PLACE [SECONDS]                                    until a widget of that address is there and on
+//   expect PLACE / expect-no PLACE                           an error unless it is (not) there
+//   say TEXT                                                 an error unless the console's text holds it
+//   screenshot FILE.png                                      into the folder of --out
+//   drop FILE
+//   close
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runtime/result.h"
+#include "window/window_input.h"
+
+namespace pliant::ui {
+
+class Script {
+ public:
+  static Result<Script> load(const std::filesystem::path& file);
+
+  struct Surroundings {
+    bool settled = true;                                         // nothing is under way
+    double now = 0.0;                                            // [s]
+    std::function<void(const std::string&)> screenshot;          // of the next frame
+    std::function<bool(const std::string&)> has_said;
+  };
+  // Appends the events of the next frame. The error names the line.
+  Status next(const Surroundings& at, std::vector<InputEvent>& events);
+  bool done() const { return steps_.empty() && frames_.empty(); }
+
+ private:
+  struct Step {
+    std::size_t line = 0;
+    std::string verb;
+    std::vector<std::string> words;
+    std::string rest;
+  };
+  Result<std::pair<double, double>> place(const std::string& text, bool& there) const;
+  Status begin(const Step& step, const Surroundings& at, bool& waits);
+  void key_events(const std::string& keys, bool repeat_text);
+
+  std::string file_;
+  std::deque<Step> steps_;
+  std::deque<std::vector<InputEvent>> frames_;  // of the step under way
+  double until_ = 0.0, began_ = -1.0;           // [s]
+  int rest_ = 0;                                // frames since the last event
+};
+
+// "Ctrl+Shift+S" -> modifiers and key as GLFW numbers it; false: not understood.
+bool parse_keys(const std::string& keys, int& key, std::uint8_t& modifiers);
+std::string keys_text(int key, std::uint8_t modifiers);
+
+}  // namespace pliant::ui

@@ -1,0 +1,175 @@
+#include "editor/ui/theme.h"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+namespace pliant::ui {
+namespace {
+
+ImVec4 rgb(int hex, float alpha = 1.0f) {
+  return {static_cast<float>(hex >> 16 & 255) / 255.0f, static_cast<float>(hex >> 8 & 255) / 255.0f,
+          static_cast<float>(hex & 255) / 255.0f, alpha};
+}
+
+const Palette kDark{.window = rgb(0x17191d),
+                    .panel = rgb(0x1e2126),
+                    .raised = rgb(0x282c33),
+                    .field = rgb(0x2b3038),
+                    .field_hot = rgb(0x363d47),
+                    .line = rgb(0x0f1114),
+                    .text = rgb(0xe6e8eb),
+                    .dim = rgb(0xa3abb5),
+                    .faint = rgb(0x737c88),
+                    .accent = rgb(0xe8824a),
+                    .accent_text = rgb(0x1a120d),
+                    .good = rgb(0x74c69d),
+                    .warning = rgb(0xe9c46a),
+                    .bad = rgb(0xf07167),
+                    .force = rgb(0xff9e57),
+                    .depth = rgb(0x68beff),
+                    .axis = {rgb(0xe5646b), rgb(0x7fc25c), rgb(0x5b9cf0)}};
+const Palette kLight{.window = rgb(0xdfe2e6),
+                     .panel = rgb(0xf2f3f5),
+                     .raised = rgb(0xffffff),
+                     .field = rgb(0xe3e6ea),
+                     .field_hot = rgb(0xd5dae0),
+                     .line = rgb(0xc6cbd2),
+                     .text = rgb(0x1b1f24),
+                     .dim = rgb(0x4c5561),
+                     .faint = rgb(0x7b8592),
+                     .accent = rgb(0xc4561c),
+                     .accent_text = rgb(0xffffff),
+                     .good = rgb(0x1f7a4d),
+                     .warning = rgb(0x8a6100),
+                     .bad = rgb(0xb3261e),
+                     .force = rgb(0xc4561c),
+                     .depth = rgb(0x1f6fb5),
+                     .axis = {rgb(0xc23b43), rgb(0x3e7f1e), rgb(0x2a66b8)}};
+
+const Palette* g_palette = &kDark;
+std::array<ImFont*, 4> g_fonts{};
+float g_scale = 1.0f;
+
+const char* load_fonts() {
+  ImGuiIO& io = ImGui::GetIO();
+  io.Fonts->Clear();
+  constexpr const char* kRegular[] = {"/usr/share/fonts/opentype/inter/Inter-Regular.otf",
+                                      "/usr/share/fonts/truetype/inter/Inter-Regular.ttf",
+                                      "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"};
+  constexpr const char* kStrong[] = {"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf",
+                                     "/usr/share/fonts/truetype/inter/Inter-SemiBold.ttf",
+                                     "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"};
+  // Latin, Greek for tau and zeta, punctuation, arrows, and the few signs that buttons wear.
+  static const ImWchar kRanges[] = {0x20,   0x17f,  0x370,  0x3ff,  0x2010, 0x2044, 0x2070,
+                                    0x209c, 0x2190, 0x21ff, 0x2200, 0x22ff, 0x2300, 0x23ff,
+                                    0x25a0, 0x25ff, 0x2600, 0x26ff, 0x2713, 0x2718, 0};
+  static const ImWchar kSigns[] = {0x2190, 0x21ff, 0x2300, 0x23ff, 0x25a0, 0x25ff, 0x2600, 0x26ff, 0x2713, 0x2718, 0};
+  bool missing = false;
+  const auto add = [&](const char* const(&files)[3], float size) -> ImFont* {
+    std::error_code gone;
+    for (const char* file : files) {
+      if (!std::filesystem::exists(file, gone)) continue;
+      ImFontConfig config;
+      config.OversampleH = 2;
+      config.PixelSnapH = true;
+      ImFont* const font = io.Fonts->AddFontFromFileTTF(file, std::round(size * g_scale), &config, kRanges);
+      if (!font) continue;
+      if (file != files[2] && std::filesystem::exists(files[2], gone)) {  // signs that Inter lacks
+        config.MergeMode = true;
+        io.Fonts->AddFontFromFileTTF(files[2], std::round(size * g_scale), &config, kSigns);
+      }
+      return font;
+    }
+    missing = true;
+    return io.Fonts->AddFontDefault();
+  };
+  g_fonts = {add(kRegular, 12), add(kRegular, 14), add(kStrong, 14), add(kStrong, 20)};
+  io.FontDefault = g_fonts[1];
+  return missing ? "no font was found; install fonts-inter or fonts-dejavu-core" : nullptr;
+}
+
+}  // namespace
+
+const Palette& palette() {
+  return *g_palette;
+}
+
+ImFont* font(Type type) {
+  return g_fonts[static_cast<std::size_t>(type)];
+}
+
+float scale() {
+  return g_scale;
+}
+
+ImU32 color(const ImVec4& of, float alpha) {
+  return ImGui::ColorConvertFloat4ToU32({of.x, of.y, of.z, of.w * alpha});
+}
+
+const char* set_theme(Theme theme, float scale) {
+  g_scale = scale;
+  g_palette = theme == Theme::kDark ? &kDark : &kLight;
+  const Palette& p = *g_palette;
+  ImGuiStyle& s = ImGui::GetStyle();
+  s = ImGuiStyle();
+  theme == Theme::kDark ? ImGui::StyleColorsDark() : ImGui::StyleColorsLight();
+  s.WindowRounding = 0;
+  s.ChildRounding = 6;
+  s.FrameRounding = 4;
+  s.PopupRounding = 6;
+  s.GrabRounding = 4;
+  s.ScrollbarRounding = 6;
+  s.TabRounding = 4;
+  s.WindowBorderSize = 0;
+  s.ChildBorderSize = 0;
+  s.PopupBorderSize = 1;
+  s.WindowPadding = {kPad, kSpace};
+  s.FramePadding = {kSpace, kGap};
+  s.ItemSpacing = {kSpace, kGap + 1};
+  s.ItemInnerSpacing = {kGap + 2, kGap};
+  s.IndentSpacing = 14;
+  s.ScrollbarSize = 12;
+  s.GrabMinSize = 10;
+  const auto set = [&](ImGuiCol which, const ImVec4& to) { s.Colors[which] = to; };
+  const auto faded = [](ImVec4 c, float alpha) { return ImVec4(c.x, c.y, c.z, alpha); };
+  set(ImGuiCol_Text, p.text);
+  set(ImGuiCol_TextDisabled, p.faint);
+  set(ImGuiCol_WindowBg, p.panel);
+  set(ImGuiCol_ChildBg, {0, 0, 0, 0});
+  set(ImGuiCol_PopupBg, p.raised);
+  set(ImGuiCol_MenuBarBg, p.panel);
+  set(ImGuiCol_Border, p.line);
+  set(ImGuiCol_FrameBg, p.field);
+  set(ImGuiCol_FrameBgHovered, p.field_hot);
+  set(ImGuiCol_FrameBgActive, p.field_hot);
+  set(ImGuiCol_Button, p.field);
+  set(ImGuiCol_ButtonHovered, p.field_hot);
+  set(ImGuiCol_ButtonActive, p.accent);
+  set(ImGuiCol_Header, faded(p.accent, 0.32f));
+  set(ImGuiCol_HeaderHovered, faded(p.text, 0.08f));
+  set(ImGuiCol_HeaderActive, faded(p.accent, 0.45f));
+  set(ImGuiCol_CheckMark, p.accent);
+  set(ImGuiCol_SliderGrab, p.accent);
+  set(ImGuiCol_SliderGrabActive, p.accent);
+  set(ImGuiCol_Separator, faded(p.text, 0.10f));
+  set(ImGuiCol_SeparatorHovered, faded(p.accent, 0.6f));
+  set(ImGuiCol_SeparatorActive, p.accent);
+  set(ImGuiCol_Tab, p.panel);
+  set(ImGuiCol_TabHovered, p.field_hot);
+  set(ImGuiCol_TabActive, p.field);
+  set(ImGuiCol_TabUnfocused, p.panel);
+  set(ImGuiCol_TabUnfocusedActive, p.field);
+  set(ImGuiCol_ScrollbarBg, {0, 0, 0, 0});
+  set(ImGuiCol_ScrollbarGrab, p.field_hot);
+  set(ImGuiCol_TextSelectedBg, faded(p.accent, 0.35f));
+  set(ImGuiCol_ModalWindowDimBg, {0, 0, 0, 0.45f});
+  set(ImGuiCol_NavHighlight, p.accent);
+  set(ImGuiCol_TitleBg, p.panel);
+  set(ImGuiCol_TitleBgActive, p.panel);
+  set(ImGuiCol_DragDropTarget, p.accent);
+  s.ScaleAllSizes(scale);
+  return load_fonts();
+}
+
+}  // namespace pliant::ui

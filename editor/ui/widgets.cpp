@@ -1,0 +1,216 @@
+#include "editor/ui/widgets.h"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant::ui {
+namespace {
+
+std::vector<std::string> g_scopes;
+std::vector<Place> g_now, g_before;
+
+std::string address_of(std::string_view label) {
+  std::string address;
+  for (const std::string& scope : g_scopes) address += scope + "/";
+  return address += label;
+}
+
+}  // namespace
+
+Scope::Scope(std::string name) {
+  g_scopes.push_back(std::move(name));
+}
+Scope::~Scope() {
+  g_scopes.pop_back();
+}
+
+void begin_widgets() {
+  g_before.swap(g_now);
+  g_now.clear();
+}
+
+void known_at(std::string_view label, ImVec2 low, ImVec2 high) {
+  g_now.push_back({address_of(label), low, high, true});
+}
+
+void known_as(std::string_view label) {
+  known_at(label, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+}
+
+std::optional<Place> find_widget(std::string_view address) {
+  for (const Place& each : g_before)
+    if (each.address == address) return each;
+  std::optional<Place> found;
+  for (const Place& each : g_before) {
+    const std::string_view of = each.address;
+    if (of.size() <= address.size() || !of.ends_with(address) || of[of.size() - address.size() - 1] != '/') continue;
+    if (found) return {};
+    found = each;
+  }
+  return found;
+}
+
+std::vector<std::string> widget_addresses() {
+  std::vector<std::string> all;
+  for (const Place& each : g_before) all.push_back(each.address);
+  return all;
+}
+
+void hint(const char* text) {
+  if (!text || !*text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  if (ImGui::GetCurrentContext() && ImGui::GetIO().MouseDown[0]) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(px(340));
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+bool button(const char* label, const char* hint_text, bool enabled, float width) {
+  if (!enabled) ImGui::BeginDisabled();
+  const bool pressed = ImGui::Button(label, {px(width), 0});
+  if (!enabled) ImGui::EndDisabled();
+  known_as(label);
+  g_now.back().enabled = enabled;
+  hint(hint_text);
+  return pressed && enabled;
+}
+
+bool strong_button(const char* label, const char* hint_text, bool enabled, float width) {
+  const Palette& p = palette();
+  ImGui::PushStyleColor(ImGuiCol_Button, enabled ? p.accent : p.field);
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, p.accent);
+  ImGui::PushStyleColor(ImGuiCol_Text, enabled ? p.accent_text : p.faint);
+  ImGui::PushFont(font(Type::kStrong));
+  const bool pressed = button(label, nullptr, enabled, width);
+  ImGui::PopFont();
+  ImGui::PopStyleColor(3);
+  hint(hint_text);
+  return pressed;
+}
+
+bool choice_button(const char* label, bool down, const char* hint_text, bool enabled) {
+  const Palette& p = palette();
+  if (down) {
+    ImGui::PushStyleColor(ImGuiCol_Button, p.accent);
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, p.accent);
+    ImGui::PushStyleColor(ImGuiCol_Text, p.accent_text);
+  }
+  const bool pressed = button(label, nullptr, enabled);
+  if (down) ImGui::PopStyleColor(3);
+  hint(hint_text);
+  return pressed;
+}
+
+bool checkbox(const char* label, bool& value, const char* hint_text) {
+  const bool changed = ImGui::Checkbox(label, &value);
+  known_as(label);
+  hint(hint_text);
+  return changed;
+}
+
+bool text_field(const char* label, std::string& value, const char* placeholder, float width,
+                ImGuiInputTextFlags flags) {
+  ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
+  const bool changed = ImGui::InputTextWithHint(fmt::format("##{}", label).c_str(), placeholder, &value, flags);
+  known_as(label);
+  return changed;
+}
+
+bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic,
+            float width, bool* finished) {
+  ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
+  const double size = std::max(std::abs(value), 1e-6 * std::max(std::abs(least), std::abs(most)));
+  const double decade = std::pow(10.0, std::floor(std::log10(std::max(size, 1e-9))));
+  const float speed = static_cast<float>(std::max(decade, 1e-9) * 0.02);
+  const std::string format = fmt::format("%.6g{}{}", *unit && std::string_view(unit) != "1" ? " " : "",
+                                         std::string_view(unit) == "1" ? "" : unit);
+  const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp |
+                                 (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
+                                 ImGuiSliderFlags_NoRoundToFormat;
+  double next = value;
+  const bool changed = ImGui::DragScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &next, speed, &least,
+                                         &most, format.c_str(), flags & ~ImGuiSliderFlags_Logarithmic);
+  known_as(label);
+  if (finished) *finished = ImGui::IsItemDeactivatedAfterEdit();
+  if (changed) value = next;
+  return changed;
+}
+
+bool combo(const char* label, std::string& value, const std::vector<std::string>& choices, float width) {
+  ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
+  bool changed = false;
+  const bool open = ImGui::BeginCombo(fmt::format("##{}", label).c_str(), value.c_str());
+  known_as(label);
+  if (!open) return false;
+  const Scope scope(label);
+  for (const std::string& each : choices) {
+    const bool same = each == value;
+    if (selectable(each.empty() ? "(none)" : each.c_str(), same)) {
+      changed = !same;
+      value = each;
+    }
+    if (same) ImGui::SetItemDefaultFocus();
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+bool selectable(const char* label, bool selected, ImGuiSelectableFlags flags, ImVec2 size) {
+  const bool pressed = ImGui::Selectable(label, selected, flags, size);
+  known_as(label);
+  return pressed;
+}
+
+bool menu_item(const char* label, const char* shortcut, bool checked, bool enabled) {
+  const bool pressed = ImGui::MenuItem(label, shortcut, checked, enabled);
+  known_as(label);
+  g_now.back().enabled = enabled;
+  return pressed;
+}
+
+bool begin_menu(const char* label, bool enabled) {
+  const bool open = ImGui::BeginMenu(label, enabled);
+  // An open menu's item is the popup's; its own place is what the cursor left behind.
+  known_as(label);
+  return open;
+}
+
+bool section(const char* label, bool open_at_first) {
+  ImGui::PushFont(font(Type::kStrong));
+  const bool open = ImGui::CollapsingHeader(label, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  ImGui::PopFont();
+  known_as(label);
+  return open;
+}
+
+void label(const char* text, const char* hint_text) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().dim);
+  ImGui::TextUnformatted(text);
+  ImGui::PopStyleColor();
+  hint(hint_text);
+}
+
+void dim(const char* text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().dim);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+void title(const char* text) {
+  ImGui::PushFont(font(Type::kTitle));
+  ImGui::TextUnformatted(text);
+  ImGui::PopFont();
+}
+
+void gap(float points) {
+  ImGui::Dummy({0, px(points)});
+}
+
+}  // namespace pliant::ui

@@ -1,0 +1,63 @@
+// Dear ImGui's widgets as the editor uses them: the same spaces everywhere, a tooltip for everything, and each one
+// known by its label, so that a script of events can press what a hand presses.
+//
+// A widget's address is "SCOPE/LABEL", "Inspector/stiffness". What stands behind ## in a label is not shown, and is
+// part of its address.
+#pragma once
+
+#include <imgui.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "editor/ui/theme.h"
+
+namespace pliant::ui {
+
+// Where a widget was in the frame before.
+struct Place {
+  std::string address;
+  ImVec2 low{0, 0}, high{0, 0};  // [pixel]
+  bool enabled = true;
+};
+class Scope {  // names what is drawn while it lives
+ public:
+  explicit Scope(std::string name);
+  ~Scope();
+  Scope(const Scope&) = delete;
+  Scope& operator=(const Scope&) = delete;
+};
+void begin_widgets();                                            // of a frame
+void known_as(std::string_view label);                           // the item that was drawn last
+void known_at(std::string_view label, ImVec2 low, ImVec2 high);  // something that is drawn by hand
+// By its address, or by its label where only one has it.
+std::optional<Place> find_widget(std::string_view address);
+std::vector<std::string> widget_addresses();
+
+// `hint` is what a tooltip says; where the widget is off, why.
+void hint(const char* text);
+bool button(const char* label, const char* hint_text = nullptr, bool enabled = true, float width = 0);
+bool strong_button(const char* label, const char* hint_text = nullptr, bool enabled = true, float width = 0);
+// One of a row of which one is down.
+bool choice_button(const char* label, bool down, const char* hint_text = nullptr, bool enabled = true);
+bool checkbox(const char* label, bool& value, const char* hint_text = nullptr);
+bool text_field(const char* label, std::string& value, const char* placeholder = "", float width = 0,
+                ImGuiInputTextFlags flags = 0);
+// Dragged sideways, or typed with a double click. Steps follow the size of the value; `logarithmic` for stiffnesses and
+// the like. True while it changes; `finished` when a gesture has ended.
+bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic = false,
+            float width = 0, bool* finished = nullptr);
+bool combo(const char* label, std::string& value, const std::vector<std::string>& choices, float width = 0);
+bool selectable(const char* label, bool selected, ImGuiSelectableFlags flags = 0, ImVec2 size = {0, 0});
+bool menu_item(const char* label, const char* shortcut = nullptr, bool checked = false, bool enabled = true);
+bool begin_menu(const char* label, bool enabled = true);
+bool section(const char* label, bool open_at_first = true);  // a header that folds
+void label(const char* text, const char* hint_text = nullptr);
+void dim(const char* text);  // wrapped, in the colour of what matters less
+void title(const char* text);
+void gap(float points = kSpace);
+
+}  // namespace pliant::ui

@@ -1,0 +1,407 @@
+#include "editor/viewport/solid_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <set>
+#include <unordered_map>
+
+namespace pliant {
+namespace {
+
+constexpr float kEncode = 1.0f / 2.2f;
+constexpr float kCreaseCosine = 0.77f;  // [1] edges that turn by more than about 40 degrees
+
+struct SolidVertex {
+  vec3 position, normal;
+};
+
+std::vector<SolidVertex> vertices_of(const Primitive& primitive) {
+  std::vector<SolidVertex> out(primitive.position.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {primitive.position[i], vec3(0)};
+  if (primitive.normal.size() == out.size()) {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].normal = primitive.normal[i];
+    return out;
+  }
+  for (std::size_t t = 0; t + 2 < primitive.index.size(); t += 3) {
+    const std::uint32_t a = primitive.index[t], b = primitive.index[t + 1], c = primitive.index[t + 2];
+    const vec3 n = cross(out[b].position - out[a].position, out[c].position - out[a].position);
+    for (const std::uint32_t v : {a, b, c}) out[v].normal += n;
+  }
+  for (SolidVertex& v : out) v.normal = dot(v.normal, v.normal) > 0.0f ? glm::normalize(v.normal) : vec3(0, 1, 0);
+  return out;
+}
+
+vec3 encoded(vec3 linear) {
+  return glm::pow(glm::clamp(linear, vec3(0), vec3(1)), vec3(kEncode));
+}
+
+bool shown(const SolidOrder& order, std::size_t node) {
+  const DocumentNode& it = *order.state.nodes[node];
+  if (!it.node.in_scene) return false;
+  if (order.settings.isolated.empty()) return true;
+  return std::any_of(order.settings.isolated.begin(), order.settings.isolated.end(),
+                     [&](NodeId id) { return order.state.below(it.id, id); });
+}
+
+}  // namespace
+
+std::vector<dmat4> world_frames(const State& state) {
+  std::vector<dmat4> frames;
+  std::unordered_map<NodeId, std::size_t> place;
+  for (const auto& each : state.nodes) {
+    const LocalTransform& local = each->node.local;
+    dmat4 m = glm::mat4_cast(dquat(local.rotation));
+    for (int c = 0; c < 3; ++c) m[c] *= static_cast<double>(local.scale[c]);
+    m[3] = glm::dvec4(dvec3(local.translation), 1.0);
+    const auto parent = place.find(each->parent);
+    place[each->id] = frames.size();
+    frames.push_back(parent == place.end() ? m : frames[parent->second] * m);
+  }
+  return frames;
+}
+
+Box bounds_of(const State& state, const std::vector<NodeId>& only) {
+  const std::vector<dmat4> frames = world_frames(state);
+  Box box, points;
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    const DocumentNode& each = *state.nodes[i];
+    if (!each.node.in_scene) continue;
+    if (!only.empty() && std::none_of(only.begin(), only.end(), [&](NodeId id) { return state.below(each.id, id); }))
+      continue;
+    points.add(vec3(dvec3(frames[i][3])));
+    if (each.node.mesh < 0) continue;
+    const Box& of = state.meshes[static_cast<std::size_t>(each.node.mesh)]->box;
+    if (of.empty()) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      const vec3 p(corner & 1 ? of.max.x : of.min.x, corner & 2 ? of.max.y : of.min.y,
+                   corner & 4 ? of.max.z : of.min.z);
+      box.add(vec3(dvec3(frames[i] * glm::dvec4(dvec3(p), 1.0))));
+    }
+  }
+  return box.empty() ? points : box;
+}
+
+mat4 clip_from_world(const Viewpoint& view, double orthographic, double aspect, const Box& box) {
+  const dmat4 eye = glm::lookAt(view.eye, view.target, view.up);
+  double nearest = 1e30, farthest = 0.0;
+  if (!box.empty())
+    for (int corner = 0; corner < 8; ++corner) {
+      const dvec3 p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                    corner & 4 ? box.max.z : box.min.z);
+      const double depth = -dvec3(eye * glm::dvec4(p, 1.0)).z;
+      nearest = std::min(nearest, depth);
+      farthest = std::max(farthest, depth);
+    }
+  const double away = std::max(length(view.target - view.eye), 1e-9);
+  farthest = std::max(1.1 * farthest, 4.0 * away);
+  if (orthographic > 0.0) {
+    const double h = 0.5 * orthographic, w = h * aspect;
+    return mat4(glm::ortho(-w, w, -h, h, std::min(nearest, 0.0) - farthest, farthest) * eye);
+  }
+  nearest = std::clamp(0.5 * nearest, std::max(1e-3 * away, 1e-4 * farthest), 0.5 * away);
+  return mat4(glm::perspective(static_cast<double>(view.yfov), aspect, nearest, farthest) * eye);
+}
+
+Result<SolidView> SolidView::make() {
+  SolidView view;
+  const auto load = [](gpu::Program& into, std::initializer_list<const char*> names) -> Status {
+    Result<gpu::Program> program = gpu::Program::load(names);
+    if (!program) return program.error();
+    into = *std::move(program);
+    return Done{};
+  };
+  if (Status s = load(view.solid_, {"editor_solid.vert", "editor_solid.frag"}); !s) return s.error();
+  if (Status s = load(view.lines_program_, {"editor_lines.vert", "editor_lines.frag"}); !s) return s.error();
+  if (Status s = load(view.screen_, {"editor_screen.vert", "editor_screen.frag"}); !s) return s.error();
+  view.empty_ = gpu::VertexArray::make();
+  return view;
+}
+
+SolidView::MeshOnGpu& SolidView::on_gpu(const std::shared_ptr<const DocumentMesh>& mesh) {
+  MeshOnGpu& out = meshes_[mesh.get()];
+  out.seen = true;
+  if (out.of) return out;
+  out.of = mesh;
+  const float normal_length = 0.012f * mesh->box.diagonal();
+  std::size_t vertex_count = 0;
+  for (const Primitive& primitive : mesh->primitives) vertex_count += primitive.position.size();
+  const std::size_t every = std::max<std::size_t>(1, vertex_count / 20'000);  // more lines than that hide the mesh
+  for (const Primitive& primitive : mesh->primitives) {
+    PrimitiveOnGpu p;
+    const std::vector<SolidVertex> vertices = vertices_of(primitive);
+    p.index_count = static_cast<GLsizei>(primitive.index.size());
+    p.vertices = gpu::Buffer::fixed<SolidVertex>(vertices);
+    p.indices = gpu::Buffer::fixed<std::uint32_t>(primitive.index);
+    p.layout = gpu::VertexArray::make();
+    p.layout.source(0, p.vertices, sizeof(SolidVertex));
+    p.layout.floats(0, 0, 3, 0);
+    p.layout.floats(1, 0, 3, sizeof(vec3));
+    p.layout.indices(p.indices);
+    out.primitives.push_back(std::move(p));
+    for (std::size_t i = 0; i < vertices.size(); i += every) {
+      out.normal_ends.push_back(vertices[i].position);
+      out.normal_ends.push_back(vertices[i].position + normal_length * vertices[i].normal);
+    }
+  }
+  return out;
+}
+
+// Sends the chunks that differ from those that are shown.
+void SolidView::show_values(MeshOnGpu& mesh, std::size_t number, const SolidOrder& order) {
+  if (!order.settings.channel) return;
+  for (std::uint32_t i = 0; i < mesh.primitives.size(); ++i) {
+    PrimitiveOnGpu& p = mesh.primitives[i];
+    const std::size_t count = mesh.of->primitives[i].position.size();
+    const auto it = order.state.paint.find({static_cast<std::uint32_t>(number), i, *order.settings.channel});
+    const PaintLayer layer =
+        it != order.state.paint.end() ? it->second : PaintLayer::constant(count, unpainted(*order.settings.channel));
+    if (!p.has_values) {
+      p.values = gpu::Buffer::writable(nullptr, layer.chunk_count() * PaintLayer::kChunk * sizeof(float));
+      p.layout.source(1, p.values, sizeof(float));
+      p.layout.floats(2, 1, 1, 0);
+      p.shown = PaintLayer();
+      p.has_values = true;
+    }
+    for (std::size_t c = 0; c < layer.chunk_count(); ++c)
+      if (p.shown.chunk_count() != layer.chunk_count() || p.shown.chunk(c) != layer.chunk(c))
+        p.values.write(c * PaintLayer::kChunk * sizeof(float), layer.chunk(c), PaintLayer::kChunk * sizeof(float));
+    p.shown = layer;
+  }
+}
+
+void SolidView::make_room(int width, int height) {
+  if (width == width_ && height == height_) return;
+  width_ = width;
+  height_ = height;
+  const auto texture = [&](GLenum format) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &id);
+    glTextureStorage2D(id, 1, format, width, height);
+    const GLint filter = format == GL_RGBA8 ? GL_LINEAR : GL_NEAREST;
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, filter);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return id;
+  };
+  color_ = gpu::Object<DestroyTexture>(texture(GL_RGBA8));
+  numbers_ = gpu::Object<DestroyTexture>(texture(GL_R32UI));
+  depth_ = gpu::Object<DestroyTexture>(texture(GL_DEPTH_COMPONENT32F));
+  GLuint frame = 0;
+  glCreateFramebuffers(1, &frame);
+  frame_ = gpu::Object<DestroyFrame>(frame);
+  glNamedFramebufferTexture(frame, GL_COLOR_ATTACHMENT0, color_.id(), 0);
+  glNamedFramebufferTexture(frame, GL_COLOR_ATTACHMENT1, numbers_.id(), 0);
+  glNamedFramebufferTexture(frame, GL_DEPTH_ATTACHMENT, depth_.id(), 0);
+  const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  glNamedFramebufferDrawBuffers(frame, 2, both);
+}
+
+// Lines a round number of metres apart on the floor, y = 0, as fine as the picture shows.
+void SolidView::add_grid(const SolidOrder& order, std::vector<ViewLine>& lines) const {
+  if (!order.settings.grid) return;
+  const double seen = order.orthographic > 0.0
+                          ? order.orthographic
+                          : 2.0 * length(order.view.target - order.view.eye) * std::tan(0.5 * order.view.yfov);
+  const double step = std::pow(10.0, std::floor(std::log10(std::max(seen, 1e-9) / 4.0)));
+  const int half = 20;
+  const double cx = std::round(order.view.target.x / step) * step, cz = std::round(order.view.target.z / step) * step;
+  const float far = static_cast<float>(half * step);
+  for (int i = -half; i <= half; ++i) {
+    const auto x = static_cast<float>(cx + i * step), z = static_cast<float>(cz + i * step);
+    const auto tint = [&](double place) {
+      const bool tenth = std::abs(std::remainder(place, 10 * step)) < 0.1 * step;
+      vec4 c = order.grid;
+      c.a *= tenth ? 1.0f : 0.45f;
+      return c;
+    };
+    const auto mx = static_cast<float>(cx), mz = static_cast<float>(cz);
+    lines.push_back({{x, 0, mz - far}, {x, 0, mz + far}, tint(cx + i * step), false});
+    lines.push_back({{mx - far, 0, z}, {mx + far, 0, z}, tint(cz + i * step), false});
+  }
+}
+
+void SolidView::draw_lines(const SolidOrder& order, const mat4& from_world, bool over) {
+  std::vector<ViewLine> lines;
+  if (!over) add_grid(order, lines);
+  for (const ViewLine& line : order.lines)
+    if (line.over == over) lines.push_back(line);
+  if (lines.empty()) return;
+  struct End {
+    vec3 position;
+    vec4 tint;
+  };
+  std::vector<End> ends;
+  for (const ViewLine& line : lines) {
+    ends.push_back({line.from, line.color});
+    ends.push_back({line.to, line.color});
+  }
+  line_ends_.write<End>(ends);
+  line_layout_ = gpu::VertexArray::make();
+  glVertexArrayVertexBuffer(line_layout_.id(), 0, line_ends_.id(), 0, sizeof(End));
+  line_layout_.floats(0, 0, 3, 0);
+  line_layout_.floats(1, 0, 4, sizeof(vec3));
+  lines_program_.use();
+  glUniformMatrix4fv(0, 1, GL_FALSE, &from_world[0][0]);
+  if (over) glDisable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDrawBuffer(GL_COLOR_ATTACHMENT0);
+  glBindVertexArray(line_layout_.id());
+  glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(ends.size()));
+  const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  glDrawBuffers(2, both);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int height) {
+  make_room(width, height);
+  const Box box = bounds_of(order.state);
+  const mat4 from_world = clip_from_world(order.view, order.orthographic, static_cast<double>(width) / height, box);
+  world_from_clip_ = glm::inverse(from_world);
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glBindFramebuffer(GL_FRAMEBUFFER, frame_.id());
+  glViewport(0, 0, width, height);
+  const vec4 back = order.below;
+  glClearBufferfv(GL_COLOR, 0, &back.x);
+  const GLuint none[4] = {0, 0, 0, 0};
+  glClearBufferuiv(GL_COLOR, 1, none);
+  const float far = 1.0f;
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  draw_lines(order, from_world, false);
+
+  for (auto& [ignored, mesh] : meshes_) mesh.seen = false;
+  triangles_ = 0;
+  // What is selected gets the highest numbers, so that one comparison tells.
+  numbered_.clear();
+  const auto is_selected = [&](NodeId id) {
+    return std::any_of(order.selected.begin(), order.selected.end(),
+                       [&](NodeId s) { return order.state.below(id, s); });
+  };
+  std::vector<std::size_t> to_draw;
+  for (const bool selected : {false, true})
+    for (std::size_t i = 0; i < order.state.nodes.size(); ++i) {
+      const DocumentNode& node = *order.state.nodes[i];
+      if (node.node.mesh < 0 || !shown(order, i) || is_selected(node.id) != selected) continue;
+      to_draw.push_back(i);
+    }
+  std::uint32_t first_selected = 0xffffffffu;
+  const std::vector<dmat4> frames = world_frames(order.state);
+  const dmat4 eye = glm::lookAt(order.view.eye, order.view.target, order.view.up);
+  const mat3 eye_frame{dmat3(eye)};
+  vec4 clip(0);
+  if (const ClipPlane& plane = order.settings.clip; plane.on && !box.empty()) {
+    const float at = glm::mix(box.min[plane.axis], box.max[plane.axis], static_cast<float>(plane.place));
+    clip[plane.axis] = plane.flipped ? -1.0f : 1.0f;
+    clip.w = plane.flipped ? -at : at;
+  }
+  solid_.use();
+  glUniformMatrix4fv(0, 1, GL_FALSE, &from_world[0][0]);
+  glUniformMatrix3fv(4, 1, GL_FALSE, &eye_frame[0][0]);
+  const float low = static_cast<float>(order.settings.value_low), high = static_cast<float>(order.settings.value_high);
+  const bool share = order.settings.channel && is_share(*order.settings.channel);
+  share ? glUniform2f(6, 0.0f, 1.0f) : glUniform2f(6, std::log2(low), std::log2(high));
+  glUniform1i(5, !order.settings.channel ? 0 : share ? 2 : 1);
+  glUniform4fv(7, 1, &clip.x);
+  glUniform1f(9, 0.0f);
+  std::vector<ViewLine> extra;
+  for (const std::size_t i : to_draw) {
+    const DocumentNode& node = *order.state.nodes[i];
+    const auto number = static_cast<std::size_t>(node.node.mesh);
+    MeshOnGpu& mesh = on_gpu(order.state.meshes[number]);
+    show_values(mesh, number, order);
+    numbered_.push_back(node.id);
+    const auto here = static_cast<GLuint>(numbered_.size());
+    if (first_selected == 0xffffffffu && is_selected(node.id)) first_selected = here;
+    const mat4 world(frames[i]);
+    const mat3 normal_frame(glm::transpose(glm::inverse(dmat3(frames[i]))));
+    glUniformMatrix4fv(1, 1, GL_FALSE, &world[0][0]);
+    glUniformMatrix3fv(2, 1, GL_FALSE, &normal_frame[0][0]);
+    glUniform1ui(8, here);
+    glFrontFace(glm::determinant(dmat3(frames[i])) < 0.0 ? GL_CW : GL_CCW);
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+      const PrimitiveOnGpu& primitive = mesh.primitives[p];
+      const std::int32_t material = mesh.of->primitives[p].material;
+      const auto& materials = order.state.rest->materials;
+      vec3 base(0.72f, 0.70f, 0.68f);
+      if (material >= 0 && static_cast<std::size_t>(material) < materials.size())
+        base = glm::max(encoded(vec3(materials[static_cast<std::size_t>(material)].base_color)), vec3(0.18f));
+      glUniform3fv(3, 1, &base.x);
+      glBindVertexArray(primitive.layout.id());
+      if (order.settings.wireframe) {
+        glEnable(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(1, 1);
+      }
+      glDrawElements(GL_TRIANGLES, primitive.index_count, GL_UNSIGNED_INT, nullptr);
+      triangles_ += static_cast<std::size_t>(primitive.index_count) / 3;
+      if (order.settings.wireframe) {
+        glDisable(GL_POLYGON_OFFSET_FILL);
+        glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+        glUniform1f(9, 1.0f);
+        glUniform4f(10, 0.05f, 0.07f, 0.1f, 1.0f);
+        glDrawElements(GL_TRIANGLES, primitive.index_count, GL_UNSIGNED_INT, nullptr);
+        glUniform1f(9, 0.0f);
+        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+      }
+    }
+    if (order.settings.normals)
+      for (std::size_t k = 0; k + 1 < mesh.normal_ends.size(); k += 2)
+        extra.push_back({vec3(world * vec4(mesh.normal_ends[k], 1)), vec3(world * vec4(mesh.normal_ends[k + 1], 1)),
+                         vec4(0.35f, 0.75f, 0.95f, 1.0f), false});
+  }
+  glFrontFace(GL_CCW);
+  if (!extra.empty()) {
+    SolidOrder more;
+    more.lines = std::move(extra);
+    more.settings.grid = false;
+    draw_lines(more, from_world, false);
+  }
+  draw_lines(order, from_world, true);
+  std::erase_if(meshes_, [](const auto& each) { return !each.second.seen; });
+
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  glDisable(GL_DEPTH_TEST);
+  screen_.use();
+  glBindTextureUnit(0, color_.id());
+  glBindTextureUnit(1, numbers_.id());
+  glUniform1i(0, 0);
+  glUniform1i(1, 1);
+  glUniform4fv(2, 1, &order.selected_color.x);
+  glUniform4fv(3, 1, &order.hovered_color.x);
+  const auto hovered = std::find(numbered_.begin(), numbered_.end(), order.hovered);
+  glUniform1ui(4, order.hovered == kNoNode || hovered == numbered_.end()
+                      ? 0
+                      : static_cast<GLuint>(hovered - numbered_.begin()) + 1);
+  glUniform1ui(5, first_selected);
+  glUniform1i(6, height > 1600 ? 2 : 1);
+  glBindVertexArray(empty_.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
+}
+
+SolidPicked SolidView::pick(double x, double y) const {
+  const int px = static_cast<int>(x), py = height_ - 1 - static_cast<int>(y);
+  if (px < 0 || py < 0 || px >= width_ || py >= height_) return {};
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());
+  GLuint number = 0;
+  float depth = 1.0f;
+  glReadBuffer(GL_COLOR_ATTACHMENT1);
+  glReadPixels(px, py, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_INT, &number);
+  glReadPixels(px, py, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  if (number == 0 || number > numbered_.size()) return {};
+  const glm::dvec4 at =
+      glm::dmat4(world_from_clip_) * glm::dvec4(2.0 * (px + 0.5) / width_ - 1.0, 2.0 * (py + 0.5) / height_ - 1.0,
+                                                2.0 * static_cast<double>(depth) - 1.0, 1.0);
+  return {numbered_[number - 1], dvec3(at) / at.w};
+}
+
+}  // namespace pliant

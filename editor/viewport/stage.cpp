@@ -1,0 +1,195 @@
+#include "editor/viewport/stage.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "runtime/clock.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
+constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
+
+}  // namespace
+
+Result<std::unique_ptr<Stage>> Stage::create(Window& window, std::function<void()> wake) {
+  std::unique_ptr<Stage> stage(new Stage());
+  auto context = window.share();
+  if (!context) return context.error();
+  stage->window_ = &window;
+  stage->context_ = *std::move(context);
+  stage->wake_ = std::move(wake);
+  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  stage->software_ = renderer && (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe"));
+  window.take_context();
+  stage->thread_ = std::thread([s = stage.get()] { s->run(); });
+  return stage;
+}
+
+Stage::~Stage() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::uint64_t Stage::order(StageOrder order) {
+  const std::lock_guard lock(mutex_);
+  // A question that has not been asked yet is asked with this order.
+  if (next_ && next_->question && !order.question) {
+    order.question = next_->question;
+    order.question_number = next_->question_number;
+  }
+  next_ = std::move(order);
+  changed_.notify_all();
+  return ++ordered_;
+}
+
+StagePicture Stage::picture() {
+  const std::lock_guard lock(mutex_);
+  showing_ = finished_;
+  return done_;
+}
+
+bool Stage::busy() const {
+  const std::lock_guard lock(mutex_);
+  return answered_ != ordered_ || !tasks_.empty();
+}
+
+void Stage::post(std::function<void()> task) {
+  const std::lock_guard lock(mutex_);
+  tasks_.push_back(std::move(task));
+  changed_.notify_all();
+}
+
+void Stage::show(std::function<std::unique_ptr<Scenery>()> make) {
+  post([this, make = std::move(make)] {
+    scenery_.reset();
+    if (make) scenery_ = make();
+  });
+}
+
+void Stage::run() {
+  context_->take();
+  try {
+    Result<SolidView> solid = SolidView::make();
+    if (solid)
+      solid_ = std::make_unique<SolidView>(*std::move(solid));
+    else
+      failure_ = solid.error().message();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+  }
+  for (;;) {
+    std::vector<std::function<void()>> tasks;
+    std::optional<StageOrder> order;
+    std::uint64_t number = 0;
+    {
+      std::unique_lock lock(mutex_);
+      const auto ready = [this] { return stop_ || next_ || !tasks_.empty(); };
+      if (scenery_ && scenery_->moves())
+        changed_.wait_for(lock, std::chrono::milliseconds(8), ready);
+      else
+        changed_.wait(lock, ready);
+      if (stop_) break;
+      tasks.swap(tasks_);
+      if (next_) last_ = *next_;
+      order = last_;
+      next_.reset();
+      number = ordered_;
+    }
+    if (Window::lost()) break;
+    for (const auto& task : tasks) task();
+    if (ordered_ > 0) draw(*order, number);
+    wake_();
+  }
+  scenery_.reset();
+  solid_.reset();
+  if (!Window::lost()) {
+    for (const Target& target : targets_) {
+      glDeleteFramebuffers(1, &target.frame);
+      glDeleteTextures(1, &target.texture);
+    }
+    context_->give();
+  }
+}
+
+void Stage::draw(const StageOrder& order, std::uint64_t number) {
+  int at = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    while (at == showing_ || at == finished_) ++at;
+  }
+  Target& target = targets_[at];
+  const int width = std::max(1, static_cast<int>(std::lround(order.width * share_))),
+            height = std::max(1, static_cast<int>(std::lround(order.height * share_)));
+  if (target.width != width || target.height != height) {
+    glDeleteFramebuffers(1, &target.frame);
+    glDeleteTextures(1, &target.texture);
+    glCreateTextures(GL_TEXTURE_2D, 1, &target.texture);
+    glTextureStorage2D(target.texture, 1, GL_RGBA8, width, height);
+    glTextureParameteri(target.texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(target.texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(target.texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glCreateFramebuffers(1, &target.frame);
+    glNamedFramebufferTexture(target.frame, GL_COLOR_ATTACHMENT0, target.texture, 0);
+    target.width = width;
+    target.height = height;
+  }
+  const std::uint64_t began = now_ns();
+  StagePicture done;
+  done.trouble = failure_;
+  try {
+    bool drawn = false;
+    if (scenery_) {
+      const Status status = scenery_->draw(order.solid, target.frame, width, height);
+      drawn = status.ok();
+      if (!drawn) done.trouble = status.error().message();
+    }
+    if (!drawn && solid_) solid_->draw(order.solid, target.frame, width, height);
+    if (order.question && order.question_number != 0) {
+      const dvec2 pixel = *order.question * share_;
+      done.question = order.question_number;
+      done.picked = drawn ? scenery_->pick(pixel.x, pixel.y)
+                          : solid_ ? solid_->pick(pixel.x, pixel.y) : SolidPicked{};
+    }
+  } catch (const std::exception& error) {
+    done.trouble = std::string("the picture failed: ") + error.what();
+  }
+  glFinish();  // the other context may show it from now on
+  draw_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
+  done.texture = target.texture;
+  done.width = width;
+  done.height = height;
+  done.share = share_;
+  done.draw_ms = draw_ms_;
+  done.triangles = solid_ ? solid_->triangles() : 0;
+  done.order = number;
+  done.view = order.solid.view;
+  done.orthographic = order.solid.orthographic;
+  {
+    const std::lock_guard lock(mutex_);
+    done.number = done_.number + 1;
+    if (done.question == 0) {
+      done.question = done_.question;
+      done.picked = done_.picked;
+    }
+    done_ = std::move(done);
+    finished_ = at;
+    answered_ = number;
+    if (last_.question && last_.question_number == done_.question) last_.question.reset();
+  }
+  // A picture that comes late is worse than a coarse one.
+  const double finest = software_ ? 1.0 : kFinest;
+  if (draw_ms_ > kSlowDraw || (draw_ms_ < kFastDraw && share_ < finest)) {
+    share_ = std::clamp(share_ * std::sqrt(kWantedDraw / std::max(draw_ms_, 1.0)), kCoarsest, finest);
+    if (std::abs(share_ - 1.0) < 0.1) share_ = 1.0;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,101 @@
+// The viewport's pictures, on a thread of their own with a context that shares textures with the window: however long
+// one takes, the interface goes on answering. The newest order counts; the newest finished picture is shown.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "editor/viewport/solid_view.h"
+#include "window/window.h"
+
+namespace pliant {
+
+// Something else than the document that the viewport may show: a level that is played. Made, called and destroyed on
+// the stage's thread, its context current.
+class Scenery {
+ public:
+  virtual ~Scenery() = default;
+  // Into a framebuffer of this size. An error is shown, and the document instead.
+  virtual Status draw(const SolidOrder& order, GLuint framebuffer, int width, int height) = 0;
+  // Pixels count from the upper left corner, of the picture drawn last.
+  virtual SolidPicked pick(double x, double y) = 0;
+  virtual bool moves() const { return true; }  // another picture is wanted without a new order
+};
+
+struct StageOrder {
+  SolidOrder solid;
+  int width = 1, height = 1;  // [pixel]
+  std::optional<dvec2> question;  // [pixel] what stands there?
+  std::uint64_t question_number = 0;
+};
+
+struct StagePicture {
+  GLuint texture = 0;            // of the window's context; valid until the next picture is taken. Rows bottom to top
+  int width = 0, height = 0;     // [pixel] of the texture
+  double share = 1.0;            // [1] of the resolution that was ordered
+  double draw_ms = 0.0;
+  std::size_t triangles = 0;
+  std::uint64_t number = 0;      // of pictures so far
+  std::uint64_t order = 0;       // that it answers
+  Viewpoint view;                // that it was drawn from
+  double orthographic = 0.0;
+  std::uint64_t question = 0;    // that `picked` answers; 0: none yet
+  SolidPicked picked;
+  std::string trouble;           // why it is not what was wanted
+};
+
+class Stage {
+ public:
+  // On the window's thread. `wake` is called on the stage's thread when a picture is done.
+  static Result<std::unique_ptr<Stage>> create(Window& window, std::function<void()> wake);
+  ~Stage();
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  // Replaces an order that has not begun. Returns its number.
+  std::uint64_t order(StageOrder order);
+  // The newest finished picture; the one before may be drawn over from now on.
+  StagePicture picture();
+  bool busy() const;  // an order has not been answered yet
+  // On the stage's thread, before the next picture: `make` returns what is shown instead of the document, or null for
+  // the document again. What was shown before is destroyed first.
+  void show(std::function<std::unique_ptr<Scenery>()> make);
+  // Runs on the stage's thread before the next picture, its context current.
+  void post(std::function<void()> task);
+
+ private:
+  Stage() = default;
+  void run();
+  void draw(const StageOrder& order, std::uint64_t number);
+
+  Window* window_ = nullptr;
+  std::unique_ptr<SharedContext> context_;
+  std::function<void()> wake_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<StageOrder> next_;
+  StageOrder last_;
+  std::uint64_t ordered_ = 0, answered_ = 0;
+  std::vector<std::function<void()>> tasks_;
+  StagePicture done_;
+  int showing_ = -1, finished_ = -1;  // which target the window shows, and which was finished last
+  bool stop_ = false;
+  // The stage's thread's own.
+  struct Target {
+    GLuint texture = 0, frame = 0;
+    int width = 0, height = 0;
+  };
+  Target targets_[3];
+  std::unique_ptr<SolidView> solid_;
+  std::unique_ptr<Scenery> scenery_;
+  double share_ = 1.0, draw_ms_ = 0.0;
+  bool software_ = false;
+  std::string failure_;
+  std::thread thread_;
+};
+
+}  // namespace pliant
