@@ -41,7 +41,8 @@ void find_in_extensions(const Json& json, Findings& findings) {
 
 // JSON pointer of a node; its name where the level is no glTF.
 std::string pointer_of(const Level& level, std::size_t node) {
-  return level.source ? fmt::format("/nodes/{}", level.source->json_node[node]) : level.nodes[node].name;
+  const LevelNode& it = level.nodes[node];
+  return level.source && it.source >= 0 ? fmt::format("/nodes/{}", it.source) : it.name;
 }
 
 // Of the scene that is shown.

@@ -27,13 +27,14 @@ class AnimationReader {
  public:
   AnimationReader(const SourceDocument& document, Level& level) : document_(document), level_(level) {
     node_of_.assign(document.model.nodes.size(), -1);
-    for (std::size_t i = 0; i < document.json_node.size(); ++i)
-      node_of_[static_cast<std::size_t>(document.json_node[i])] = static_cast<std::int32_t>(i);
+    for (std::size_t i = 0; i < level.nodes.size(); ++i)
+      node_of_[static_cast<std::size_t>(level.nodes[i].source)] = static_cast<std::int32_t>(i);
   }
 
   Status animation(const tinygltf::Animation& animation, std::size_t number) {
     LevelAnimation out;
     out.name = animation.name;
+    out.source = static_cast<std::int32_t>(number);
     for (std::size_t c = 0; c < animation.channels.size(); ++c)
       if (Status s = channel(animation, c, fmt::format("/animations/{}/channels/{}", number, c), out); !s) return s;
     for (LevelChannel& channel : out.channels) channel.track.length = out.length;

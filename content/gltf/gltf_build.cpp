@@ -46,22 +46,35 @@ class Builder {
     nodes();
     animations();
     images();
-    SourceDocument document;
-    document.json = model_as_json(model_);
-    if (!bytes_.empty()) {
-      document.json["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
-      document.buffers.push_back(std::move(bytes_));
-    }
-    for (std::size_t i = 0; i < level_.nodes.size(); ++i) document.json_node.push_back(static_cast<std::int32_t>(i));
-    document.images.resize(model_.images.size());  // which lie in the buffer
-    document.model = std::move(model_);
-    return document;
+    return document();
+  }
+
+  Result<BuiltParts> build(const LevelParts& parts) {
+    for (std::size_t m = parts.first_material; m < level_.materials.size(); ++m) add_material(level_.materials[m]);
+    for (const std::size_t m : parts.meshes)
+      if (const Status status = add_mesh(level_.meshes[m]); !status) return status.error();
+    for (const std::size_t a : parts.animations) add_animation(level_.animations[a]);
+    images(parts.first_image);
+    return BuiltParts{document(), std::move(mesh_number_)};
   }
 
  private:
+  SourceDocument document() {
+    SourceDocument out;
+    out.json = model_as_json(model_);
+    if (!bytes_.empty()) {
+      out.json["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
+      out.buffers.push_back(std::move(bytes_));
+    }
+    out.images.resize(model_.images.size());  // which lie in the buffer
+    out.model = std::move(model_);
+    return out;
+  }
+
   // Pictures are textures by the same numbers.
-  void images() {
-    for (const Image& image : level_.images) {
+  void images(std::size_t first = 0) {
+    for (std::size_t i = first; i < level_.images.size(); ++i) {
+      const Image& image = level_.images[i];
       const Bytes png = encode_png(image.width, image.height, image.rgba.data());
       tinygltf::Image out;
       out.name = image.name;
@@ -259,33 +272,34 @@ class Builder {
 
   // Every channel has accessors of its own; the times' bounds are as glTF wants them.
   void animations() {
+    for (const LevelAnimation& animation : level_.animations) add_animation(animation);
+  }
+  void add_animation(const LevelAnimation& animation) {
     constexpr const char* kPaths[] = {"translation", "rotation", "scale"};
     constexpr const char* kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
-    for (const LevelAnimation& animation : level_.animations) {
-      tinygltf::Animation out;
-      out.name = animation.name;
-      for (const LevelChannel& from : animation.channels) {
-        const Track& track = from.track;
-        const bool turns = from.property == NodeProperty::kRotation;
-        const std::vector<float> times(track.times.begin(), track.times.end());
-        std::vector<float> values;
-        for (const glm::dvec4& key : track.values)
-          for (int i = 0; i < (turns ? 4 : 3); ++i) values.push_back(static_cast<float>(key[i]));
-        tinygltf::AnimationSampler sampler;
-        sampler.input = add_accessor(times.data(), times.size(), 4, kFloat, TINYGLTF_TYPE_SCALAR, 0);
-        set_bounds(sampler.input, {static_cast<double>(times.front())}, {static_cast<double>(times.back())});
-        sampler.output = turns ? add_accessor(values.data(), track.values.size(), 16, kFloat, TINYGLTF_TYPE_VEC4, 0)
-                               : add_accessor(values.data(), track.values.size(), 12, kFloat, TINYGLTF_TYPE_VEC3, 0);
-        sampler.interpolation = kInterpolations[int(track.interpolation)];
-        tinygltf::AnimationChannel channel;
-        channel.sampler = static_cast<int>(out.samplers.size());
-        channel.target_node = from.node;
-        channel.target_path = kPaths[int(from.property)];
-        out.samplers.push_back(std::move(sampler));
-        out.channels.push_back(std::move(channel));
-      }
-      if (!out.channels.empty()) model_.animations.push_back(std::move(out));
+    tinygltf::Animation out;
+    out.name = animation.name;
+    for (const LevelChannel& from : animation.channels) {
+      const Track& track = from.track;
+      const bool turns = from.property == NodeProperty::kRotation;
+      const std::vector<float> times(track.times.begin(), track.times.end());
+      std::vector<float> values;
+      for (const glm::dvec4& key : track.values)
+        for (int i = 0; i < (turns ? 4 : 3); ++i) values.push_back(static_cast<float>(key[i]));
+      tinygltf::AnimationSampler sampler;
+      sampler.input = add_accessor(times.data(), times.size(), 4, kFloat, TINYGLTF_TYPE_SCALAR, 0);
+      set_bounds(sampler.input, {static_cast<double>(times.front())}, {static_cast<double>(times.back())});
+      sampler.output = turns ? add_accessor(values.data(), track.values.size(), 16, kFloat, TINYGLTF_TYPE_VEC4, 0)
+                             : add_accessor(values.data(), track.values.size(), 12, kFloat, TINYGLTF_TYPE_VEC3, 0);
+      sampler.interpolation = kInterpolations[int(track.interpolation)];
+      tinygltf::AnimationChannel channel;
+      channel.sampler = static_cast<int>(out.samplers.size());
+      channel.target_node = from.node;
+      channel.target_path = kPaths[int(from.property)];
+      out.samplers.push_back(std::move(sampler));
+      out.channels.push_back(std::move(channel));
     }
+    if (!out.channels.empty()) model_.animations.push_back(std::move(out));
   }
 
   const Level& level_;
@@ -313,8 +327,32 @@ Json transform_json(const LocalTransform& local) {
   return json;
 }
 
+Json light_json(const Light& light) {
+  constexpr const char* kTypes[] = {"directional", "point", "spot"};
+  Json json = {{"type", kTypes[static_cast<std::size_t>(light.kind)]},
+               {"color", numbers(light.color)},
+               {"intensity", static_cast<double>(light.intensity)}};
+  if (light.range > 0.0f) json["range"] = static_cast<double>(light.range);
+  if (light.kind == Light::Kind::kSpot)
+    json["spot"] = {{"innerConeAngle", static_cast<double>(light.inner_cone)},
+                    {"outerConeAngle", static_cast<double>(light.outer_cone)}};
+  return json;
+}
+
+Json camera_json(const Camera& camera) {
+  return {{"type", "perspective"},
+          {"perspective",
+           {{"yfov", static_cast<double>(camera.yfov)},
+            {"znear", static_cast<double>(camera.znear)},
+            {"zfar", static_cast<double>(camera.zfar)}}}};
+}
+
 Result<SourceDocument> build_document(const Level& level) {
   return Builder(level).build();
+}
+
+Result<BuiltParts> build_parts(const Level& level, const LevelParts& parts) {
+  return Builder(level).build(parts);
 }
 
 }  // namespace pliant

@@ -24,7 +24,7 @@ void each_reference(Json& json, const char* key, const Visit& visit) {
   for (Json& child : json) each_reference(child, key, visit);
 }
 
-// Calls visit(reference) for every number of an accessor that glTF 2.0 has.
+// Calls visit(reference) for every number of an accessor that glTF 2.0 or EXT_mesh_gpu_instancing has.
 template <class Visit>
 void each_accessor(Json& json, const Visit& visit) {
   const auto all_of = [&](Json& map) {
@@ -38,6 +38,10 @@ void each_accessor(Json& json, const Visit& visit) {
         if (primitive.contains("targets"))
           for (Json& target : primitive["targets"]) all_of(target);
       }
+  if (json.contains("nodes"))
+    for (Json& node : json["nodes"])
+      if (const Json* copies = extension_of(node, "EXT_mesh_gpu_instancing"); copies && copies->contains("attributes"))
+        all_of(node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]);
   if (json.contains("skins"))
     for (Json& skin : json["skins"])
       if (skin.contains("inverseBindMatrices")) visit(skin["inverseBindMatrices"]);

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "content/gltf/gltf_accessor.h"
+#include "content/gltf/gltf_append.h"
 #include "content/gltf/gltf_check.h"
 #include "content/gltf/gltf_mesh.h"
 #include "content/gltf/gltf_model.h"
@@ -15,23 +15,6 @@ namespace pliant {
 namespace {
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-
-// An accessor on a bufferView and a buffer of its own, until the document is packed.
-template <class T>
-std::size_t add_accessor(SourceDocument& document, const std::vector<T>& values, int component, std::size_t width,
-                         int target) {
-  Bytes bytes(values.size() * sizeof(T));
-  std::memcpy(bytes.data(), values.data(), bytes.size());
-  document.json["bufferViews"].push_back(
-      {{"buffer", document.buffers.size()}, {"byteLength", bytes.size()}, {"target", target}});
-  document.json["buffers"].push_back({{"byteLength", bytes.size()}});
-  document.buffers.push_back(std::move(bytes));
-  document.json["accessors"].push_back({{"bufferView", document.json["bufferViews"].size() - 1},
-                                        {"componentType", component},
-                                        {"count", values.size() / width},
-                                        {"type", width == 1 ? "SCALAR" : fmt::format("VEC{}", width)}});
-  return document.json["accessors"].size() - 1;
-}
 
 void add_bounds(Json& accessor, const std::vector<float>& values, std::size_t width) {
   for (std::size_t c = 0; c < width; ++c) {

@@ -2,6 +2,7 @@
 // load_level reads from it, save_level writes it back; nothing else knows glTF's containers.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,11 +14,30 @@
 #include "content/gltf/tinygltf.h"
 #include "content/level/finding.h"
 #include "content/level/level.h"
+#include "content/mesh/painted.h"
 #include "pliant/content.h"
 
 namespace pliant {
 
 using Json = nlohmann::json;
+
+// A mesh when it was read, as hashes: what has another one has changed since.
+struct PrimitiveAsRead {
+  std::int32_t source = -1;
+  std::uint64_t shape = 0;                               // everything but what is painted
+  std::array<std::uint64_t, kPainted.size()> painted{};  // in the order of kPainted
+};
+struct MeshAsRead {
+  std::int32_t source = -1, skinned = -1;  // as LevelMesh has them
+  std::vector<PrimitiveAsRead> primitives;
+};
+struct ChannelAsRead {
+  std::int32_t node = -1;   // /nodes/i
+  std::uint64_t track = 0;  // and its property
+  bool operator==(const ChannelAsRead&) const = default;
+};
+MeshAsRead fingerprint(const LevelMesh& mesh);
+ChannelAsRead fingerprint(const LevelChannel& channel, std::int32_t node);
 
 struct SourceDocument {
   Json json;                    // as checked. Extensions and extras are read from here, and saving changes only this
@@ -28,10 +48,10 @@ struct SourceDocument {
   std::vector<Bytes> images;   // encoded, as many as json["images"]; empty: not read (a format that is not shown)
 
   // What load_level made of it, so that save_level writes only what has changed since.
-  std::vector<std::int32_t> json_node;   // Level node -> /nodes/i
   std::vector<LevelNode> nodes_as_read;  // without meshes: name, transform and extensions
-  std::size_t mesh_count = 0;            // Level meshes
-  std::optional<SafetyCap> cap;          // what cap_safety lowered the nodes to since
+  std::vector<MeshAsRead> meshes_as_read;
+  std::vector<std::vector<ChannelAsRead>> animations_as_read;  // by number
+  std::optional<SafetyCap> cap;                                // what cap_safety lowered the nodes to since
 };
 
 // Opens .gltf or .glb and checks it against the glTF 2.0 specification. Every finding goes to `findings`; the document

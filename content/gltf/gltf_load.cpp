@@ -66,8 +66,8 @@ std::size_t shown_scene(const SourceDocument& document) {
   return static_cast<std::size_t>(std::max(document.model.defaultScene, 0));
 }
 
-// Parents first, the shown scene's roots before all others; every node keeps its number in document.json_node.
-void order_nodes(SourceDocument& document, Level& level) {
+// Parents first, the shown scene's roots before all others; every node keeps its number as its source.
+void order_nodes(const SourceDocument& document, Level& level) {
   const std::vector<tinygltf::Node>& nodes = document.model.nodes;
   const std::vector<tinygltf::Scene>& scenes = document.model.scenes;
   std::vector<std::int32_t> parent(nodes.size(), -1);
@@ -95,8 +95,8 @@ void order_nodes(SourceDocument& document, Level& level) {
     LevelNode node;
     node.parent = visit.parent;
     node.in_scene = visit.in_scene;
+    node.source = static_cast<std::int32_t>(visit.node);
     level.nodes.push_back(std::move(node));
-    document.json_node.push_back(static_cast<std::int32_t>(visit.node));
     if (visit.parent >= 0) level.nodes[static_cast<std::size_t>(visit.parent)].children.push_back(here);
     const std::vector<int>& children = nodes[visit.node].children;
     for (std::size_t c = children.size(); c-- > 0;)
@@ -105,25 +105,19 @@ void order_nodes(SourceDocument& document, Level& level) {
 }
 
 // Node-to-world matrices by glTF number.
-std::vector<dmat4> world_matrices(const SourceDocument& document, const Level& level) {
-  std::vector<dmat4> world(level.nodes.size()), by_json(level.nodes.size());
-  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
-    const LocalTransform& local = level.nodes[i].local;
-    dmat4 m = glm::mat4_cast(dquat(local.rotation));
-    for (int c = 0; c < 3; ++c) m[c] *= static_cast<double>(local.scale[c]);
-    m[3] = glm::dvec4(dvec3(local.translation), 1.0);
-    world[i] = level.nodes[i].parent < 0 ? m : world[static_cast<std::size_t>(level.nodes[i].parent)] * m;
-    by_json[static_cast<std::size_t>(document.json_node[i])] = world[i];
-  }
-  return by_json;
+std::vector<dmat4> matrices_by_number(const Level& level) {
+  const std::vector<dmat4> world = world_matrices(level.nodes);
+  std::vector<dmat4> by_number(world.size());
+  for (std::size_t i = 0; i < world.size(); ++i) by_number[static_cast<std::size_t>(level.nodes[i].source)] = world[i];
+  return by_number;
 }
 
-Status read_nodes(SourceDocument& document, MeshReader& meshes, Level& level) {
+Status read_nodes(const SourceDocument& document, MeshReader& meshes, Level& level) {
   const std::vector<tinygltf::Node>& nodes = document.model.nodes;
   order_nodes(document, level);
   std::vector<std::string> json_names(nodes.size());
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
-    const std::size_t number = static_cast<std::size_t>(document.json_node[i]);
+    const std::size_t number = static_cast<std::size_t>(level.nodes[i].source);
     LevelNode& node = level.nodes[i];
     node.local = transform_of(nodes[number]);
     node.mesh = nodes[number].mesh;
@@ -134,14 +128,16 @@ Status read_nodes(SourceDocument& document, MeshReader& meshes, Level& level) {
     node.light = light_of(document, number);
     node.camera = camera_of(document, number, level);
   }
-  const std::vector<dmat4> world = world_matrices(document, level);
+  const std::vector<dmat4> world = matrices_by_number(level);
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
-    const std::size_t number = static_cast<std::size_t>(document.json_node[i]);
+    const std::size_t number = static_cast<std::size_t>(level.nodes[i].source);
     if (nodes[number].skin >= 0) {
       Result<LevelMesh> mesh = meshes.read_skinned(static_cast<std::size_t>(nodes[number].mesh),
                                                    static_cast<std::size_t>(nodes[number].skin), world, number);
       if (!mesh) return mesh.error();
       level.notes.push_back("skins are read at rest: " + level.nodes[i].name);
+      mesh->source = level.nodes[i].mesh;
+      mesh->skinned = level.nodes[i].source;
       level.nodes[i].mesh = static_cast<std::int32_t>(level.meshes.size());
       level.meshes.push_back(std::move(*mesh));
     }
@@ -177,6 +173,7 @@ Status fill(SourceDocument& document, Level& level) {
   for (std::size_t m = 0; m < document.model.meshes.size(); ++m) {
     Result<LevelMesh> mesh = meshes.read(m);
     if (!mesh) return mesh.error();
+    mesh->source = static_cast<std::int32_t>(m);
     level.meshes.push_back(std::move(*mesh));
   }
   if (const Status status = read_nodes(document, meshes, level); !status) return status;
@@ -196,7 +193,12 @@ Status fill(SourceDocument& document, Level& level) {
   level.about = about_of(document.json);
   level.document_notes = of_document;
   document.nodes_as_read = level.nodes;
-  document.mesh_count = level.meshes.size();
+  for (const LevelMesh& mesh : level.meshes) document.meshes_as_read.push_back(fingerprint(mesh));
+  for (const LevelAnimation& animation : level.animations) {
+    std::vector<ChannelAsRead>& channels = document.animations_as_read.emplace_back();
+    for (const LevelChannel& channel : animation.channels)
+      channels.push_back(fingerprint(channel, level.nodes[static_cast<std::size_t>(channel.node)].source));
+  }
   return Done{};
 }
 

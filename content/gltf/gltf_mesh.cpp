@@ -225,6 +225,7 @@ Result<LevelMesh> MeshReader::read(std::size_t mesh) {
   for (std::size_t p = 0; p < document_.model.meshes[mesh].primitives.size(); ++p) {
     Result<Primitive> primitive = read_primitive(mesh, p);
     if (!primitive) return primitive.error();
+    primitive->source = static_cast<std::int32_t>(p);
     if (!primitive->index.empty()) out.primitives.push_back(std::move(*primitive));
   }
   return out;

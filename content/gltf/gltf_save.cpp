@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "content/files/image.h"
+#include "content/gltf/gltf_check.h"
 #include "content/gltf/gltf_container.h"
 #include "content/gltf/gltf_model.h"
 #include "content/keys/extensions.h"
@@ -17,16 +19,6 @@ namespace pliant {
 namespace fs = std::filesystem;
 
 namespace {
-
-bool same(const LocalTransform& a, const LocalTransform& b) {
-  return a.translation == b.translation && a.rotation == b.rotation && a.scale == b.scale;
-}
-
-// The document holds every mesh and node of the Level, if perhaps fewer nodes than were added to it since.
-bool still_fits(const Level& level) {
-  return level.source && level.source->mesh_count == level.meshes.size() &&
-         level.source->json_node.size() <= level.nodes.size() && !level.source->json_node.empty();
-}
 
 // Replaces the PLIANT_* members of object.extensions.
 void set_extensions(Json& json, Json& object, Json pliant) {
@@ -54,72 +46,6 @@ LevelNode as_before_cap(LevelNode node, const LevelNode& read, const SafetyCap& 
   return node;
 }
 
-void write_nodes(const Level& level, SourceDocument& document) {
-  Json& json = document.json;
-  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
-    const LevelNode& node = level.nodes[i];
-    const bool is_new = i >= document.json_node.size();
-    if (is_new) {
-      const std::size_t number = json["nodes"].size();
-      document.json_node.push_back(static_cast<std::int32_t>(number));
-      json["nodes"].push_back(transform_json(node.local));
-      if (node.mesh >= 0) json["nodes"][number]["mesh"] = node.mesh;
-      if (node.parent >= 0)
-        json["nodes"][static_cast<std::size_t>(document.json_node[static_cast<std::size_t>(node.parent)])]["children"]
-            .push_back(number);
-      else if (json.contains("scenes") && node.in_scene)
-        json["scenes"][value_of<std::size_t>(json, "scene", 0)]["nodes"].push_back(number);
-    }
-    Json& object = json["nodes"][static_cast<std::size_t>(document.json_node[i])];
-    const LevelNode* before = i < document.nodes_as_read.size() ? &document.nodes_as_read[i] : nullptr;
-    if (!before || before->name != node.name) object["name"] = node.name;
-    if (before && !same(before->local, node.local)) {
-      for (const char* key : {"matrix", "translation", "rotation", "scale"}) object.erase(key);
-      object.update(transform_json(node.local));
-    }
-    const LevelNode& saved = before && document.cap ? as_before_cap(node, *before, *document.cap) : node;
-    set_extensions(json, object, node_extensions(saved, object.contains("extensions") ? object["extensions"] : Json()));
-  }
-}
-
-void write_scene(const Level& level, SourceDocument& document) {
-  Json& json = document.json;
-  const bool had_scene = json.contains("scenes");
-  const Json pliant = scene_extensions(
-      level, had_scene && json["scenes"][value_of<std::size_t>(json, "scene", 0)].contains("extensions")
-                 ? json["scenes"][value_of<std::size_t>(json, "scene", 0)]["extensions"]
-                 : Json());
-  if (!had_scene) {
-    if (pliant.empty()) return;
-    // A document without scenes shows every root.
-    Json roots = Json::array();
-    for (std::size_t i = 0; i < level.nodes.size(); ++i)
-      if (level.nodes[i].parent < 0) roots.push_back(document.json_node[i]);
-    json["scenes"] = Json::array({{{"nodes", roots}}});
-    json["scene"] = 0;
-  }
-  set_extensions(json, json["scenes"][value_of<std::size_t>(json, "scene", 0)], pliant);
-}
-
-// extensionsUsed keeps only those PLIANT_* that are still there.
-void forget_unused(const Level& level, Json& json) {
-  if (!json.contains("extensionsUsed")) return;
-  Json present = scene_extensions(level, Json());
-  for (const Json& scene : array_of(json, "scenes"))
-    if (scene.contains("extensions")) present.update(scene["extensions"]);
-  for (const LevelNode& node : level.nodes) present.update(node_extensions(node, Json()));
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    Json kept = Json::array();
-    for (const Json& name : array_of(json, list))
-      if (name.get<std::string>().rfind("PLIANT_", 0) != 0 || present.contains(name.get<std::string>()))
-        kept.push_back(name);
-    if (kept.empty())
-      json.erase(list);
-    else
-      json[list] = std::move(kept);
-  }
-}
-
 // A file name as a relative URI: whatever could be read otherwise is percent-encoded.
 std::string as_uri(const std::string& name) {
   std::string uri;
@@ -128,6 +54,18 @@ std::string as_uri(const std::string& name) {
     uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return uri;
+}
+
+// Nothing is written that load_level would refuse for what its JSON says.
+Status check_readable(const std::string& text) {
+  Json json = Json::parse(text);
+  Findings findings;
+  check_structure(json, findings);
+  if (!any_error(findings)) check_meaning(json, findings);
+  for (const Finding& finding : findings)
+    if (finding.severity == Severity::kError)
+      return Error{finding.pointer, finding.message + "; nothing was saved, for it could not be read again"};
+  return Done{};
 }
 
 // Refuses to replace a .bin that is there but is no buffer of the .gltf that is replaced.
@@ -145,6 +83,34 @@ Status check_unrelated(const fs::path& bin, const fs::path& gltf) {
 }
 
 }  // namespace
+
+void write_extensions(const Level& level, const std::vector<std::int32_t>& number,
+                      const std::vector<const LevelNode*>& read, SourceDocument& document) {
+  Json& json = document.json;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    Json& object = json["nodes"][static_cast<std::size_t>(number[i])];
+    const Json before = object.contains("extensions") ? object["extensions"] : Json();
+    if (document.cap && read[i])
+      set_extensions(json, object, node_extensions(as_before_cap(level.nodes[i], *read[i], *document.cap), before));
+    else
+      set_extensions(json, object, node_extensions(level.nodes[i], before));
+  }
+  const std::size_t scene = value_of<std::size_t>(json, "scene", 0);
+  const bool had_scene = json.contains("scenes");
+  const Json before =
+      had_scene && json["scenes"][scene].contains("extensions") ? json["scenes"][scene]["extensions"] : Json();
+  const Json pliant = scene_extensions(level, before);
+  if (!had_scene) {
+    if (pliant.empty()) return;
+    // A document without scenes shows every root.
+    Json roots = Json::array();
+    for (std::size_t i = 0; i < level.nodes.size(); ++i)
+      if (level.nodes[i].parent < 0) roots.push_back(number[i]);
+    json["scenes"] = Json::array({{{"nodes", roots}}});
+    json["scene"] = 0;
+  }
+  set_extensions(json, json["scenes"][scene], pliant);
+}
 
 Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
   Json& json = document.json;
@@ -190,7 +156,13 @@ Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
   }
   if (!images.empty()) json["images"] = std::move(images);
   Json buffers = Json::array();
-  if (!packed.empty()) buffers.push_back({{"byteLength", packed.size()}});
+  if (!packed.empty()) {
+    // A buffer alone stays what else it says.
+    Json whole = document.buffers.size() == 1 && !document.buffers[0].empty() ? json["buffers"][0] : Json::object();
+    whole.erase("uri");
+    whole["byteLength"] = packed.size();
+    buffers.push_back(std::move(whole));
+  }
   buffers.insert(buffers.end(), placeholders.begin(), placeholders.end());
   if (buffers.empty())
     json.erase("buffers");
@@ -212,19 +184,20 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
                  [](unsigned char c) { return std::tolower(c); });
   if (extension != ".gltf" && extension != ".glb")
     return Error{path.string(), "is neither .gltf nor .glb; name one of them"};
-  SourceDocument document;
-  if (still_fits(level)) {
-    document = *level.source;
-  } else {
-    Result<SourceDocument> built = build_document(level);
-    if (!built) return Error{path.string() + " " + built.error().where, built.error().what};
-    document = std::move(*built);
+  Result<SourceDocument> made = level.source ? merge_document(level) : build_document(level);
+  if (!made) return Error{path.string() + " " + made.error().where, made.error().what};
+  SourceDocument& document = *made;
+  if (!level.source) {
+    std::vector<std::int32_t> number(level.nodes.size());
+    std::iota(number.begin(), number.end(), 0);
+    write_extensions(level, number, {}, document);
   }
-  write_nodes(level, document);
-  write_scene(level, document);
-  forget_unused(level, document.json);
-  if (options.no_draco || options.draco_bits != 0)
+  if (options.no_draco || options.draco_bits != 0) {
+    Findings findings;
+    if (level.source) reread_model(document, findings);
+    if (any_error(findings)) return Error{path.string() + " " + findings.back().pointer, findings.back().message};
     if (const Status status = decompress_document(document, options.no_draco); !status) return status;
+  }
   if (options.draco_bits != 0)
     if (const Status status = compress_document(document, options.draco_bits); !status) return status;
 
@@ -234,18 +207,17 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
       !document.folder.empty() &&
       fs::equivalent(document.folder, path.parent_path().empty() ? "." : path.parent_path(), ignored);
   Bytes bin = pack_document(document, !glb && same_folder);
-  if (glb) {
-    const Bytes whole = as_glb(document.json.dump(), bin);
-    return write_file(path, whole, options.existing);
-  }
-  std::vector<FileToWrite> files;
   const fs::path beside = fs::path(path).replace_extension(".bin");
+  if (!glb && !bin.empty()) document.json["buffers"][0]["uri"] = as_uri(beside.filename().string());
+  const std::string text = glb ? document.json.dump() : document.json.dump(2) + "\n";
+  if (const Status status = check_readable(text); !status)
+    return Error{path.string() + " " + status.error().where, status.error().what};
+  if (glb) return write_file(path, as_glb(text, bin), options.existing);
+  std::vector<FileToWrite> files;
   if (!bin.empty()) {
-    document.json["buffers"][0]["uri"] = as_uri(beside.filename().string());
     if (const Status status = check_unrelated(beside, path); !status) return status;
     files.push_back({beside, bin});
   }
-  const std::string text = document.json.dump(2) + "\n";
   files.push_back({path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size())});
   return write_files(files, options.existing);
 }

@@ -5,8 +5,30 @@
 
 namespace pliant {
 
-// A document with everything that a Level says, for Levels that did not come from glTF.
+// A document with everything that a Level says but PLIANT extensions, for Levels that did not come from glTF.
 Result<SourceDocument> build_document(const Level& level);
+
+// Some parts of a Level as a document of their own, without nodes. Materials, images and nodes that they refer to keep
+// the Level's numbers: who appends the document to another one knows what they are there.
+struct LevelParts {
+  std::size_t first_material = 0, first_image = 0;  // these and all behind them
+  std::vector<std::size_t> meshes, animations;
+};
+struct BuiltParts {
+  SourceDocument document;
+  std::vector<std::int32_t> mesh_number;  // of LevelParts::meshes, -1: no triangles
+};
+Result<BuiltParts> build_parts(const Level& level, const LevelParts& parts);
+
+// The document of level.source with all that has changed since, PLIANT extensions included.
+Result<SourceDocument> merge_document(const Level& level);
+// PLIANT extensions of all nodes and of the scene that is shown. `number`: /nodes/i of every node; `read`: what it was
+// when the document was read, or nothing.
+void write_extensions(const Level& level, const std::vector<std::int32_t>& number,
+                      const std::vector<const LevelNode*>& read, SourceDocument& document);
+
+Json light_json(const Light& light);     // an element of KHR_lights_punctual's lights
+Json camera_json(const Camera& camera);  // an element of cameras
 
 // Triangles of every primitive without morph targets go into Draco blobs; what nothing refers to any more is dropped.
 Status compress_document(SourceDocument& document, int bits);

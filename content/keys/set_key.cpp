@@ -48,7 +48,7 @@ Json name_of_node(const Level& level, const std::string& text) {
   const Json number = Json::parse(text, nullptr, false);
   if (!number.is_number_unsigned()) return text;
   for (std::size_t i = 0; i < level.nodes.size(); ++i)
-    if (number == (level.source ? static_cast<std::size_t>(level.source->json_node[i]) : i)) return level.nodes[i].name;
+    if (number == (level.source ? level.nodes[i].source : static_cast<std::int32_t>(i))) return level.nodes[i].name;
   return text;
 }
 

@@ -13,6 +13,18 @@ bool Level::has_pliant() const {
          std::any_of(nodes.begin(), nodes.end(), [](const LevelNode& node) { return node.has_pliant(); });
 }
 
+std::vector<dmat4> world_matrices(const std::vector<LevelNode>& nodes) {
+  std::vector<dmat4> world;
+  world.reserve(nodes.size());
+  for (const LevelNode& node : nodes) {
+    dmat4 m = glm::mat4_cast(dquat(node.local.rotation));
+    for (int c = 0; c < 3; ++c) m[c] *= static_cast<double>(node.local.scale[c]);
+    m[3] = glm::dvec4(dvec3(node.local.translation), 1.0);
+    world.push_back(node.parent < 0 ? m : world[static_cast<std::size_t>(node.parent)] * m);
+  }
+  return world;
+}
+
 bool has_area(const LevelMesh& mesh, const dmat3& frame) {
   for (const Primitive& p : mesh.primitives)
     for (std::size_t t = 0; t + 2 < p.index.size(); t += 3) {

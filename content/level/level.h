@@ -35,6 +35,7 @@ struct Primitive {
   std::vector<float> handle;         // _HANDLE
   std::vector<std::uint32_t> index;  // three per triangle
   std::int32_t material = -1;
+  std::int32_t source = -1;  // its number in the mesh that LevelMesh::source names; -1: new
 };
 
 struct NodeMotion {       // PLIANT_motion
@@ -47,7 +48,8 @@ struct NodeMotion {       // PLIANT_motion
 struct LevelMesh {
   std::string name;
   std::vector<Primitive> primitives;
-  std::int32_t source = -1;  // /meshes/i of Level::source; -1: new
+  std::int32_t source = -1;   // /meshes/i of Level::source; -1: new
+  std::int32_t skinned = -1;  // /nodes/i whose skin has moved these vertices to where they are at rest; -1: none
 };
 
 struct LevelNode {
@@ -83,6 +85,7 @@ struct LevelAnimation {
   std::string name;
   double length = 0.0;  // [s] of the longest channel: all of them start over together
   std::vector<LevelChannel> channels;
+  std::int32_t source = -1;  // /animations/i of Level::source; -1: new
 };
 
 struct LevelEnvironment {  // PLIANT_environment
@@ -107,12 +110,19 @@ struct Level {
   std::vector<std::string>
       notes;  // what was read differently than a user might expect (collision meshes, skipped points...)
   std::size_t document_notes = 0;  // of these, the first are warnings of the document (open_gltf)
-  // The glTF it came from: while it is there, save_level keeps meshes, materials, pictures and animations from it.
-  // Whoever changes one of those resets it, and everything is then written from the Level alone.
+  // The glTF it came from. While it is there, save_level writes into it what has changed since and keeps the rest:
+  // extras, extensions that Pliant does not know, skins, morph targets. The `source` of a node, mesh, primitive or
+  // animation says which one of the document it is; what comes from another Level has -1. Nodes may be added, removed,
+  // reordered (parents before children), reparented, renamed and copied, meshes added, painted and changed. Materials
+  // and images are those of the document by number; new ones are appended. Without it, everything is written from the
+  // Level alone.
   std::shared_ptr<SourceDocument> source;
 
   bool has_pliant() const;  // any PLIANT_* extension; false: a bare mesh
 };
+
+// Node-to-world matrices of nodes whose parents stand before them.
+std::vector<dmat4> world_matrices(const std::vector<LevelNode>& nodes);
 
 // Whether any triangle of a mesh has an area in a node's frame; false: a placeholder, neither shown nor touched.
 bool has_area(const LevelMesh& mesh, const dmat3& frame);
