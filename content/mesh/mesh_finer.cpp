@@ -61,20 +61,25 @@ int common_edge(vec2 a, vec2 b) {
 class Finer {
  public:
   Finer(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered, const Welded& welded,
-        const Mesh& mesh, double reach)
-      : mesh_(mesh), longest_(kEdgeOfReach * reach), most_bulge_(kBulgeOfReach * reach) {
+        const Mesh& mesh, double reach, const FinerPlace* place = nullptr)
+      : mesh_(mesh),
+        longest_(kEdgeOfReach * reach),
+        most_bulge_(kBulgeOfReach * reach),
+        place_(place),
+        source_(welded.source_triangle) {
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) position_.push_back(mesh.position(v));
     begin(primitives, to_object, gathered);
     begin(gathered, welded);
   }
 
   bool cut() {
-    const std::size_t most = std::min(pieces_.size() + kMostAdded, kMostFiner);
+    const std::size_t most = place_ ? pieces_.size() + kMostAdded : std::min(pieces_.size() + kMostAdded, kMostFiner);
     for (int pass = 0; pass < kMostPasses; ++pass) {
       std::size_t wanted = pieces_.size();
       for (const Piece& piece : pieces_)
         for (std::size_t k = 0; k < 3; ++k) wanted += is_long(piece, k);
-      if (wanted == pieces_.size() || wanted > most) return pass > 0;
+      complete_ = wanted == pieces_.size();
+      if (complete_ || wanted > most) return pass > 0;
       std::vector<Piece> finer;
       finer.reserve(wanted);
       for (const Piece& piece : pieces_) cut(piece, finer);
@@ -86,8 +91,10 @@ class Finer {
   FinerMesh take() {
     FinerMesh out;
     // Triangle by triangle of every primitive in turn, as they will be gathered.
-    std::stable_sort(pieces_.begin(), pieces_.end(),
-                     [](const Piece& a, const Piece& b) { return a.primitive < b.primitive; });
+    std::stable_sort(pieces_.begin(), pieces_.end(), [&](const Piece& a, const Piece& b) {
+      if (a.primitive != b.primitive || !place_) return a.primitive < b.primitive;
+      return source_[a.triangle] < source_[b.triangle];
+    });
     std::uint32_t patch_of = kNoVertex;
     CurvedPatch patch;
     for (const Piece& piece : pieces_) {
@@ -102,6 +109,7 @@ class Finer {
       out.crease.push_back(crease);
     }
     out.primitives = std::move(primitives_);
+    out.complete = complete_;
     return out;
   }
 
@@ -170,12 +178,23 @@ class Finer {
     if (!fresh) return known->second.cut;
     const dvec3 from(position_[a.vertex]), to(position_[b.vertex]), along = to - from;
     bool& cut = known->second.cut;
+    if (place_) return cut = is_long_at_place(piece, k, from, to);
     cut = dot(along, along) > longest_ * longest_;
     if (cut) return true;
     const vec2 middle = 0.5f * (a.at + b.at);
     const CurvedPatch patch = curved_patch(mesh_, piece.triangle);
     cut = !patch.flat && length(patch.at(middle.x, middle.y).p - 0.5 * (from + to)) > most_bulge_;
     return cut;
+  }
+
+  bool is_long_at_place(const Piece& piece, std::size_t k, const dvec3& from, const dvec3& to) const {
+    const auto near = [&](std::uint32_t triangle) { return place_->near[source_[triangle]] != 0; };
+    const int edge = common_edge(piece.corner[k].at, piece.corner[(k + 1) % 3].at);
+    const std::uint32_t other = edge < 0 ? kBorder : mesh_.across[piece.triangle][edge];
+    if (!near(piece.triangle) && (other == kBorder || !near(other))) return false;
+    const dvec3 a = place_->to_object * from - place_->center, ab = place_->to_object * (to - from);
+    const double length2 = dot(ab, ab), t = length2 > 0 ? std::clamp(-dot(a, ab) / length2, 0.0, 1.0) : 0.0;
+    return std::sqrt(length2) > place_->edge + 0.5 * std::max(0.0, length(a + t * ab) - place_->radius);
   }
 
   Corner middle(const Piece& piece, std::size_t k) {
@@ -284,7 +303,10 @@ class Finer {
   }
 
   const Mesh& mesh_;
-  const double longest_, most_bulge_;  // [m]
+  const double longest_, most_bulge_;         // [m]
+  const FinerPlace* const place_;             // nullptr: everywhere
+  const std::vector<std::uint32_t>& source_;  // triangle of each touch triangle
+  bool complete_ = true;
   std::vector<Primitive> primitives_;
   std::vector<Piece> pieces_;
   std::vector<vec3> position_;                   // [m] of every vertex of the finer touch mesh
@@ -331,6 +353,12 @@ FinerMesh make_finer(std::span<const Primitive> primitives, const mat4& to_objec
                      const Welded& welded, const Mesh& mesh, double reach) {
   if (mesh.triangles.size() >= kMostFiner || !is_coarse(mesh, reach)) return {};
   Finer finer(primitives, to_object, gathered, welded, mesh, reach);
+  return finer.cut() ? finer.take() : FinerMesh{};
+}
+
+FinerMesh make_finer_at(const FinerPlace& place, std::span<const Primitive> primitives, const Gathered& gathered,
+                        const Welded& welded, const Mesh& mesh) {
+  Finer finer(primitives, mat4(1.0f), gathered, welded, mesh, 0.0, &place);
   return finer.cut() ? finer.take() : FinerMesh{};
 }
 
