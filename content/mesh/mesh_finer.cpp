@@ -70,6 +70,11 @@ class Finer {
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) position_.push_back(mesh.position(v));
     begin(primitives, to_object, gathered);
     begin(gathered, welded);
+    if (!place) return;
+    near_.assign(mesh.vertex_count, 0);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      if (place->near[source_[t]])
+        for (int i = 0; i < 3; ++i) near_[mesh.triangles[t][i]] = 1;
   }
 
   bool cut() {
@@ -88,6 +93,8 @@ class Finer {
     return true;
   }
 
+  bool complete() const { return complete_; }
+
   FinerMesh take() {
     FinerMesh out;
     // Triangle by triangle of every primitive in turn, as they will be gathered.
@@ -98,6 +105,10 @@ class Finer {
     std::uint32_t patch_of = kNoVertex;
     CurvedPatch patch;
     for (const Piece& piece : pieces_) {
+      if (place_) {
+        for (const Corner& corner : piece.corner) primitives_[piece.primitive].index.push_back(corner.source);
+        continue;
+      }
       if (patch_of != piece.triangle) patch = curved_patch(mesh_, patch_of = piece.triangle);
       std::uint8_t crease = 0;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -174,11 +185,12 @@ class Finer {
   };
   bool is_long(const Piece& piece, std::size_t k) {
     const Corner &a = piece.corner[k], &b = piece.corner[(k + 1) % 3];
+    if (place_ && !(is_near(a.vertex) && is_near(b.vertex))) return false;
     const auto [known, fresh] = cuts_.try_emplace(edge_key(a.vertex, b.vertex), Cut{false, kNoVertex});
     if (!fresh) return known->second.cut;
     const dvec3 from(position_[a.vertex]), to(position_[b.vertex]), along = to - from;
     bool& cut = known->second.cut;
-    if (place_) return cut = is_long_at_place(piece, k, from, to);
+    if (place_) return cut = is_long_at_place(from, to);
     cut = dot(along, along) > longest_ * longest_;
     if (cut) return true;
     const vec2 middle = 0.5f * (a.at + b.at);
@@ -187,15 +199,13 @@ class Finer {
     return cut;
   }
 
-  bool is_long_at_place(const Piece& piece, std::size_t k, const dvec3& from, const dvec3& to) const {
-    const auto near = [&](std::uint32_t triangle) { return place_->near[source_[triangle]] != 0; };
-    const int edge = common_edge(piece.corner[k].at, piece.corner[(k + 1) % 3].at);
-    const std::uint32_t other = edge < 0 ? kBorder : mesh_.across[piece.triangle][edge];
-    if (!near(piece.triangle) && (other == kBorder || !near(other))) return false;
+  bool is_long_at_place(const dvec3& from, const dvec3& to) const {
     const dvec3 a = place_->to_object * from - place_->center, ab = place_->to_object * (to - from);
     const double length2 = dot(ab, ab), t = length2 > 0 ? std::clamp(-dot(a, ab) / length2, 0.0, 1.0) : 0.0;
     return std::sqrt(length2) > place_->edge + 0.5 * std::max(0.0, length(a + t * ab) - place_->radius);
   }
+  // What is added lies between vertices that are near.
+  bool is_near(std::uint32_t vertex) const { return vertex >= mesh_.vertex_count || near_[vertex] != 0; }
 
   Corner middle(const Piece& piece, std::size_t k) {
     const Corner &a = piece.corner[k], &b = piece.corner[(k + 1) % 3];
@@ -306,6 +316,7 @@ class Finer {
   const double longest_, most_bulge_;         // [m]
   const FinerPlace* const place_;             // nullptr: everywhere
   const std::vector<std::uint32_t>& source_;  // triangle of each touch triangle
+  std::vector<std::uint8_t> near_;            // of each touch vertex, with a place
   bool complete_ = true;
   std::vector<Primitive> primitives_;
   std::vector<Piece> pieces_;
@@ -359,7 +370,10 @@ FinerMesh make_finer(std::span<const Primitive> primitives, const mat4& to_objec
 FinerMesh make_finer_at(const FinerPlace& place, std::span<const Primitive> primitives, const Gathered& gathered,
                         const Welded& welded, const Mesh& mesh) {
   Finer finer(primitives, mat4(1.0f), gathered, welded, mesh, 0.0, &place);
-  return finer.cut() ? finer.take() : FinerMesh{};
+  if (finer.cut()) return finer.take();
+  FinerMesh nothing;
+  nothing.complete = finer.complete();
+  return nothing;
 }
 
 }  // namespace pliant

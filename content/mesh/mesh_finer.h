@@ -27,7 +27,7 @@ struct FinerPlace {
   dvec3 center{0};                 // [m] after it
   double radius = 0;               // [m] about the center; farther away, edges may be longer by half the distance
   double edge = 0;                 // [m] no longer within the radius
-  std::vector<std::uint8_t> near;  // of each source triangle: its edges may be cut
+  std::vector<std::uint8_t> near;  // of each source triangle: edges between corners of such may be cut
 };
 
 struct FinerMesh {
@@ -43,8 +43,8 @@ struct FinerMesh {
 FinerMesh make_finer(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
                      const Welded& welded, const Mesh& mesh, double reach);
 
-// The same at one place; `gathered` in the primitives' own frame, as they are wound. Triangles are in the order of the
-// file, and those that are not touched are left out.
+// The same at one place, for `gathered` in the primitives' own frame, as they are wound. Only primitives: in the order
+// of the file, without triangles that are neither touched nor drawn.
 FinerMesh make_finer_at(const FinerPlace& place, std::span<const Primitive> primitives, const Gathered& gathered,
                         const Welded& welded, const Mesh& mesh);
 
