@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "runtime/clock.h"
+
 namespace pliant {
 namespace {
 
@@ -27,42 +29,57 @@ Stroke::Pointer Stroke::between(const Pointer& a, const Pointer& b, double t) co
   return at;
 }
 
-PaintChanges Stroke::move(const Ray& ray, double pressure) {
+PaintChanges Stroke::move(const Ray& ray, double pressure, double most_ms) {
+  const bool goes = length(ray.direction) > 0.0 && std::isfinite(length(ray.direction) + length(ray.origin));
+  if (brush_.radius > 0.0 && goes) follow({ray, std::clamp(pressure, 0.0, 1.0), surface_.hit(ray, brush_.both_sides)});
+  return go_on(most_ms);
+}
+
+PaintChanges Stroke::go_on(double most_ms) {
   ++calls_;
   reported_.clear();
-  const Pointer to{ray, std::clamp(pressure, 0.0, 1.0), surface_.hit(ray, brush_.both_sides)};
-  const bool can_go = length(ray.direction) > 0.0 && std::isfinite(length(ray.direction) + length(ray.origin));
-  if (brush_.radius > 0.0 && can_go) {
-    const double spacing = kDabSpacing * brush_.radius;
-    if (!last_) {
-      if (to.hit.valid()) dab(to);
-      last_ = to;
-    } else {
-      // Where an end is off the surface, the way over it is not known: as if it were half the mesh.
-      const Pointer from = *last_;
-      double way = length(to.hit.point - from.hit.point);
-      if (!to.hit.valid() || !from.hit.valid()) way = 0.5 * static_cast<double>(surface_.mesh().box.diagonal());
-      const double rays = std::clamp(std::ceil(kSamples * way / spacing), 1.0, kMostRays);
-      for (double k = 1; k <= rays; ++k) {
-        const Pointer here = between(from, to, k / rays), before = *last_;
-        last_ = here;
-        if (!here.hit.valid()) continue;
-        const double step = length(here.hit.point - before.hit.point);
-        if (!before.hit.valid() || step > kLeap * brush_.radius) {
-          travelled_ = 0.0;
-          dab(here);
-          continue;
-        }
-        double next = spacing - travelled_;  // [m] of the step, up to the next dab
-        for (; next <= step; next += spacing)
-          if (const Pointer at = between(before, here, next / step); at.hit.valid()) dab(at);
-        travelled_ = spacing - (next - step);
-      }
-    }
+  const std::uint64_t start = now_ns();
+  while (!waiting_.empty()) {
+    dab(waiting_.front());
+    waiting_.pop_front();
+    if (static_cast<double>(now_ns() - start) * 1e-6 >= most_ms) break;
   }
   PaintChanges changes;
   for (const std::uint32_t e : reported_) changes.add(surface_, entries_[e].vertex, entries_[e].now);
   return changes;
+}
+
+// Finds the places of dabs on the way to `to`.
+void Stroke::follow(const Pointer& to) {
+  const auto place = [&](const Pointer& at) {
+    if (at.hit.valid()) waiting_.push_back(at);
+  };
+  if (!last_) {
+    place(to);
+    last_ = to;
+    return;
+  }
+  const Pointer from = *last_;
+  const double spacing = kDabSpacing * brush_.radius;
+  // Where an end is off the surface, the way over it is not known: as if it were half the mesh.
+  const bool whole = from.hit.valid() && to.hit.valid();
+  const double way =
+      whole ? length(to.hit.point - from.hit.point) : 0.5 * static_cast<double>(surface_.mesh().box.diagonal());
+  const double rays = std::clamp(std::ceil(kSamples * way / spacing), 1.0, kMostRays);
+  for (double k = 1; k <= rays; ++k) {
+    const Pointer before = *last_, here = between(from, to, k / rays);
+    last_ = here;
+    if (!here.hit.valid()) continue;
+    const double step = length(here.hit.point - before.hit.point);
+    if (!before.hit.valid() || step > kLeap * brush_.radius) {
+      travelled_ = 0.0;
+      place(here);
+      continue;
+    }
+    double next = spacing - travelled_;  // [m] of the step, up to the next dab
+    for (; next <= step; next += spacing) place(between(before, here, next / step));
+    travelled_ = spacing - (next - step);
+  }
 }
 
 // The image of a place in a plane of the mesh frame, on the surface near it and facing the same way.

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,14 +17,20 @@ namespace pliant {
 
 class Stroke {
  public:
+  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
   // The surface must outlive the stroke. `before` is kept (shared, not copied) and never changed.
   Stroke(const PaintSurface& surface, MeshPaint before, const Brush& brush);
 
   // The pointer has come to `ray` (surface frame), straight from where it was; `pressure` [1] multiplies the strength.
-  // Returns what has changed since the last call.
-  PaintChanges move(const Ray& ray, double pressure = 1.0);
+  // Makes the dabs on its way until `most_ms` [ms] have passed, at least one; the others wait. What is painted in the
+  // end does not depend on it. Returns what has changed since the last call.
+  PaintChanges move(const Ray& ray, double pressure = 1.0, double most_ms = kNoLimit);
+  // Makes dabs that wait.
+  PaintChanges go_on(double most_ms = kNoLimit);
+  bool waits() const { return !waiting_.empty(); }
 
-  // What is painted now: `before` itself where nothing has changed.
+  // What is painted by the dabs that are made: `before` itself where nothing has changed.
   MeshPaint after() const;
   const MeshPaint& before() const { return before_; }
   std::uint32_t dabs() const { return dabs_; }
@@ -37,7 +45,7 @@ class Stroke {
     double most = 0.0;           // [1] the largest weight of any dab
     double weight = 0.0;         // [1] of this dab
     std::uint32_t dab = 0;       // the last that came here
-    std::uint32_t reported = 0;  // the call of move() that has it in its list
+    std::uint32_t reported = 0;  // the call that has it in its list
     bool changed = false;
   };
   struct Pointer {
@@ -51,6 +59,7 @@ class Stroke {
   };
 
   Pointer between(const Pointer& a, const Pointer& b, double t) const;
+  void follow(const Pointer& to);
   void dab(const Pointer& at);
   void reach(const SurfaceHit& hit, double strength, Allowed& allowed);
   SurfaceHit mirrored(const SurfaceHit& hit) const;
@@ -62,7 +71,8 @@ class Stroke {
   const MeshPaint before_;
   const Brush brush_;
   std::optional<Pointer> last_;
-  double travelled_ = 0.0;  // [m] since the last dab
+  std::deque<Pointer> waiting_;  // dabs to be made
+  double travelled_ = 0.0;       // [m] since the last place of a dab
   std::optional<SurfaceHit> last_dab_;
   std::uint32_t dabs_ = 0, calls_ = 0;
   std::array<Allowed, 2> allowed_;   // of the stroke and of its mirror image

@@ -87,6 +87,29 @@ TEST(Stroke, DabsAreAQuarterRadiusApartHoweverThePointerMoves) {
   }
 }
 
+TEST(Stroke, DabsThatWaitLeadToTheSamePaintAsDabsMadeAtOnce) {
+  const Painted on(sheet(60));
+  const Brush brush{.radius = 0.1, .mode = BrushMode::kSmooth};
+  Primitive rough = on.mesh.primitives[0];
+  for (std::size_t i = 0; i < rough.position.size(); ++i) rough.stiffness.push_back(1.0f + float(i * 7 % 13));
+  const Painted from(rough);
+  Stroke at_once(from.surface, from.paint, brush), in_pieces(from.surface, from.paint, brush);
+  MeshPaint shown = from.paint;
+  for (int i = 0; i < 5; ++i) {
+    const Ray ray = down(0.2 + 0.15 * i, 0.4 + 0.05 * (i % 2));
+    at_once.move(ray);
+    EXPECT_FALSE(at_once.waits());
+    shown = with(shown, in_pieces.move(ray, 1.0, 0.0));
+    if (i == 2) shown = with(shown, in_pieces.go_on(0.0));
+  }
+  EXPECT_TRUE(in_pieces.waits());
+  EXPECT_EQ(in_pieces.dabs(), 6u) << "no time: one dab a call";
+  while (in_pieces.waits()) shown = with(shown, in_pieces.go_on(0.0));
+  EXPECT_TRUE(in_pieces.after() == at_once.after());
+  EXPECT_TRUE(shown == at_once.after());
+  EXPECT_EQ(in_pieces.dabs(), at_once.dabs());
+}
+
 TEST(Stroke, PressureIsInterpolatedBetweenMoves) {
   const Painted on(sheet(100));
   Stroke stroke(on.surface, on.paint,
