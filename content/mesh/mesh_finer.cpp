@@ -61,20 +61,30 @@ int common_edge(vec2 a, vec2 b) {
 class Finer {
  public:
   Finer(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered, const Welded& welded,
-        const Mesh& mesh, double reach)
-      : mesh_(mesh), longest_(kEdgeOfReach * reach), most_bulge_(kBulgeOfReach * reach) {
+        const Mesh& mesh, double reach, const FinerPlace* place = nullptr)
+      : mesh_(mesh),
+        longest_(kEdgeOfReach * reach),
+        most_bulge_(kBulgeOfReach * reach),
+        place_(place),
+        source_(welded.source_triangle) {
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) position_.push_back(mesh.position(v));
     begin(primitives, to_object, gathered);
     begin(gathered, welded);
+    if (!place) return;
+    near_.assign(mesh.vertex_count, 0);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      if (place->near[source_[t]])
+        for (int i = 0; i < 3; ++i) near_[mesh.triangles[t][i]] = 1;
   }
 
   bool cut() {
-    const std::size_t most = std::min(pieces_.size() + kMostAdded, kMostFiner);
+    const std::size_t most = place_ ? pieces_.size() + kMostAdded : std::min(pieces_.size() + kMostAdded, kMostFiner);
     for (int pass = 0; pass < kMostPasses; ++pass) {
       std::size_t wanted = pieces_.size();
       for (const Piece& piece : pieces_)
         for (std::size_t k = 0; k < 3; ++k) wanted += is_long(piece, k);
-      if (wanted == pieces_.size() || wanted > most) return pass > 0;
+      complete_ = wanted == pieces_.size();
+      if (complete_ || wanted > most) return pass > 0;
       std::vector<Piece> finer;
       finer.reserve(wanted);
       for (const Piece& piece : pieces_) cut(piece, finer);
@@ -83,14 +93,22 @@ class Finer {
     return true;
   }
 
+  bool complete() const { return complete_; }
+
   FinerMesh take() {
     FinerMesh out;
     // Triangle by triangle of every primitive in turn, as they will be gathered.
-    std::stable_sort(pieces_.begin(), pieces_.end(),
-                     [](const Piece& a, const Piece& b) { return a.primitive < b.primitive; });
+    std::stable_sort(pieces_.begin(), pieces_.end(), [&](const Piece& a, const Piece& b) {
+      if (a.primitive != b.primitive || !place_) return a.primitive < b.primitive;
+      return source_[a.triangle] < source_[b.triangle];
+    });
     std::uint32_t patch_of = kNoVertex;
     CurvedPatch patch;
     for (const Piece& piece : pieces_) {
+      if (place_) {
+        for (const Corner& corner : piece.corner) primitives_[piece.primitive].index.push_back(corner.source);
+        continue;
+      }
       if (patch_of != piece.triangle) patch = curved_patch(mesh_, patch_of = piece.triangle);
       std::uint8_t crease = 0;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -102,6 +120,7 @@ class Finer {
       out.crease.push_back(crease);
     }
     out.primitives = std::move(primitives_);
+    out.complete = complete_;
     return out;
   }
 
@@ -166,10 +185,12 @@ class Finer {
   };
   bool is_long(const Piece& piece, std::size_t k) {
     const Corner &a = piece.corner[k], &b = piece.corner[(k + 1) % 3];
+    if (place_ && !(is_near(a.vertex) && is_near(b.vertex))) return false;
     const auto [known, fresh] = cuts_.try_emplace(edge_key(a.vertex, b.vertex), Cut{false, kNoVertex});
     if (!fresh) return known->second.cut;
     const dvec3 from(position_[a.vertex]), to(position_[b.vertex]), along = to - from;
     bool& cut = known->second.cut;
+    if (place_) return cut = is_long_at_place(from, to);
     cut = dot(along, along) > longest_ * longest_;
     if (cut) return true;
     const vec2 middle = 0.5f * (a.at + b.at);
@@ -177,6 +198,14 @@ class Finer {
     cut = !patch.flat && length(patch.at(middle.x, middle.y).p - 0.5 * (from + to)) > most_bulge_;
     return cut;
   }
+
+  bool is_long_at_place(const dvec3& from, const dvec3& to) const {
+    const dvec3 a = place_->to_object * from - place_->center, ab = place_->to_object * (to - from);
+    const double length2 = dot(ab, ab), t = length2 > 0 ? std::clamp(-dot(a, ab) / length2, 0.0, 1.0) : 0.0;
+    return std::sqrt(length2) > place_->edge + 0.5 * std::max(0.0, length(a + t * ab) - place_->radius);
+  }
+  // What is added lies between vertices that are near.
+  bool is_near(std::uint32_t vertex) const { return vertex >= mesh_.vertex_count || near_[vertex] != 0; }
 
   Corner middle(const Piece& piece, std::size_t k) {
     const Corner &a = piece.corner[k], &b = piece.corner[(k + 1) % 3];
@@ -284,7 +313,11 @@ class Finer {
   }
 
   const Mesh& mesh_;
-  const double longest_, most_bulge_;  // [m]
+  const double longest_, most_bulge_;         // [m]
+  const FinerPlace* const place_;             // nullptr: everywhere
+  const std::vector<std::uint32_t>& source_;  // triangle of each touch triangle
+  std::vector<std::uint8_t> near_;            // of each touch vertex, with a place
+  bool complete_ = true;
   std::vector<Primitive> primitives_;
   std::vector<Piece> pieces_;
   std::vector<vec3> position_;                   // [m] of every vertex of the finer touch mesh
@@ -332,6 +365,15 @@ FinerMesh make_finer(std::span<const Primitive> primitives, const mat4& to_objec
   if (mesh.triangles.size() >= kMostFiner || !is_coarse(mesh, reach)) return {};
   Finer finer(primitives, to_object, gathered, welded, mesh, reach);
   return finer.cut() ? finer.take() : FinerMesh{};
+}
+
+FinerMesh make_finer_at(const FinerPlace& place, std::span<const Primitive> primitives, const Gathered& gathered,
+                        const Welded& welded, const Mesh& mesh) {
+  Finer finer(primitives, mat4(1.0f), gathered, welded, mesh, 0.0, &place);
+  if (finer.cut()) return finer.take();
+  FinerMesh nothing;
+  nothing.complete = finer.complete();
+  return nothing;
 }
 
 }  // namespace pliant

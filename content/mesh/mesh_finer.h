@@ -21,16 +21,31 @@ inline constexpr std::size_t kMostFiner = std::size_t{1} << 20;  // triangles, o
 // `reach` [m]. A dense mesh with a few long edges is not.
 bool is_coarse(const Mesh& mesh, double reach);
 
+// Finer at one place only, to an edge length that somebody asks for (the editor's brush).
+struct FinerPlace {
+  dmat3 to_object{1};              // lengths are measured after it
+  dvec3 center{0};                 // [m] after it
+  double radius = 0;               // [m] about the center; farther away, edges may be longer by half the distance
+  double edge = 0;                 // [m] no longer within the radius
+  std::vector<std::uint8_t> near;  // of each source triangle: edges between corners of such may be cut
+};
+
 struct FinerMesh {
   std::vector<Primitive> primitives;  // object frame, wound as touched
   // By triangle, all primitives end to end:
   std::vector<std::uint8_t> crease;  // as Mesh::crease
   std::vector<vec3> normal;          // [1] three of each: of the smooth part that the corner belongs to
+  bool complete = true;              // false: one more pass would have made too many triangles
 };
 
 // Halves edges until none is coarse, or one more pass would make too many triangles. `primitives` are those that the
 // mesh was built from. Without any primitive: there was nothing to cut.
 FinerMesh make_finer(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
                      const Welded& welded, const Mesh& mesh, double reach);
+
+// The same at one place, for `gathered` in the primitives' own frame, as they are wound. Only primitives: in the order
+// of the file, without triangles that are neither touched nor drawn.
+FinerMesh make_finer_at(const FinerPlace& place, std::span<const Primitive> primitives, const Gathered& gathered,
+                        const Welded& welded, const Mesh& mesh);
 
 }  // namespace pliant

@@ -23,6 +23,14 @@ std::vector<std::uint32_t> ascending(std::vector<std::uint32_t> values) {
   return values;
 }
 
+// The first `count` places that have a flag; ascending.
+std::vector<std::uint32_t> flagged(const std::vector<std::uint8_t>& flags, std::uint32_t count) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (flags[i]) found.push_back(i);
+  return found;
+}
+
 }  // namespace
 
 // Leaves the distances of all nodes within radius in `work`, and of some beyond.
@@ -133,16 +141,16 @@ std::vector<std::uint32_t> PaintSurface::connected(const SurfaceHit& hit, const 
     }
   }
   if (!topology.vertex.empty())
-    for (std::uint32_t& node : nodes) node = topology.vertex[node];
-  return ascending(std::move(nodes));
+    for (const std::uint32_t node : nodes) met[topology.vertex[node]] = 1;
+  return flagged(met, mesh_.vertex_count);
 }
 
 std::vector<std::uint32_t> PaintSurface::of_primitive(std::uint32_t primitive) const {
-  std::vector<std::uint32_t> found;
+  std::vector<std::uint8_t> met(mesh_.vertex_count, 0);
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
     if (source_triangle_[t].primitive == primitive)
-      for (int i = 0; i < 3; ++i) found.push_back(mesh_.triangles[t][i]);
-  return ascending(std::move(found));
+      for (int i = 0; i < 3; ++i) met[mesh_.triangles[t][i]] = 1;
+  return flagged(met, mesh_.vertex_count);
 }
 
 std::vector<std::uint32_t> PaintSurface::in_box(const Box& box) const {

@@ -144,7 +144,7 @@ SurfaceHit PaintSurface::at(std::uint32_t triangle, const dvec3& barycentric) co
   return hit;
 }
 
-SurfaceHit PaintSurface::hit(const Ray& ray) const {
+SurfaceHit PaintSurface::hit(const Ray& ray, bool both_sides) const {
   const double size = length(ray.direction);
   if (!(size > 0.0) || !std::isfinite(size + length(ray.origin))) return {};
   const dvec3 along = ray.direction / size;
@@ -161,7 +161,7 @@ SurfaceHit PaintSurface::hit(const Ray& ray) const {
     dvec3 barycentric{1, 0, 0};
   } front, back;
   visit_along(
-      mesh_, from, to, [&] { return front.fraction; },
+      mesh_, from, to, [&] { return both_sides ? std::min(front.fraction, back.fraction) : front.fraction; },
       [&](std::uint32_t triangle) {
         // Moeller & Trumbore 1997.
         const uvec3 t = mesh_.triangles[triangle];
@@ -177,7 +177,7 @@ SurfaceHit PaintSurface::hit(const Ray& ray) const {
         if (fraction < best.fraction || (fraction == best.fraction && triangle < best.triangle))
           best = {fraction, triangle, {1.0 - u - v, u, v}};
       });
-  const bool from_behind = front.triangle == SurfaceHit::kNone;
+  const bool from_behind = both_sides ? back.fraction < front.fraction : front.triangle == SurfaceHit::kNone;
   const Meeting& met = from_behind ? back : front;
   if (met.triangle == SurfaceHit::kNone) return {};
   SurfaceHit found = at(met.triangle, met.barycentric);

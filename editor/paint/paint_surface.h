@@ -81,8 +81,9 @@ class PaintSurface {
   const dmat3& frame() const { return frame_; }
   const MeshReport& report() const { return report_; }
 
-  // The nearest front face along the ray; where it meets none, the nearest back face. Invalid: it meets nothing.
-  SurfaceHit hit(const Ray& ray) const;
+  // The nearest front face along the ray, as a surface is drawn; where it meets none, the nearest back face.
+  // `both_sides`: the nearest face, as a double-sided material is drawn. Invalid: it meets nothing.
+  SurfaceHit hit(const Ray& ray, bool both_sides = false) const;
   // The closest place that is not farther than `within` [m]; invalid where there is none.
   SurfaceHit closest(dvec3 point, double within) const;
 
