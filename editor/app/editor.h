@@ -15,8 +15,8 @@
 #include "editor/document/document.h"
 #include "editor/document/edits.h"
 #include "editor/paint/paint_surface.h"
-#include "editor/viewport/view_settings.h"
 #include "editor/viewport/view_camera.h"
+#include "editor/viewport/view_settings.h"
 
 namespace pliant {
 
@@ -38,6 +38,8 @@ struct EditorFinding {
   NodeId node = kNoNode;  // that it is about
   std::optional<QuickFix> fix;
 };
+
+class Painting;
 
 class Editor {
  public:
@@ -78,12 +80,13 @@ class Editor {
   // --- View
   ViewSettings view;
   ViewCamera camera;
-  Box scene_box() const;   // [m] world
-  void frame_selected();   // or all
+  Box scene_box() const;  // [m] world
+  void frame_selected();  // or all
 
   // --- Surfaces to paint and to point at, by mesh and scale; made in the background
   // Null: not ready yet (it has been begun); the error is said once.
   std::shared_ptr<const PaintSurface> surface_of(NodeId id);
+  const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
 
   // --- Clipboard
   State clipboard;
@@ -93,14 +96,15 @@ class Editor {
   void paste();
 
   Jobs jobs;
-  std::string tool = "Select";         // the active one of the viewport
-  bool playing = false;                // a session runs on the stage
+  std::string tool = "Select";          // the active one of the viewport
+  bool playing = false;                 // a session runs on the stage
   std::function<void()> request_close;  // set by the program
 
  private:
   struct Surface {
     std::shared_ptr<const DocumentMesh> mesh;
     dmat3 frame{1};
+    std::string job;
     std::shared_ptr<const PaintSurface> surface;  // null: under way, or it failed
     bool failed = false;
   };

@@ -19,6 +19,7 @@ struct ClipPlane {
   int axis = 0;          // x, y, z of the world
   double place = 0.5;    // [1] of the scene's box along it
   bool flipped = false;  // the other side is cut away
+  friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
 };
 
 struct ViewSettings {
@@ -36,6 +37,7 @@ struct ViewSettings {
   double value_low = 0.25, value_high = 4.0;  // of a factor, the ends of the colours
   ClipPlane clip;
   std::vector<NodeId> isolated;  // only these and what is below them; empty: all
+  friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };
 
 }  // namespace pliant
