@@ -251,6 +251,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
               bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
   picture_ = stage_->picture();
+  editor.hovered = kNoNode;  // until a row of the tree or the viewport says another
   draw_top();
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
   draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
@@ -488,12 +489,12 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_.reset();
     dirty_picture_ = true;
   }
-  const NodeId hovered = in.over && !dragging_view_ ? picture_.picked.node : kNoNode;
-  if (hovered != editor.hovered) {
-    editor.hovered = hovered;
+  if (in.over && !dragging_view_) editor.hovered = picture_.picked.node;
+  if (hovered_ != editor.hovered) {
+    hovered_ = editor.hovered;
     dirty_picture_ = true;
   }
-  if (taken) dirty_picture_ = true;
+  if (taken && (in.dx != 0 || in.dy != 0 || in.pressed || in.released)) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);

@@ -88,6 +88,7 @@ class App {
   std::filesystem::path shot_;
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
   ViewSettings shown_view_;
+  NodeId hovered_ = kNoNode;  // as the picture shows it
   double frame_ms_ = 0.0;          // of the interface
   std::vector<double> frames_ms_;  // while a script runs
 };
