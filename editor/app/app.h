@@ -89,7 +89,8 @@ class App {
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
   ViewSettings shown_view_;
   NodeId hovered_ = kNoNode;  // as the picture shows it
-  double frame_ms_ = 0.0;          // of the interface
+  double frame_ms_ = 0.0;     // of the interface
+  double most_computed_ms_ = 0.0;
   std::vector<double> frames_ms_;  // while a script runs
 };
 
