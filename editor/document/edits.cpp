@@ -28,7 +28,7 @@ std::optional<Change> changing(const State& state, NodeId id) {
 }
 
 // Every reference to a node by its name.
-void rename_references(State& state, const std::string& from, const std::string& to) {
+void rename_references(State& state, const std::string from, const std::string to) {
   for (auto& each : state.nodes) {
     const LevelNode& node = each->node;
     const bool probe = node.probe && node.probe_device == from, handle = node.handle && node.handle->device == from;
@@ -382,9 +382,13 @@ Result<State> with_value(const State& state, NodeIds ids, const std::string& ext
   if (!found) return found.error();
   const Extension& of = *find_extension(extension);
   if (const std::string wrong = check_value(**found, value); !wrong.empty()) return Error{key, wrong};
-  if ((*found)->type == KeyType::kNode && !value.get_ref<const std::string&>().empty() &&
-      !state.find(value.get<std::string>()))
-    return Error{key, "names the node '" + value.get<std::string>() + "', which is not there"};
+  if ((*found)->type == KeyType::kNode)
+    if (const std::string name = value.get<std::string>(); !name.empty()) {
+      const DocumentNode* const named = state.find(name);
+      if (!named || !named->node.device)
+        return Error{key, "names '" + name +
+                              (named ? "', which has no haptic device; add one to it first" : "', which is not there")};
+    }
   if (of.on_scene) {
     Level scene = scene_of(state);
     if (!of.present(&scene)) of.add(&scene);

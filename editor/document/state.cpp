@@ -1,6 +1,7 @@
 #include "editor/document/state.h"
 
 #include <algorithm>
+#include <cctype>
 #include <unordered_map>
 
 #include "content/keys/extensions.h"
@@ -62,31 +63,10 @@ DocumentMesh::DocumentMesh(LevelMesh mesh) : LevelMesh(std::move(mesh)) {
     for (const vec3& p : primitive.position) box.add(p);
 }
 
-const char* name_of(Channel channel) {
-  constexpr const char* kNames[] = {"stiffness", "friction", "damping", "relaxation", "pinned", "handle"};
-  return kNames[static_cast<std::size_t>(channel)];
-}
-
-bool is_share(Channel channel) {
-  return channel == Channel::kPinned || channel == Channel::kHandle;
-}
-
-std::vector<float>& painted(Primitive& primitive, Channel channel) {
-  switch (channel) {
-    case Channel::kStiffness:
-      return primitive.stiffness;
-    case Channel::kFriction:
-      return primitive.friction;
-    case Channel::kDamping:
-      return primitive.damping;
-    case Channel::kRelaxation:
-      return primitive.relaxation;
-    case Channel::kPinned:
-      return primitive.pinned;
-    case Channel::kHandle:
-      break;
-  }
-  return primitive.handle;
+std::string name_of(Channel channel) {
+  std::string name = painted_attribute(channel).name + 1;
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
 }
 
 std::size_t State::place(NodeId id) const {
