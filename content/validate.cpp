@@ -181,13 +181,17 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
+  std::optional<SourceDocument> document;
+  Findings of_document;
   if (extension == ".gltf" || extension == ".glb") {
-    const std::optional<SourceDocument> document = open_gltf(path, findings);
+    document = open_gltf(path, of_document);
+    findings = of_document;
     if (!document) return findings;
     find_in_extensions(document->json, findings);
     if (any_error(findings)) return findings;
   }
-  Result<Level> level = load_level(path);
+  Result<Level> level = document ? load_document(std::move(*document), of_document, path) : load_level(path);
+  document.reset();
   if (!level) {
     findings.push_back({Severity::kError, level.error().pointer, level.error().what});
     return findings;
