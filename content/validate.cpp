@@ -228,7 +228,7 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
     for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
   }
   if (any_error(findings)) return findings;
-  Result<World> world = spawn(*level);
+  Result<World> world = spawn_moving_images(*level);
   if (!world) {
     findings.push_back(from_spawn(*level, world.error()));
     return findings;

@@ -230,7 +230,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
         "the level is not as it was when the recording was made (its file, or --set, --unit or --tool-force of this "
         "run): "
         "forces will differ");
-  auto spawned = spawn(level, &notes);
+  auto spawned = spawn_moving_images(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
