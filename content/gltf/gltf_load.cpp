@@ -231,6 +231,12 @@ Result<Level> from_file(Result<Level> level, const fs::path& path) {
   return level;
 }
 
+// Of the file as a whole `validate` says no more than this.
+std::string with_cure(const Finding& finding) {
+  const bool needs = finding.pointer.empty() && finding.message.find("; ") == std::string::npos;
+  return finding.message + (needs ? "; export or save it again" : "");
+}
+
 Result<Level> level_of(SourceDocument document, const Findings& findings) {
   Level level;
   for (const Finding& finding : findings)
@@ -261,8 +267,8 @@ Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, co
     std::optional<SourceDocument> document = open_gltf(bytes, expect_glb, folder, findings);
     if (document) return level_of(std::move(*document), findings);
     for (const Finding& finding : findings)
-      if (finding.severity == Severity::kError) return Error{finding.pointer, finding.message};
-    return Error{"", "cannot be read"};
+      if (finding.severity == Severity::kError) return Error{finding.pointer, with_cure(finding)};
+    return Error{"", "cannot be read; export it again"};
   });
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "content/keys/enum_words.h"
+#include "content/keys/unused_keys.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
 #include "content/safety_cap.h"
@@ -234,6 +235,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
+  for (const std::string& sentence : unused_key_notes(level)) say(run, sentence);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   say_unmoved(windowed, run);
   if (windowed) repeat_scripts(run.world);

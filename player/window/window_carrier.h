@@ -8,10 +8,11 @@
 
 #include "components/world.h"
 #include "player/window/camera_control.h"
+#include "systems/device/mouse.h"
 
 namespace pliant {
 
-inline constexpr double kFastestCarry = 0.5;  // [m/s] faster, and a jump of the pointer is felt as a blow
+inline constexpr double kFastestCarry = kMouseFastest;  // [m/s]
 
 class Carrier {
  public:
