@@ -9,6 +9,7 @@
 #include "content/files/exr.h"
 #include "content/gltf/gltf_document.h"
 #include "content/keys/extensions.h"
+#include "content/keys/unused_keys.h"
 #include "content/level/device_use.h"
 #include "content/level/script.h"
 #include "content/level/spawn_soft.h"
@@ -124,15 +125,25 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene) continue;
     const std::string pointer = pointer_of(level, i);
-    if (node.handle && node.rigid_body && !node.soft_body && !node.handle->box.empty())
-      findings.push_back({Severity::kWarning, pointer,
-                          "PLIANT_handle/box has no effect on a rigid body, all of which is its handle; remove it"});
     if (const std::string fault = soft_fault(node); !fault.empty())
       findings.push_back({Severity::kError, pointer, fault});
     if (!node.soft_body || node.soft_body->mesh.empty()) continue;
     if (const Result<TetFile> file = load_named_tets(folder, node.soft_body->mesh); file)  // else spawn says so
       for (const std::string& note : file->notes) findings.push_back({Severity::kNote, pointer, note});
   }
+}
+
+// What is written and read by nobody, and what nothing moves.
+void find_idle(const Level& level, Findings& findings) {
+  for (const UnusedKey& key : find_unused_keys(level)) {
+    const std::string owner =
+        key.node < 0 ? scene_pointer(level) : pointer_of(level, static_cast<std::size_t>(key.node));
+    std::string pointer = owner + "/extensions/" + key.pointer;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');  // a key's dots are nested objects
+    findings.push_back({Severity::kNote, std::move(pointer), key.what});
+  }
+  for (const DeviceFault& idle : find_unmoved_probes(level))
+    findings.push_back({Severity::kNote, pointer_of(level, idle.node), idle.what});
 }
 
 // Scripts that are not there, or hold no path.
@@ -182,13 +193,17 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
+  std::optional<SourceDocument> document;
+  Findings of_document;
   if (extension == ".gltf" || extension == ".glb") {
-    const std::optional<SourceDocument> document = open_gltf(path, findings);
+    document = open_gltf(path, of_document);
+    findings = of_document;
     if (!document) return findings;
     find_in_extensions(document->json, findings);
     if (any_error(findings)) return findings;
   }
-  Result<Level> level = load_level(path);
+  Result<Level> level = document ? load_document(std::move(*document), of_document, path) : load_level(path);
+  document.reset();
   if (!level) {
     findings.push_back({Severity::kError, level.error().pointer, level.error().what});
     return findings;
@@ -213,6 +228,7 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   }
   for (const DeviceFault& fault : find_shared_devices(*level))
     findings.push_back({Severity::kError, pointer_of(*level, fault.node), fault.what});
+  find_idle(*level, findings);
   // Files that the level names.
   const fs::path folder = path.parent_path();
   find_in_soft_nodes(*level, folder, findings);
@@ -225,7 +241,7 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
     for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
   }
   if (any_error(findings)) return findings;
-  Result<World> world = spawn(*level);
+  Result<World> world = spawn_moving_images(*level);
   if (!world) {
     findings.push_back(from_spawn(*level, world.error()));
     return findings;

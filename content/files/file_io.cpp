@@ -38,7 +38,7 @@ Result<Bytes> read_file(const fs::path& path, const Limit& limit) {
   if (error || !fs::exists(status)) return Error{path.string(), "no such file; check the path"};
   if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file; name a file"};
   const std::uint64_t size = fs::file_size(path, error);
-  if (error) return Error{path.string(), "its size cannot be told: " + error.message()};
+  if (error) return Error{path.string(), "its size cannot be told: " + error.message() + "; check the path"};
   if (size > most(limit))
     return Error{path.string(), "has " + beyond(limit, static_cast<double>(size), "use a smaller file")};
   const File file(std::fopen(path.c_str(), "rb"));
@@ -129,9 +129,9 @@ Result<fs::path> confined_file(const fs::path& folder, const fs::path& file) {
   const std::string name = file.string();
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  if (error) return Error{folder.string(), "cannot be resolved: " + error.message()};
+  if (error) return Error{folder.string(), "cannot be resolved: " + error.message() + "; check the path"};
   const fs::path whole = fs::weakly_canonical(root / file, error);
-  if (error) return Error{name, "cannot be resolved: " + error.message()};
+  if (error) return Error{name, "cannot be resolved: " + error.message() + "; check the path"};
   const fs::path from_root = whole.lexically_relative(root);
   if (file.is_absolute() || from_root.empty() || *from_root.begin() == "..")
     return Error{name, "lies outside the level's folder, where a level may not reach; copy the file beside the level"};
@@ -141,7 +141,7 @@ Result<fs::path> confined_file(const fs::path& folder, const fs::path& file) {
 Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
   if (uri.empty()) return Error{uri, "is an empty URI; name a file"};
   const auto confined = [&](const std::string& name) -> Result<fs::path> {
-    if (name.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte"};
+    if (name.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte; name a file"};
     // A colon before any slash makes a scheme (RFC 3986, 4.2).
     const std::size_t colon = name.find(':');
     if (colon != std::string::npos && name.find('/') > colon)
@@ -162,7 +162,8 @@ Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
     }
     const int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
     const int low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : -1;
-    if (high < 0 || low < 0) return Error{uri, "is not a valid URI (a % without two hexadecimal digits)"};
+    if (high < 0 || low < 0)
+      return Error{uri, "is not a valid URI (a % without two hexadecimal digits); write %25 for a % in a name"};
     decoded += static_cast<char>(high * 16 + low);
     i += 2;
   }

@@ -159,11 +159,12 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
   Ended ended;
   for (int attempt = 1; attempt == 1 || ended.stuck; ++attempt) {
     int ends[2];
-    if (pipe(ends) != 0) return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno)};
+    if (pipe(ends) != 0)
+      return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno) + "; close other programs"};
     const pid_t pid = fork();
     if (pid < 0) {
       close(ends[0]), close(ends[1]);
-      return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno)};
+      return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno) + "; close other programs"};
     }
     if (pid == 0) {
       close(ends[0]);

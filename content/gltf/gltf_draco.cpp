@@ -276,12 +276,14 @@ Result<Bytes> encode_draco(DracoMesh& in, int bits) {
     encoder.SetTrackEncodedProperties(true);
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
-    if (!status.ok()) return Error{"Draco", std::string("could not compress the mesh: ") + status.error_msg()};
+    if (!status.ok())
+      return Error{"Draco",
+                   std::string("could not compress the mesh: ") + status.error_msg() + "; save it without --draco"};
     in.vertices = encoder.num_encoded_points();
     in.index.resize(encoder.num_encoded_faces() * 3);
     return Bytes(buffer.data(), buffer.data() + buffer.size());
   } catch (const std::exception& e) {
-    return Error{"Draco", std::string("could not compress the mesh: ") + e.what()};
+    return Error{"Draco", std::string("could not compress the mesh: ") + e.what() + "; save it without --draco"};
   }
 }
 

@@ -242,7 +242,8 @@ std::vector<Key> device_keys() {
   keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
-  keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale), "workspace to world"));
+  keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
+                        "workspace of a device with the driver `external` to world"));
   keys.push_back(
       number("max_force", "N", {DeviceRange::kMaxForce, {0.1, 50.0}}, d(&H::max_force), "norm of the force sent"));
   keys.push_back(number("max_stiffness", "N/m", {DeviceRange::kMaxStiffness, {10.0, 1e5}}, d(&H::max_stiffness),

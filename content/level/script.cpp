@@ -53,7 +53,10 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view line = take_line(text);
-    const auto error = [&](const char* what) { return Error{where + ":" + std::to_string(number), what}; };
+    const auto error = [&](const std::string& what) {
+      const char* cure = what.find("; ") == std::string::npos ? "; correct the line" : "";
+      return Error{where + ":" + std::to_string(number), what + cure};
+    };
     if (line.empty() || line.front() == '#') continue;
     if (columns == 0) {
       const std::string names = without_blanks(line);

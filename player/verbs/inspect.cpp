@@ -6,6 +6,8 @@
 #include <set>
 
 #include "content/keys/enum_words.h"
+#include "content/keys/unused_keys.h"
+#include "content/level/device_use.h"
 #include "content/level/level_budget.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
@@ -180,7 +182,11 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   json["bare_mesh"] = !level.has_pliant();
   json["objects"] = list;
   json["flesh"] = describe_tissue(level);
-  json["notes"] = level.notes;
+  std::vector<std::string> notes = level.notes;
+  for (std::string& sentence : unused_key_notes(level)) notes.push_back(std::move(sentence));
+  for (const DeviceFault& idle : find_unmoved_probes(level))
+    notes.push_back("`" + level.nodes[idle.node].name + "` " + idle.what);
+  json["notes"] = notes;
   return json;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "content/keys/enum_words.h"
+#include "content/keys/unused_keys.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
@@ -230,10 +231,11 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
         "the level is not as it was when the recording was made (its file, or --set, --unit or --tool-force of this "
         "run): "
         "forces will differ");
-  auto spawned = spawn(level, &notes);
+  auto spawned = spawn_moving_images(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
+  for (const std::string& sentence : unused_key_notes(level)) say(run, sentence);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   say_unmoved(windowed, run);
   if (windowed) repeat_scripts(run.world);
