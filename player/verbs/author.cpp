@@ -231,7 +231,11 @@ int author(const AuthorOptions& options) {
   for (const std::string& sentence : level->notes) note(sentence);
   scale_roots(*level, options.unit);
   const bool bare = !level->has_pliant();
-  if (const std::string hint = unit_hint(bounds(*level), bare); !hint.empty()) note(hint);
+  const Box around = bounds(*level);
+  if (const std::string hint = unit_hint(around, bare); !hint.empty())
+    note(bare ? fmt::format("its diagonal is {:.4g} m, unusual for metres; where it is in millimetres, say --unit mm",
+                            around.diagonal())
+              : hint);
   Result<Plan> plan = plan_of(options, *level);
   if (!plan) return fail(plan.error().where == options.in ? kFailed : kUsage, plan.error());
   if (plan->probe && !options.probe && options.tool == "none") note("without a tool the level gets a probe");
