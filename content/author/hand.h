@@ -1,9 +1,9 @@
 // A hand as a solid: palm, four fingers and a thumb that flow into the palm but never into one another.
 #pragma once
 
-#include "content/generate/solid.h"
+#include "content/author/solid.h"
 
-namespace pliant::generate {
+namespace pliant::solids {
 
 // A right hand about 0.19 m long, lying flat: the back up (+Y), fingers along -Z, the thumb towards -X. [m]
 Solid hand_solid();
@@ -12,4 +12,4 @@ Box hand_box();
 // The part that a person holds: the heel of the palm and the wrist.
 Box hand_bone();
 
-}  // namespace pliant::generate
+}  // namespace pliant::solids

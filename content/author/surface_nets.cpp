@@ -1,9 +1,9 @@
-#include "content/generate/surface_nets.h"
+#include "content/author/surface_nets.h"
 
 #include <array>
 #include <cmath>
 
-namespace pliant::generate {
+namespace pliant::solids {
 namespace {
 
 constexpr int kRelaxations = 8;   // rounds: evens triangles out; more changes nothing that is seen
@@ -144,4 +144,4 @@ Primitive to_primitive(const Net& net, const Solid& solid) {
   return primitive;
 }
 
-}  // namespace pliant::generate
+}  // namespace pliant::solids

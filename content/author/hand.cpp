@@ -1,10 +1,10 @@
-#include "content/generate/hand.h"
+#include "content/author/hand.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace pliant::generate {
+namespace pliant::solids {
 namespace {
 
 constexpr double kBlend = 0.005;   // [m] over which a finger flows into the palm
@@ -92,4 +92,4 @@ Box hand_bone() {
   return {{-0.05f, -0.02f, -0.016f}, {0.05f, 0.02f, 0.06f}};
 }
 
-}  // namespace pliant::generate
+}  // namespace pliant::solids

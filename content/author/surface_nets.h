@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "content/generate/solid.h"
+#include "content/author/solid.h"
 #include "content/level/level.h"
 
-namespace pliant::generate {
+namespace pliant::solids {
 
 struct Net {
   std::vector<dvec3> position;   // [m] on the solid
@@ -21,4 +21,4 @@ Net cover_by_net(const Solid& solid, const Box& box, double cell);
 // With normals from the solid; no texture coordinates.
 Primitive to_primitive(const Net& net, const Solid& solid);
 
-}  // namespace pliant::generate
+}  // namespace pliant::solids
