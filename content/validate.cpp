@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -96,11 +97,14 @@ void find_outside(const Level& level, Findings& findings) {
   }
 }
 
-// How a deformable will feel where its mesh does not suit it.
-void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::string& pointer, Findings& findings) {
-  const Result<BuiltMesh> built =
-      build_mesh(node.name, mesh.primitives, mat4(1), {node.deformable ? node.deformable->crease_angle : 0.0});
-  if (!built) return findings.push_back({Severity::kError, pointer, built.error().what});
+// What building a mesh says of it: the mean edge [m], or -1 where it cannot be built.
+double find_in_mesh(const LevelNode& node, const LevelMesh& mesh, double crease, const std::string& pointer,
+                    Findings& findings) {
+  const Result<BuiltMesh> built = build_mesh(node.name, mesh.primitives, mat4(1), {crease});
+  if (!built) {
+    findings.push_back({Severity::kError, pointer, built.error().what});
+    return -1.0;
+  }
   const auto warn = [&](std::string message) { findings.push_back({Severity::kWarning, pointer, std::move(message)}); };
   const MeshReport& report = built->report;
   if (report.degenerate_triangles + report.duplicate_triangles > 0)
@@ -113,10 +117,30 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
                      report.non_manifold_edges));
   if (const std::string turned = winding_note(report); !turned.empty()) warn(turned);
   if (const std::string doubt = winding_doubt(report); !doubt.empty()) warn(doubt);
-  if (node.deformable && node.deformable->reach > 0.0 &&
-      node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
-    warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices",
-                     node.deformable->reach, built->mesh.mean_edge));
+  return static_cast<double>(built->mesh.mean_edge);
+}
+
+// How surfaces will feel where their meshes do not suit them. What instances have in common is said of the first: a
+// mesh can be shown ten thousand times, and it is built once.
+void find_in_meshes(const Level& level, Findings& findings) {
+  std::map<std::pair<std::int32_t, double>, double> mean_edge;  // of a mesh and its crease angle
+  std::set<std::tuple<std::int32_t, double, double>> seen;      // and the reach
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (!node.in_scene || node.mesh < 0 || (!node.deformable && !node.rigid_body)) continue;
+    const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
+    const double reach = node.deformable ? node.deformable->reach : 0.0;
+    if (!seen.insert({node.mesh, crease, reach}).second) continue;
+    const auto [edge, is_new] = mean_edge.try_emplace({node.mesh, crease});
+    if (is_new)
+      edge->second =
+          find_in_mesh(node, level.meshes[static_cast<std::size_t>(node.mesh)], crease, pointer_of(level, i), findings);
+    if (reach > 0.0 && reach < edge->second)
+      findings.push_back(
+          {Severity::kWarning, pointer_of(level, i),
+           fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices", reach,
+                       edge->second)});
+  }
 }
 
 // What about soft and rigid bodies cannot go together, and what is read differently from their files.
@@ -148,6 +172,7 @@ void find_idle(const Level& level, Findings& findings) {
 
 // Scripts that are not there, or hold no path.
 void find_in_scripts(const Level& level, const fs::path& folder, Findings& findings) {
+  ScriptLibrary scripts;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
     const auto find = [&](const std::string& name, const char* key, bool reads) {
@@ -157,7 +182,7 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
       if (!file) return error(file.error().message());
       if (!fs::is_regular_file(*file)) return error("names the script " + name + ", which does not exist");
       if (!reads) return;
-      if (const Result<Path> script = load_script(*file); !script) error(script.error().message());
+      if (const Result<const Path*> script = scripts.read(*file, false); !script) error(script.error().message());
     };
     if (node.motion && !node.motion->script.empty()) find(node.motion->script, "PLIANT_motion/script", false);
     if (node.device && !node.device->file.empty())
@@ -217,15 +242,11 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
     make_touchable(*level);
   }
   find_outside(*level, findings);
-  std::set<std::tuple<std::int32_t, double, double>> seen;  // mesh, crease angle, reach
-  for (std::size_t i = 0; i < level->nodes.size(); ++i) {
-    const LevelNode& node = level->nodes[i];
-    if (!node.in_scene || node.mesh < 0 || (!node.deformable && !node.rigid_body)) continue;
-    // What instances have in common is said of the first: a mesh can be shown ten thousand times.
-    const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
-    if (seen.insert({node.mesh, crease, node.deformable ? node.deformable->reach : 0.0}).second)
-      find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer_of(*level, i), findings);
+  if (const Status size = check_level_size(*level); !size) {  // before a mesh is built
+    findings.push_back(from_spawn(*level, size.error()));
+    return findings;
   }
+  find_in_meshes(*level, findings);
   for (const DeviceFault& fault : find_shared_devices(*level))
     findings.push_back({Severity::kError, pointer_of(*level, fault.node), fault.what});
   find_idle(*level, findings);

@@ -211,8 +211,9 @@ using NamedAttributes = std::vector<std::pair<std::string, const draco::PointAtt
 
 // The attributes that `wanted(mesh)` names, decoded in a child.
 template <class Wanted>
-Result<DracoMesh> decode(std::span<const std::uint8_t> blob, const Wanted& wanted) {
-  const Result<Bytes> packed = in_isolation(blob.size(), [&]() -> Result<Bytes> {
+Result<DracoMesh> decode(std::span<const std::uint8_t> blob, const Wanted& wanted,
+                         double seconds = limits::kReaderTime.most, double* used = nullptr) {
+  const auto work = [&]() -> Result<Bytes> {
     const Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(blob);
     if (!mesh) return mesh.error();
     DracoMesh out = read_faces(**mesh);
@@ -225,22 +226,25 @@ Result<DracoMesh> decode(std::span<const std::uint8_t> blob, const Wanted& wante
       out.attributes.push_back(std::move(*values));
     }
     return pack(out);
-  });
+  };
+  const Result<Bytes> packed = in_isolation(blob.size(), work, seconds, 0.0, used);
   if (!packed) return packed.error().where.empty() ? Error{"Draco data", packed.error().what} : packed.error();
   return unpack(*packed);
 }
 
 }  // namespace
 
-Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids) {
-  return decode(blob, [&](const draco::Mesh& mesh) -> Result<NamedAttributes> {
+Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids,
+                               double seconds, double* used) {
+  const auto wanted = [&](const draco::Mesh& mesh) -> Result<NamedAttributes> {
     NamedAttributes attributes;
     for (const std::uint32_t id : ids) {
       attributes.emplace_back("", mesh.GetAttributeByUniqueId(id));
       if (!attributes.back().second) return refuse(fmt::format("has no attribute {}, which the primitive names", id));
     }
     return attributes;
-  });
+  };
+  return decode(blob, wanted, seconds, used);
 }
 
 Result<DracoMesh> decode_draco_file(std::span<const std::uint8_t> blob) {

@@ -26,8 +26,10 @@ struct DracoMesh {
   std::vector<DracoAttribute> attributes;
 };
 
-// The attributes with these unique ids, as floats; integers keep their stored value.
-Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids);
+// The attributes with these unique ids, as floats; integers keep their stored value. The child has `seconds` of
+// processor time beside what its bytes allow it; `used`: where those are added that it took.
+Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids,
+                               double seconds = limits::kReaderTime.most, double* used = nullptr);
 
 // A bare .drc file: its attributes come named POSITION, NORMAL and TEXCOORD_0.
 Result<DracoMesh> decode_draco_file(std::span<const std::uint8_t> blob);

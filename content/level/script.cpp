@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "content/files/file_io.h"
+#include "content/level/level_budget.h"
 
 namespace pliant {
 namespace {
@@ -92,6 +93,20 @@ Result<Path> load_script(const std::filesystem::path& path) {
   const Result<Bytes> bytes = read_file(path, limits::kScriptFile);
   if (!bytes) return bytes.error();
   return parse_script({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string());
+}
+
+Result<const Path*> ScriptLibrary::read(const std::filesystem::path& file, bool copied) {
+  auto known = scripts_.find(file);
+  const bool is_new = known == scripts_.end();
+  if (is_new) known = scripts_.emplace(file, load_script(file)).first;
+  const Result<Path>& script = known->second;
+  if (!script) return script.error();
+  if (is_new) rows_ += static_cast<double>(script->rows.size());
+  if (copied) rows_ += static_cast<double>(script->rows.size());
+  if (const std::string over = LevelBudget::ask(limits::kScriptRows, rows_, "sample the scripts more coarsely");
+      !over.empty())
+    return Error{file.string(), over};
+  return &*script;
 }
 
 }  // namespace pliant

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "content/files/limits.h"
 #include "content/tets/lattice_grid.h"
 #include "content/tets/tet_quality.h"
 #include "runtime/parallel.h"
@@ -139,9 +140,8 @@ class Stuffer {
             for (std::size_t e = 0; e < 4; ++e) clip({here, here + 2 * along, ring[e], ring[(e + 1) % 4]});
             if (out_.tets.size() > most_)
               return Error{"mesh `" + name_ + "`",
-                           fmt::format("a cell of {:.3g} m makes more than {} tetrahedra; choose a larger one, or "
-                                       "allow it with --limits 2",
-                                       grid_.cell(), most_)};
+                           fmt::format("a cell of {:.3g} m makes ", grid_.cell()) +
+                               beyond(limits::kTets, static_cast<double>(out_.tets.size()), "choose a larger one")};
           }
     return Done{};
   }
