@@ -56,7 +56,7 @@ double mean_edge(const TetMesh& mesh) {
 constexpr double kMostLost = 0.5;  // [1] of the tissue, in parts too small to keep
 
 // Bits of what is thinner than the cell.
-Error in_crumbs(const TetMesh& tets, const SoftBody& body) {
+Error in_crumbs(const TetMesh& tets, const SoftBody& body, const Mesh& surface) {
   const TetReport& report = tets.report;
   const std::string cell = length_text(report.cell);
   const std::string what = fmt::format("falls into {} bits, which hold {:.0f} % of its tissue: ", report.parts_dropped,
@@ -66,7 +66,7 @@ Error in_crumbs(const TetMesh& tets, const SoftBody& body) {
             what + fmt::format("a wall of {} is thinner than the cell of {}; fill the inside (\"fill\": \"solid\"), or "
                                "give it a `thickness` of at least {}",
                                length_text(std::max(report.wall, body.thickness)), cell,
-                               length_text(kHeldCells * report.cell))};
+                               length_text(least_wall(surface, true)))};
   return {"mesh `" + tets.name + "`", what +
                                           fmt::format("it is thinner than the cell of {}; make `cell` smaller", cell) +
                                           (body.fill == Fill::kWall ? ", or `thickness` larger" : "")};
@@ -89,7 +89,7 @@ Result<Tissue> make_tissue(const BuiltMesh& surface, const SoftBody& body, const
   if (!group) return group.error();
   Tissue tissue{std::move(*tets), std::move(*group)};
   const std::uint32_t kept = drop_small_parts(tissue.tets, tissue.group);
-  if (tissue.tets.report.volume_dropped > kMostLost) return in_crumbs(tissue.tets, body);
+  if (tissue.tets.report.volume_dropped > kMostLost) return in_crumbs(tissue.tets, body, surface.mesh);
   report_parts(kept, count_parts(surface.mesh), tissue.tets.report);
   if (std::find(tissue.group.begin(), tissue.group.end(), NodeGroup::kFree) == tissue.group.end())
     return Error{"PLIANT_soft_body", "has no free node: what is not pinned or on the handle was too small to keep"};

@@ -7,8 +7,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kHalvings = 24;      // of the way to where a region ends that no triangle bounds
-constexpr double kSteepest = 0.7;  // [1] cosine: what lies further to the side of a sheet's rim is not behind it
+constexpr int kHalvings = 14;      // of the way to where a region ends that no triangle bounds
+constexpr double kSteepest = 0.9;  // [1] cosine: what lies further to the side of a sheet's rim is not behind it
 constexpr double kOwn = 1e-6;      // [1] of the diagonal
 constexpr double kRim = 0.5;       // [1] of the thickest wall
 constexpr int kStretches = 64;     // of a way inward that are looked at

@@ -108,6 +108,11 @@ Error nothing_held(const Mesh& surface, const SurfaceShape& shape, const Lattice
     return {where, fmt::format("holds no tetrahedra: its layer of {} is thinner than the cell; make `thickness` larger "
                                "or `cell` smaller",
                                length_text(wish.thickness))};
+  if (shape.kind == SurfaceKind::kWall && wish.fill == Fill::kWall)
+    return {where,
+            fmt::format("holds no tetrahedra: a wall of {} is thinner than any usual cell; fill the inside (\"fill\": "
+                        "\"solid\"), or give it a `thickness` of at least {}",
+                        length_text(shape.thickness), length_text(least_wall(surface, true)))};
   if (sheet)
     return {where,
             "holds no tetrahedra: it is an open surface that encloses nothing; close it, or give it a thickness "

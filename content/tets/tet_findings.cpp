@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "content/tets/lattice.h"
+
 namespace pliant {
 namespace {
 
 constexpr double kTetsPerCube = 12.0;  // of the lattice
+constexpr double kLeastCells = 1.2;    // [cells] across a wall that stays whole
 
 }  // namespace
 
@@ -16,6 +19,16 @@ std::string length_text(double metres) {
   if (metres < 0.01) return fmt::format("{:.2g} mm", 1e3 * metres);
   if (metres < 1.0) return fmt::format("{:.2g} cm", 1e2 * metres);
   return fmt::format("{:.3g} m", metres);
+}
+
+double least_wall(const Mesh& surface, bool doubled) {
+  double area = 0.0;
+  for (const uvec3& t : surface.triangles) {
+    const dvec3 a(surface.position(t.x));
+    area += 0.5 * length(cross(dvec3(surface.position(t.y)) - a, dvec3(surface.position(t.z)) - a));
+  }
+  if (doubled) area *= 0.5;
+  return kLeastCells * std::sqrt(kTetsPerCube * kLeastCells * area / static_cast<double>(kUsualTets));
 }
 
 void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetReport& report) {

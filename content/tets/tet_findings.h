@@ -11,6 +11,10 @@ namespace pliant {
 // "0.93 mm", "12 cm", "1.4 m".
 std::string length_text(double metres);
 
+// [m] The least thickness of a wall that about kUsualTets tetrahedra hold whole, one layer of them a little thinner
+// than it. `doubled`: the surface is a double wall, half of its area each sheet's.
+double least_wall(const Mesh& surface, bool doubled);
+
 // A surface that is a thin wall or open: what is done about it, and what else could be.
 void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetReport& report);
 
