@@ -17,7 +17,6 @@
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/tet_file.h"
-#include "content/tets/tet_parts.h"
 
 namespace pliant {
 
@@ -196,12 +195,7 @@ void find_in_tissue(const Level& level, const World& world, Findings& findings) 
     const std::string node = pointer_of(level, world, entity);  // clang 14 captures no structured bindings
     const TetMesh& tets = world.tet_meshes[soft_body.tets];
     const auto warn = [&](std::string what) { findings.push_back({Severity::kWarning, node, std::move(what)}); };
-    const std::uint32_t parts = count_parts(tets), pieces = count_parts(world.meshes[soft_body.collision_mesh]);
-    if (parts > pieces)
-      warn(fmt::format(
-          "its tetrahedra fall into {} parts where its surface has {}: what joins them is thinner than the cell; "
-          "make `cell` smaller",
-          parts, pieces));
+    for (const std::string& finding : tets.report.findings) warn(finding);
     if (const std::string doubt = locking_doubt(soft_body, tets.tets.size()); !doubt.empty()) warn(doubt);
     if (tets.quality.smallest_dihedral < kSharp)
       warn(

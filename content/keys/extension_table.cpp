@@ -263,8 +263,13 @@ std::vector<Key> soft_body_keys() {
       fmt::format("Poisson's ratio; from {} on the tetrahedra lock: tissue is over 10 % too stiff", kLockingPoisson)));
   keys.push_back(number("density", "kg/m3", {SoftBodyRange::kDensity, {10.0, 25e3}}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
+  keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
+                        fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
   keys.push_back(
-      number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
+      choice("fill", s(&S::fill),
+             "what is filled: all that the surface encloses, the cavity of a thin wall too, or only the wall"));
+  keys.push_back(number("thickness", "m", {SoftBodyRange::kThickness, {1e-4, 0.5}}, s(&S::thickness),
+                        "of a wall, inwards from the surface; 0: the wall as the surface has it"));
   keys.push_back(
       text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
   keys.push_back(

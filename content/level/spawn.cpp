@@ -202,6 +202,7 @@ class Spawner {
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
     for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
+    for (const std::string& finding : parts->tets.report.findings) notes_.push_back("`" + node.name + "`: " + finding);
     note_winding(node.mesh, parts->surface);
     world_.registry.add<Pose>(entities_[n], pose);
     SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
