@@ -189,12 +189,20 @@ Status Session::start() {
   if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
   limit_tool_ticks(p.world);
   p.ended = "it has run in real time";
-  if (p.recorder) p.recorder->start();
   TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
                    [&p] { p.clock_ended(); }};
   p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,
                                          std::numeric_limits<std::uint64_t>::max(), std::move(hooks));
-  p.clock->start();
+  try {
+    if (p.recorder) p.recorder->start();
+    p.clock->start();
+  } catch (const std::exception& thrown) {
+    p.clock.reset();
+    p.end("its clocks did not start");
+    return Error{"Session::start", std::string("no thread could be started (") + thrown.what() +
+                                       "); end other programs or raise the limit (ulimit -u), then call "
+                                       "Session::restart()"};
+  }
   return Done{};
 }
 

@@ -64,6 +64,8 @@ Status Session::Parts::prepare() {
     made = remake(before);
   } catch (const std::exception& thrown) {
     made = Error{"scene", std::string("cannot be made: ") + thrown.what()};
+  } catch (...) {
+    made = Error{"scene", "cannot be made: something that is no std::exception was thrown; look at what is registered"};
   }
   for (SessionEffector& effector : before) close_driver(effector);  // what the new world has no place for
   if (made)
