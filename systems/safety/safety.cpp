@@ -113,11 +113,11 @@ SafetyLimits force_limits(const HapticDevice& device) {
 }
 
 SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& handle) {
-  const double per_force = handle.max_torque / std::max(handle.max_force, 1e-9);
+  const auto of_torque = [&](double force) { return force * handle.max_torque / std::max(handle.max_force, 1e-9); };
   SafetyLimits limits;
   limits.force = device.can.renders_torque ? smaller(handle.max_torque, device.can.max_torque) : 0.0;
-  limits.slew = device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9);
-  limits.fall = kLeastFall * per_force;
+  limits.slew = of_torque(device.max_slew);
+  limits.fall = of_torque(kLeastFall);
   limits.slow = kSlowTurn;
   limits.fastest = kFastestTurn;
   return limits;
@@ -176,7 +176,11 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
       const double rise = limits.stiffness * length(dx) + length(weight - state.weight);
       if (length(passive) > length(state.force)) most = std::min(most, rise);
     }
-    const dvec3 last = limits.fall > limits.slew ? let_fall(state.force, passive, limits.fall * dt) : state.force;
+    dvec3 last = state.force;
+    if (limits.fall > limits.slew) {
+      last = let_fall(state.force, passive, limits.fall * dt);
+      most = std::min(most, limits.fall * dt - length(state.force - last));  // what comes in has the rest
+    }
     force = last + clamp_norm(passive - last, most);
     count(state.tally, SafetyLimit::kSlewed, length(passive - force), std::max(length(passive), length(force)));
     book(state, force, weight, dx);
