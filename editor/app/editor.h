@@ -15,8 +15,8 @@
 #include "editor/document/document.h"
 #include "editor/document/edits.h"
 #include "editor/paint/paint_surface.h"
-#include "editor/viewport/view_settings.h"
 #include "editor/viewport/view_camera.h"
+#include "editor/viewport/view_settings.h"
 
 namespace pliant {
 
@@ -78,8 +78,8 @@ class Editor {
   // --- View
   ViewSettings view;
   ViewCamera camera;
-  Box scene_box() const;   // [m] world
-  void frame_selected();   // or all
+  Box scene_box() const;  // [m] world
+  void frame_selected();  // or all
 
   // --- Surfaces to paint and to point at, by mesh and scale; made in the background
   // Null: not ready yet (it has been begun); the error is said once.
@@ -92,9 +92,14 @@ class Editor {
   void cut();
   void paste();
 
+  // --- The path that is edited (app/path_editing.h)
+  std::size_t path_key = 0;   // that is active
+  double path_depth = 0.005;  // [m] of the next key
+  double path_speed = 0.02;   // [m/s] on the way to it
+
   Jobs jobs;
-  std::string tool = "Select";         // the active one of the viewport
-  bool playing = false;                // a session runs on the stage
+  std::string tool = "Select";          // the active one of the viewport
+  bool playing = false;                 // a session runs on the stage
   std::function<void()> request_close;  // set by the program
 
  private:

@@ -12,6 +12,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_tree_panel());
   panels.push_back(make_inspector_panel(app));
   panels.push_back(make_soft_panel(app));
+  panels.push_back(make_path_panel(app));
   panels.push_back(make_console_panel());
   panels.push_back(make_start_page(app));
   return panels;
@@ -20,6 +21,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
 std::vector<std::unique_ptr<ViewTool>> make_tools(App&) {
   std::vector<std::unique_ptr<ViewTool>> tools;
   tools.push_back(make_select_tool());
+  tools.push_back(make_path_tool());
   return tools;
 }
 

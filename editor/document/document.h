@@ -69,8 +69,9 @@ class Document {
     std::uint64_t revision;
   };
   explicit Document(State state, NodeId next);
-  Status write(const std::filesystem::path& file, const State& state) const;
+  Status write(const std::filesystem::path& file, const State& state, bool scripts_too) const;
   void remember_file();
+  void read_scripts(State& state);
 
   std::vector<Step> steps_;
   std::size_t now_ = 0;
@@ -79,6 +80,7 @@ class Document {
   std::uint64_t next_revision_ = 1, saved_ = 0;
   std::filesystem::path file_, folder_;
   std::vector<std::string> notes_;
+  std::map<std::string, std::shared_ptr<const ScriptKeys>> scripts_on_disk_;
   std::filesystem::file_time_type file_time_;  // of the file as read or written last
   std::uintmax_t file_size_ = 0;
 };

@@ -471,6 +471,22 @@ Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh) {
   return std::move(change->state);
 }
 
+Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys) {
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  LevelNode& node = change->node->node;
+  if (!node.device) return Error{node.name, "has no haptic device; add one first"};
+  if (file.empty() || file.find('/') != std::string::npos)
+    return Error{file, "is no name for a script; it lies beside the level, without a folder"};
+  node.device->driver = keys.keys.empty() ? DriverKind::kNull : DriverKind::kScript;
+  node.device->file = keys.keys.empty() ? "" : file;
+  if (keys.keys.empty())
+    change->state.scripts.erase(file);
+  else
+    change->state.scripts[file] = std::make_shared<const ScriptKeys>(keys);
+  return std::move(change->state);
+}
+
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
   Level level = level_of(state);
   // Nodes are known again by a mark, wherever the edit puts new ones between them.
@@ -505,6 +521,7 @@ Result<State> by_level(const State& state, NodeId& next_id, const std::function<
   const bool same_looks = next.rest->materials.size() == state.rest->materials.size() &&
                           next.rest->images.size() == state.rest->images.size();
   if (same_looks) next.rest = state.rest;
+  next.scripts = state.scripts;
   return next;
 }
 

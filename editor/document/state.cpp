@@ -166,6 +166,8 @@ bool same(const State& a, const State& b) {
   if (a.nodes.size() != b.nodes.size() || a.meshes != b.meshes || a.about != b.about || a.rest != b.rest) return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i)
     if (a.nodes[i] != b.nodes[i] && !same_node(*a.nodes[i], *b.nodes[i])) return false;
+  const auto same_script = [](const auto& x, const auto& y) { return x.first == y.first && *x.second == *y.second; };
+  if (!std::equal(a.scripts.begin(), a.scripts.end(), b.scripts.begin(), b.scripts.end(), same_script)) return false;
   return a.paint == b.paint && scene_extensions(outline_of(a), Json()) == scene_extensions(outline_of(b), Json());
 }
 

@@ -8,6 +8,7 @@ namespace pliant {
 std::unique_ptr<Panel> make_tree_panel();
 std::unique_ptr<Panel> make_inspector_panel(App& app);
 std::unique_ptr<Panel> make_soft_panel(App& app);
+std::unique_ptr<Panel> make_path_panel(App& app);
 std::unique_ptr<Panel> make_console_panel();
 std::unique_ptr<Panel> make_start_page(App& app);
 

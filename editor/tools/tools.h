@@ -6,5 +6,6 @@
 namespace pliant {
 
 std::unique_ptr<ViewTool> make_select_tool();
+std::unique_ptr<ViewTool> make_path_tool();
 
 }  // namespace pliant
