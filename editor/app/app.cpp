@@ -204,7 +204,8 @@ void App::keys(std::span<const InputEvent> events) {
     if (event.kind == InputKind::kClose) close();
     if (event.kind == InputKind::kDrop) open(event.file);
     if (event.kind != InputKind::kKey) continue;
-    const bool typing = ImGui::GetIO().WantTextInput;
+    ViewTool* const t = tool();
+    const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
     for (const Action& action : actions_) {
       if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
@@ -225,7 +226,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     shown_revision_ = editor.document.revision();
     dirty_picture_ = true;
   }
-  if (!ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive()) editor.document.end_gesture();
+  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()))
+    editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
   dirty_picture_ |= was_moving;
@@ -243,6 +245,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
               bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
   picture_ = stage_->picture();
+  editor.hovered = kNoNode;  // the tree and the viewport say what it is
   draw_top();
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
   draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
@@ -423,8 +426,19 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.shift = io.KeyShift;
   in.control = io.KeyCtrl;
   in.alt = io.KeyAlt;
-  in.view = editor.camera.viewpoint();
-  in.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  // The hand points at what it sees, though the camera may be ahead of the picture.
+  in.view = picture_.number > 0 ? picture_.view : editor.camera.viewpoint();
+  in.orthographic = picture_.number > 0         ? picture_.orthographic
+                    : editor.view.orthographic ? editor.camera.orthographic_height()
+                                               : 0.0;
+  if (!io.WantTextInput) {
+    for (const ImWchar c : io.InputQueueCharacters)
+      if (c >= 32 && c < 127) in.typed += static_cast<char>(c);
+    const auto key = [](ImGuiKey_ k) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(k)); };
+    in.enter = key(ImGuiKey_Enter) || key(ImGuiKey_KeyPadEnter);
+    in.escape = key(ImGuiKey_Escape);
+    in.erase = key(ImGuiKey_Backspace);
+  }
   in.under = picture_.picked.node;
   in.under_at = picture_.picked.point;
   in.dt = dt;
@@ -456,10 +470,13 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_ = ++question_;
     select_adds_ = in.shift || in.control;
     dirty_picture_ = true;
-  } else if (in.over && (in.dx != 0 || in.dy != 0) && !dragging_view_ && !stage_->busy()) {
-    asked_ = dvec2(in.x, in.y);
-    ++question_;
-    dirty_picture_ = true;
+  } else if (in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
+    wants_question_ = dragging_view_ || taken || stage_->busy();
+    if (!wants_question_) {
+      asked_ = dvec2(in.x, in.y);
+      ++question_;
+      dirty_picture_ = true;
+    }
   }
   if (in.released) pressed_in_view_ = false;
   if (selects_ && picture_.question >= *selects_) {
@@ -467,22 +484,21 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_.reset();
     dirty_picture_ = true;
   }
-  const NodeId hovered = in.over && !dragging_view_ ? picture_.picked.node : kNoNode;
-  if (hovered != editor.hovered) {
-    editor.hovered = hovered;
-    dirty_picture_ = true;
-  }
+  if (in.over) editor.hovered = !dragging_view_ && !taken ? picture_.picked.node : kNoNode;
   if (taken) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
-  for (const auto& each : panels_) (void)each;
+  if (!start) ViewBar::draw_over(editor, in, list);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
   list.PopClipRect();
   ImGui::End();
-  if (start) draw_start(low, high);
+  if (start)
+    draw_start(low, high);
+  else
+    view_bar_.draw(editor, tool(), low, high);
 }
 
 void App::draw_start(ImVec2 low, ImVec2 high) {
@@ -495,32 +511,48 @@ void App::draw_start(ImVec2 low, ImVec2 high) {
 }
 
 void App::order_picture() {
-  if (editor.playing) dirty_picture_ = true;
-  if (!dirty_picture_ && order_ > 0) return;
-  dirty_picture_ = false;
   const ui::Palette& p = ui::palette();
+  SolidOrder solid;
+  solid.view = editor.camera.viewpoint();
+  solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  solid.settings = editor.view;
+  solid.selected = editor.selected;
+  solid.hovered = editor.hovered;
+  solid.lines = extra_lines;
+  if (ViewTool* t = tool()) t->lines(editor, solid.lines);
+  if (editor.view.creases) {
+    creases_.update(editor);
+    solid.creases = creases_.known();
+  }
+  solid.above = as_vec(p.raised);
+  solid.below = as_vec(p.window);
+  solid.grid = as_vec(p.text, 0.16f);
+  solid.selected_color = as_vec(p.accent);
+  solid.hovered_color = as_vec(p.text, 0.55f);
+  for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
+  solid.sign = as_vec(p.dim, 0.9f);
+  const bool another = !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered ||
+                       ordered_size_ != viewport_size_now();
+  if (!dirty_picture_ && !another && !editor.playing && order_ > 0) return;
+  dirty_picture_ = false;
+  ordered_ = solid;
+  ordered_size_ = viewport_size_now();
   StageOrder order;
-  order.width = std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x));
-  order.height = std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y));
+  order.width = ordered_size_.first;
+  order.height = ordered_size_.second;
+  order.solid = std::move(solid);
   order.solid.state = editor.state();
-  order.solid.view = editor.camera.viewpoint();
-  order.solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
-  order.solid.settings = editor.view;
-  order.solid.selected = editor.selected;
-  order.solid.hovered = editor.hovered;
-  order.solid.lines = extra_lines;
-  if (ViewTool* t = tool()) t->lines(editor, order.solid.lines);
-  order.solid.above = as_vec(p.raised);
-  order.solid.below = as_vec(p.window);
-  order.solid.grid = as_vec(p.text, 0.16f);
-  order.solid.selected_color = as_vec(p.accent);
-  order.solid.hovered_color = as_vec(p.text, 0.55f);
   if (asked_) {
     order.question = asked_;
     order.question_number = question_;
     asked_.reset();
   }
   order_ = stage_->order(std::move(order));
+}
+
+std::pair<int, int> App::viewport_size_now() const {
+  return {std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x)),
+          std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y))};
 }
 
 void App::draw_bottom_bar() {

@@ -11,7 +11,9 @@
 #include "editor/edit.h"
 #include "editor/ui/host.h"
 #include "editor/ui/script.h"
+#include "editor/viewport/crease_lines.h"
 #include "editor/viewport/stage.h"
+#include "editor/viewport/view_bar.h"
 
 namespace pliant {
 
@@ -77,6 +79,12 @@ class App {
   StagePicture picture_;
   std::uint64_t order_ = 0, question_ = 0;
   std::optional<dvec2> asked_;
+  ViewBar view_bar_;
+  CreaseLines creases_;
+  std::pair<int, int> viewport_size_now() const;  // [pixel] of a picture
+  std::pair<int, int> ordered_size_{0, 0};
+  SolidOrder ordered_;  // of the last picture that was ordered; its state is not kept
+  bool wants_question_ = false;  // the mouse has moved since the last question
   ImVec2 viewport_low_{0, 0}, viewport_high_{1, 1};
   bool dragging_view_ = false, pressed_in_view_ = false, moved_since_press_ = false;
   ImVec2 pressed_at_{0, 0};

@@ -1,8 +1,9 @@
 #include "editor/app/editor.h"
 
 #include <algorithm>
+#include <unordered_set>
 
-#include "editor/viewport/solid_view.h"
+#include "editor/viewport/frames.h"
 
 namespace pliant {
 
@@ -45,6 +46,13 @@ void Editor::undo() {
   say("Undone: " + what);
 }
 
+void Editor::drop_gesture(const std::string& gesture) {
+  const State before = state();
+  if (!document.drop_gesture(gesture)) return;
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+}
+
 void Editor::redo() {
   if (!document.can_redo()) return;
   const State before = state();
@@ -70,9 +78,12 @@ void Editor::select(NodeId id, bool add) {
 }
 
 void Editor::forget_gone() {
-  std::erase_if(selected, [this](NodeId id) { return !state().find(id); });
-  if (!state().find(hovered)) hovered = kNoNode;
-  std::erase_if(view.isolated, [this](NodeId id) { return !state().find(id); });
+  std::unordered_set<NodeId> there;
+  for (const auto& each : state().nodes) there.insert(each->id);
+  const auto gone = [&](NodeId id) { return !there.contains(id); };
+  std::erase_if(selected, gone);
+  if (gone(hovered)) hovered = kNoNode;
+  std::erase_if(view.isolated, gone);
 }
 
 void Editor::say(const std::string& text, Severity severity) {

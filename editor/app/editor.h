@@ -53,6 +53,7 @@ class Editor {
   void take(Document next);
   void undo();
   void redo();
+  void drop_gesture(const std::string& gesture);  // what is being dragged goes back to where it was
   // Called after every change of what is shown, undo and redo included.
   std::vector<std::function<void(const State& before, const State& after)>> on_change;
 

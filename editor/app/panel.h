@@ -42,6 +42,8 @@ struct ViewportInput {
   NodeId under = kNoNode;     // what the picture shows under the mouse, as known last
   dvec3 under_at{0};          // [m] world
   double dt = 0.0;            // [s]
+  std::string typed;          // what was typed while no field had the keys
+  bool enter = false, escape = false, erase = false;  // keys of the same
   ViewRay ray() const { return view_ray(view, orthographic, x, y, width, height); }
 };
 
@@ -59,6 +61,11 @@ class ViewTool {
   // Lines in the world, for the next picture.
   virtual void lines(const Editor&, std::vector<struct ViewLine>&) const {}
   virtual void leave(Editor&) {}  // another tool is taken
+  // What can be set about it, as widgets in a row, in a strip at the viewport's upper left.
+  virtual bool has_options() const { return false; }
+  virtual void options(Editor&) {}
+  // What is typed is its own now: no action's keys count, and its gesture goes on without the mouse.
+  virtual bool wants_keys() const { return false; }
 };
 
 // Something that can be done, by a menu, a key or a button.

@@ -18,9 +18,12 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   return panels;
 }
 
-std::vector<std::unique_ptr<ViewTool>> make_tools(App&) {
+std::vector<std::unique_ptr<ViewTool>> make_tools(App& app) {
   std::vector<std::unique_ptr<ViewTool>> tools;
   tools.push_back(make_select_tool());
+  tools.push_back(make_move_tool(app.settings));
+  tools.push_back(make_turn_tool(app.settings));
+  tools.push_back(make_scale_tool(app.settings));
   tools.push_back(make_path_tool());
   return tools;
 }
@@ -66,12 +69,24 @@ std::vector<Action> make_actions(App& app) {
        }});
   all.back().separator = true;
 
+  const auto take = [&](const char* id, const char* label, const char* keys, const char* tool) {
+    add({id, "Edit", label, keys, [&app, tool](Editor&) { app.take_tool(tool); }, [](const Editor&) { return true; },
+         [tool](const Editor& e) { return e.tool == tool; }});
+  };
+  take("tool.select", "Select with the mouse", "Q", "Select");
+  all.back().separator = true;
+  take("tool.move", "Move", "M", "Move");
+  take("tool.turn", "Turn", "T", "Turn");
+  take("tool.scale", "Scale", "S", "Scale");
+
   add({"view.frame", "View", "Frame selected", "F", [](Editor& e) { e.frame_selected(); }});
   add({"view.home", "View", "Frame all", "Home", [](Editor& e) { e.camera.frame(e.scene_box()); }});
   add({"view.front", "View", "From the front", "1", look(0, 0)});
   all.back().separator = true;
   add({"view.right", "View", "From the right", "3", look(kRight, 0)});
+  add({"view.left", "View", "From the left", "Ctrl+3", look(-kRight, 0)});
   add({"view.top", "View", "From above", "7", look(0, kRight)});
+  add({"view.bottom", "View", "From below", "Ctrl+7", look(0, -kRight)});
   add({"view.back", "View", "From behind", "9", look(2 * kRight, 0)});
   toggle("view.orthographic", "Orthographic", "5", &ViewSettings::orthographic);
   toggle("view.grid", "Grid", "G", &ViewSettings::grid);

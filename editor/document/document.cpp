@@ -61,6 +61,14 @@ Status Document::change(const std::string& what, Result<State> next, const std::
   return Done{};
 }
 
+bool Document::drop_gesture(const std::string& gesture) {
+  if (gesture.empty() || gesture != gesture_ || now_ == 0 || now_ + 1 != steps_.size()) return false;
+  gesture_.clear();
+  steps_.pop_back();
+  --now_;
+  return true;
+}
+
 void Document::undo() {
   gesture_.clear();
   if (can_undo()) --now_;

@@ -33,6 +33,8 @@ class Document {
   // The one way to change. An error changes nothing and comes back; nothing happens where nothing differs.
   Status change(const std::string& what, Result<State> next, const std::string& gesture = {});
   void end_gesture() { gesture_.clear(); }
+  // The gesture that is under way never was; true: it had changed something.
+  bool drop_gesture(const std::string& gesture);
   NodeId new_id() { return next_id_++; }
   NodeId& next_id() { return next_id_; }
 

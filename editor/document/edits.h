@@ -32,6 +32,11 @@ Result<State> reparented(const State& state, NodeIds ids, NodeId parent, NodeId 
 
 // --- One node
 Result<State> placed(const State& state, NodeId id, const LocalTransform& local);
+struct Placing {
+  NodeId id = kNoNode;
+  LocalTransform local;
+};
+Result<State> placed(const State& state, std::span<const Placing> all);  // those that are gone are left out
 Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light);
 Result<State> with_camera(const State& state, NodeId id, const std::optional<Camera>& camera);
 

@@ -70,8 +70,17 @@ std::string name_of(Channel channel) {
 }
 
 std::size_t State::place(NodeId id) const {
-  const auto it = std::find_if(nodes.begin(), nodes.end(), [&](const auto& each) { return each->id == id; });
-  return static_cast<std::size_t>(it - nodes.begin());
+  // Ids are given in order, and edits shift nodes by little: the search begins where the node would be had nothing been
+  // changed, and goes both ways.
+  const std::size_t count = nodes.size();
+  if (count == 0) return 0;
+  const std::size_t first = nodes.front()->id;
+  const std::size_t guess = id > first ? std::min<std::size_t>(id - first, count - 1) : 0;
+  for (std::size_t away = 0; away < count; ++away) {
+    if (guess + away < count && nodes[guess + away]->id == id) return guess + away;
+    if (away <= guess && nodes[guess - away]->id == id) return guess - away;
+  }
+  return count;
 }
 
 const DocumentNode* State::find(NodeId id) const {
