@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "content/files/image.h"
+#include "editor/tools/painting.h"
 #include "editor/ui/widgets.h"
 #include "runtime/clock.h"
 #include "runtime/printable.h"
@@ -18,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 44, kBar = 26;              // [point]
+constexpr float kTop = 44, kBar = 26;                                                      // [point]
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
-constexpr float kClick = 4;                        // [point] a press that moves farther is a drag
+constexpr float kClick = 4;                            // [point] a press that moves farther is a drag
 
 vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
   return {c.x, c.y, c.z, alpha};
@@ -90,6 +91,7 @@ Status App::run() {
       at.settled = settled();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
+      at.figures = [this](const std::string& name) { say_figures(name); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),
                            [&](const Said& said) { return said.text.find(text) != std::string::npos; });
@@ -108,8 +110,8 @@ Status App::run() {
 }
 
 bool App::settled() const {
-  return editor.jobs.idle() && !stage_->busy() && picture_.order == order_ && !editor.camera.moving() &&
-         !dirty_picture_;
+  return editor.jobs.idle() && !editor.painting->working() && !stage_->busy() && picture_.order == order_ &&
+         !editor.camera.moving() && !dirty_picture_;
 }
 
 ViewTool* App::tool() {
@@ -209,7 +211,7 @@ void App::keys(std::span<const InputEvent> events) {
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
     for (const Action& action : actions_) {
       if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
-      if (event.repeated && action.id != "edit.undo" && action.id != "edit.redo") continue;
+      if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") continue;
       if (action.enabled(editor)) action.run(editor);
       break;
     }
@@ -221,12 +223,18 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   host_->begin(events, dt);
   ui::begin_widgets();
   editor.jobs.deliver(editor);
+  editor.painting->update();
   keys(events);
   if (editor.document.revision() != shown_revision_) {
     shown_revision_ = editor.document.revision();
     dirty_picture_ = true;
   }
-  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()))
+  if (!(editor.view == shown_view_)) {
+    shown_view_ = editor.view;
+    dirty_picture_ = true;
+  }
+  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) &&
+                            !editor.painting->stroking())
     editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
@@ -240,9 +248,9 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   within(settings.left, kLeastLeft, size.x / scale - kLeastRight - kLeastView);
   within(settings.right, kLeastRight, size.x / scale - static_cast<float>(settings.left) - kLeastView);
   within(settings.bottom, kLeastBottom, size.y / scale - kTop - kBar - kLeastView);
-  const float left = ui::px(static_cast<float>(settings.left)), right = size.x - ui::px(static_cast<float>(settings.right)),
-              top = ui::px(kTop), bar = size.y - ui::px(kBar),
-              bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
+  const float left = ui::px(static_cast<float>(settings.left)),
+              right = size.x - ui::px(static_cast<float>(settings.right)), top = ui::px(kTop),
+              bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
   picture_ = stage_->picture();
   editor.hovered = kNoNode;  // the tree and the viewport say what it is
@@ -268,7 +276,20 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   extra_lines.clear();
   if (!shot_.empty()) take_screenshot(std::exchange(shot_, {}));
   frame_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
-  slowest_ms_ = std::max(slowest_ms_, frame_ms_);
+  if (script_) frames_ms_.push_back(frame_ms_);
+}
+
+void App::say_figures(const std::string& name) {
+  std::vector<double> all = std::exchange(frames_ms_, {});
+  if (all.empty()) return;
+  std::sort(all.begin(), all.end());
+  const auto slow = std::count_if(all.begin(), all.end(), [](double ms) { return ms > 50.0; });
+  const std::string line = fmt::format(
+      "{}: {} frames of the interface, median {:.1f} ms, 99 % within {:.1f} ms, slowest {:.1f} ms, {} above 50 ms; "
+      "picture {:.0f} ms",
+      name, all.size(), all[all.size() / 2], all[all.size() * 99 / 100], all.back(), slow, picture_.draw_ms);
+  editor.say(line);
+  fmt::print("{}\n", line);
 }
 
 void App::draw_top() {
@@ -359,8 +380,8 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       if (each->place() != place || !each->shown(editor)) continue;
       const std::string badge = each->badge(editor);
       const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
-      const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
-                                            wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
+      const bool open =
+          ImGui::BeginTabItem(tab.c_str(), nullptr, wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
       ImGui::BeginChild(each->name());
@@ -404,9 +425,9 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture_.texture)), low, high, {0, 1},
                   {1, 0});
   ImGui::SetCursorScreenPos(low);
-  ImGui::InvisibleButton("Viewport", {high.x - low.x, high.y - low.y},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                             ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::InvisibleButton(
+      "Viewport", {high.x - low.x, high.y - low.y},
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
   ui::known_as("Viewport");
   const ImGuiIO& io = ImGui::GetIO();
   ViewportInput in;
@@ -456,9 +477,9 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
   const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
                                                                     (in.alt || moved_since_press_) && !in.shift));
-  const bool shifts = active && (ImGui::IsMouseDragging(2, 1.0f) ||
-                                 (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
-                                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
+  const bool shifts =
+      active && (ImGui::IsMouseDragging(2, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
+                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
   dragging_view_ = turns || shifts;
   if (shifts)
     editor.camera.pan(in.dx, in.dy, in.height);
@@ -612,9 +633,9 @@ void App::ask_to_leave() {
   ImGui::OpenPopup("Unsaved changes");
   ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 0.4f * ImGui::GetIO().DisplaySize.y}, ImGuiCond_Always,
                           {0.5f, 0.5f});
-  if (!ImGui::BeginPopupModal("Unsaved changes", nullptr,
-                              ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar |
-                                  ImGuiWindowFlags_NoMove))
+  if (!ImGui::BeginPopupModal(
+          "Unsaved changes", nullptr,
+          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove))
     return;
   ui::title("Save the changes?");
   ui::gap();
@@ -657,8 +678,8 @@ void App::take_screenshot(const fs::path& file) {
   for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
   std::error_code ignored;
   if (!file.parent_path().empty()) fs::create_directories(file.parent_path(), ignored);
-  const Status written = write_file(
-      file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
+  const Status written =
+      write_file(file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
   editor.say(written ? "Screenshot in " + file.string() : written.error().message(),
              written ? Severity::kNote : Severity::kError);
 }

@@ -64,6 +64,7 @@ class App {
   void order_picture();
   void ask_to_leave();
   bool settled() const;
+  void say_figures(const std::string& name);
   void take_screenshot(const std::filesystem::path& file);
 
   EditOptions options_;
@@ -74,8 +75,8 @@ class App {
   std::vector<std::unique_ptr<ViewTool>> tools_;
   std::vector<Action> actions_;
   std::optional<ui::Script> script_;
-  std::map<std::string, bool> open_;          // dialogs
-  std::string wanted_tab_;                    // comes to the front in the next frame
+  std::map<std::string, bool> open_;  // dialogs
+  std::string wanted_tab_;            // comes to the front in the next frame
   StagePicture picture_;
   std::uint64_t order_ = 0, question_ = 0;
   std::optional<dvec2> asked_;
@@ -88,13 +89,15 @@ class App {
   ImVec2 viewport_low_{0, 0}, viewport_high_{1, 1};
   bool dragging_view_ = false, pressed_in_view_ = false, moved_since_press_ = false;
   ImVec2 pressed_at_{0, 0};
-  std::optional<std::uint64_t> selects_;      // the question whose answer is selected
+  std::optional<std::uint64_t> selects_;  // the question whose answer is selected
   bool select_adds_ = false;
   bool closing_ = false, dirty_picture_ = true;
-  std::function<void()> after_leaving_;       // what waits for an answer about unsaved changes
+  std::function<void()> after_leaving_;  // what waits for an answer about unsaved changes
   std::filesystem::path shot_;
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
-  double frame_ms_ = 0.0, slowest_ms_ = 0.0;  // of the interface
+  ViewSettings shown_view_;
+  double frame_ms_ = 0.0;          // of the interface
+  std::vector<double> frames_ms_;  // while a script runs
 };
 
 }  // namespace pliant

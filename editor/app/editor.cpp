@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "editor/tools/painting.h"
 #include "editor/viewport/frames.h"
 
 namespace pliant {
 
-Editor::Editor() = default;
+Editor::Editor() : painting(std::make_unique<Painting>(*this)) {}
 Editor::~Editor() = default;
 
 bool Editor::apply(const std::string& what, Result<State> next, const std::string& gesture) {
@@ -109,14 +110,20 @@ std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {
   if (!node || node->node.mesh < 0) return nullptr;
   const auto mesh = state().meshes[static_cast<std::size_t>(node->node.mesh)];
   const dmat3 frame(state().to_world(id));
+  const std::string job = "surface " + std::to_string(id);
   for (const auto& each : surfaces_)
-    if (each->mesh == mesh && each->frame == frame) return each->surface;
+    if (each->mesh == mesh && each->frame == frame) {
+      if (each->surface || each->failed || jobs.running(each->job)) return each->surface;
+      surfaces_.erase(std::find(surfaces_.begin(), surfaces_.end(), each));  // its job made way for another's
+      break;
+    }
   if (surfaces_.size() > 32) surfaces_.erase(surfaces_.begin());
   auto made = std::make_shared<Surface>();
   made->mesh = mesh;
   made->frame = frame;
+  made->job = job;
   surfaces_.push_back(made);
-  jobs.start("surface " + std::to_string(id), "Preparing " + node->node.name, [made](const Jobs::Stop& stop) {
+  jobs.start(job, "Preparing " + node->node.name, [made](const Jobs::Stop& stop) {
     auto surface = PaintSurface::make(*made->mesh, made->frame, &stop);
     std::shared_ptr<const PaintSurface> ready;
     std::string fault;

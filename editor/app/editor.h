@@ -39,6 +39,8 @@ struct EditorFinding {
   std::optional<QuickFix> fix;
 };
 
+class Painting;
+
 class Editor {
  public:
   Editor();
@@ -85,6 +87,7 @@ class Editor {
   // --- Surfaces to paint and to point at, by mesh and scale; made in the background
   // Null: not ready yet (it has been begun); the error is said once.
   std::shared_ptr<const PaintSurface> surface_of(NodeId id);
+  const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
 
   // --- Clipboard
   State clipboard;
@@ -107,6 +110,7 @@ class Editor {
   struct Surface {
     std::shared_ptr<const DocumentMesh> mesh;
     dmat3 frame{1};
+    std::string job;
     std::shared_ptr<const PaintSurface> surface;  // null: under way, or it failed
     bool failed = false;
   };

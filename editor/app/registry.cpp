@@ -3,6 +3,7 @@
 
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
+#include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
 
 namespace pliant {
@@ -13,6 +14,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_inspector_panel(app));
   panels.push_back(make_soft_panel(app));
   panels.push_back(make_path_panel(app));
+  panels.push_back(make_paint_panel(app));
   panels.push_back(make_console_panel());
   panels.push_back(make_start_page(app));
   return panels;
@@ -25,6 +27,7 @@ std::vector<std::unique_ptr<ViewTool>> make_tools(App& app) {
   tools.push_back(make_turn_tool(app.settings));
   tools.push_back(make_scale_tool(app.settings));
   tools.push_back(make_path_tool());
+  tools.push_back(make_paint_tool());
   return tools;
 }
 
@@ -96,6 +99,34 @@ std::vector<Action> make_actions(App& app) {
   add({"view.isolate", "View", "Isolate selected", "I",
        [](Editor& e) { e.view.isolated = e.view.isolated.empty() ? e.selected : std::vector<NodeId>{}; },
        [](const Editor&) { return true; }, [](const Editor& e) { return !e.view.isolated.empty(); }});
+
+  const auto meshed = [](const Editor& e) { return e.painting->node() != kNoNode; };
+  add({"paint.tool", "Paint", "Paint", "P",
+       [&app](Editor& e) {
+         app.take_tool(e.tool == "Paint" ? "Select" : "Paint");
+         app.show_panel(e.tool == "Paint" ? "Paint" : "Inspector");
+       },
+       meshed, [](const Editor& e) { return e.tool == "Paint"; }});
+  const auto step = [&](const char* id, const char* label, const char* keys, void (*run)(Painting&)) {
+    add({id, "Paint", label, keys, [run](Editor& e) { run(*e.painting); }, meshed});
+    all.back().repeats = true;
+  };
+  step("paint.larger", "Larger brush", "]", [](Painting& p) { p.scale_radius(1.15); });
+  all.back().separator = true;
+  step("paint.smaller", "Smaller brush", "[", [](Painting& p) { p.scale_radius(1 / 1.15); });
+  step("paint.stronger", "Stronger", "Shift+]", [](Painting& p) { p.add_strength(0.05); });
+  step("paint.weaker", "Weaker", "Shift+[", [](Painting& p) { p.add_strength(-0.05); });
+  add({"paint.refine", "Paint", "Refine under the brush", "Shift+R",
+       [](Editor& e) {
+         if (const auto& at = e.painting->hover) e.painting->refine(at->hit);
+       },
+       [](const Editor& e) {
+         const auto& at = e.painting->hover;
+         return at && at->node == e.painting->node() && at->surface == e.painting->surface();
+       }});
+  all.back().separator = true;
+  add({"paint.fill", "Paint", "Fill all", "", [](Editor& e) { e.painting->fill_all(); }, meshed});
+  add({"paint.clear", "Paint", "Clear", "", [](Editor& e) { e.painting->clear(); }, meshed});
   return all;
 }
 

@@ -10,6 +10,7 @@ std::unique_ptr<Panel> make_inspector_panel(App& app);
 std::unique_ptr<Panel> make_soft_panel(App& app);
 std::unique_ptr<Panel> make_path_panel(App& app);
 std::unique_ptr<Panel> make_console_panel();
+std::unique_ptr<Panel> make_paint_panel(App& app);
 std::unique_ptr<Panel> make_start_page(App& app);
 
 }  // namespace pliant
