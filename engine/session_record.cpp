@@ -135,12 +135,16 @@ Status Session::replay(const std::filesystem::path& file) {
   for (const std::string& setting : header.settings)
     if (Status applied = apply_setting(*this, setting); !applied)
       p.notes.push_back(file.string() + ": its setting " + applied.error().message());
-  for (SessionEffector& effector : p.effectors) {
-    p.take_away(effector, EffectorSource::kNone);
-    p.world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
-  }
-  p.replayed = std::move(recording).value();
+  p.begin_replay(std::move(recording).value());
   return Done{};
+}
+
+void Session::Parts::begin_replay(Recording recording) {
+  for (SessionEffector& effector : effectors) {
+    take_away(effector, EffectorSource::kNone);
+    world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
+  }
+  replayed = std::move(recording);
 }
 
 Tick Session::Parts::replayed_tick() {

@@ -65,6 +65,7 @@ void Session::Parts::after(Tick tick) {
   after_pause = false;
   rows.publish();
   shown = true;
+  if (noted) noted(tick);
 }
 
 DeviceWrench Session::Parts::wrench_of(const SessionEffector& effector) const {

@@ -18,11 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 44, kBar = 26;              // [point]
+constexpr float kTop = 44, kBar = 26;                                                      // [point]
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
-constexpr float kClick = 4;                        // [point] a press that moves farther is a drag
+constexpr float kClick = 4;                            // [point] a press that moves farther is a drag
 
 vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
   return {c.x, c.y, c.z, alpha};
@@ -51,10 +51,16 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   actions_ = make_actions(*this);
   tools_ = make_tools(*this);
   panels_ = make_panels(*this);
+  play_.show = [this](auto make) {
+    rendered_.forget();
+    stage_->show(std::move(make));
+  };
+  editor.on_change.push_back([this](const State& before, const State& after) { play_.changed(before, after); });
   if (!note.empty()) editor.say(note, Severity::kWarning);
 }
 
 App::~App() {
+  play_.stop();  // devices are let go before anything else
   stage_.reset();
   host_.reset();
 }
@@ -108,8 +114,9 @@ Status App::run() {
 }
 
 bool App::settled() const {
-  return editor.jobs.idle() && !stage_->busy() && picture_.order == order_ && !editor.camera.moving() &&
-         !dirty_picture_;
+  if (!editor.jobs.idle() || editor.camera.moving()) return false;
+  if (play_.on()) return play_.ready();  // its pictures go on for ever
+  return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
 }
 
 ViewTool* App::tool() {
@@ -131,7 +138,7 @@ Panel* App::panel(const std::string& name) {
 }
 
 void App::show_panel(const std::string& name) {
-  wanted_tab_ = name;
+  wanted_tabs_.insert(name);
   open_[name] = true;
 }
 
@@ -238,10 +245,12 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   within(settings.left, kLeastLeft, size.x / scale - kLeastRight - kLeastView);
   within(settings.right, kLeastRight, size.x / scale - static_cast<float>(settings.left) - kLeastView);
   within(settings.bottom, kLeastBottom, size.y / scale - kTop - kBar - kLeastView);
-  const float left = ui::px(static_cast<float>(settings.left)), right = size.x - ui::px(static_cast<float>(settings.right)),
-              top = ui::px(kTop), bar = size.y - ui::px(kBar),
-              bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
+  const float left = ui::px(static_cast<float>(settings.left)),
+              right = size.x - ui::px(static_cast<float>(settings.right)), top = ui::px(kTop),
+              bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
+  play_.update();
+  rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
   draw_top();
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
@@ -259,7 +268,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     }
   draw_toasts();
   ask_to_leave();
-  wanted_tab_.clear();
+  wanted_tabs_.clear();
   host_->end();
   order_picture();
   extra_lines.clear();
@@ -308,6 +317,8 @@ void App::draw_top() {
       ImGui::SameLine(0, ui::px(2));
     }
   }
+  ImGui::SameLine(0, ui::px(ui::kWide));
+  draw_play_buttons();
   // The document, in the middle of what is left; how it is shown at the right.
   const std::string title = editor.document.title() + (editor.document.dirty() ? "  \u2022" : "");
   const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
@@ -357,7 +368,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       const std::string badge = each->badge(editor);
       const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
       const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
-                                            wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
+                                            wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
       ImGui::BeginChild(each->name());
@@ -401,9 +412,9 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture_.texture)), low, high, {0, 1},
                   {1, 0});
   ImGui::SetCursorScreenPos(low);
-  ImGui::InvisibleButton("Viewport", {high.x - low.x, high.y - low.y},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                             ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::InvisibleButton(
+      "Viewport", {high.x - low.x, high.y - low.y},
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
   ui::known_as("Viewport");
   const ImGuiIO& io = ImGui::GetIO();
   ViewportInput in;
@@ -424,7 +435,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.control = io.KeyCtrl;
   in.alt = io.KeyAlt;
   in.view = editor.camera.viewpoint();
-  in.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  in.orthographic = orthographic();
   in.under = picture_.picked.node;
   in.under_at = picture_.picked.point;
   in.dt = dt;
@@ -438,13 +449,15 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   // The tool has the first word, then the camera, then selecting.
   const bool start = editor.state().nodes.empty() && editor.document.file().empty();
   bool taken = false;
-  if (!start && !in.alt)
+  const bool playing = play_.on();
+  if (!start && !in.alt && playing) taken = touch(in);
+  if (!start && !in.alt && !taken)
     if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
   const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
                                                                     (in.alt || moved_since_press_) && !in.shift));
-  const bool shifts = active && (ImGui::IsMouseDragging(2, 1.0f) ||
-                                 (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
-                                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
+  const bool shifts =
+      active && (ImGui::IsMouseDragging(2, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
+                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
   dragging_view_ = turns || shifts;
   if (shifts)
     editor.camera.pan(in.dx, in.dy, in.height);
@@ -456,7 +469,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_ = ++question_;
     select_adds_ = in.shift || in.control;
     dirty_picture_ = true;
-  } else if (in.over && (in.dx != 0 || in.dy != 0) && !dragging_view_ && !stage_->busy()) {
+  } else if (!playing && in.over && (in.dx != 0 || in.dy != 0) && !dragging_view_ && !stage_->busy()) {
     asked_ = dvec2(in.x, in.y);
     ++question_;
     dirty_picture_ = true;
@@ -476,7 +489,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
-  for (const auto& each : panels_) (void)each;
+  draw_play_over(list, low, high);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
@@ -495,7 +508,6 @@ void App::draw_start(ImVec2 low, ImVec2 high) {
 }
 
 void App::order_picture() {
-  if (editor.playing) dirty_picture_ = true;
   if (!dirty_picture_ && order_ > 0) return;
   dirty_picture_ = false;
   const ui::Palette& p = ui::palette();
@@ -504,12 +516,13 @@ void App::order_picture() {
   order.height = std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y));
   order.solid.state = editor.state();
   order.solid.view = editor.camera.viewpoint();
-  order.solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  order.solid.orthographic = orthographic();
   order.solid.settings = editor.view;
   order.solid.selected = editor.selected;
   order.solid.hovered = editor.hovered;
   order.solid.lines = extra_lines;
   if (ViewTool* t = tool()) t->lines(editor, order.solid.lines);
+  lines_ = order.solid.lines;
   order.solid.above = as_vec(p.raised);
   order.solid.below = as_vec(p.window);
   order.solid.grid = as_vec(p.text, 0.16f);
@@ -580,9 +593,9 @@ void App::ask_to_leave() {
   ImGui::OpenPopup("Unsaved changes");
   ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 0.4f * ImGui::GetIO().DisplaySize.y}, ImGuiCond_Always,
                           {0.5f, 0.5f});
-  if (!ImGui::BeginPopupModal("Unsaved changes", nullptr,
-                              ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar |
-                                  ImGuiWindowFlags_NoMove))
+  if (!ImGui::BeginPopupModal(
+          "Unsaved changes", nullptr,
+          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove))
     return;
   ui::title("Save the changes?");
   ui::gap();
@@ -625,8 +638,8 @@ void App::take_screenshot(const fs::path& file) {
   for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
   std::error_code ignored;
   if (!file.parent_path().empty()) fs::create_directories(file.parent_path(), ignored);
-  const Status written = write_file(
-      file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
+  const Status written =
+      write_file(file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
   editor.say(written ? "Screenshot in " + file.string() : written.error().message(),
              written ? Severity::kNote : Severity::kError);
 }

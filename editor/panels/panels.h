@@ -9,5 +9,7 @@ std::unique_ptr<Panel> make_tree_panel();
 std::unique_ptr<Panel> make_inspector_panel(App& app);
 std::unique_ptr<Panel> make_console_panel();
 std::unique_ptr<Panel> make_start_page(App& app);
+std::unique_ptr<Panel> make_play_panel(App& app);
+std::unique_ptr<Panel> make_plots_panel(App& app);
 
 }  // namespace pliant
