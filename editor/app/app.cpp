@@ -52,10 +52,16 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   actions_ = make_actions(*this);
   tools_ = make_tools(*this);
   panels_ = make_panels(*this);
+  play_.show = [this](auto make) {
+    rendered_.forget();
+    stage_->show(std::move(make));
+  };
+  editor.on_change.push_back([this](const State& before, const State& after) { play_.changed(before, after); });
   if (!note.empty()) editor.say(note, Severity::kWarning);
 }
 
 App::~App() {
+  play_.stop();  // devices are let go before anything else
   stage_.reset();
   host_.reset();
 }
@@ -110,8 +116,9 @@ Status App::run() {
 }
 
 bool App::settled() const {
-  return editor.jobs.idle() && !editor.painting->working() && !stage_->busy() && picture_.order == order_ &&
-         !editor.camera.moving() && !dirty_picture_;
+  if (!editor.jobs.idle() || editor.painting->working() || editor.camera.moving()) return false;
+  if (play_.on()) return play_.ready();  // its pictures go on for ever
+  return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
 }
 
 ViewTool* App::tool() {
@@ -133,7 +140,7 @@ Panel* App::panel(const std::string& name) {
 }
 
 void App::show_panel(const std::string& name) {
-  wanted_tab_ = name;
+  wanted_tabs_.insert(name);
   open_[name] = true;
 }
 
@@ -252,6 +259,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
               right = size.x - ui::px(static_cast<float>(settings.right)), top = ui::px(kTop),
               bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
+  play_.update();
+  rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
   editor.hovered = kNoNode;  // the tree and the viewport say what it is
   draw_top();
@@ -270,7 +279,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     }
   draw_toasts();
   ask_to_leave();
-  wanted_tab_.clear();
+  wanted_tabs_.clear();
   host_->end();
   order_picture();
   extra_lines.clear();
@@ -332,6 +341,8 @@ void App::draw_top() {
       ImGui::SameLine(0, ui::px(2));
     }
   }
+  ImGui::SameLine(0, ui::px(ui::kWide));
+  draw_play_buttons();
   // The document, in the middle of what is left; how it is shown at the right.
   const std::string title = editor.document.title() + (editor.document.dirty() ? "  \u2022" : "");
   const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
@@ -380,8 +391,8 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       if (each->place() != place || !each->shown(editor)) continue;
       const std::string badge = each->badge(editor);
       const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
-      const bool open =
-          ImGui::BeginTabItem(tab.c_str(), nullptr, wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
+      const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
+                                            wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
       ImGui::BeginChild(each->name());
@@ -449,9 +460,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.alt = io.KeyAlt;
   // The hand points at what it sees, though the camera may be ahead of the picture.
   in.view = picture_.number > 0 ? picture_.view : editor.camera.viewpoint();
-  in.orthographic = picture_.number > 0         ? picture_.orthographic
-                    : editor.view.orthographic ? editor.camera.orthographic_height()
-                                               : 0.0;
+  in.orthographic = picture_.number > 0 ? picture_.orthographic : orthographic();
   if (!io.WantTextInput) {
     for (const ImWchar c : io.InputQueueCharacters)
       if (c >= 32 && c < 127) in.typed += static_cast<char>(c);
@@ -473,7 +482,9 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   // The tool has the first word, then the camera, then selecting.
   const bool start = editor.state().nodes.empty() && editor.document.file().empty();
   bool taken = false;
-  if (!start && !in.alt)
+  const bool playing = play_.on();
+  if (!start && !in.alt && playing) taken = touch(in);
+  if (!start && !in.alt && !taken)
     if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
   const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
                                                                     (in.alt || moved_since_press_) && !in.shift));
@@ -491,7 +502,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_ = ++question_;
     select_adds_ = in.shift || in.control;
     dirty_picture_ = true;
-  } else if (in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
+  } else if (!playing && in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
     wants_question_ = dragging_view_ || taken || stage_->busy();
     if (!wants_question_) {
       asked_ = dvec2(in.x, in.y);
@@ -511,6 +522,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
   if (!start) ViewBar::draw_over(editor, in, list);
+  draw_play_over(list, low, high);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
@@ -535,7 +547,7 @@ void App::order_picture() {
   const ui::Palette& p = ui::palette();
   SolidOrder solid;
   solid.view = editor.camera.viewpoint();
-  solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  solid.orthographic = orthographic();
   solid.settings = editor.view;
   solid.selected = editor.selected;
   solid.hovered = editor.hovered;
@@ -554,9 +566,10 @@ void App::order_picture() {
   solid.sign = as_vec(p.dim, 0.9f);
   const bool another = !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered ||
                        ordered_size_ != viewport_size_now();
-  if (!dirty_picture_ && !another && !editor.playing && order_ > 0) return;
+  if (!dirty_picture_ && !another && order_ > 0) return;
   dirty_picture_ = false;
   ordered_ = solid;
+  lines_ = solid.lines;
   ordered_size_ = viewport_size_now();
   StageOrder order;
   order.width = ordered_size_.first;

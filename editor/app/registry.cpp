@@ -17,6 +17,8 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_paint_panel(app));
   panels.push_back(make_console_panel());
   panels.push_back(make_start_page(app));
+  panels.push_back(make_play_panel(app));
+  panels.push_back(make_plots_panel(app));
   return panels;
 }
 
@@ -127,6 +129,20 @@ std::vector<Action> make_actions(App& app) {
   all.back().separator = true;
   add({"paint.fill", "Paint", "Fill all", "", [](Editor& e) { e.painting->fill_all(); }, meshed});
   add({"paint.clear", "Paint", "Clear", "", [](Editor& e) { e.painting->clear(); }, meshed});
+  const auto plays = [&app](const Editor&) { return app.play().on(); };
+  const auto stands = [&app](const Editor&) { return app.play().may_step(); };
+  add({"play.toggle", "Play", "Play or pause", "Space", [&app](Editor&) { app.toggle_play(); },
+       [](const Editor& e) { return !e.state().nodes.empty(); }});
+  add({"play.stop", "Play", "Stop", "Shift+Space", [&app](Editor&) { app.play().stop(); }, plays});
+  add({"play.restart", "Play", "Restart", "Ctrl+R", [&app](Editor&) { app.play().restart(); }, plays});
+  add({"play.step", "Play", "Step 1/60 s", ".", [&app](Editor&) { app.step_play(1.0 / 60.0); }, stands});
+  all.back().separator = true;
+  add({"play.tick", "Play", "Step a tick", "Shift+.", [&app](Editor&) { app.step_play(0.0); }, stands});
+  toggle("play.forces", "Show forces", "", &ViewSettings::forces);
+  all.back().group = "Play";
+  all.back().separator = true;
+  toggle("play.contacts", "Show contacts", "", &ViewSettings::contacts);
+  all.back().group = "Play";
   return all;
 }
 

@@ -12,5 +12,7 @@ std::unique_ptr<Panel> make_path_panel(App& app);
 std::unique_ptr<Panel> make_console_panel();
 std::unique_ptr<Panel> make_paint_panel(App& app);
 std::unique_ptr<Panel> make_start_page(App& app);
+std::unique_ptr<Panel> make_play_panel(App& app);
+std::unique_ptr<Panel> make_plots_panel(App& app);
 
 }  // namespace pliant
