@@ -1,8 +1,9 @@
-// The Draco data of a document's primitives. What several of them name is decoded once, and all share one total of
-// processor time.
+// The Draco data of a document's primitives. What several of them name is decoded once, small blobs are decoded many in
+// one process, and all share one total of processor time.
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,9 +23,14 @@ class DracoReader {
  private:
   using Key = std::pair<std::size_t, std::vector<std::uint32_t>>;  // bufferView, Draco's ids
   static Key key_of(const Json& primitive);
-  Result<DracoMesh> decode(const Key& key, const std::string& where);
+  std::span<const std::uint8_t> bytes_of(const Key& key) const;  // none: a placeholder's
+  Result<DracoMesh> take(const Key& key, const std::string& where);
+  Status decode(const Key& key, const std::string& where);
+  Result<std::vector<DracoMesh>> decode(const std::vector<Key>& keys);
 
   const SourceDocument& document_;
+  std::vector<Key> order_;                  // in which they first stand in the document
+  std::map<Key, std::size_t> place_;        // in it
   std::map<Key, std::size_t> uses_;         // that are still to come, at most
   std::map<Key, DracoMesh> decoded_;        // for those
   double left_ = limits::kReaderTime.most;  // [s] beside what the bytes allow

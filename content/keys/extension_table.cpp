@@ -247,9 +247,9 @@ std::vector<Key> device_keys() {
   keys.push_back(
       number("max_force", "N", {DeviceRange::kMaxForce, {0.1, 50.0}}, d(&H::max_force), "norm of the force sent"));
   keys.push_back(number("max_stiffness", "N/m", {DeviceRange::kMaxStiffness, {10.0, 1e5}}, d(&H::max_stiffness),
-                        "limit on the rise of force with displacement; 0: none"));
+                        "limit on the rise of force with displacement, per metre of the world; 0: none"));
   keys.push_back(number("max_slew", "N/s", {DeviceRange::kMaxSlew, {1.0, 1e6}}, d(&H::max_slew),
-                        "limit on the change of force with time"));
+                        "limit on the rise of force with time; what is let go falls by 1000 N/s at least"));
   return keys;
 }
 

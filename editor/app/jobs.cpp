@@ -8,7 +8,7 @@
 namespace pliant {
 
 Jobs::~Jobs() {
-  for (const auto& job : jobs_) job->stop = true;
+  for (const auto& job : jobs_) job->cancel();
   for (const auto& job : jobs_)
     if (job->thread.joinable()) job->thread.join();
 }
@@ -35,7 +35,7 @@ void Jobs::start(const std::string& key, const std::string& what, Work work) {
 
 void Jobs::cancel(const std::string& key) {
   for (const auto& job : jobs_)
-    if (job->key == key) job->stop = true;
+    if (job->key == key) job->cancel();
 }
 
 bool Jobs::running(const std::string& key) const {

@@ -13,6 +13,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   std::vector<std::unique_ptr<Panel>> panels;
   panels.push_back(make_tree_panel());
   panels.push_back(make_inspector_panel(app));
+  panels.push_back(make_soft_panel(app));
   panels.push_back(make_history_panel());
   panels.push_back(make_findings_panel());
   panels.push_back(make_console_panel(app));

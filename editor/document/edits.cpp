@@ -473,34 +473,38 @@ Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh) {
 
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
   Level level = level_of(state);
+  // Nodes are known again by a mark, wherever the edit puts new ones between them.
+  constexpr std::int32_t kMark = -2;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) level.nodes[i].source = kMark - static_cast<std::int32_t>(i);
   if (Status s = edit(level); !s) return s.error();
   if (level.nodes.size() < state.nodes.size() || level.meshes.size() < state.meshes.size())
     return Error{"edit", "an edit of a level may not remove nodes or meshes"};
+  std::vector<NodeId> id_of;  // of each node of the changed level
+  NodeId fresh = next_id;
+  for (LevelNode& node : level.nodes) {
+    const bool known = node.source <= kMark;
+    const auto before = static_cast<std::size_t>(kMark - node.source);
+    id_of.push_back(known ? state.nodes[before]->id : fresh++);
+    node.source = known ? state.nodes[before]->node.source : -1;
+  }
   const std::size_t mesh_count = state.meshes.size();
-  // Meshes that were there stay shared; what was painted on them is looked at.
-  NodeId ids = next_id;
-  State after = state_of(std::move(level), ids);
-  State next = after;
+  NodeId numbers = 1;
+  State next = state_of(std::move(level), numbers);  // numbered from 1 on, in order
+  for (auto& each : next.nodes) {
+    auto node = std::make_shared<DocumentNode>(*each);
+    node->id = id_of[each->id - 1];
+    if (each->parent != kNoNode) node->parent = id_of[each->parent - 1];
+    each = std::move(node);
+  }
+  next_id = fresh;
+  // What was there stays shared.
   for (std::size_t i = 0; i < mesh_count; ++i) next.meshes[i] = state.meshes[i];
   for (auto& [key, layer] : next.paint)
     if (const auto before = state.paint.find(key); before != state.paint.end() && before->second == layer)
       layer = before->second;
-  // Nodes keep their ids; new ones get theirs.
-  std::map<NodeId, NodeId> id_of{{kNoNode, kNoNode}};
-  NodeId fresh = next_id;
-  for (std::size_t i = 0; i < after.nodes.size(); ++i)
-    id_of[after.nodes[i]->id] = i < state.nodes.size() ? state.nodes[i]->id : fresh++;
-  for (auto& each : next.nodes) {
-    auto node = std::make_shared<DocumentNode>(*each);
-    node->id = id_of.at(each->id);
-    node->parent = id_of.at(each->parent);
-    each = std::move(node);
-  }
-  next_id = fresh;
-  next.rest = state.rest;
-  if (after.rest->materials.size() != state.rest->materials.size() ||
-      after.rest->images.size() != state.rest->images.size())
-    next.rest = after.rest;
+  const bool same_looks = next.rest->materials.size() == state.rest->materials.size() &&
+                          next.rest->images.size() == state.rest->images.size();
+  if (same_looks) next.rest = state.rest;
   return next;
 }
 

@@ -7,6 +7,7 @@ namespace pliant {
 
 std::unique_ptr<Panel> make_tree_panel();
 std::unique_ptr<Panel> make_inspector_panel(App& app);
+std::unique_ptr<Panel> make_soft_panel(App& app);
 std::unique_ptr<Panel> make_history_panel();
 std::unique_ptr<Panel> make_findings_panel();
 std::unique_ptr<Panel> make_console_panel(App& app);

@@ -126,10 +126,12 @@ struct ProbeParameters {
 
 // What may leave for the hand that holds the device. Keys of PLIANT_haptic_device.
 struct DeviceParameters {
-  double scale = 1.0;          // [1] a driver's workspace -> world
-  double max_force = 3.3;      // [N] norm of the force sent
-  double max_stiffness = 0.0;  // [N/m] 0: no limit; else the force may not rise faster with displacement than this
-  double max_slew = 1000.0;    // [N/s] of the norm of the change
+  double scale = 1.0;      // [1] a driver's workspace -> world
+  double max_force = 3.3;  // [N] norm of the force sent
+  // [N/m] per metre of the world: the force may not rise faster with displacement than this; 0: no limit. What a driver
+  // says of itself (DeviceCapabilities) is per metre of its own workspace.
+  double max_stiffness = 0.0;
+  double max_slew = 1000.0;  // [N/s] of the norm of the change; force that is let go falls by 1000 N/s at least
 };
 
 // A path in time: script files and orbits. Linear between rows, slerp for rotation; holds the last row.

@@ -11,6 +11,7 @@
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/safety_cap.h"
+#include "engine/driver_limits.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "player/run/unfelt.h"
@@ -145,7 +146,7 @@ void say_creeping(Prepared& run) {
 Outcome apply_settings(const RunOptions& options, double unit, Level& level, Prepared& run) {
   if (run.replay && !run.replay->header.settings.empty()) {
     for (const std::string& setting : run.replay->header.settings)
-      if (!setting.starts_with(kUnitSetting)) run.settings.push_back(setting);
+      if (!setting.starts_with(kUnitSetting) && !is_driver_setting(setting)) run.settings.push_back(setting);
     if (const Status status = set_keys(level, run.settings); !status)
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
     say(run, fmt::format("the recording's settings hold:{}{}{}",
@@ -247,6 +248,8 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   say_creeping(run);
   say_locking(run);
   if (run.replay) {
+    if (const Status status = apply_driver_settings(run.world, run.replay->header.settings); !status)
+      return failed({options.replay, "its setting " + status.error().message()});
     if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
     if (run.replay->header.rate != run.world.simulation.touch_rate)
       return wrong_arguments(

@@ -43,7 +43,7 @@ Level ball(quat turn = quat(1, 0, 0, 0), vec3 scale = vec3(1)) {
 std::int32_t named(const Level& level, const std::string& name) {
   for (std::size_t i = 0; i < level.nodes.size(); ++i)
     if (level.nodes[i].name == name) return static_cast<std::int32_t>(i);
-  return kNoNode;
+  return kNoLevelNode;
 }
 const LevelNode& at(const Level& level, std::int32_t node) {
   return level.nodes.at(static_cast<std::size_t>(node));
@@ -232,9 +232,9 @@ TEST(EditNodes, ANodeMovedToAnotherParentStaysWhereItIsInTheWorld) {
     for (int r = 0; r < 4; ++r) EXPECT_NEAR(was[c][r], is[c][r], 1e-6);
   EXPECT_FALSE(move_node(level, named(level, "frame"), named(level, "ball"), 0).ok()) << "below itself";
   // Back among the roots, the first of them.
-  ASSERT_TRUE(move_node(level, named(level, "ball"), kNoNode, 0).ok());
+  ASSERT_TRUE(move_node(level, named(level, "ball"), kNoLevelNode, 0).ok());
   EXPECT_EQ(named(level, "ball"), 0);
-  EXPECT_EQ(at(level, 0).parent, kNoNode);
+  EXPECT_EQ(at(level, 0).parent, kNoLevelNode);
 }
 
 TEST(EditNodes, ACopyGoesByItsOwnDeviceAndARemovedDeviceIsForgotten) {

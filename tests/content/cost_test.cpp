@@ -180,6 +180,24 @@ TEST(Cost, DracoDataThatPrimitivesShareAreDecodedOnce) {
   EXPECT_EQ(second->attributes[0].name, "POSITION");
 }
 
+TEST(Cost, SmallDracoDataAreDecodedTogetherAndADamagedOneIsNamedInItsPlace) {
+  Gltf gltf = compressed(3);
+  Json& primitives = gltf.json["meshes"][0]["primitives"];
+  for (std::size_t i = 1; i < 3; ++i) {  // the same bytes again, in bufferViews of their own
+    const Json view = gltf.json["bufferViews"][0];
+    const auto begin = gltf.bin.begin() + view["byteOffset"].get<std::ptrdiff_t>();
+    const Bytes copy(begin, begin + view["byteLength"].get<std::ptrdiff_t>());
+    primitives[i]["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = gltf.view(copy);
+  }
+  const Result<Level> whole = gltf.load();
+  ASSERT_TRUE(whole.ok()) << whole.error().message();
+  ASSERT_EQ(whole->meshes[0].primitives.size(), 3u);
+  for (const Primitive& each : whole->meshes[0].primitives)
+    EXPECT_EQ(each.position, whole->meshes[0].primitives[0].position);
+  gltf.bin[gltf.json["bufferViews"][2]["byteOffset"].get<std::size_t>()] = 'X';
+  EXPECT_THAT(gltf.refusal(), HasSubstr("/meshes/0/primitives/2/extensions/KHR_draco_mesh_compression"));
+}
+
 TEST(Cost, DracoDataOfMoreCornersThanDeclaredAreRefused) {
   Gltf gltf = compressed(1);
   EXPECT_EQ(gltf.refusal(), "");
