@@ -229,41 +229,49 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   }
   for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are among the findings
     findings.push_back({Severity::kNote, "", level->notes[i]});
-  const bool bare = !level->has_pliant();
+  level->path = path;
+  const Findings of_level = validate_level(*std::move(level), prepare);
+  findings.insert(findings.end(), of_level.begin(), of_level.end());
+  return findings;
+}
+
+Findings validate_level(Level level, const std::function<Status(World&)>& prepare) {
+  Findings findings;
+  const bool bare = !level.has_pliant();
   if (bare) {
     findings.push_back(
         {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
-    make_touchable(*level);
+    make_touchable(level);
   }
-  find_outside(*level, findings);
-  if (const Status size = check_level_size(*level); !size) {  // before a mesh is built
-    findings.push_back(from_spawn(*level, size.error()));
+  find_outside(level, findings);
+  if (const Status size = check_level_size(level); !size) {  // before a mesh is built
+    findings.push_back(from_spawn(level, size.error()));
     return findings;
   }
-  find_in_meshes(*level, findings);
-  for (const DeviceFault& fault : find_shared_devices(*level))
-    findings.push_back({Severity::kError, pointer_of(*level, fault.node), fault.what});
-  find_idle(*level, findings);
+  find_in_meshes(level, findings);
+  for (const DeviceFault& fault : find_shared_devices(level))
+    findings.push_back({Severity::kError, pointer_of(level, fault.node), fault.what});
+  find_idle(level, findings);
   // Files that the level names.
-  const fs::path folder = path.parent_path();
-  find_in_soft_nodes(*level, folder, findings);
-  find_in_scripts(*level, folder, findings);
-  if (level->environment && !level->environment->panorama.empty()) {
+  const fs::path folder = level.path.parent_path();
+  find_in_soft_nodes(level, folder, findings);
+  find_in_scripts(level, folder, findings);
+  if (level.environment && !level.environment->panorama.empty()) {
     std::vector<std::string> notes;
-    const Result<Panorama> panorama = load_named_panorama(folder, level->environment->panorama, &notes);
-    const std::string pointer = scene_pointer(*level) + "/extensions/PLIANT_environment/panorama";
+    const Result<Panorama> panorama = load_named_panorama(folder, level.environment->panorama, &notes);
+    const std::string pointer = scene_pointer(level) + "/extensions/PLIANT_environment/panorama";
     if (!panorama) findings.push_back({Severity::kError, pointer, panorama.error().message()});
     for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
   }
   if (any_error(findings)) return findings;
-  Result<World> world = spawn_moving_images(*level);
+  Result<World> world = spawn_moving_images(level);
   if (!world) {
-    findings.push_back(from_spawn(*level, world.error()));
+    findings.push_back(from_spawn(level, world.error()));
     return findings;
   }
-  find_in_tissue(*level, *world, findings);
+  find_in_tissue(level, *world, findings);
   if (prepare)
-    if (const Status status = prepare(*world); !status) findings.push_back(from_prepare(*level, status.error()));
+    if (const Status status = prepare(*world); !status) findings.push_back(from_prepare(level, status.error()));
   return findings;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "content/files/image.h"
+#include "editor/app/files.h"
 #include "editor/tools/painting.h"
 #include "editor/ui/widgets.h"
 #include "runtime/clock.h"
@@ -45,10 +46,10 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   std::string note;
   settings = Settings::load(options.config, note);
   host_.emplace(window_);
-  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
-                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
+  set_look();
   editor.request_close = [this] { close(); };
   editor.jobs.wake = [] { glfwPostEmptyEvent(); };
+  files_ = std::make_unique<Files>(*this, options.input.empty());
   actions_ = make_actions(*this);
   tools_ = make_tools(*this);
   panels_ = make_panels(*this);
@@ -58,6 +59,11 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   };
   editor.on_change.push_back([this](const State& before, const State& after) { play_.changed(before, after); });
   if (!note.empty()) editor.say(note, Severity::kWarning);
+}
+
+void App::set_look() {
+  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
+                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
 }
 
 App::~App() {
@@ -75,11 +81,14 @@ Status App::run() {
     if (!script) return script.error();
     script_ = *std::move(script);
   }
-  if (!options_.file.empty()) {
+  if (!options_.file.empty() && find_recovery(options_.file, state_folder())) {
+    files_->open(options_.file, options_.unit);  // asks which
+  } else if (!options_.file.empty()) {
     auto document = Document::open(options_.file, options_.unit);
     if (!document) return document.error();
     editor.take(*std::move(document));
     settings.used(options_.file);
+    (void)settings.save();  // the next start knows it, whatever becomes of this one
   }
   window_.show("Pliant");
   std::uint64_t before = now_ns();
@@ -89,7 +98,10 @@ Status App::run() {
     const bool busy = script_ || !settled() || editor.playing || dragging_view_;
     events.clear();
     window_.poll(events, busy ? kBusyWait : kIdleWait);
-    if (Window::lost()) return Window::loss();
+    if (Window::lost()) {
+      files_->save_what_can_be();
+      return Window::loss();
+    }
     const std::uint64_t now = now_ns();
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
@@ -108,10 +120,15 @@ Status App::run() {
       }
       if (script_->done() && settled()) script_.reset();
     }
+    if (std::exchange(look_changed_, false)) {
+      set_look();
+      dirty_picture_ = true;
+    }
     frame(events, static_cast<double>(now - before) * 1e-9);
     before = now;
     window_.present();
   }
+  files_->close_in_order();
   return settings.save();
 }
 
@@ -158,7 +175,7 @@ void App::do_action(const std::string& id) {
 }
 
 void App::leave_document(std::function<void()> then) {
-  if (!editor.document.dirty()) {
+  if (!editor.document.worth_keeping()) {
     then();
     return;
   }
@@ -166,20 +183,7 @@ void App::leave_document(std::function<void()> then) {
 }
 
 void App::open(const fs::path& file) {
-  leave_document([this, file] {
-    editor.jobs.start("open", "Opening " + file.filename().string(), [file](const Jobs::Stop&) {
-      auto document = std::make_shared<Result<Document>>(Document::open(file));
-      return [document, file](Editor& to) {
-        if (!*document) {
-          to.say(document->error().message(), Severity::kError);
-          return;
-        }
-        to.take(std::move(**document));
-        to.say("Opened " + file.filename().string());
-      };
-    });
-    settings.used(file);
-  });
+  files_->open(file);
 }
 
 void App::new_document() {
@@ -187,17 +191,7 @@ void App::new_document() {
 }
 
 bool App::save() {
-  if (editor.document.file().empty()) {
-    do_action("file.save_as");
-    return false;
-  }
-  if (Status s = editor.document.save(); !s) {
-    editor.say(s.error().message(), Severity::kError);
-    return false;
-  }
-  settings.used(editor.document.file());
-  editor.say("Saved " + editor.document.file().filename().string());
-  return true;
+  return files_->save();
 }
 
 void App::close() {
@@ -216,6 +210,11 @@ void App::keys(std::span<const InputEvent> events) {
     ViewTool* const t = tool();
     const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    if (!rebinding.empty()) {
+      if (!pressed.empty()) rebound = pressed;
+      continue;
+    }
+    if (!questions_.empty() || after_leaving_) continue;  // they come first
     for (const Action& action : actions_) {
       if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
       if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") continue;
@@ -231,6 +230,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   ui::begin_widgets();
   editor.jobs.deliver(editor);
   editor.painting->update();
+  files_->update();
+  findings_.update(editor);
   keys(events);
   if (editor.document.revision() != shown_revision_) {
     shown_revision_ = editor.document.revision();
@@ -277,8 +278,10 @@ void App::frame(std::span<const InputEvent> events, double dt) {
       const ui::Scope scope(each->name());
       each->draw(editor);
     }
+  draw_banners();
   draw_toasts();
   ask_to_leave();
+  draw_question();
   wanted_tabs_.clear();
   host_->end();
   order_picture();
@@ -661,9 +664,9 @@ void App::ask_to_leave() {
   };
   if (ui::strong_button("Save", nullptr, true, 110)) {
     if (editor.document.file().empty()) {
-      after_leaving_ = nullptr;
+      auto then = std::exchange(after_leaving_, nullptr);
       ImGui::CloseCurrentPopup();
-      do_action("file.save_as");
+      files_->save_as(std::move(then));
     } else if (save()) {
       go();
     }

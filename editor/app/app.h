@@ -1,13 +1,16 @@
 // The program `pliant edit`: a window, its panels around the viewport, and a turn of its loop.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 
+#include "editor/app/findings.h"
 #include "editor/app/panel.h"
+#include "editor/app/question.h"
 #include "editor/app/settings.h"
 #include "editor/edit.h"
 #include "editor/play/play.h"
@@ -19,6 +22,8 @@
 #include "editor/viewport/view_bar.h"
 
 namespace pliant {
+
+class Files;
 
 class App {
  public:
@@ -43,6 +48,13 @@ class App {
   void close_panel(const std::string& name) { open_[name] = false; }
   std::string keys_of(const Action& action) const;  // as bound now
   void do_action(const std::string& id);
+
+  Files& files() { return *files_; }
+  const std::vector<std::filesystem::path>& shipped() const { return options_.levels; }
+  void ask(Question question);  // questions are asked one after the other
+  void look_changed() { look_changed_ = true; }  // of the settings; holds from the next frame on
+  // The keys page waits for new keys of this action, and gets them as text in `rebound`.
+  std::string rebinding, rebound;
 
   // Opens a file, asking first where something is not saved.
   void open(const std::filesystem::path& file);
@@ -74,6 +86,9 @@ class App {
   void splitter(const char* name, double& place, bool vertical, ImVec2 low, ImVec2 high, double sign);
   void order_picture();
   void ask_to_leave();
+  void draw_question();
+  void draw_banners();
+  void set_look();
   bool settled() const;
   void say_figures(const std::string& name);
   void take_screenshot(const std::filesystem::path& file);
@@ -82,6 +97,8 @@ class App {
   Window& window_;
   std::optional<ui::Host> host_;
   std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Files> files_;
+  FindingsWatch findings_;
   std::vector<std::unique_ptr<Panel>> panels_;
   std::vector<std::unique_ptr<ViewTool>> tools_;
   std::vector<Action> actions_;
@@ -110,6 +127,8 @@ class App {
   bool select_adds_ = false;
   bool closing_ = false, dirty_picture_ = true;
   std::function<void()> after_leaving_;  // what waits for an answer about unsaved changes
+  std::deque<Question> questions_;
+  bool look_changed_ = false;
   std::filesystem::path shot_;
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
   ViewSettings shown_view_;

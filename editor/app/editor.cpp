@@ -27,6 +27,7 @@ bool Editor::apply(const std::string& what, Result<State> next, const std::strin
 void Editor::take(Document next) {
   const State before = state();
   document = std::move(next);
+  ++documents;
   selected.clear();
   hovered = kNoNode;
   surfaces_.clear();
@@ -35,6 +36,28 @@ void Editor::take(Document next) {
   camera.home(scene_box());
   for (const auto& each : on_change) each(before, state());
   for (const std::string& note : document.notes()) say(note);
+}
+
+void Editor::revert_to(Level level, const FileStamp& stamp, const std::string& what) {
+  const State before = state();
+  std::vector<std::string> names;
+  for (const NodeId id : selected)
+    if (const DocumentNode* node = before.find(id)) names.push_back(node->node.name);
+  document.revert_to(std::move(level), stamp, what);
+  selected.clear();
+  for (const std::string& name : names)
+    if (const DocumentNode* node = state().find(name)) selected.push_back(node->id);
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+  for (const std::string& note : document.notes()) say(note);
+}
+
+void Editor::go_to_step(std::size_t step) {
+  if (step >= document.step_count() || step == document.step()) return;
+  const State before = state();
+  document.go_to_step(step);
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
 }
 
 void Editor::undo() {

@@ -51,8 +51,12 @@ class Editor {
   const State& state() const { return document.state(); }
   // The one way of every panel and tool to change the level: says what went wrong. True: it is as was asked.
   bool apply(const std::string& what, Result<State> next, const std::string& gesture = {});
-  // Replaces the document; asks nothing. `frame`: the camera goes to where all is seen.
+  // Replaces the document; asks nothing.
   void take(Document next);
+  std::uint64_t documents = 0;  // taken so far
+  void revert_to(Level level, const FileStamp& stamp, const std::string& what = "Revert");  // as Document; keeps what
+                                                                                           // is selected, by name
+  void go_to_step(std::size_t step);  // of the document's history
   void undo();
   void redo();
   void drop_gesture(const std::string& gesture);  // what is being dragged goes back to where it was
@@ -77,6 +81,7 @@ class Editor {
   // --- Findings of the document as it stands
   std::vector<EditorFinding> findings;
   std::uint64_t found_at = ~std::uint64_t{0};  // the revision that they are of
+  std::uint64_t files_read = 0;  // grows when a file that the level names (a script, a panorama) is another one on disk
 
   // --- View
   ViewSettings view;

@@ -25,7 +25,8 @@ class Jobs {
   using Work = std::function<std::function<void(Editor&)>(const Stop& stop)>;
 
   ~Jobs();  // stops all and waits
-  // `key`: a job of the same key that is under way is cancelled. `what` is shown while it lasts.
+  // `key`: a job of the same key that is under way is cancelled. `what` is shown while it lasts; empty: nothing is
+  // shown, and nobody waits for it.
   void start(const std::string& key, const std::string& what, Work work);
   void cancel(const std::string& key);
   bool running(const std::string& key) const;

@@ -18,6 +18,7 @@ class Panel {
     kRight,   // a tab at the right
     kBottom,  // a tab below the viewport
     kOver,    // draws its own window, when it is asked for (a dialog)
+    kBanner,  // a line over the upper edge of the viewport, while it is shown()
   };
   virtual ~Panel() = default;
   virtual const char* name() const = 0;  // on its tab, and first in its widgets' addresses

@@ -1,7 +1,9 @@
 // Every panel, tool and action of the editor. A new one is a line here.
 #include <numbers>
 
+#include "editor/app/add.h"
 #include "editor/app/app.h"
+#include "editor/app/files.h"
 #include "editor/panels/panels.h"
 #include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
@@ -15,7 +17,13 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_soft_panel(app));
   panels.push_back(make_path_panel(app));
   panels.push_back(make_paint_panel(app));
-  panels.push_back(make_console_panel());
+  panels.push_back(make_history_panel());
+  panels.push_back(make_findings_panel());
+  panels.push_back(make_console_panel(app));
+  panels.push_back(make_unit_banner());
+  panels.push_back(make_file_browser(app));
+  panels.push_back(make_keys_page(app));
+  panels.push_back(make_settings_panel(app));
   panels.push_back(make_start_page(app));
   panels.push_back(make_play_panel(app));
   panels.push_back(make_plots_panel(app));
@@ -46,8 +54,16 @@ std::vector<Action> make_actions(App& app) {
                    [](const Editor&) { return true; }, [of](const Editor& e) { return e.view.*of; }});
   };
   add({"file.new", "File", "New", "Ctrl+N", [&app](Editor&) { app.new_document(); }});
+  add({"file.open", "File", "Open\u2026", "Ctrl+O", [&app](Editor&) { app.files().ask_open(); }});
   add({"file.save", "File", "Save", "Ctrl+S", [&app](Editor&) { app.save(); }});
   all.back().while_typing = true;
+  all.back().separator = true;
+  add({"file.save_as", "File", "Save as\u2026", "Ctrl+Shift+S", [&app](Editor&) { app.files().save_as(); }});
+  add({"file.save_copy", "File", "Save a copy\u2026", "", [&app](Editor&) { app.files().save_copy(); }});
+  add({"file.revert", "File", "Revert", "", [&app](Editor&) { app.files().revert(); },
+       [](const Editor& e) { return e.document.dirty() && !e.document.file().empty(); }});
+  add({"file.settings", "File", "Settings\u2026", "Ctrl+,", [&app](Editor&) { app.show_panel("Settings"); }});
+  all.back().separator = true;
   add({"file.quit", "File", "Quit", "Ctrl+Q", [&app](Editor&) { app.close(); }});
   all.back().separator = true;
 
@@ -143,6 +159,12 @@ std::vector<Action> make_actions(App& app) {
   all.back().separator = true;
   toggle("play.contacts", "Show contacts", "", &ViewSettings::contacts);
   all.back().group = "Play";
+  add({"add.empty", "Add", "Empty node", "", [](Editor& e) { add_empty(e); }});
+  add({"add.probe", "Add", "Probe with a device", "", [](Editor& e) { add_probe(e); }});
+  add({"add.light", "Add", "Light", "", [](Editor& e) { add_light(e); }});
+  add({"add.camera", "Add", "Camera, from here", "", [](Editor& e) { add_camera(e); }});
+  add({"help.keys", "Help", "Keys\u2026", "F1", [&app](Editor&) { app.show_panel("Keys"); }});
+  all.back().while_typing = true;
   return all;
 }
 

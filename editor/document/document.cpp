@@ -15,6 +15,7 @@ Document::Document(State state, NodeId next) : next_id_(next) {
 }
 
 Result<Document> Document::open(const fs::path& file, double unit) {
+  const FileStamp stamp = stamp_of(file);  // what is written while it is read is noticed later
   Result<Level> level = load_level(file);
   if (!level) return level.error();
   const bool is_level = level->source && level->has_pliant();
@@ -28,19 +29,20 @@ Result<Document> Document::open(const fs::path& file, double unit) {
   document.read_scripts(document.steps_[0].state);
   if (is_level) {
     document.file_ = file;
-    document.remember_file();
+    document.stamp_ = stamp;
   } else {
     document.saved_ = ~std::uint64_t{0};  // what stands here is nowhere yet
   }
   return document;
 }
 
-Result<Document> Document::recover(const fs::path& copy, const fs::path& file) {
+Result<Document> Document::recover(const fs::path& copy, const fs::path& file, const fs::path& folder) {
   Result<Document> document = open(copy);
   if (!document) return document;
   document->file_ = file;
-  document->folder_ = file.empty() ? copy.parent_path() : file.parent_path();
+  document->folder_ = !file.empty() ? file.parent_path() : folder.empty() ? copy.parent_path() : folder;
   document->saved_ = ~std::uint64_t{0};
+  document->recovered_ = true;
   document->remember_file();
   return document;
 }
@@ -133,37 +135,38 @@ Status Document::save_copy(const fs::path& file) const {
 
 Status Document::revert() {
   if (file_.empty()) return Error{"revert", "the level has no file yet; undo instead"};
+  const FileStamp stamp = stamp_of(file_);
   Result<Level> level = load_level(file_);
   if (!level) return level.error();
-  notes_ = level->notes;
-  State state = state_of(std::move(*level), next_id_);
-  read_scripts(state);
-  gesture_.clear();
-  steps_.resize(now_ + 1);
-  steps_.push_back({"Revert", std::move(state), next_revision_++});
-  ++now_;
-  saved_ = revision();
-  remember_file();
+  revert_to(std::move(*level), stamp);
   return Done{};
 }
 
+void Document::revert_to(Level level, const FileStamp& stamp, const std::string& what) {
+  notes_ = level.notes;
+  State state = state_of(std::move(level), next_id_);
+  read_scripts(state);
+  gesture_.clear();
+  steps_.resize(now_ + 1);
+  steps_.push_back({what, std::move(state), next_revision_++});
+  ++now_;
+  saved_ = revision();
+  stamp_ = stamp;
+}
+
 void Document::remember_file() {
-  std::error_code gone;
-  file_time_ = fs::last_write_time(file_, gone);
-  file_size_ = fs::file_size(file_, gone);
+  stamp_ = stamp_of(file_);
 }
 
 bool Document::file_changed() const {
   if (file_.empty()) return false;
-  std::error_code gone;
-  const auto time = fs::last_write_time(file_, gone);
-  if (gone) return false;  // taken away: what is here is still here
-  const auto size = fs::file_size(file_, gone);
-  return !gone && (time != file_time_ || size != file_size_);
+  const FileStamp now = stamp_of(file_);
+  return now.there && now != stamp_;  // taken away: what is here is still here
 }
 
 void Document::accept_file() {
   remember_file();
+  saved_ = ~std::uint64_t{0};
 }
 
 }  // namespace pliant

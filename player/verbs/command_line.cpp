@@ -19,6 +19,7 @@
 #include "player/exit.h"
 #include "player/standard_streams.h"
 #include "player/study/study.h"
+#include "player/verbs/content_folder.h"
 #include "player/verbs/verbs.h"
 #include "pliant/content.h"
 
@@ -326,6 +327,7 @@ int parse_and_run(int argc, const char* const* argv) {
   const Result<double> unit = parse_unit(edit_unit);
   if (!unit) return fail(kUsage, unit.error());
   edit_options.unit = *unit;
+  edit_options.levels = shipped_levels();
   const Status edited = edit(edit_options);
   return edited ? kDone : fail(kFailed, edited.error());
 }
