@@ -31,9 +31,6 @@ enum class EffectorSource : std::uint8_t { kNone, kReleased, kLevel, kPose, kPat
 // most kLongestWay: a program that draws 60 pictures a second sets 60 poses.
 inline constexpr double kPrescribedHolds = 0.25, kLongestWay = 0.1;
 
-// [1] How far from unit length a rotation may be: then it is normalised.
-inline constexpr double kUnitWithin = 0.01;
-
 struct PrescribedPose {
   dvec3 position{0};
   dquat rotation{1, 0, 0, 0};
@@ -47,9 +44,10 @@ struct SessionEffector {
   Path path;                                                 // of kPath, for restart()
   DeviceCapabilities can;                                    // its, while it is connected
   std::unique_ptr<Driver> driver;                            // of kDriver
-  bool ready = false;                                        // as its driver said last
+  bool ready = false;                                        // as its driver said last, since a pause
   dquat placed_rotation{1, 0, 0, 0};                         // where its driver senses none
   std::unique_ptr<TripleBuffer<PrescribedPose>> prescribed;  // owner -> touch clock
+  bool renewed = false;  // touch clock's: the next tick is its source's first, and has it lost
   // Touch clock's: the way to the newest pose that was set.
   bool placed = false;
   double heard_at = 0.0, lasts = 1e-3;  // [s] when that came, and how long the way to it takes
@@ -147,12 +145,11 @@ struct Session::Parts {
   void take_away(SessionEffector& effector, EffectorSource source);  // nobody moves it
   void close_driver(SessionEffector& effector) noexcept;
   void zero_drivers() noexcept;
-  void end(const char* why) noexcept;                             // every device is lost, and written zero
-  void show_let_go() noexcept;                                    // readings without force
-  void clock_ended() noexcept;                                    // last of all on the touch clock
-  DeviceWrench wrench_of(const SessionEffector& effector) const;  // what its device can render of the force sent
-  DeviceParameters limits_of(
-      const SessionEffector& effector) const;  // the level's or the driver's, whichever are smaller
+  void end(const char* why) noexcept;      // every device is lost, and written zero
+  void show_let_go() noexcept;             // readings without force
+  void clock_ended() noexcept;             // last of all on the touch clock
+  void begin(SessionEffector& effector);   // another source: its driver's limits, and a hand that is new
+  void forget(SessionEffector& effector);  // its pose, until its source says another
 
   // A force on a vertex of a refined mesh, shared by the source vertices around it.
   void share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force, std::vector<vec3>& out);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "components/soft_body.h"
-#include "systems/device/mouse.h"
 #include "systems/visual/viewpoint.h"
 
 namespace pliant {

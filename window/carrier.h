@@ -7,11 +7,12 @@
 #include <optional>
 
 #include "components/world.h"
+#include "systems/device/mouse.h"
 #include "window/camera_control.h"
 
 namespace pliant {
 
-inline constexpr double kFastestCarry = 0.5;  // [m/s] faster, and a jump of the pointer is felt as a blow
+inline constexpr double kFastestCarry = kMouseFastest;  // [m/s]
 
 class Carrier {
  public:

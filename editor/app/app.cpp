@@ -9,6 +9,8 @@
 #include <cmath>
 
 #include "content/files/image.h"
+#include "editor/app/files.h"
+#include "editor/tools/painting.h"
 #include "editor/ui/widgets.h"
 #include "runtime/clock.h"
 #include "runtime/printable.h"
@@ -44,10 +46,10 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   std::string note;
   settings = Settings::load(options.config, note);
   host_.emplace(window_);
-  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
-                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
+  set_look();
   editor.request_close = [this] { close(); };
   editor.jobs.wake = [] { glfwPostEmptyEvent(); };
+  files_ = std::make_unique<Files>(*this, options.input.empty());
   actions_ = make_actions(*this);
   tools_ = make_tools(*this);
   panels_ = make_panels(*this);
@@ -57,6 +59,11 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   };
   editor.on_change.push_back([this](const State& before, const State& after) { play_.changed(before, after); });
   if (!note.empty()) editor.say(note, Severity::kWarning);
+}
+
+void App::set_look() {
+  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
+                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
 }
 
 App::~App() {
@@ -74,11 +81,14 @@ Status App::run() {
     if (!script) return script.error();
     script_ = *std::move(script);
   }
-  if (!options_.file.empty()) {
+  if (!options_.file.empty() && find_recovery(options_.file, state_folder())) {
+    files_->open(options_.file, options_.unit);  // asks which
+  } else if (!options_.file.empty()) {
     auto document = Document::open(options_.file, options_.unit);
     if (!document) return document.error();
     editor.take(*std::move(document));
     settings.used(options_.file);
+    (void)settings.save();  // the next start knows it, whatever becomes of this one
   }
   window_.show("Pliant");
   std::uint64_t before = now_ns();
@@ -88,7 +98,10 @@ Status App::run() {
     const bool busy = script_ || !settled() || editor.playing || dragging_view_;
     events.clear();
     window_.poll(events, busy ? kBusyWait : kIdleWait);
-    if (Window::lost()) return Window::loss();
+    if (Window::lost()) {
+      files_->save_what_can_be();
+      return Window::loss();
+    }
     const std::uint64_t now = now_ns();
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
@@ -96,6 +109,7 @@ Status App::run() {
       at.settled = settled();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
+      at.figures = [this](const std::string& name) { say_figures(name); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),
                            [&](const Said& said) { return said.text.find(text) != std::string::npos; });
@@ -106,15 +120,20 @@ Status App::run() {
       }
       if (script_->done() && settled()) script_.reset();
     }
+    if (std::exchange(look_changed_, false)) {
+      set_look();
+      dirty_picture_ = true;
+    }
     frame(events, static_cast<double>(now - before) * 1e-9);
     before = now;
     window_.present();
   }
+  files_->close_in_order();
   return settings.save();
 }
 
 bool App::settled() const {
-  if (!editor.jobs.idle() || editor.camera.moving()) return false;
+  if (!editor.jobs.idle() || editor.painting->working() || editor.camera.moving()) return false;
   if (play_.on()) return play_.ready();  // its pictures go on for ever
   return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
 }
@@ -156,7 +175,7 @@ void App::do_action(const std::string& id) {
 }
 
 void App::leave_document(std::function<void()> then) {
-  if (!editor.document.dirty()) {
+  if (!editor.document.worth_keeping()) {
     then();
     return;
   }
@@ -164,20 +183,7 @@ void App::leave_document(std::function<void()> then) {
 }
 
 void App::open(const fs::path& file) {
-  leave_document([this, file] {
-    editor.jobs.start("open", "Opening " + file.filename().string(), [file](const Jobs::Stop&) {
-      auto document = std::make_shared<Result<Document>>(Document::open(file));
-      return [document, file](Editor& to) {
-        if (!*document) {
-          to.say(document->error().message(), Severity::kError);
-          return;
-        }
-        to.take(std::move(**document));
-        to.say("Opened " + file.filename().string());
-      };
-    });
-    settings.used(file);
-  });
+  files_->open(file);
 }
 
 void App::new_document() {
@@ -185,17 +191,7 @@ void App::new_document() {
 }
 
 bool App::save() {
-  if (editor.document.file().empty()) {
-    do_action("file.save_as");
-    return false;
-  }
-  if (Status s = editor.document.save(); !s) {
-    editor.say(s.error().message(), Severity::kError);
-    return false;
-  }
-  settings.used(editor.document.file());
-  editor.say("Saved " + editor.document.file().filename().string());
-  return true;
+  return files_->save();
 }
 
 void App::close() {
@@ -211,11 +207,17 @@ void App::keys(std::span<const InputEvent> events) {
     if (event.kind == InputKind::kClose) close();
     if (event.kind == InputKind::kDrop) open(event.file);
     if (event.kind != InputKind::kKey) continue;
-    const bool typing = ImGui::GetIO().WantTextInput;
+    ViewTool* const t = tool();
+    const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    if (!rebinding.empty()) {
+      if (!pressed.empty()) rebound = pressed;
+      continue;
+    }
+    if (!questions_.empty() || after_leaving_) continue;  // they come first
     for (const Action& action : actions_) {
       if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
-      if (event.repeated && action.id != "edit.undo" && action.id != "edit.redo") continue;
+      if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") continue;
       if (action.enabled(editor)) action.run(editor);
       break;
     }
@@ -227,12 +229,21 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   host_->begin(events, dt);
   ui::begin_widgets();
   editor.jobs.deliver(editor);
+  editor.painting->update();
+  files_->update();
+  findings_.update(editor);
   keys(events);
   if (editor.document.revision() != shown_revision_) {
     shown_revision_ = editor.document.revision();
     dirty_picture_ = true;
   }
-  if (!ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive()) editor.document.end_gesture();
+  if (!(editor.view == shown_view_)) {
+    shown_view_ = editor.view;
+    dirty_picture_ = true;
+  }
+  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) &&
+                            !editor.painting->stroking())
+    editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
   dirty_picture_ |= was_moving;
@@ -252,6 +263,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   play_.update();
   rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
+  editor.hovered = kNoNode;  // the tree and the viewport say what it is
   draw_top();
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
   draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
@@ -266,15 +278,30 @@ void App::frame(std::span<const InputEvent> events, double dt) {
       const ui::Scope scope(each->name());
       each->draw(editor);
     }
+  draw_banners();
   draw_toasts();
   ask_to_leave();
+  draw_question();
   wanted_tabs_.clear();
   host_->end();
   order_picture();
   extra_lines.clear();
   if (!shot_.empty()) take_screenshot(std::exchange(shot_, {}));
   frame_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
-  slowest_ms_ = std::max(slowest_ms_, frame_ms_);
+  if (script_) frames_ms_.push_back(frame_ms_);
+}
+
+void App::say_figures(const std::string& name) {
+  std::vector<double> all = std::exchange(frames_ms_, {});
+  if (all.empty()) return;
+  std::sort(all.begin(), all.end());
+  const auto slow = std::count_if(all.begin(), all.end(), [](double ms) { return ms > 50.0; });
+  const std::string line = fmt::format(
+      "{}: {} frames of the interface, median {:.1f} ms, 99 % within {:.1f} ms, slowest {:.1f} ms, {} above 50 ms; "
+      "picture {:.0f} ms",
+      name, all.size(), all[all.size() / 2], all[all.size() * 99 / 100], all.back(), slow, picture_.draw_ms);
+  editor.say(line);
+  fmt::print("{}\n", line);
 }
 
 void App::draw_top() {
@@ -434,8 +461,17 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.shift = io.KeyShift;
   in.control = io.KeyCtrl;
   in.alt = io.KeyAlt;
-  in.view = editor.camera.viewpoint();
-  in.orthographic = orthographic();
+  // The hand points at what it sees, though the camera may be ahead of the picture.
+  in.view = picture_.number > 0 ? picture_.view : editor.camera.viewpoint();
+  in.orthographic = picture_.number > 0 ? picture_.orthographic : orthographic();
+  if (!io.WantTextInput) {
+    for (const ImWchar c : io.InputQueueCharacters)
+      if (c >= 32 && c < 127) in.typed += static_cast<char>(c);
+    const auto key = [](ImGuiKey_ k) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(k)); };
+    in.enter = key(ImGuiKey_Enter) || key(ImGuiKey_KeyPadEnter);
+    in.escape = key(ImGuiKey_Escape);
+    in.erase = key(ImGuiKey_Backspace);
+  }
   in.under = picture_.picked.node;
   in.under_at = picture_.picked.point;
   in.dt = dt;
@@ -469,10 +505,13 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_ = ++question_;
     select_adds_ = in.shift || in.control;
     dirty_picture_ = true;
-  } else if (!playing && in.over && (in.dx != 0 || in.dy != 0) && !dragging_view_ && !stage_->busy()) {
-    asked_ = dvec2(in.x, in.y);
-    ++question_;
-    dirty_picture_ = true;
+  } else if (!playing && in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
+    wants_question_ = dragging_view_ || taken || stage_->busy();
+    if (!wants_question_) {
+      asked_ = dvec2(in.x, in.y);
+      ++question_;
+      dirty_picture_ = true;
+    }
   }
   if (in.released) pressed_in_view_ = false;
   if (selects_ && picture_.question >= *selects_) {
@@ -480,22 +519,22 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_.reset();
     dirty_picture_ = true;
   }
-  const NodeId hovered = in.over && !dragging_view_ ? picture_.picked.node : kNoNode;
-  if (hovered != editor.hovered) {
-    editor.hovered = hovered;
-    dirty_picture_ = true;
-  }
+  if (in.over) editor.hovered = !dragging_view_ && !taken ? picture_.picked.node : kNoNode;
   if (taken) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
+  if (!start) ViewBar::draw_over(editor, in, list);
   draw_play_over(list, low, high);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
   list.PopClipRect();
   ImGui::End();
-  if (start) draw_start(low, high);
+  if (start)
+    draw_start(low, high);
+  else
+    view_bar_.draw(editor, tool(), low, high);
 }
 
 void App::draw_start(ImVec2 low, ImVec2 high) {
@@ -508,32 +547,49 @@ void App::draw_start(ImVec2 low, ImVec2 high) {
 }
 
 void App::order_picture() {
-  if (!dirty_picture_ && order_ > 0) return;
-  dirty_picture_ = false;
   const ui::Palette& p = ui::palette();
+  SolidOrder solid;
+  solid.view = editor.camera.viewpoint();
+  solid.orthographic = orthographic();
+  solid.settings = editor.view;
+  solid.selected = editor.selected;
+  solid.hovered = editor.hovered;
+  solid.lines = extra_lines;
+  if (ViewTool* t = tool()) t->lines(editor, solid.lines);
+  if (editor.view.creases) {
+    creases_.update(editor);
+    solid.creases = creases_.known();
+  }
+  solid.above = as_vec(p.raised);
+  solid.below = as_vec(p.window);
+  solid.grid = as_vec(p.text, 0.16f);
+  solid.selected_color = as_vec(p.accent);
+  solid.hovered_color = as_vec(p.text, 0.55f);
+  for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
+  solid.sign = as_vec(p.dim, 0.9f);
+  const bool another = !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered ||
+                       ordered_size_ != viewport_size_now();
+  if (!dirty_picture_ && !another && order_ > 0) return;
+  dirty_picture_ = false;
+  ordered_ = solid;
+  lines_ = solid.lines;
+  ordered_size_ = viewport_size_now();
   StageOrder order;
-  order.width = std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x));
-  order.height = std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y));
+  order.width = ordered_size_.first;
+  order.height = ordered_size_.second;
+  order.solid = std::move(solid);
   order.solid.state = editor.state();
-  order.solid.view = editor.camera.viewpoint();
-  order.solid.orthographic = orthographic();
-  order.solid.settings = editor.view;
-  order.solid.selected = editor.selected;
-  order.solid.hovered = editor.hovered;
-  order.solid.lines = extra_lines;
-  if (ViewTool* t = tool()) t->lines(editor, order.solid.lines);
-  lines_ = order.solid.lines;
-  order.solid.above = as_vec(p.raised);
-  order.solid.below = as_vec(p.window);
-  order.solid.grid = as_vec(p.text, 0.16f);
-  order.solid.selected_color = as_vec(p.accent);
-  order.solid.hovered_color = as_vec(p.text, 0.55f);
   if (asked_) {
     order.question = asked_;
     order.question_number = question_;
     asked_.reset();
   }
   order_ = stage_->order(std::move(order));
+}
+
+std::pair<int, int> App::viewport_size_now() const {
+  return {std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x)),
+          std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y))};
 }
 
 void App::draw_bottom_bar() {
@@ -608,9 +664,9 @@ void App::ask_to_leave() {
   };
   if (ui::strong_button("Save", nullptr, true, 110)) {
     if (editor.document.file().empty()) {
-      after_leaving_ = nullptr;
+      auto then = std::exchange(after_leaving_, nullptr);
       ImGui::CloseCurrentPopup();
-      do_action("file.save_as");
+      files_->save_as(std::move(then));
     } else if (save()) {
       go();
     }

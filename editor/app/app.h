@@ -1,22 +1,29 @@
 // The program `pliant edit`: a window, its panels around the viewport, and a turn of its loop.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 
+#include "editor/app/findings.h"
 #include "editor/app/panel.h"
+#include "editor/app/question.h"
 #include "editor/app/settings.h"
 #include "editor/edit.h"
 #include "editor/play/play.h"
 #include "editor/play/rendered.h"
 #include "editor/ui/host.h"
 #include "editor/ui/script.h"
+#include "editor/viewport/crease_lines.h"
 #include "editor/viewport/stage.h"
+#include "editor/viewport/view_bar.h"
 
 namespace pliant {
+
+class Files;
 
 class App {
  public:
@@ -41,6 +48,13 @@ class App {
   void close_panel(const std::string& name) { open_[name] = false; }
   std::string keys_of(const Action& action) const;  // as bound now
   void do_action(const std::string& id);
+
+  Files& files() { return *files_; }
+  const std::vector<std::filesystem::path>& shipped() const { return options_.levels; }
+  void ask(Question question);  // questions are asked one after the other
+  void look_changed() { look_changed_ = true; }  // of the settings; holds from the next frame on
+  // The keys page waits for new keys of this action, and gets them as text in `rebound`.
+  std::string rebinding, rebound;
 
   // Opens a file, asking first where something is not saved.
   void open(const std::filesystem::path& file);
@@ -72,13 +86,19 @@ class App {
   void splitter(const char* name, double& place, bool vertical, ImVec2 low, ImVec2 high, double sign);
   void order_picture();
   void ask_to_leave();
+  void draw_question();
+  void draw_banners();
+  void set_look();
   bool settled() const;
+  void say_figures(const std::string& name);
   void take_screenshot(const std::filesystem::path& file);
 
   EditOptions options_;
   Window& window_;
   std::optional<ui::Host> host_;
   std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Files> files_;
+  FindingsWatch findings_;
   std::vector<std::unique_ptr<Panel>> panels_;
   std::vector<std::unique_ptr<ViewTool>> tools_;
   std::vector<Action> actions_;
@@ -88,6 +108,12 @@ class App {
   StagePicture picture_;
   std::uint64_t order_ = 0, question_ = 0;
   std::optional<dvec2> asked_;
+  ViewBar view_bar_;
+  CreaseLines creases_;
+  std::pair<int, int> viewport_size_now() const;  // [pixel] of a picture
+  std::pair<int, int> ordered_size_{0, 0};
+  SolidOrder ordered_;  // of the last picture that was ordered; its state is not kept
+  bool wants_question_ = false;  // the mouse has moved since the last question
   ImVec2 viewport_low_{0, 0}, viewport_high_{1, 1};
   bool dragging_view_ = false, pressed_in_view_ = false, moved_since_press_ = false;
   ImVec2 pressed_at_{0, 0};
@@ -101,9 +127,13 @@ class App {
   bool select_adds_ = false;
   bool closing_ = false, dirty_picture_ = true;
   std::function<void()> after_leaving_;  // what waits for an answer about unsaved changes
+  std::deque<Question> questions_;
+  bool look_changed_ = false;
   std::filesystem::path shot_;
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
-  double frame_ms_ = 0.0, slowest_ms_ = 0.0;  // of the interface
+  ViewSettings shown_view_;
+  double frame_ms_ = 0.0;          // of the interface
+  std::vector<double> frames_ms_;  // while a script runs
 };
 
 }  // namespace pliant

@@ -185,6 +185,15 @@ bool number(const char* label, double& value, double least, double most, const c
   return changed;
 }
 
+bool slider(const char* label, double& value, double least, double most, const char* hint_text, float width) {
+  ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
+  const bool changed = ImGui::SliderScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &value, &least,
+                                           &most, "%.3g", ImGuiSliderFlags_AlwaysClamp);
+  known_as(label);
+  hint(hint_text);
+  return changed;
+}
+
 bool combo(const char* label, std::string& value, const std::vector<std::string>& choices, float width) {
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
   bool changed = false;
@@ -225,9 +234,17 @@ bool begin_menu(const char* label, bool enabled) {
 }
 
 bool section(const char* label, bool open_at_first) {
+  // Calm: the accent is for what is selected or active.
+  ImVec4 back = palette().text;
+  back.w = 0.05f;
+  ImGui::PushStyleColor(ImGuiCol_Header, back);
+  back.w = 0.09f;
+  ImGui::PushStyleColor(ImGuiCol_HeaderHovered, back);
+  ImGui::PushStyleColor(ImGuiCol_HeaderActive, back);
   ImGui::PushFont(font(Type::kStrong));
   const bool open = ImGui::CollapsingHeader(label, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   ImGui::PopFont();
+  ImGui::PopStyleColor(3);
   known_as(label);
   return open;
 }

@@ -52,6 +52,9 @@ bool text_field(const char* label, std::string& value, const char* placeholder =
 // the like. True while it changes; `finished` when a gesture has ended.
 bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic = false,
             float width = 0, bool* finished = nullptr);
+// Between two ends, dragged along its whole width.
+bool slider(const char* label, double& value, double least, double most, const char* hint_text = nullptr,
+            float width = 0);
 bool combo(const char* label, std::string& value, const std::vector<std::string>& choices, float width = 0);
 bool selectable(const char* label, bool selected, ImGuiSelectableFlags flags = 0, ImVec2 size = {0, 0});
 bool menu_item(const char* label, const char* shortcut = nullptr, bool checked = false, bool enabled = true);

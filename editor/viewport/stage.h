@@ -63,7 +63,7 @@ class Stage {
   std::uint64_t order(StageOrder order);
   // The newest finished picture; the one before may be drawn over from now on.
   StagePicture picture();
-  bool busy() const;  // an order has not been answered yet
+  bool busy() const;  // an order has not been answered yet, or not in full
   // On the stage's thread, before the next picture: `make` returns what is shown instead of the document, or null for
   // the document again. What was shown before is destroyed first.
   void show(std::function<std::unique_ptr<Scenery>()> make);
@@ -73,7 +73,9 @@ class Stage {
  private:
   Stage() = default;
   void run();
-  void draw(const StageOrder& order, std::uint64_t number);
+  void draw(const StageOrder& order, std::uint64_t number, bool refine);
+  void answer(const StageOrder& order, std::uint64_t number);
+  void choose_share(double took_ms);
 
   Window* window_ = nullptr;
   std::unique_ptr<SharedContext> context_;
@@ -87,6 +89,7 @@ class Stage {
   StagePicture done_;
   int showing_ = -1, finished_ = -1;  // which target the window shows, and which was finished last
   bool stop_ = false;
+  bool coarse_ = false;  // the newest picture is, and will be drawn in full when nothing else is wanted
   // The stage's thread's own.
   struct Target {
     GLuint texture = 0, frame = 0;
@@ -95,7 +98,10 @@ class Stage {
   Target targets_[3];
   std::unique_ptr<SolidView> solid_;
   std::unique_ptr<Scenery> scenery_;
-  double share_ = 1.0, draw_ms_ = 0.0;
+  std::optional<StageOrder> drawn_;  // of the document, that the newest picture shows
+  double share_ = 1.0;               // [1] of the resolution, of the next picture
+  double fixed_ms_ = 0.0;            // of a picture, whatever its resolution
+  double sample_pixels_ = 0.0, sample_ms_ = 0.0;  // [1] of all, [ms]: an earlier picture of another resolution
   bool software_ = false;
   std::string failure_;
   std::thread thread_;
