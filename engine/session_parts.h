@@ -2,6 +2,7 @@
 // one runs; what the owner's thread and the clock exchange goes through exchanges.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -125,6 +126,7 @@ struct Session::Parts {
   bool after_pause = false;                     // touch clock's: the next tick is the first after a pause
   Tick last;                                    // touch clock's: the tick under way, or the last
   bool shown = true;                            // touch clock's: its readings are published
+  std::function<void(Tick)> noted;              // touch clock's: last of every tick; must not allocate, wait or throw
   std::map<std::string, std::map<std::uint32_t, SourcePlace>> places;  // by object, of vertices that were pressed
 
   explicit Parts(const Scene& from) : scene(from) {}
@@ -155,6 +157,7 @@ struct Session::Parts {
 
   // On the touch clock, or the caller's thread in lockstep.
   void before(Tick tick);
+  void begin_replay(Recording recording);
   Tick replayed_tick();  // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
   void read_driver(SessionEffector& effector, Tick tick);

@@ -134,14 +134,19 @@ Status Session::replay(const std::filesystem::path& file) {
     if (Status applied = apply_setting(*this, setting); !applied)
       p.notes.push_back(file.string() + ": its setting " + applied.error().message());
   }
-  for (SessionEffector& effector : p.effectors) {
-    p.take_away(effector, EffectorSource::kNone);
-    p.world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
-  }
-  if (Status applied = apply_driver_settings(p.world, header.settings); !applied)
+  const std::vector<std::string> settings = header.settings;
+  p.begin_replay(std::move(recording).value());
+  if (Status applied = apply_driver_settings(p.world, settings); !applied)
     p.notes.push_back(file.string() + ": its setting " + applied.error().message());
-  p.replayed = std::move(recording).value();
   return Done{};
+}
+
+void Session::Parts::begin_replay(Recording recording) {
+  for (SessionEffector& effector : effectors) {
+    take_away(effector, EffectorSource::kNone);
+    world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
+  }
+  replayed = std::move(recording);
 }
 
 Tick Session::Parts::replayed_tick() {

@@ -60,6 +60,7 @@ void Session::Parts::after(Tick tick) {
   after_pause = false;
   rows.publish();
   shown = true;
+  if (noted) noted(tick);
 }
 
 const std::vector<LiveKey>& live_keys() {

@@ -10,6 +10,7 @@
 
 #include "content/files/image.h"
 #include "editor/app/files.h"
+#include "editor/tools/painting.h"
 #include "editor/ui/widgets.h"
 #include "runtime/clock.h"
 #include "runtime/printable.h"
@@ -19,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 44, kBar = 26;              // [point]
+constexpr float kTop = 44, kBar = 26;                                                      // [point]
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
-constexpr float kClick = 4;                        // [point] a press that moves farther is a drag
+constexpr float kClick = 4;                            // [point] a press that moves farther is a drag
 
 vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
   return {c.x, c.y, c.z, alpha};
@@ -52,6 +53,11 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   actions_ = make_actions(*this);
   tools_ = make_tools(*this);
   panels_ = make_panels(*this);
+  play_.show = [this](auto make) {
+    rendered_.forget();
+    stage_->show(std::move(make));
+  };
+  editor.on_change.push_back([this](const State& before, const State& after) { play_.changed(before, after); });
   if (!note.empty()) editor.say(note, Severity::kWarning);
 }
 
@@ -61,6 +67,7 @@ void App::set_look() {
 }
 
 App::~App() {
+  play_.stop();  // devices are let go before anything else
   stage_.reset();
   host_.reset();
 }
@@ -102,6 +109,7 @@ Status App::run() {
       at.settled = settled();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
+      at.figures = [this](const std::string& name) { say_figures(name); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),
                            [&](const Said& said) { return said.text.find(text) != std::string::npos; });
@@ -125,8 +133,9 @@ Status App::run() {
 }
 
 bool App::settled() const {
-  return editor.jobs.idle() && !stage_->busy() && picture_.order == order_ && !editor.camera.moving() &&
-         !dirty_picture_;
+  if (!editor.jobs.idle() || editor.painting->working() || editor.camera.moving()) return false;
+  if (play_.on()) return play_.ready();  // its pictures go on for ever
+  return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
 }
 
 ViewTool* App::tool() {
@@ -148,7 +157,7 @@ Panel* App::panel(const std::string& name) {
 }
 
 void App::show_panel(const std::string& name) {
-  wanted_tab_ = name;
+  wanted_tabs_.insert(name);
   open_[name] = true;
 }
 
@@ -198,7 +207,8 @@ void App::keys(std::span<const InputEvent> events) {
     if (event.kind == InputKind::kClose) close();
     if (event.kind == InputKind::kDrop) open(event.file);
     if (event.kind != InputKind::kKey) continue;
-    const bool typing = ImGui::GetIO().WantTextInput;
+    ViewTool* const t = tool();
+    const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
     if (!rebinding.empty()) {
       if (!pressed.empty()) rebound = pressed;
@@ -207,7 +217,7 @@ void App::keys(std::span<const InputEvent> events) {
     if (!questions_.empty() || after_leaving_) continue;  // they come first
     for (const Action& action : actions_) {
       if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
-      if (event.repeated && action.id != "edit.undo" && action.id != "edit.redo") continue;
+      if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") continue;
       if (action.enabled(editor)) action.run(editor);
       break;
     }
@@ -219,6 +229,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   host_->begin(events, dt);
   ui::begin_widgets();
   editor.jobs.deliver(editor);
+  editor.painting->update();
   files_->update();
   findings_.update(editor);
   keys(events);
@@ -226,7 +237,13 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     shown_revision_ = editor.document.revision();
     dirty_picture_ = true;
   }
-  if (!ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive()) editor.document.end_gesture();
+  if (!(editor.view == shown_view_)) {
+    shown_view_ = editor.view;
+    dirty_picture_ = true;
+  }
+  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) &&
+                            !editor.painting->stroking())
+    editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
   dirty_picture_ |= was_moving;
@@ -239,11 +256,14 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   within(settings.left, kLeastLeft, size.x / scale - kLeastRight - kLeastView);
   within(settings.right, kLeastRight, size.x / scale - static_cast<float>(settings.left) - kLeastView);
   within(settings.bottom, kLeastBottom, size.y / scale - kTop - kBar - kLeastView);
-  const float left = ui::px(static_cast<float>(settings.left)), right = size.x - ui::px(static_cast<float>(settings.right)),
-              top = ui::px(kTop), bar = size.y - ui::px(kBar),
-              bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
+  const float left = ui::px(static_cast<float>(settings.left)),
+              right = size.x - ui::px(static_cast<float>(settings.right)), top = ui::px(kTop),
+              bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
+  play_.update();
+  rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
+  editor.hovered = kNoNode;  // the tree and the viewport say what it is
   draw_top();
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
   draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
@@ -262,13 +282,26 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   draw_toasts();
   ask_to_leave();
   draw_question();
-  wanted_tab_.clear();
+  wanted_tabs_.clear();
   host_->end();
   order_picture();
   extra_lines.clear();
   if (!shot_.empty()) take_screenshot(std::exchange(shot_, {}));
   frame_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
-  slowest_ms_ = std::max(slowest_ms_, frame_ms_);
+  if (script_) frames_ms_.push_back(frame_ms_);
+}
+
+void App::say_figures(const std::string& name) {
+  std::vector<double> all = std::exchange(frames_ms_, {});
+  if (all.empty()) return;
+  std::sort(all.begin(), all.end());
+  const auto slow = std::count_if(all.begin(), all.end(), [](double ms) { return ms > 50.0; });
+  const std::string line = fmt::format(
+      "{}: {} frames of the interface, median {:.1f} ms, 99 % within {:.1f} ms, slowest {:.1f} ms, {} above 50 ms; "
+      "picture {:.0f} ms",
+      name, all.size(), all[all.size() / 2], all[all.size() * 99 / 100], all.back(), slow, picture_.draw_ms);
+  editor.say(line);
+  fmt::print("{}\n", line);
 }
 
 void App::draw_top() {
@@ -311,6 +344,8 @@ void App::draw_top() {
       ImGui::SameLine(0, ui::px(2));
     }
   }
+  ImGui::SameLine(0, ui::px(ui::kWide));
+  draw_play_buttons();
   // The document, in the middle of what is left; how it is shown at the right.
   const std::string title = editor.document.title() + (editor.document.dirty() ? "  \u2022" : "");
   const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
@@ -360,7 +395,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       const std::string badge = each->badge(editor);
       const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
       const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
-                                            wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
+                                            wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
       ImGui::BeginChild(each->name());
@@ -404,9 +439,9 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture_.texture)), low, high, {0, 1},
                   {1, 0});
   ImGui::SetCursorScreenPos(low);
-  ImGui::InvisibleButton("Viewport", {high.x - low.x, high.y - low.y},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                             ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::InvisibleButton(
+      "Viewport", {high.x - low.x, high.y - low.y},
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
   ui::known_as("Viewport");
   const ImGuiIO& io = ImGui::GetIO();
   ViewportInput in;
@@ -426,8 +461,17 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.shift = io.KeyShift;
   in.control = io.KeyCtrl;
   in.alt = io.KeyAlt;
-  in.view = editor.camera.viewpoint();
-  in.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  // The hand points at what it sees, though the camera may be ahead of the picture.
+  in.view = picture_.number > 0 ? picture_.view : editor.camera.viewpoint();
+  in.orthographic = picture_.number > 0 ? picture_.orthographic : orthographic();
+  if (!io.WantTextInput) {
+    for (const ImWchar c : io.InputQueueCharacters)
+      if (c >= 32 && c < 127) in.typed += static_cast<char>(c);
+    const auto key = [](ImGuiKey_ k) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(k)); };
+    in.enter = key(ImGuiKey_Enter) || key(ImGuiKey_KeyPadEnter);
+    in.escape = key(ImGuiKey_Escape);
+    in.erase = key(ImGuiKey_Backspace);
+  }
   in.under = picture_.picked.node;
   in.under_at = picture_.picked.point;
   in.dt = dt;
@@ -441,13 +485,15 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   // The tool has the first word, then the camera, then selecting.
   const bool start = editor.state().nodes.empty() && editor.document.file().empty();
   bool taken = false;
-  if (!start && !in.alt)
+  const bool playing = play_.on();
+  if (!start && !in.alt && playing) taken = touch(in);
+  if (!start && !in.alt && !taken)
     if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
   const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
                                                                     (in.alt || moved_since_press_) && !in.shift));
-  const bool shifts = active && (ImGui::IsMouseDragging(2, 1.0f) ||
-                                 (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
-                                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
+  const bool shifts =
+      active && (ImGui::IsMouseDragging(2, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
+                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
   dragging_view_ = turns || shifts;
   if (shifts)
     editor.camera.pan(in.dx, in.dy, in.height);
@@ -459,10 +505,13 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_ = ++question_;
     select_adds_ = in.shift || in.control;
     dirty_picture_ = true;
-  } else if (in.over && (in.dx != 0 || in.dy != 0) && !dragging_view_ && !stage_->busy()) {
-    asked_ = dvec2(in.x, in.y);
-    ++question_;
-    dirty_picture_ = true;
+  } else if (!playing && in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
+    wants_question_ = dragging_view_ || taken || stage_->busy();
+    if (!wants_question_) {
+      asked_ = dvec2(in.x, in.y);
+      ++question_;
+      dirty_picture_ = true;
+    }
   }
   if (in.released) pressed_in_view_ = false;
   if (selects_ && picture_.question >= *selects_) {
@@ -470,21 +519,22 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_.reset();
     dirty_picture_ = true;
   }
-  const NodeId hovered = in.over && !dragging_view_ ? picture_.picked.node : kNoNode;
-  if (hovered != editor.hovered) {
-    editor.hovered = hovered;
-    dirty_picture_ = true;
-  }
+  if (in.over) editor.hovered = !dragging_view_ && !taken ? picture_.picked.node : kNoNode;
   if (taken) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
+  if (!start) ViewBar::draw_over(editor, in, list);
+  draw_play_over(list, low, high);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
   list.PopClipRect();
   ImGui::End();
-  if (start) draw_start(low, high);
+  if (start)
+    draw_start(low, high);
+  else
+    view_bar_.draw(editor, tool(), low, high);
 }
 
 void App::draw_start(ImVec2 low, ImVec2 high) {
@@ -497,32 +547,49 @@ void App::draw_start(ImVec2 low, ImVec2 high) {
 }
 
 void App::order_picture() {
-  if (editor.playing) dirty_picture_ = true;
-  if (!dirty_picture_ && order_ > 0) return;
-  dirty_picture_ = false;
   const ui::Palette& p = ui::palette();
+  SolidOrder solid;
+  solid.view = editor.camera.viewpoint();
+  solid.orthographic = orthographic();
+  solid.settings = editor.view;
+  solid.selected = editor.selected;
+  solid.hovered = editor.hovered;
+  solid.lines = extra_lines;
+  if (ViewTool* t = tool()) t->lines(editor, solid.lines);
+  if (editor.view.creases) {
+    creases_.update(editor);
+    solid.creases = creases_.known();
+  }
+  solid.above = as_vec(p.raised);
+  solid.below = as_vec(p.window);
+  solid.grid = as_vec(p.text, 0.16f);
+  solid.selected_color = as_vec(p.accent);
+  solid.hovered_color = as_vec(p.text, 0.55f);
+  for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
+  solid.sign = as_vec(p.dim, 0.9f);
+  const bool another = !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered ||
+                       ordered_size_ != viewport_size_now();
+  if (!dirty_picture_ && !another && order_ > 0) return;
+  dirty_picture_ = false;
+  ordered_ = solid;
+  lines_ = solid.lines;
+  ordered_size_ = viewport_size_now();
   StageOrder order;
-  order.width = std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x));
-  order.height = std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y));
+  order.width = ordered_size_.first;
+  order.height = ordered_size_.second;
+  order.solid = std::move(solid);
   order.solid.state = editor.state();
-  order.solid.view = editor.camera.viewpoint();
-  order.solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
-  order.solid.settings = editor.view;
-  order.solid.selected = editor.selected;
-  order.solid.hovered = editor.hovered;
-  order.solid.lines = extra_lines;
-  if (ViewTool* t = tool()) t->lines(editor, order.solid.lines);
-  order.solid.above = as_vec(p.raised);
-  order.solid.below = as_vec(p.window);
-  order.solid.grid = as_vec(p.text, 0.16f);
-  order.solid.selected_color = as_vec(p.accent);
-  order.solid.hovered_color = as_vec(p.text, 0.55f);
   if (asked_) {
     order.question = asked_;
     order.question_number = question_;
     asked_.reset();
   }
   order_ = stage_->order(std::move(order));
+}
+
+std::pair<int, int> App::viewport_size_now() const {
+  return {std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x)),
+          std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y))};
 }
 
 void App::draw_bottom_bar() {
@@ -582,9 +649,9 @@ void App::ask_to_leave() {
   ImGui::OpenPopup("Unsaved changes");
   ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 0.4f * ImGui::GetIO().DisplaySize.y}, ImGuiCond_Always,
                           {0.5f, 0.5f});
-  if (!ImGui::BeginPopupModal("Unsaved changes", nullptr,
-                              ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar |
-                                  ImGuiWindowFlags_NoMove))
+  if (!ImGui::BeginPopupModal(
+          "Unsaved changes", nullptr,
+          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove))
     return;
   ui::title("Save the changes?");
   ui::gap();
@@ -627,8 +694,8 @@ void App::take_screenshot(const fs::path& file) {
   for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
   std::error_code ignored;
   if (!file.parent_path().empty()) fs::create_directories(file.parent_path(), ignored);
-  const Status written = write_file(
-      file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
+  const Status written =
+      write_file(file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
   editor.say(written ? "Screenshot in " + file.string() : written.error().message(),
              written ? Severity::kNote : Severity::kError);
 }

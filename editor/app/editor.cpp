@@ -1,12 +1,14 @@
 #include "editor/app/editor.h"
 
 #include <algorithm>
+#include <unordered_set>
 
-#include "editor/viewport/solid_view.h"
+#include "editor/tools/painting.h"
+#include "editor/viewport/frames.h"
 
 namespace pliant {
 
-Editor::Editor() = default;
+Editor::Editor() : painting(std::make_unique<Painting>(*this)) {}
 Editor::~Editor() = default;
 
 bool Editor::apply(const std::string& what, Result<State> next, const std::string& gesture) {
@@ -68,6 +70,13 @@ void Editor::undo() {
   say("Undone: " + what);
 }
 
+void Editor::drop_gesture(const std::string& gesture) {
+  const State before = state();
+  if (!document.drop_gesture(gesture)) return;
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+}
+
 void Editor::redo() {
   if (!document.can_redo()) return;
   const State before = state();
@@ -93,9 +102,12 @@ void Editor::select(NodeId id, bool add) {
 }
 
 void Editor::forget_gone() {
-  std::erase_if(selected, [this](NodeId id) { return !state().find(id); });
-  if (!state().find(hovered)) hovered = kNoNode;
-  std::erase_if(view.isolated, [this](NodeId id) { return !state().find(id); });
+  std::unordered_set<NodeId> there;
+  for (const auto& each : state().nodes) there.insert(each->id);
+  const auto gone = [&](NodeId id) { return !there.contains(id); };
+  std::erase_if(selected, gone);
+  if (gone(hovered)) hovered = kNoNode;
+  std::erase_if(view.isolated, gone);
 }
 
 void Editor::say(const std::string& text, Severity severity) {
@@ -121,14 +133,20 @@ std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {
   if (!node || node->node.mesh < 0) return nullptr;
   const auto mesh = state().meshes[static_cast<std::size_t>(node->node.mesh)];
   const dmat3 frame(state().to_world(id));
+  const std::string job = "surface " + std::to_string(id);
   for (const auto& each : surfaces_)
-    if (each->mesh == mesh && each->frame == frame) return each->surface;
+    if (each->mesh == mesh && each->frame == frame) {
+      if (each->surface || each->failed || jobs.running(each->job)) return each->surface;
+      surfaces_.erase(std::find(surfaces_.begin(), surfaces_.end(), each));  // its job made way for another's
+      break;
+    }
   if (surfaces_.size() > 32) surfaces_.erase(surfaces_.begin());
   auto made = std::make_shared<Surface>();
   made->mesh = mesh;
   made->frame = frame;
+  made->job = job;
   surfaces_.push_back(made);
-  jobs.start("surface " + std::to_string(id), "Preparing " + node->node.name, [made](const Jobs::Stop& stop) {
+  jobs.start(job, "Preparing " + node->node.name, [made](const Jobs::Stop& stop) {
     auto surface = PaintSurface::make(*made->mesh, made->frame, &stop);
     std::shared_ptr<const PaintSurface> ready;
     std::string fault;

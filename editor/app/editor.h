@@ -15,8 +15,8 @@
 #include "editor/document/document.h"
 #include "editor/document/edits.h"
 #include "editor/paint/paint_surface.h"
-#include "editor/viewport/view_settings.h"
 #include "editor/viewport/view_camera.h"
+#include "editor/viewport/view_settings.h"
 
 namespace pliant {
 
@@ -39,6 +39,8 @@ struct EditorFinding {
   std::optional<QuickFix> fix;
 };
 
+class Painting;
+
 class Editor {
  public:
   Editor();
@@ -57,6 +59,7 @@ class Editor {
   void go_to_step(std::size_t step);  // of the document's history
   void undo();
   void redo();
+  void drop_gesture(const std::string& gesture);  // what is being dragged goes back to where it was
   // Called after every change of what is shown, undo and redo included.
   std::vector<std::function<void(const State& before, const State& after)>> on_change;
 
@@ -83,12 +86,13 @@ class Editor {
   // --- View
   ViewSettings view;
   ViewCamera camera;
-  Box scene_box() const;   // [m] world
-  void frame_selected();   // or all
+  Box scene_box() const;  // [m] world
+  void frame_selected();  // or all
 
   // --- Surfaces to paint and to point at, by mesh and scale; made in the background
   // Null: not ready yet (it has been begun); the error is said once.
   std::shared_ptr<const PaintSurface> surface_of(NodeId id);
+  const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
 
   // --- Clipboard
   State clipboard;
@@ -97,15 +101,21 @@ class Editor {
   void cut();
   void paste();
 
+  // --- The path that is edited (app/path_editing.h)
+  std::size_t path_key = 0;   // that is active
+  double path_depth = 0.005;  // [m] of the next key
+  double path_speed = 0.02;   // [m/s] on the way to it
+
   Jobs jobs;
-  std::string tool = "Select";         // the active one of the viewport
-  bool playing = false;                // a session runs on the stage
+  std::string tool = "Select";          // the active one of the viewport
+  bool playing = false;                 // a session runs on the stage
   std::function<void()> request_close;  // set by the program
 
  private:
   struct Surface {
     std::shared_ptr<const DocumentMesh> mesh;
     dmat3 frame{1};
+    std::string job;
     std::shared_ptr<const PaintSurface> surface;  // null: under way, or it failed
     bool failed = false;
   };

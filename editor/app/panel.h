@@ -25,16 +25,16 @@ class Panel {
   virtual Place place() const = 0;
   virtual bool shown(const Editor&) const { return true; }
   virtual std::string badge(const Editor&) const { return {}; }  // after the name: a count, say
-  virtual void draw(Editor& editor) = 0;                           // within its child window; kOver: anything
+  virtual void draw(Editor& editor) = 0;                         // within its child window; kOver: anything
 };
 
 // What the mouse does over the viewport, in a frame.
 struct ViewportInput {
-  double x = 0, y = 0;          // [pixel] of the viewport, from its upper left corner
-  double dx = 0, dy = 0;        // since the frame before
-  int width = 1, height = 1;    // [pixel]
-  ImVec2 corner{0, 0};          // [pixel] of the window
-  bool over = false;            // the mouse is over it, and nothing else has it
+  double x = 0, y = 0;                                   // [pixel] of the viewport, from its upper left corner
+  double dx = 0, dy = 0;                                 // since the frame before
+  int width = 1, height = 1;                             // [pixel]
+  ImVec2 corner{0, 0};                                   // [pixel] of the window
+  bool over = false;                                     // the mouse is over it, and nothing else has it
   bool pressed = false, held = false, released = false;  // the left button, of a press that began over the viewport
   bool shift = false, control = false, alt = false;
   double pressure = 1.0;  // [1] of a tablet's pen; 1 of a mouse
@@ -43,6 +43,8 @@ struct ViewportInput {
   NodeId under = kNoNode;     // what the picture shows under the mouse, as known last
   dvec3 under_at{0};          // [m] world
   double dt = 0.0;            // [s]
+  std::string typed;          // what was typed while no field had the keys
+  bool enter = false, escape = false, erase = false;  // keys of the same
   ViewRay ray() const { return view_ray(view, orthographic, x, y, width, height); }
 };
 
@@ -60,6 +62,11 @@ class ViewTool {
   // Lines in the world, for the next picture.
   virtual void lines(const Editor&, std::vector<struct ViewLine>&) const {}
   virtual void leave(Editor&) {}  // another tool is taken
+  // What can be set about it, as widgets in a row, in a strip at the viewport's upper left.
+  virtual bool has_options() const { return false; }
+  virtual void options(Editor&) {}
+  // What is typed is its own now: no action's keys count, and its gesture goes on without the mouse.
+  virtual bool wants_keys() const { return false; }
 };
 
 // Something that can be done, by a menu, a key or a button.
@@ -73,6 +80,7 @@ struct Action {
   std::function<bool(const Editor&)> checked = nullptr;  // a switch: whether it is on
   bool separator = false;                                // a line above it in the menu
   bool while_typing = false;                             // its keys count in text fields, too
+  bool repeats = false;                                  // its key that is held goes on doing it
 };
 
 class App;

@@ -26,6 +26,7 @@ Result<Document> Document::open(const fs::path& file, double unit) {
   Document document(std::move(state), next);
   document.notes_ = std::move(notes);
   document.folder_ = file.parent_path();
+  document.read_scripts(document.steps_[0].state);
   if (is_level) {
     document.file_ = file;
     document.stamp_ = stamp;
@@ -62,6 +63,14 @@ Status Document::change(const std::string& what, Result<State> next, const std::
   return Done{};
 }
 
+bool Document::drop_gesture(const std::string& gesture) {
+  if (gesture.empty() || gesture != gesture_ || now_ == 0 || now_ + 1 != steps_.size()) return false;
+  gesture_.clear();
+  steps_.pop_back();
+  --now_;
+  return true;
+}
+
 void Document::undo() {
   gesture_.clear();
   if (can_undo()) --now_;
@@ -82,8 +91,27 @@ std::string Document::title() const {
   return state().rest->name.empty() ? "untitled" : state().rest->name + " (not saved)";
 }
 
-Status Document::write(const fs::path& file, const State& state) const {
+// Scripts come first: a level that names one never stands without it.
+Status Document::write(const fs::path& file, const State& state, bool scripts_too) const {
+  if (scripts_too)
+    for (const auto& [name, keys] : state.scripts) {
+      const auto before = scripts_on_disk_.find(name);
+      const bool here = file.parent_path() == folder_;
+      if (here && before != scripts_on_disk_.end() && before->second == keys) continue;
+      if (Status s = save_keys(*keys, file.parent_path() / name); !s) return s;
+    }
   return save_state(state, file);
+}
+
+void Document::read_scripts(State& state) {
+  for (const auto& each : state.nodes) {
+    const std::optional<HapticDevice>& device = each->node.device;
+    if (!device || device->driver != DriverKind::kScript || state.scripts.contains(device->file)) continue;
+    if (device->file.find('/') != std::string::npos || device->file.find('%') != std::string::npos) continue;
+    if (Result<ScriptKeys> keys = load_keys(folder_ / device->file))
+      state.scripts[device->file] = std::make_shared<const ScriptKeys>(*std::move(keys));
+  }
+  scripts_on_disk_ = state.scripts;
 }
 
 Status Document::save() {
@@ -92,7 +120,8 @@ Status Document::save() {
 }
 
 Status Document::save_as(const fs::path& file) {
-  if (Status s = write(file, state()); !s) return s;
+  if (Status s = write(file, state(), true); !s) return s;
+  scripts_on_disk_ = state().scripts;
   file_ = file;
   folder_ = file.parent_path();
   saved_ = revision();
@@ -101,7 +130,7 @@ Status Document::save_as(const fs::path& file) {
 }
 
 Status Document::save_copy(const fs::path& file) const {
-  return write(file, state());
+  return write(file, state(), file.parent_path() != folder_);
 }
 
 Status Document::revert() {
@@ -116,6 +145,7 @@ Status Document::revert() {
 void Document::revert_to(Level level, const FileStamp& stamp, const std::string& what) {
   notes_ = level.notes;
   State state = state_of(std::move(level), next_id_);
+  read_scripts(state);
   gesture_.clear();
   steps_.resize(now_ + 1);
   steps_.push_back({what, std::move(state), next_revision_++});

@@ -36,6 +36,8 @@ class Document {
   // The one way to change. An error changes nothing and comes back; nothing happens where nothing differs.
   Status change(const std::string& what, Result<State> next, const std::string& gesture = {});
   void end_gesture() { gesture_.clear(); }
+  // The gesture that is under way never was; true: it had changed something.
+  bool drop_gesture(const std::string& gesture);
   NodeId new_id() { return next_id_++; }
   NodeId& next_id() { return next_id_; }
 
@@ -76,8 +78,9 @@ class Document {
     std::uint64_t revision;
   };
   explicit Document(State state, NodeId next);
-  Status write(const std::filesystem::path& file, const State& state) const;
+  Status write(const std::filesystem::path& file, const State& state, bool scripts_too) const;
   void remember_file();
+  void read_scripts(State& state);
 
   std::vector<Step> steps_;
   std::size_t now_ = 0;
@@ -86,6 +89,7 @@ class Document {
   std::uint64_t next_revision_ = 1, saved_ = 0;
   std::filesystem::path file_, folder_;
   std::vector<std::string> notes_;
+  std::map<std::string, std::shared_ptr<const ScriptKeys>> scripts_on_disk_;
   FileStamp stamp_;  // of the file as read or written last
   bool recovered_ = false;
 };

@@ -73,16 +73,16 @@ LocalTransform local_of(const dmat4& m) {
   return local;
 }
 
-// The ids that no other one of them stands above.
+// The ids that no other one of them stands above, each once.
 std::vector<NodeId> topmost(const State& state, NodeIds ids) {
+  const std::set<NodeId> wanted(ids.begin(), ids.end());
+  std::set<NodeId> inside;  // below one of them
+  for (const auto& each : state.nodes)
+    if (wanted.contains(each->parent) || inside.contains(each->parent)) inside.insert(each->id);
   std::vector<NodeId> top;
-  for (const NodeId id : ids) {
-    const DocumentNode* const node = state.find(id);
-    if (!node || std::find(top.begin(), top.end(), id) != top.end()) continue;
-    bool inside = false;
-    for (const NodeId other : ids) inside |= other != id && state.below(id, other);
-    if (!inside) top.push_back(id);
-  }
+  std::set<NodeId> taken;
+  for (const NodeId id : ids)
+    if (!inside.contains(id) && state.find(id) && taken.insert(id).second) top.push_back(id);
   return top;
 }
 
@@ -293,16 +293,29 @@ Result<State> reparented(const State& state, NodeIds ids, NodeId parent, NodeId 
   return next;
 }
 
+Result<State> placed(const State& state, std::span<const Placing> all) {
+  State next = state;
+  bool any = false;
+  for (const auto& [id, local] : all) {
+    for (int i = 0; i < 3; ++i)
+      if (!std::isfinite(local.translation[i]) || !std::isfinite(local.scale[i]) || local.scale[i] == 0.0f)
+        return Error{"transform", "a position must be finite and a scale other than 0"};
+    if (!(std::abs(glm::length(local.rotation) - 1.0f) < 1e-3f))
+      return Error{"transform", "a rotation must be a unit quaternion"};
+    const std::size_t at = next.place(id);
+    if (at >= next.nodes.size()) continue;
+    auto node = std::make_shared<DocumentNode>(*next.nodes[at]);
+    node->node.local = local;
+    next.nodes[at] = std::move(node);
+    any = true;
+  }
+  if (!any) return kNoSuchNode;
+  return next;
+}
+
 Result<State> placed(const State& state, NodeId id, const LocalTransform& local) {
-  for (int i = 0; i < 3; ++i)
-    if (!std::isfinite(local.translation[i]) || !std::isfinite(local.scale[i]) || local.scale[i] == 0.0f)
-      return Error{"transform", "a position must be finite and a scale other than 0"};
-  if (!(std::abs(glm::length(local.rotation) - 1.0f) < 1e-3f))
-    return Error{"transform", "a rotation must be a unit quaternion"};
-  std::optional<Change> change = changing(state, id);
-  if (!change) return kNoSuchNode;
-  change->node->node.local = local;
-  return std::move(change->state);
+  const Placing one{id, local};
+  return placed(state, std::span(&one, 1));
 }
 
 Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light) {
@@ -471,6 +484,22 @@ Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh) {
   return std::move(change->state);
 }
 
+Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys) {
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  LevelNode& node = change->node->node;
+  if (!node.device) return Error{node.name, "has no haptic device; add one first"};
+  if (file.empty() || file.find('/') != std::string::npos)
+    return Error{file, "is no name for a script; it lies beside the level, without a folder"};
+  node.device->driver = keys.keys.empty() ? DriverKind::kNull : DriverKind::kScript;
+  node.device->file = keys.keys.empty() ? "" : file;
+  if (keys.keys.empty())
+    change->state.scripts.erase(file);
+  else
+    change->state.scripts[file] = std::make_shared<const ScriptKeys>(keys);
+  return std::move(change->state);
+}
+
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
   Level level = level_of(state);
   // Nodes are known again by a mark, wherever the edit puts new ones between them.
@@ -505,6 +534,7 @@ Result<State> by_level(const State& state, NodeId& next_id, const std::function<
   const bool same_looks = next.rest->materials.size() == state.rest->materials.size() &&
                           next.rest->images.size() == state.rest->images.size();
   if (same_looks) next.rest = state.rest;
+  next.scripts = state.scripts;
   return next;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "content/level/level.h"
+#include "editor/document/script_keys.h"
 #include "editor/paint/paint.h"
 
 namespace pliant {
@@ -61,6 +62,8 @@ struct State {
   std::string about;                     // what the level shows
   std::optional<LevelEnvironment> environment;
   Simulation simulation;
+  // Paths that devices follow, by the file that they name, relative to the level; files that cannot be read are absent.
+  std::map<std::string, std::shared_ptr<const ScriptKeys>> scripts;
 
   const DocumentNode* find(NodeId id) const;
   const DocumentNode* find(const std::string& name) const;  // the first of that name

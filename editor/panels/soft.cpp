@@ -8,6 +8,7 @@
 #include "content/author/presets.h"
 #include "content/author/staging.h"
 #include "content/author/touchable.h"
+#include "content/keys/extensions.h"
 #include "content/level/soft_preview.h"
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"

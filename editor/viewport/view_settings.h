@@ -19,6 +19,7 @@ struct ClipPlane {
   int axis = 0;          // x, y, z of the world
   double place = 0.5;    // [1] of the scene's box along it
   bool flipped = false;  // the other side is cut away
+  bool operator==(const ClipPlane&) const = default;
 };
 
 struct ViewSettings {
@@ -32,10 +33,13 @@ struct ViewSettings {
   bool tetrahedra = false;
   bool forces = true, contacts = false;       // while playing
   bool nodes = true;                          // probes, lights, cameras, instruments' frames as signs
+  bool names = false;                         // of what has a sign or is selected
+  bool regions = true;                        // what is pinned or a handle, by box and by paint
   std::optional<Channel> channel;             // painted values as colour
   double value_low = 0.25, value_high = 4.0;  // of a factor, the ends of the colours
   ClipPlane clip;
   std::vector<NodeId> isolated;  // only these and what is below them; empty: all
+  bool operator==(const ViewSettings&) const = default;
 };
 
 }  // namespace pliant

@@ -46,7 +46,7 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
 }
 
 // In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets
-// one; not where there is a tool, which it takes hold of (window_carrier.h).
+// one; not where there is a tool, which it takes hold of (window/carrier.h).
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
     if (node.handle || (node.device && node.device->driver == DriverKind::kMouse)) return {};

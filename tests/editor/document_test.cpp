@@ -388,6 +388,27 @@ TEST(Document, AnEditOfTheWholeLevelSharesWhatItLeavesAlone) {
   EXPECT_EQ(after->rest.get(), state.rest.get());
 }
 
+TEST(Document, APathIsSavedAsAScriptBesideTheLevelAndComesBackAsItsKeys) {
+  const TemporaryFolder folder;
+  Document document = opened(folder.path);
+  const NodeId finger = id_of(document, "finger");
+  ScriptKeys keys;
+  keys.keys = {{0.0, {0.05, 0, 0.05}, {0, 1, 0}, 0.02}, {1.0, {0.05, 0, 0.05}, {0, 1, 0}, -0.004}};
+  ASSERT_TRUE(document.change("path", with_script(document.state(), finger, "press.csv", keys)).ok());
+  EXPECT_EQ(document.state().find(finger)->node.device->driver, DriverKind::kScript);
+  EXPECT_FALSE(document.change("path", with_script(document.state(), finger, "../press.csv", keys)).ok());
+  ASSERT_TRUE(document.save().ok());
+  Result<Document> again = Document::open(document.file());
+  ASSERT_TRUE(again.ok()) << again.error().message();
+  ASSERT_TRUE(again->state().scripts.contains("press.csv"));
+  EXPECT_EQ(*again->state().scripts.at("press.csv"), keys);
+  again->undo();
+  // A script that is as it was is not written again.
+  const auto time = fs::last_write_time(folder.path / "press.csv");
+  ASSERT_TRUE(again->save().ok());
+  EXPECT_EQ(fs::last_write_time(folder.path / "press.csv"), time);
+}
+
 TEST(Document, ABareMeshHasNoFileSoThatSavingAsksForOne) {
   const TemporaryFolder folder;
   const fs::path file = folder.path / "bare.obj";

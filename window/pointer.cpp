@@ -1,4 +1,4 @@
-#include "player/window/window_pointer.h"
+#include "window/pointer.h"
 
 #include <algorithm>
 #include <cmath>

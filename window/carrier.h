@@ -20,6 +20,9 @@ class Carrier {
   // is none. The device begins where the tool stands.
   static std::optional<Carrier> of(World& world);
 
+  // Of this tool, whose device stands at `at` [m] world.
+  static Carrier holding(const World& world, Entity tool, dvec3 at);
+
   Entity tool() const { return tool_; }
   // `point` [m] world, on the tool; `device` [m] world, where its device is.
   void grab(const dvec3& point, const dvec3& device);

@@ -1,4 +1,4 @@
-#include "player/window/window_carrier.h"
+#include "window/carrier.h"
 
 #include <algorithm>
 
@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kStepShare = 0.01;   // [1] of the scene's size: one click of the wheel
 constexpr double kLeastAlong = 0.05;  // [1] cosine: rays that graze the plane more are not followed
+
+double step_in(const World& world) {
+  return kStepShare * std::max(1e-3, static_cast<double>(drawn_box(world, true).diagonal()));
+}
 
 }  // namespace
 
@@ -24,7 +28,7 @@ std::optional<Carrier> Carrier::of(World& world) {
     carrier.device_ = named;
     carrier.led_ = device->driver != DriverKind::kMouse;
     if (carrier.led_ && led) continue;
-    carrier.step_ = kStepShare * std::max(1e-3, static_cast<double>(drawn_box(world, true).diagonal()));
+    carrier.step_ = step_in(world);
     if (const Pose* pose = world.registry.find<Pose>(entity)) {
       carrier.position_ = carrier.wanted_ = pose->position;
       if (!carrier.led_) device->rotation = pose->rotation;
@@ -33,6 +37,14 @@ std::optional<Carrier> Carrier::of(World& world) {
     led = carrier;
   }
   return led;
+}
+
+Carrier Carrier::holding(const World& world, Entity tool, dvec3 at) {
+  Carrier carrier;
+  carrier.tool_ = tool;
+  carrier.step_ = step_in(world);
+  carrier.position_ = carrier.wanted_ = at;
+  return carrier;
 }
 
 void Carrier::grab(const dvec3& point, const dvec3& device) {
