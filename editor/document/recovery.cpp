@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "content/files/file_io.h"
@@ -103,6 +105,13 @@ std::vector<RecoveryCopy> find_recoveries(const fs::path& state_folder) {
 
 void remove_recovery(const RecoveryCopy& copy) {
   std::error_code gone;
+  // What a copy was being written to when the editor ended.
+  const std::string half = copy.copy.filename().string() + ".";
+  for (const fs::directory_entry& entry : fs::directory_iterator(copy.copy.parent_path().empty() ? "." : copy.copy.parent_path(), gone)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(half) && name.ends_with(".part") && !runs(std::atoi(name.c_str() + half.size())))
+      fs::remove(entry.path(), gone);
+  }
   fs::remove(copy.copy, gone);
   fs::remove(about_of_copy(copy.copy), gone);
 }

@@ -86,7 +86,7 @@ class FindingsPanel : public Panel {
     if (found.fix) {
       ImGui::SetCursorScreenPos({at.x + wide - fix_wide, at.y});
       fix = ui::button(fmt::format("{}##fix", found.fix->label).c_str(), "Mends it; undo takes it back");
-      ui::known_as("fix");
+      ui::known_as(found.fix->label);
     }
     ImGui::SetCursorScreenPos(after);
     ImGui::PopID();

@@ -109,34 +109,36 @@ TEST_F(WindowTest, TheEditorListsWhatIsFoundAndMendsIt) {
   Level level = sheet_and_finger();
   level.nodes[1].device.reset();
   level.nodes[1].probe_device.clear();
-  level.nodes[0].soft_body.emplace();
+  level.nodes[0].handle.emplace();
   ASSERT_TRUE(save_level(level, folder / "ill.glb").ok());
   const Said said = edit("ill.glb",
                          "click Tab/Findings\nawait Findings/Checked\nscreenshot findings.png\n"
-                         "click Findings/1/row@0.3,0.5\nclick Findings/1/fix\nwait 1\nawait Findings/Checked\n"
-                         "click Findings/1/fix\nwait 1\nawait Findings/Checked\nscreenshot mended.png\n"
+                         "click Findings/1/row@0.3,0.5\nclick Remove the handle\nawait Findings/Checked\n"
+                         "click Add a device, moved by the mouse\nawait Findings/Checked\nscreenshot mended.png\n"
                          "key Ctrl+S\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   const Document saved = document("ill.glb");
-  EXPECT_FALSE(saved.state().find("sheet")->node.deformable && saved.state().find("sheet")->node.soft_body);
+  EXPECT_FALSE(saved.state().find("sheet")->node.handle);
   EXPECT_TRUE(saved.state().find("finger")->node.device);
 }
 
 TEST_F(WindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
-  // Another program, by hand of the shell: it waits for the editor's own copy of the change, which is made last.
+  // Another program, by hand of the shell: it waits for the screenshot.
   Level other = sheet_and_finger();
   other.nodes[1].name = "stylus";
   ASSERT_TRUE(save_level(other, folder / "other.glb").ok());
-  const std::string writer = "sh -c '(sleep 6; cp other.glb small.tmp && mv small.tmp small.glb) & exec \"$@\"' -- ";
+  const std::string writer = "sh -c '(while [ ! -e shots/ready.png ]; do sleep 0.1; done; cp other.glb small.tmp; mv small.tmp small.glb) & "
+                             "exec \"$@\"' --";
   write_text(folder / "script.txt",
-             "expect Scene/finger/row\nawait Scene/stylus/row\nsay was read again\nclose\n");
+             "expect Scene/finger/row\nscreenshot ready.png\nawait Scene/stylus/row\nsay was read again\nclose\n");
   const Said said = pliant({"edit", "small.glb", "--config", "config", "--out", "shots", "--input", "script.txt"},
                            around() + " " + writer);
   ASSERT_EQ(said.status, 0) << said.err;
 
   ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
+  fs::remove(folder / "shots" / "ready.png");
   write_text(folder / "script.txt",
-             "click Scene/sheet/row\nkey Delete\nawait Question/Keep mine\nscreenshot both.png\n"
+             "click Scene/sheet/row\nkey Delete\nscreenshot ready.png\nawait Question/Keep mine\nscreenshot both.png\n"
              "click Question/Load theirs\nawait Scene/stylus/row\nexpect Scene/sheet/row\nkey Ctrl+Z\n"
              "expect-no Scene/sheet/row\nkey Ctrl+Shift+Z\nclose\n");
   const Said both = pliant({"edit", "small.glb", "--config", "config", "--out", "shots", "--input", "script.txt"},
