@@ -106,7 +106,7 @@ Status App::run() {
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
       ui::Script::Surroundings at;
-      at.settled = settled();
+      at.under_way = under_way();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
@@ -132,10 +132,16 @@ Status App::run() {
   return settings.save();
 }
 
-bool App::settled() const {
-  if (!editor.jobs.idle() || editor.painting->working() || editor.camera.moving()) return false;
-  if (play_.on()) return play_.ready();  // its pictures go on for ever
-  return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
+std::string App::under_way() const {
+  if (!editor.jobs.idle()) {
+    const std::vector<std::string> jobs = editor.jobs.under_way();
+    return jobs.empty() ? "a job" : jobs.front();
+  }
+  if (editor.painting->working()) return "a stroke";
+  if (editor.camera.moving()) return "the camera's way";
+  if (play_.on()) return play_.ready() ? "" : "opening the level to play";  // its pictures go on for ever
+  if (rendered_.waits()) return "the rendered picture";
+  return stage_->busy() || picture_.order != order_ || dirty_picture_ ? "a picture" : "";
 }
 
 ViewTool* App::tool() {
