@@ -1,7 +1,9 @@
 // The editor as the command calls it.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "runtime/result.h"
 
@@ -14,6 +16,7 @@ struct EditOptions {
   std::string out = ".";           // folder of the script's screenshots
   int width = 1600, height = 900;  // [pixel]
   std::string config;              // folder of settings; empty: the user's own
+  std::vector<std::filesystem::path> levels;  // that ship, for the start page
 };
 
 // Until the window is closed. An error is what kept the editor from opening, or a script's step that failed.

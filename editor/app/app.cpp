@@ -9,6 +9,8 @@
 #include <cmath>
 
 #include "content/files/image.h"
+#include "editor/app/files.h"
+#include "editor/tools/painting.h"
 #include "editor/ui/widgets.h"
 #include "runtime/clock.h"
 #include "runtime/printable.h"
@@ -23,7 +25,7 @@ constexpr float kTopPad = 9;                        // [point] above the buttons
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
-constexpr float kClick = 4;                        // [point] a press that moves farther is a drag
+constexpr float kClick = 4;                            // [point] a press that moves farther is a drag
 
 vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
   return {c.x, c.y, c.z, alpha};
@@ -45,17 +47,28 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   std::string note;
   settings = Settings::load(options.config, note);
   host_.emplace(window_);
-  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
-                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
+  set_look();
   editor.request_close = [this] { close(); };
   editor.jobs.wake = [] { glfwPostEmptyEvent(); };
+  files_ = std::make_unique<Files>(*this, options.input.empty());
   actions_ = make_actions(*this);
   tools_ = make_tools(*this);
   panels_ = make_panels(*this);
+  play_.show = [this](auto make) {
+    rendered_.forget();
+    stage_->show(std::move(make));
+  };
+  editor.on_change.push_back([this](const State& before, const State& after) { play_.changed(before, after); });
   if (!note.empty()) editor.say(note, Severity::kWarning);
 }
 
+void App::set_look() {
+  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
+                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
+}
+
 App::~App() {
+  play_.stop();  // devices are let go before anything else
   stage_.reset();
   host_.reset();
 }
@@ -69,11 +82,14 @@ Status App::run() {
     if (!script) return script.error();
     script_ = *std::move(script);
   }
-  if (!options_.file.empty()) {
+  if (!options_.file.empty() && find_recovery(options_.file, state_folder())) {
+    files_->open(options_.file, options_.unit);  // asks which
+  } else if (!options_.file.empty()) {
     auto document = Document::open(options_.file, options_.unit);
     if (!document) return document.error();
     editor.take(*std::move(document));
     settings.used(options_.file);
+    (void)settings.save();  // the next start knows it, whatever becomes of this one
   }
   window_.show("Pliant");
   std::uint64_t before = now_ns();
@@ -83,7 +99,10 @@ Status App::run() {
     const bool busy = script_ || !settled() || editor.playing || dragging_view_;
     events.clear();
     window_.poll(events, busy ? kBusyWait : kIdleWait);
-    if (Window::lost()) return Window::loss();
+    if (Window::lost()) {
+      files_->save_what_can_be();
+      return Window::loss();
+    }
     const std::uint64_t now = now_ns();
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
@@ -91,6 +110,7 @@ Status App::run() {
       at.settled = settled();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
+      at.figures = [this](const std::string& name) { say_figures(name); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),
                            [&](const Said& said) { return said.text.find(text) != std::string::npos; });
@@ -101,16 +121,22 @@ Status App::run() {
       }
       if (script_->done() && settled()) script_.reset();
     }
+    if (std::exchange(look_changed_, false)) {
+      set_look();
+      dirty_picture_ = true;
+    }
     frame(events, static_cast<double>(now - before) * 1e-9);
     before = now;
     window_.present();
   }
+  files_->close_in_order();
   return settings.save();
 }
 
 bool App::settled() const {
-  return editor.jobs.idle() && !stage_->busy() && picture_.order == order_ && !editor.camera.moving() &&
-         !dirty_picture_;
+  if (!editor.jobs.idle() || editor.painting->working() || editor.camera.moving()) return false;
+  if (play_.on()) return play_.ready();  // its pictures go on for ever
+  return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
 }
 
 ViewTool* App::tool() {
@@ -132,7 +158,7 @@ Panel* App::panel(const std::string& name) {
 }
 
 void App::show_panel(const std::string& name) {
-  wanted_tab_ = name;
+  wanted_tabs_.insert(name);
   open_[name] = true;
 }
 
@@ -150,7 +176,7 @@ void App::do_action(const std::string& id) {
 }
 
 void App::leave_document(std::function<void()> then) {
-  if (!editor.document.dirty()) {
+  if (!editor.document.worth_keeping()) {
     then();
     return;
   }
@@ -158,20 +184,7 @@ void App::leave_document(std::function<void()> then) {
 }
 
 void App::open(const fs::path& file) {
-  leave_document([this, file] {
-    editor.jobs.start("open", "Opening " + file.filename().string(), [file](const Jobs::Stop&) {
-      auto document = std::make_shared<Result<Document>>(Document::open(file));
-      return [document, file](Editor& to) {
-        if (!*document) {
-          to.say(document->error().message(), Severity::kError);
-          return;
-        }
-        to.take(std::move(**document));
-        to.say("Opened " + file.filename().string());
-      };
-    });
-    settings.used(file);
-  });
+  files_->open(file);
 }
 
 void App::new_document() {
@@ -179,17 +192,7 @@ void App::new_document() {
 }
 
 bool App::save() {
-  if (editor.document.file().empty()) {
-    do_action("file.save_as");
-    return false;
-  }
-  if (Status s = editor.document.save(); !s) {
-    editor.say(s.error().message(), Severity::kError);
-    return false;
-  }
-  settings.used(editor.document.file());
-  editor.say("Saved " + editor.document.file().filename().string());
-  return true;
+  return files_->save();
 }
 
 void App::close() {
@@ -208,9 +211,14 @@ void App::keys(std::span<const InputEvent> events) {
     ViewTool* const t = tool();
     const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    if (!rebinding.empty()) {
+      if (!pressed.empty()) rebound = pressed;
+      continue;
+    }
+    if (!questions_.empty() || after_leaving_) continue;  // they come first
     for (const Action& action : actions_) {
       if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
-      if (event.repeated && action.id != "edit.undo" && action.id != "edit.redo") continue;
+      if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") continue;
       if (action.enabled(editor)) action.run(editor);
       break;
     }
@@ -222,12 +230,20 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   host_->begin(events, dt);
   ui::begin_widgets();
   editor.jobs.deliver(editor);
+  editor.painting->update();
+  files_->update();
+  findings_.update(editor);
   keys(events);
   if (editor.document.revision() != shown_revision_) {
     shown_revision_ = editor.document.revision();
     dirty_picture_ = true;
   }
-  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()))
+  if (!(editor.view == shown_view_)) {
+    shown_view_ = editor.view;
+    dirty_picture_ = true;
+  }
+  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) &&
+                            !editor.painting->stroking())
     editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
@@ -241,10 +257,12 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   within(settings.left, kLeastLeft, size.x / scale - kLeastRight - kLeastView);
   within(settings.right, kLeastRight, size.x / scale - static_cast<float>(settings.left) - kLeastView);
   within(settings.bottom, kLeastBottom, size.y / scale - kTop - kBar - kLeastView);
-  const float left = ui::px(static_cast<float>(settings.left)), right = size.x - ui::px(static_cast<float>(settings.right)),
-              top = ui::px(kTop), bar = size.y - ui::px(kBar),
-              bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
+  const float left = ui::px(static_cast<float>(settings.left)),
+              right = size.x - ui::px(static_cast<float>(settings.right)), top = ui::px(kTop),
+              bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
+  play_.update();
+  rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
   editor.hovered = kNoNode;  // the tree and the viewport say what it is
   draw_top();
@@ -261,15 +279,30 @@ void App::frame(std::span<const InputEvent> events, double dt) {
       const ui::Scope scope(each->name());
       each->draw(editor);
     }
+  draw_banners();
   draw_toasts();
   ask_to_leave();
-  wanted_tab_.clear();
+  draw_question();
+  wanted_tabs_.clear();
   host_->end();
   order_picture();
   extra_lines.clear();
   if (!shot_.empty()) take_screenshot(std::exchange(shot_, {}));
   frame_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
-  slowest_ms_ = std::max(slowest_ms_, frame_ms_);
+  if (script_) frames_ms_.push_back(frame_ms_);
+}
+
+void App::say_figures(const std::string& name) {
+  std::vector<double> all = std::exchange(frames_ms_, {});
+  if (all.empty()) return;
+  std::sort(all.begin(), all.end());
+  const auto slow = std::count_if(all.begin(), all.end(), [](double ms) { return ms > 50.0; });
+  const std::string line = fmt::format(
+      "{}: {} frames of the interface, median {:.1f} ms, 99 % within {:.1f} ms, slowest {:.1f} ms, {} above 50 ms; "
+      "picture {:.0f} ms",
+      name, all.size(), all[all.size() / 2], all[all.size() * 99 / 100], all.back(), slow, picture_.draw_ms);
+  editor.say(line);
+  fmt::print("{}\n", line);
 }
 
 void App::draw_top() {
@@ -312,6 +345,8 @@ void App::draw_top() {
       ImGui::SameLine(0, ui::px(2));
     }
   }
+  ImGui::SameLine(0, ui::px(ui::kWide));
+  draw_play_buttons();
   // The document, in the middle of what is left; how it is shown at the right.
   const std::string title = editor.document.title() + (editor.document.dirty() ? "  \u2022" : "");
   const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
@@ -361,7 +396,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       const std::string badge = each->badge(editor);
       const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
       const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
-                                            wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
+                                            wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
       ImGui::BeginChild(each->name());
@@ -405,9 +440,9 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture_.texture)), low, high, {0, 1},
                   {1, 0});
   ImGui::SetCursorScreenPos(low);
-  ImGui::InvisibleButton("Viewport", {high.x - low.x, high.y - low.y},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                             ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::InvisibleButton(
+      "Viewport", {high.x - low.x, high.y - low.y},
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
   ui::known_as("Viewport");
   const ImGuiIO& io = ImGui::GetIO();
   ViewportInput in;
@@ -429,9 +464,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.alt = io.KeyAlt;
   // The hand points at what it sees, though the camera may be ahead of the picture.
   in.view = picture_.number > 0 ? picture_.view : editor.camera.viewpoint();
-  in.orthographic = picture_.number > 0         ? picture_.orthographic
-                    : editor.view.orthographic ? editor.camera.orthographic_height()
-                                               : 0.0;
+  in.orthographic = picture_.number > 0 ? picture_.orthographic : orthographic();
   if (!io.WantTextInput) {
     for (const ImWchar c : io.InputQueueCharacters)
       if (c >= 32 && c < 127) in.typed += static_cast<char>(c);
@@ -453,13 +486,15 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   // The tool has the first word, then the camera, then selecting.
   const bool start = editor.state().nodes.empty() && editor.document.file().empty();
   bool taken = false;
-  if (!start && !in.alt)
+  const bool playing = play_.on();
+  if (!start && !in.alt && playing) taken = touch(in);
+  if (!start && !in.alt && !taken)
     if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
   const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
                                                                     (in.alt || moved_since_press_) && !in.shift));
-  const bool shifts = active && (ImGui::IsMouseDragging(2, 1.0f) ||
-                                 (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
-                                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
+  const bool shifts =
+      active && (ImGui::IsMouseDragging(2, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
+                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
   dragging_view_ = turns || shifts;
   if (shifts)
     editor.camera.pan(in.dx, in.dy, in.height);
@@ -471,7 +506,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_ = ++question_;
     select_adds_ = in.shift || in.control;
     dirty_picture_ = true;
-  } else if (in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
+  } else if (!playing && in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
     wants_question_ = dragging_view_ || taken || stage_->busy();
     if (!wants_question_) {
       asked_ = dvec2(in.x, in.y);
@@ -491,6 +526,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
   if (!start) ViewBar::draw_over(editor, in, list);
+  draw_play_over(list, low, high);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
@@ -515,7 +551,7 @@ void App::order_picture() {
   const ui::Palette& p = ui::palette();
   SolidOrder solid;
   solid.view = editor.camera.viewpoint();
-  solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  solid.orthographic = orthographic();
   solid.settings = editor.view;
   solid.selected = editor.selected;
   solid.hovered = editor.hovered;
@@ -534,9 +570,10 @@ void App::order_picture() {
   solid.sign = as_vec(p.dim, 0.9f);
   const bool another = !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered ||
                        ordered_size_ != viewport_size_now();
-  if (!dirty_picture_ && !another && !editor.playing && order_ > 0) return;
+  if (!dirty_picture_ && !another && order_ > 0) return;
   dirty_picture_ = false;
   ordered_ = solid;
+  lines_ = solid.lines;
   ordered_size_ = viewport_size_now();
   StageOrder order;
   order.width = ordered_size_.first;
@@ -613,9 +650,9 @@ void App::ask_to_leave() {
   ImGui::OpenPopup("Unsaved changes");
   ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 0.4f * ImGui::GetIO().DisplaySize.y}, ImGuiCond_Always,
                           {0.5f, 0.5f});
-  if (!ImGui::BeginPopupModal("Unsaved changes", nullptr,
-                              ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar |
-                                  ImGuiWindowFlags_NoMove))
+  if (!ImGui::BeginPopupModal(
+          "Unsaved changes", nullptr,
+          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove))
     return;
   ui::title("Save the changes?");
   ui::gap();
@@ -628,9 +665,9 @@ void App::ask_to_leave() {
   };
   if (ui::strong_button("Save", nullptr, true, 110)) {
     if (editor.document.file().empty()) {
-      after_leaving_ = nullptr;
+      auto then = std::exchange(after_leaving_, nullptr);
       ImGui::CloseCurrentPopup();
-      do_action("file.save_as");
+      files_->save_as(std::move(then));
     } else if (save()) {
       go();
     }
@@ -658,8 +695,8 @@ void App::take_screenshot(const fs::path& file) {
   for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
   std::error_code ignored;
   if (!file.parent_path().empty()) fs::create_directories(file.parent_path(), ignored);
-  const Status written = write_file(
-      file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
+  const Status written =
+      write_file(file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
   editor.say(written ? "Screenshot in " + file.string() : written.error().message(),
              written ? Severity::kNote : Severity::kError);
 }

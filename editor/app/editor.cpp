@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "editor/tools/painting.h"
 #include "editor/viewport/frames.h"
 
 namespace pliant {
 
-Editor::Editor() = default;
+Editor::Editor() : painting(std::make_unique<Painting>(*this)) {}
 Editor::~Editor() = default;
 
 bool Editor::apply(const std::string& what, Result<State> next, const std::string& gesture) {
@@ -26,6 +27,7 @@ bool Editor::apply(const std::string& what, Result<State> next, const std::strin
 void Editor::take(Document next) {
   const State before = state();
   document = std::move(next);
+  ++documents;
   selected.clear();
   hovered = kNoNode;
   surfaces_.clear();
@@ -34,6 +36,28 @@ void Editor::take(Document next) {
   camera.home(scene_box());
   for (const auto& each : on_change) each(before, state());
   for (const std::string& note : document.notes()) say(note);
+}
+
+void Editor::revert_to(Level level, const FileStamp& stamp, const std::string& what) {
+  const State before = state();
+  std::vector<std::string> names;
+  for (const NodeId id : selected)
+    if (const DocumentNode* node = before.find(id)) names.push_back(node->node.name);
+  document.revert_to(std::move(level), stamp, what);
+  selected.clear();
+  for (const std::string& name : names)
+    if (const DocumentNode* node = state().find(name)) selected.push_back(node->id);
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+  for (const std::string& note : document.notes()) say(note);
+}
+
+void Editor::go_to_step(std::size_t step) {
+  if (step >= document.step_count() || step == document.step()) return;
+  const State before = state();
+  document.go_to_step(step);
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
 }
 
 void Editor::undo() {
@@ -109,14 +133,20 @@ std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {
   if (!node || node->node.mesh < 0) return nullptr;
   const auto mesh = state().meshes[static_cast<std::size_t>(node->node.mesh)];
   const dmat3 frame(state().to_world(id));
+  const std::string job = "surface " + std::to_string(id);
   for (const auto& each : surfaces_)
-    if (each->mesh == mesh && each->frame == frame) return each->surface;
+    if (each->mesh == mesh && each->frame == frame) {
+      if (each->surface || each->failed || jobs.running(each->job)) return each->surface;
+      surfaces_.erase(std::find(surfaces_.begin(), surfaces_.end(), each));  // its job made way for another's
+      break;
+    }
   if (surfaces_.size() > 32) surfaces_.erase(surfaces_.begin());
   auto made = std::make_shared<Surface>();
   made->mesh = mesh;
   made->frame = frame;
+  made->job = job;
   surfaces_.push_back(made);
-  jobs.start("surface " + std::to_string(id), "Preparing " + node->node.name, [made](const Jobs::Stop& stop) {
+  jobs.start(job, "Preparing " + node->node.name, [made](const Jobs::Stop& stop) {
     auto surface = PaintSurface::make(*made->mesh, made->frame, &stop);
     std::shared_ptr<const PaintSurface> ready;
     std::string fault;

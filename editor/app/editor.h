@@ -15,8 +15,8 @@
 #include "editor/document/document.h"
 #include "editor/document/edits.h"
 #include "editor/paint/paint_surface.h"
-#include "editor/viewport/view_settings.h"
 #include "editor/viewport/view_camera.h"
+#include "editor/viewport/view_settings.h"
 
 namespace pliant {
 
@@ -39,6 +39,8 @@ struct EditorFinding {
   std::optional<QuickFix> fix;
 };
 
+class Painting;
+
 class Editor {
  public:
   Editor();
@@ -49,8 +51,12 @@ class Editor {
   const State& state() const { return document.state(); }
   // The one way of every panel and tool to change the level: says what went wrong. True: it is as was asked.
   bool apply(const std::string& what, Result<State> next, const std::string& gesture = {});
-  // Replaces the document; asks nothing. `frame`: the camera goes to where all is seen.
+  // Replaces the document; asks nothing.
   void take(Document next);
+  std::uint64_t documents = 0;  // taken so far
+  void revert_to(Level level, const FileStamp& stamp, const std::string& what = "Revert");  // as Document; keeps what
+                                                                                           // is selected, by name
+  void go_to_step(std::size_t step);  // of the document's history
   void undo();
   void redo();
   void drop_gesture(const std::string& gesture);  // what is being dragged goes back to where it was
@@ -75,16 +81,18 @@ class Editor {
   // --- Findings of the document as it stands
   std::vector<EditorFinding> findings;
   std::uint64_t found_at = ~std::uint64_t{0};  // the revision that they are of
+  std::uint64_t files_read = 0;  // grows when a file that the level names (a script, a panorama) is another one on disk
 
   // --- View
   ViewSettings view;
   ViewCamera camera;
-  Box scene_box() const;   // [m] world
-  void frame_selected();   // or all
+  Box scene_box() const;  // [m] world
+  void frame_selected();  // or all
 
   // --- Surfaces to paint and to point at, by mesh and scale; made in the background
   // Null: not ready yet (it has been begun); the error is said once.
   std::shared_ptr<const PaintSurface> surface_of(NodeId id);
+  const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
 
   // --- Clipboard
   State clipboard;
@@ -93,15 +101,21 @@ class Editor {
   void cut();
   void paste();
 
+  // --- The path that is edited (app/path_editing.h)
+  std::size_t path_key = 0;   // that is active
+  double path_depth = 0.005;  // [m] of the next key
+  double path_speed = 0.02;   // [m/s] on the way to it
+
   Jobs jobs;
-  std::string tool = "Select";         // the active one of the viewport
-  bool playing = false;                // a session runs on the stage
+  std::string tool = "Select";          // the active one of the viewport
+  bool playing = false;                 // a session runs on the stage
   std::function<void()> request_close;  // set by the program
 
  private:
   struct Surface {
     std::shared_ptr<const DocumentMesh> mesh;
     dmat3 frame{1};
+    std::string job;
     std::shared_ptr<const PaintSurface> surface;  // null: under way, or it failed
     bool failed = false;
   };

@@ -18,22 +18,23 @@ class Panel {
     kRight,   // a tab at the right
     kBottom,  // a tab below the viewport
     kOver,    // draws its own window, when it is asked for (a dialog)
+    kBanner,  // a line over the upper edge of the viewport, while it is shown()
   };
   virtual ~Panel() = default;
   virtual const char* name() const = 0;  // on its tab, and first in its widgets' addresses
   virtual Place place() const = 0;
   virtual bool shown(const Editor&) const { return true; }
   virtual std::string badge(const Editor&) const { return {}; }  // after the name: a count, say
-  virtual void draw(Editor& editor) = 0;                           // within its child window; kOver: anything
+  virtual void draw(Editor& editor) = 0;                         // within its child window; kOver: anything
 };
 
 // What the mouse does over the viewport, in a frame.
 struct ViewportInput {
-  double x = 0, y = 0;          // [pixel] of the viewport, from its upper left corner
-  double dx = 0, dy = 0;        // since the frame before
-  int width = 1, height = 1;    // [pixel]
-  ImVec2 corner{0, 0};          // [pixel] of the window
-  bool over = false;            // the mouse is over it, and nothing else has it
+  double x = 0, y = 0;                                   // [pixel] of the viewport, from its upper left corner
+  double dx = 0, dy = 0;                                 // since the frame before
+  int width = 1, height = 1;                             // [pixel]
+  ImVec2 corner{0, 0};                                   // [pixel] of the window
+  bool over = false;                                     // the mouse is over it, and nothing else has it
   bool pressed = false, held = false, released = false;  // the left button, of a press that began over the viewport
   bool shift = false, control = false, alt = false;
   double pressure = 1.0;  // [1] of a tablet's pen; 1 of a mouse
@@ -79,6 +80,7 @@ struct Action {
   std::function<bool(const Editor&)> checked = nullptr;  // a switch: whether it is on
   bool separator = false;                                // a line above it in the menu
   bool while_typing = false;                             // its keys count in text fields, too
+  bool repeats = false;                                  // its key that is held goes on doing it
 };
 
 class App;

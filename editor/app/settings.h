@@ -22,6 +22,7 @@ struct Settings {
   bool snap = false;
   double snap_move = 0.01, snap_turn = 15.0, snap_scale = 0.1;  // [m], [degrees], [1]
   bool local_axes = false;
+  double autosave = 30.0;  // [s] between copies for recovery
 
   // `folder` empty: the user's. `note` gets a sentence where something was not as it should be.
   static Settings load(const std::filesystem::path& folder, std::string& note);

@@ -58,6 +58,9 @@ Result<State> without_layer(const State& state, std::uint32_t mesh, Channel chan
 // The node gets a mesh of its own (refined, say); other nodes keep theirs. Painted values are the mesh's own arrays.
 Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh);
 
+// The node's device follows these keys, in a script of that name beside the level, from now on.
+Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys);
+
 // An edit that is written for Levels (content/author): it may change nodes and scene and append nodes and meshes.
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit);
 

@@ -12,32 +12,34 @@ float clamp_paint(PaintAttribute attribute, double value) {
 }
 
 MeshPaint paint_of(const LevelMesh& mesh, const PaintSurface& surface, PaintAttribute attribute) {
-  const PaintedAttribute& painted = painted_attribute(attribute);
-  const auto values = [&](std::uint32_t primitive) -> const std::vector<float>* {
-    const Primitive& p = mesh.primitives[primitive];
-    const std::vector<float>& all = p.*painted.values;
-    return all.empty() || all.size() != p.position.size() ? nullptr : &all;
-  };
-  MeshPaint paint{attribute, {}};
+  std::vector<PaintLayer> layers;
+  for (const Primitive& primitive : mesh.primitives) {
+    const std::vector<float>& values = primitive.*painted_attribute(attribute).values;
+    layers.push_back(values.size() == primitive.position.size() ? PaintLayer::from(values) : PaintLayer());
+  }
+  return paint_of(layers, surface, attribute);
+}
+
+MeshPaint paint_of(std::span<const PaintLayer> layers, const PaintSurface& surface, PaintAttribute attribute) {
+  const auto is_painted = [&](std::uint32_t primitive) { return layers[primitive].size() > 0; };
+  MeshPaint paint{attribute, {layers.begin(), layers.end()}};
   bool some = false, all = true;
-  for (std::uint32_t n = 0; n < mesh.primitives.size(); ++n) {
-    const std::vector<float>* const own = values(n);
-    (own ? some : all) = own != nullptr;
-    paint.layers.push_back(own ? PaintLayer::from(*own)
-                               : PaintLayer::constant(mesh.primitives[n].position.size(), painted.unpainted));
+  for (std::uint32_t n = 0; n < layers.size(); ++n) {
+    (is_painted(n) ? some : all) = is_painted(n);
+    if (!is_painted(n))
+      paint.layers[n] = PaintLayer::constant(surface.vertices_of(n), painted_attribute(attribute).unpainted);
   }
   if (!some || all) return paint;
 
-  std::vector<std::vector<IndexedValue>> seam(mesh.primitives.size());
+  std::vector<std::vector<IndexedValue>> seam(layers.size());
   for (std::uint32_t v = 0; v < surface.mesh().vertex_count; ++v) {
     double sum = 0.0;
     int count = 0;
     for (const SourceVertex& s : surface.sources(v))
-      if (const std::vector<float>* const own = values(s.primitive))
-        sum += static_cast<double>((*own)[s.index]), ++count;
+      if (is_painted(s.primitive)) sum += static_cast<double>(layers[s.primitive].value(s.index)), ++count;
     if (count == 0) continue;
     for (const SourceVertex& s : surface.sources(v))
-      if (!values(s.primitive)) seam[s.primitive].push_back({s.index, static_cast<float>(sum / count)});
+      if (!is_painted(s.primitive)) seam[s.primitive].push_back({s.index, static_cast<float>(sum / count)});
   }
   for (std::size_t n = 0; n < seam.size(); ++n) paint.layers[n] = paint.layers[n].with(seam[n]);
   return paint;

@@ -43,6 +43,8 @@ struct MeshPaint {
 // What a mesh is touched with. A primitive that is not painted is unpainted() everywhere, but at seams to painted ones,
 // whose values count there too (mesh_build.h): painting it elsewhere does not change the seam.
 MeshPaint paint_of(const LevelMesh& mesh, const PaintSurface& surface, PaintAttribute attribute);
+// The same of layers as a document keeps them: one for each primitive, empty where it is not painted.
+MeshPaint paint_of(std::span<const PaintLayer> layers, const PaintSurface& surface, PaintAttribute attribute);
 
 // Writes the layers that differ between both; the arrays of other primitives stay as they are, empty ones too.
 void store(const MeshPaint& before, const MeshPaint& after, LevelMesh& mesh);

@@ -22,13 +22,17 @@ struct NamedKey {
   const char* name;
   int key;
 };
-constexpr NamedKey kNamed[] = {{"Tab", GLFW_KEY_TAB},       {"Esc", GLFW_KEY_ESCAPE},       {"Space", GLFW_KEY_SPACE},
-                               {"Home", GLFW_KEY_HOME},     {"End", GLFW_KEY_END},          {"Enter", GLFW_KEY_ENTER},
-                               {"Delete", GLFW_KEY_DELETE}, {"Backspace", GLFW_KEY_BACKSPACE}, {"Left", GLFW_KEY_LEFT},
-                               {"Right", GLFW_KEY_RIGHT},   {"Up", GLFW_KEY_UP},            {"Down", GLFW_KEY_DOWN},
-                               {"PageUp", GLFW_KEY_PAGE_UP}, {"PageDown", GLFW_KEY_PAGE_DOWN}, {".", GLFW_KEY_PERIOD},
-                               {",", GLFW_KEY_COMMA},       {"/", GLFW_KEY_SLASH},          {"-", GLFW_KEY_MINUS},
-                               {"=", GLFW_KEY_EQUAL},       {"[", GLFW_KEY_LEFT_BRACKET},   {"]", GLFW_KEY_RIGHT_BRACKET}};
+constexpr NamedKey kNamed[] = {{"Tab", GLFW_KEY_TAB},        {"Esc", GLFW_KEY_ESCAPE},
+                               {"Space", GLFW_KEY_SPACE},    {"Home", GLFW_KEY_HOME},
+                               {"End", GLFW_KEY_END},        {"Enter", GLFW_KEY_ENTER},
+                               {"Delete", GLFW_KEY_DELETE},  {"Backspace", GLFW_KEY_BACKSPACE},
+                               {"Left", GLFW_KEY_LEFT},      {"Right", GLFW_KEY_RIGHT},
+                               {"Up", GLFW_KEY_UP},          {"Down", GLFW_KEY_DOWN},
+                               {"PageUp", GLFW_KEY_PAGE_UP}, {"PageDown", GLFW_KEY_PAGE_DOWN},
+                               {".", GLFW_KEY_PERIOD},       {",", GLFW_KEY_COMMA},
+                               {"/", GLFW_KEY_SLASH},        {"-", GLFW_KEY_MINUS},
+                               {"=", GLFW_KEY_EQUAL},        {"[", GLFW_KEY_LEFT_BRACKET},
+                               {"]", GLFW_KEY_RIGHT_BRACKET}};
 
 std::optional<double> number_of(const std::string& text) {
   double value = 0;
@@ -37,8 +41,7 @@ std::optional<double> number_of(const std::string& text) {
   return value;
 }
 
-InputEvent at(InputKind kind, double x, double y, MouseButton button = MouseButton::kLeft,
-              std::uint8_t modifiers = 0) {
+InputEvent at(InputKind kind, double x, double y, MouseButton button = MouseButton::kLeft, std::uint8_t modifiers = 0) {
   InputEvent event;
   event.kind = kind;
   event.x = x;
@@ -146,9 +149,9 @@ Result<Script> Script::load(const std::filesystem::path& file) {
     std::getline(words >> std::ws, step.rest);
     std::istringstream rest(step.rest);
     for (std::string word; rest >> word;) step.words.push_back(word);
-    constexpr const char* kVerbs[] = {"click", "drag", "press", "move",   "release",    "wheel", "key",  "type",
-                                      "set",   "wait", "await", "expect", "expect-no", "say",   "screenshot", "drop",
-                                      "close"};
+    constexpr const char* kVerbs[] = {"click",     "drag", "press",      "move", "release", "wheel",
+                                      "key",       "type", "set",        "wait", "await",   "expect",
+                                      "expect-no", "say",  "screenshot", "drop", "figures", "close"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
       return Error{fmt::format("{}:{}", script.file_, row),
                    "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
@@ -211,7 +214,8 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     if (!from) return wrong(from.error().what);
     std::pair<double, double> to = *from;
     if (step.verb == "drag") {
-      if (i >= step.words.size() || step.words[i] != "to") return wrong("says no place to drag to; write `drag A to B`");
+      if (i >= step.words.size() || step.words[i] != "to")
+        return wrong("says no place to drag to; write `drag A to B`");
       const auto target = place(address_of(step.words, ++i), there);
       if (!target) return wrong(target.error().what);
       to = *target;
@@ -312,6 +316,10 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   }
   if (step.verb == "say") {
     if (!now.has_said(step.rest)) return wrong("the console does not say '" + step.rest + "'");
+    return Done{};
+  }
+  if (step.verb == "figures") {
+    now.figures(step.rest);
     return Done{};
   }
   if (step.verb == "screenshot") {

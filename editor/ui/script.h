@@ -16,6 +16,7 @@
 //   expect PLACE / expect-no PLACE                           an error unless it is (not) there
 //   say TEXT                                                 an error unless the console's text holds it
 //   screenshot FILE.png                                      into the folder of --out
+//   figures NAME                                             prints how long frames took since the last of these
 //   drop FILE
 //   close
 #pragma once
@@ -36,10 +37,11 @@ class Script {
   static Result<Script> load(const std::filesystem::path& file);
 
   struct Surroundings {
-    bool settled = true;                                         // nothing is under way
-    double now = 0.0;                                            // [s]
-    std::function<void(const std::string&)> screenshot;          // of the next frame
+    bool settled = true;                                 // nothing is under way
+    double now = 0.0;                                    // [s]
+    std::function<void(const std::string&)> screenshot;  // of the next frame
     std::function<bool(const std::string&)> has_said;
+    std::function<void(const std::string&)> figures;
   };
   // Appends the events of the next frame. The error names the line.
   Status next(const Surroundings& at, std::vector<InputEvent>& events);

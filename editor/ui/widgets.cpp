@@ -105,6 +105,50 @@ bool choice_button(const char* label, bool down, const char* hint_text, bool ena
   return pressed;
 }
 
+bool icon_button(const char* label, Icon icon, bool down, const char* hint_text, bool enabled) {
+  const Palette& p = palette();
+  if (down) {
+    ImGui::PushStyleColor(ImGuiCol_Button, p.accent);
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, p.accent);
+  }
+  if (!enabled) ImGui::BeginDisabled();
+  const float side = ImGui::GetFrameHeight();
+  const bool pressed = ImGui::Button(fmt::format("##{}", label).c_str(), {side + px(6), side});
+  if (!enabled) ImGui::EndDisabled();
+  if (down) ImGui::PopStyleColor(2);
+  known_as(label);
+  g_now.back().enabled = enabled;
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 c(std::round(0.5f * (low.x + high.x)), std::round(0.5f * (low.y + high.y)));
+  const float r = std::round(0.25f * side);
+  const ImU32 ink = color(down ? p.accent_text : enabled ? p.text : p.faint, enabled ? 1.0f : 0.7f);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  switch (icon) {
+    case Icon::kPlay:
+      list.AddTriangleFilled({c.x - 0.8f * r, c.y - r}, {c.x - 0.8f * r, c.y + r}, {c.x + r, c.y}, ink);
+      break;
+    case Icon::kPause:
+      list.AddRectFilled({c.x - 0.8f * r, c.y - r}, {c.x - 0.25f * r, c.y + r}, ink);
+      list.AddRectFilled({c.x + 0.25f * r, c.y - r}, {c.x + 0.8f * r, c.y + r}, ink);
+      break;
+    case Icon::kStep:
+      list.AddTriangleFilled({c.x - 0.9f * r, c.y - r}, {c.x - 0.9f * r, c.y + r}, {c.x + 0.5f * r, c.y}, ink);
+      list.AddRectFilled({c.x + 0.6f * r, c.y - r}, {c.x + r, c.y + r}, ink);
+      break;
+    case Icon::kStop:
+      list.AddRectFilled({c.x - 0.85f * r, c.y - 0.85f * r}, {c.x + 0.85f * r, c.y + 0.85f * r}, ink);
+      break;
+    case Icon::kRestart:
+      list.PathArcTo(c, 0.85f * r, -0.35f * 3.14159f, 1.3f * 3.14159f, 20);
+      list.PathStroke(ink, 0, px(1.75f));
+      list.AddTriangleFilled({c.x - 0.1f * r, c.y - 1.35f * r}, {c.x + 0.95f * r, c.y - 0.85f * r},
+                             {c.x - 0.05f * r, c.y - 0.1f * r}, ink);
+      break;
+  }
+  hint(hint_text);
+  return pressed && enabled;
+}
+
 bool checkbox(const char* label, bool& value, const char* hint_text) {
   // An empty box is seen as one.
   ImVec4 back = palette().text;

@@ -43,6 +43,8 @@ bool button(const char* label, const char* hint_text = nullptr, bool enabled = t
 bool strong_button(const char* label, const char* hint_text = nullptr, bool enabled = true, float width = 0);
 // One of a row of which one is down.
 bool choice_button(const char* label, bool down, const char* hint_text = nullptr, bool enabled = true);
+enum class Icon : std::uint8_t { kPlay, kPause, kStep, kStop, kRestart };
+bool icon_button(const char* label, Icon icon, bool down, const char* hint_text = nullptr, bool enabled = true);
 bool checkbox(const char* label, bool& value, const char* hint_text = nullptr);
 bool text_field(const char* label, std::string& value, const char* placeholder = "", float width = 0,
                 ImGuiInputTextFlags flags = 0);

@@ -102,6 +102,7 @@ void Stage::run() {
       else
         changed_.wait(lock, ready);
       if (stop_) break;
+      if (!next_ && tasks_.empty() && !(scenery_ && scenery_->wants_picture())) continue;
       tasks.swap(tasks_);
       if (next_) last_ = *next_;
       order = last_;
@@ -180,6 +181,8 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
   try {
     bool drawn = false;
     if (scenery_) {
+      scenery_->ask(order.question && order.question_number != 0 ? std::optional(*order.question * share_)
+                                                                 : std::nullopt);
       const Status status = scenery_->draw(order.solid, target.frame, width, height);
       drawn = status.ok();
       if (!drawn) done.trouble = status.error().message();
@@ -191,8 +194,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     if (order.question && order.question_number != 0) {
       const dvec2 pixel = *order.question * share;
       done.question = order.question_number;
-      done.picked = drawn ? scenery_->pick(pixel.x, pixel.y)
-                          : solid_ ? solid_->pick(pixel.x, pixel.y) : SolidPicked{};
+      done.picked = drawn ? scenery_->pick(pixel.x, pixel.y) : solid_ ? solid_->pick(pixel.x, pixel.y) : SolidPicked{};
     }
   } catch (const std::exception& error) {
     done.trouble = std::string("the picture failed: ") + error.what();

@@ -21,31 +21,34 @@ class Scenery {
   virtual ~Scenery() = default;
   // Into a framebuffer of this size. An error is shown, and the document instead.
   virtual Status draw(const SolidOrder& order, GLuint framebuffer, int width, int height) = 0;
+  // Before a picture: pick() will be called for this pixel of it.
+  virtual void ask(std::optional<dvec2>) {}
   // Pixels count from the upper left corner, of the picture drawn last.
   virtual SolidPicked pick(double x, double y) = 0;
-  virtual bool moves() const { return true; }  // another picture is wanted without a new order
+  virtual bool moves() const { return true; }          // another picture may be wanted without a new order
+  virtual bool wants_picture() const { return true; }  // and is, now
 };
 
 struct StageOrder {
   SolidOrder solid;
-  int width = 1, height = 1;  // [pixel]
+  int width = 1, height = 1;      // [pixel]
   std::optional<dvec2> question;  // [pixel] what stands there?
   std::uint64_t question_number = 0;
 };
 
 struct StagePicture {
-  GLuint texture = 0;            // of the window's context; valid until the next picture is taken. Rows bottom to top
-  int width = 0, height = 0;     // [pixel] of the texture
-  double share = 1.0;            // [1] of the resolution that was ordered
+  GLuint texture = 0;         // of the window's context; valid until the next picture is taken. Rows bottom to top
+  int width = 0, height = 0;  // [pixel] of the texture
+  double share = 1.0;         // [1] of the resolution that was ordered
   double draw_ms = 0.0;
   std::size_t triangles = 0;
-  std::uint64_t number = 0;      // of pictures so far
-  std::uint64_t order = 0;       // that it answers
-  Viewpoint view;                // that it was drawn from
+  std::uint64_t number = 0;  // of pictures so far
+  std::uint64_t order = 0;   // that it answers
+  Viewpoint view;            // that it was drawn from
   double orthographic = 0.0;
-  std::uint64_t question = 0;    // that `picked` answers; 0: none yet
+  std::uint64_t question = 0;  // that `picked` answers; 0: none yet
   SolidPicked picked;
-  std::string trouble;           // why it is not what was wanted
+  std::string trouble;  // why it is not what was wanted
 };
 
 class Stage {

@@ -1,0 +1,260 @@
+// What is painted, with what brush, and what is done to the whole mesh at once.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/app/app.h"
+#include "editor/panels/panels.h"
+#include "editor/tools/painting.h"
+#include "editor/ui/widgets.h"
+#include "runtime/printable.h"
+
+namespace pliant {
+namespace {
+
+constexpr float kLabelShare = 0.30f;  // [1] of the panel's width
+constexpr float kCurve = 44;          // [point] height of the falloff's picture
+
+template <class T>
+struct Choice {
+  const char* label;
+  T value;
+  const char* hint;
+};
+constexpr Choice<BrushMode> kModes[] = {
+    {"Set", BrushMode::kSet, "Towards the value; going over a place again in one stroke takes it no farther"},
+    {"Add", BrushMode::kAdd, "Every dab adds to what is there; below 0 it takes away"},
+    {"Smooth", BrushMode::kSmooth, "Towards the mean of the neighbours (Shift while painting)"},
+    {"Erase", BrushMode::kErase, "Towards what is not painted"}};
+constexpr Choice<BrushFalloff> kFalloffs[] = {
+    {"Flat##falloff", BrushFalloff::kConstant, "The same up to the rim"},
+    {"Linear##falloff", BrushFalloff::kLinear, "Evenly less to the rim"},
+    {"Smooth##falloff", BrushFalloff::kSmooth, "Level in the middle and at the rim"},
+    {"Sharp##falloff", BrushFalloff::kSharp, "A peak in the middle"}};
+constexpr Choice<BrushMirror> kMirrors[] = {{"Off##mirror", BrushMirror::kNone, "No mirror image"},
+                                            {"X##mirror", BrushMirror::kX, "Across the plane x = 0 of the mesh"},
+                                            {"Y##mirror", BrushMirror::kY, "Across the plane y = 0 of the mesh"},
+                                            {"Z##mirror", BrushMirror::kZ, "Across the plane z = 0 of the mesh"}};
+
+template <class T, std::size_t n>
+void choices(const Choice<T> (&all)[n], T& value) {
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i) ImGui::SameLine(0, ui::px(2));
+    if (ui::choice_button(all[i].label, value == all[i].value, all[i].hint)) value = all[i].value;
+  }
+}
+
+void row(const char* label, const char* hint_text) {
+  const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
+  ui::label(label, hint_text);
+  ImGui::SameLine(left + kLabelShare * wide);
+}
+
+void warn(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, ui::palette().warning);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+class PaintPanel : public Panel {
+ public:
+  explicit PaintPanel(App& app) : app_(app) {}
+  const char* name() const override { return "Paint"; }
+  Place place() const override { return Place::kRight; }
+
+  void draw(Editor& editor) override {
+    Painting& painting = *editor.painting;
+    const NodeId id = painting.node();
+    if (id == kNoNode) {
+      ui::gap(2);
+      ui::dim("Select a node with a mesh to paint on it: how stiff it is, how it rubs, where it is held.");
+      return;
+    }
+    painting.fit_radius();
+    draw_head(editor, painting, id);
+    draw_channel(editor, painting, id);
+    draw_brush(painting);
+    draw_whole(painting);
+    draw_colours(editor, painting);
+  }
+
+ private:
+  void draw_head(Editor& editor, Painting& painting, NodeId id) {
+    ui::gap(2);
+    const bool on = editor.tool == "Paint";
+    if (on ? ui::button("Stop painting", "The mouse selects again (P)")
+           : ui::strong_button("Start painting", "The mouse paints in the viewport (P)"))
+      app_.take_tool(on ? "Select" : "Paint");
+    ImGui::SameLine();
+    ui::label(printable(editor.state().find(id)->node.name).c_str());
+    const std::vector<NodeId> sharing = painting.sharing();
+    if (sharing.size() > 1) {
+      std::string names;
+      for (const NodeId each : sharing)
+        names += (names.empty() ? "" : ", ") + printable(editor.state().find(each)->node.name);
+      warn(fmt::format("Painted on {} nodes, which share the mesh.", sharing.size()));
+      ui::hint(names.c_str());
+      if (ui::button("Make single", "This node gets a copy of the mesh for itself, with all that is painted"))
+        painting.make_single();
+    }
+    if (painting.pressed && painting.pressed->node == id && painting.pressed->coarse) {
+      const std::string& sentence = painting.pressed->coarse->sentence;
+      warn("Too coarse here: " + sentence + ".");
+      if (ui::button("Refine here", "Smaller triangles under the brush, where it was pressed last; one step of undo",
+                     !painting.busy() && painting.pressed->surface == painting.surface()))
+        painting.refine(painting.pressed->hit);
+    }
+  }
+
+  void draw_channel(Editor& editor, Painting& painting, NodeId id) {
+    ui::gap(2);
+    if (!ui::section("What")) return;
+    for (const Channel each : kChannels) {
+      const auto i = static_cast<int>(each);
+      if (i % 3) ImGui::SameLine(0, ui::px(2));
+      if (ui::choice_button(text_of(each).title, painting.channel == each, text_of(each).does))
+        painting.take_channel(each);
+    }
+    ui::dim(text_of(painting.channel).does);
+    const std::string lacks = painting.lacks();
+    if (lacks.empty()) return;
+    warn(lacks);
+    const std::string extension = text_of(painting.channel).extension;
+    if (painting.channel == Channel::kHandle) return;  // a handle wants a device, too: the inspector's matter
+    std::string words = extension;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    if (ui::button(("Add " + words).c_str(), "With its defaults; the inspector shows it"))
+      editor.apply("Add " + words, with_component(editor.state(), std::vector<NodeId>{id}, extension));
+  }
+
+  void draw_brush(Painting& painting) {
+    ui::gap(2);
+    if (!ui::section("Brush")) return;
+    Brush& brush = painting.brush;
+    const bool share = is_share(painting.channel);
+    const Range range = paint_range(attribute_of(painting.channel));
+    row("Mode", "What a stroke does to what is there");
+    choices(kModes, brush.mode);
+    if (brush.mode == BrushMode::kSet) {
+      row("Value", share ? "0: free, 1: held; held from 0.5 up" : "Factor on the node's own value; 1: unpainted");
+      ui::number("value", painting.value_now(), range.min, range.max, share ? "" : "\u00d7", !share);
+      becomes(painting, painting.value_now());
+    } else if (brush.mode == BrushMode::kAdd) {
+      row("Adds", "What a dab adds in its middle; dabs are a quarter of the radius apart");
+      ui::number("amount", painting.amounts[static_cast<std::size_t>(painting.channel)], -10, 10, "");
+    }
+    const double size = painting.size();
+    double mm = 1e3 * brush.radius;
+    row("Radius", "Along the surface, in the world: [ and ]");
+    if (ui::number("radius", mm, 1.0 * size, 1e3 * size, "mm")) brush.radius = 1e-3 * mm;
+    double percent = 100 * brush.strength;
+    row("Strength", "Share of the whole effect: Shift+[ and Shift+]");
+    if (ui::number("strength", percent, 1, 100, "%")) brush.strength = 0.01 * percent;
+    row("Falloff", "How the effect falls off from the middle to the rim");
+    choices(kFalloffs, brush.falloff);
+    row("", nullptr);
+    curve(brush);
+    row("Mirror", "What is painted on one side is painted on the other");
+    choices(kMirrors, brush.mirror);
+    row("Stops at", "What a stroke does not go beyond");
+    ui::checkbox("creases", brush.mask.creases, "At creases of the surface");
+    ImGui::SameLine();
+    ui::checkbox("part", brush.mask.part, "At the end of the connected part where the stroke began");
+    row("", nullptr);
+    ui::checkbox("primitive", brush.mask.primitive, "At the rim of the primitive (material) where the stroke began");
+  }
+
+  static void becomes(const Painting& painting, double value) {
+    row("", nullptr);
+    ui::dim(painting.value_text(value).c_str());
+  }
+
+  static void curve(const Brush& brush) {
+    const ui::Palette& p = ui::palette();
+    const ImVec2 low = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ui::px(kCurve));
+    ImGui::InvisibleButton("falloff curve", {std::max(size.x, 1.0f), size.y});
+    ui::known_as("falloff curve");
+    ui::hint("Effect across the brush, rim to rim");
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 high(low.x + size.x, low.y + size.y);
+    list.AddRectFilled(low, high, ui::color(p.field), ui::px(4));
+    constexpr int kPoints = 64;
+    std::vector<ImVec2> line;
+    const float pad = ui::px(5);
+    for (int i = 0; i <= kPoints; ++i) {
+      const double x = 2.0 * i / kPoints - 1.0, y = brush.strength * falloff_at(brush.falloff, std::abs(x));
+      line.emplace_back(low.x + pad + (size.x - 2 * pad) * static_cast<float>(i) / kPoints,
+                        high.y - pad - (size.y - 2 * pad) * static_cast<float>(y));
+    }
+    for (std::size_t i = 0; i + 1 < line.size(); ++i)
+      list.AddQuadFilled({line[i].x, high.y - pad}, line[i], line[i + 1], {line[i + 1].x, high.y - pad},
+                         ui::color(p.accent, 0.22f));
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), ui::color(p.accent), 0, ui::px(1.5f));
+  }
+
+  void draw_whole(Painting& painting) {
+    ui::gap(2);
+    if (!ui::section("Whole mesh")) return;
+    const bool ready = painting.surface() != nullptr && !painting.busy() && !painting.stroking();
+    const char* const wait = ready ? nullptr : "Wait until the surface is ready";
+    if (ui::button("Fill all", wait ? wait : "The value above, everywhere", ready)) painting.fill_all();
+    ImGui::SameLine(0, ui::px(ui::kGap));
+    if (ui::button("Fill part\u2026", wait ? wait : "Then click a part; it stops at creases where the brush does",
+                   ready))
+      take(Painting::Hand::kFillPart, painting);
+    ImGui::SameLine(0, ui::px(ui::kGap));
+    if (ui::button("Clear", "Nothing is painted of this any more")) painting.clear();
+    const Range range = paint_range(attribute_of(painting.channel));
+    const bool share = is_share(painting.channel);
+    const float wide = ImGui::GetContentRegionAvail().x * (1 - kLabelShare) / ui::scale();
+    row("Gradient", "From the first to the second click along a straight line, and level beyond both");
+    ui::number("gradient from", painting.gradient_from, range.min, range.max, share ? "" : "\u00d7", !share,
+               0.5f * wide - 16);
+    ImGui::SameLine(0, ui::px(4));
+    ui::label("to");
+    ImGui::SameLine(0, ui::px(4));
+    ui::number("gradient to", painting.gradient_to, range.min, range.max, share ? "" : "\u00d7", !share);
+    row("", nullptr);
+    if (ui::button("Gradient\u2026", wait ? wait : "Then click where it begins and where it ends", ready))
+      take(Painting::Hand::kGradientFrom, painting);
+  }
+
+  void take(Painting::Hand hand, Painting& painting) {
+    app_.take_tool("Paint");
+    painting.hand = hand;
+    painting.gradient_start.reset();
+  }
+
+  void draw_colours(Editor& editor, Painting& painting) {
+    ui::gap(2);
+    if (is_share(painting.channel) || !ui::section("Colours", false)) return;
+    row("From", "The factor of the darkest colour");
+    ui::number("low", editor.view.value_low, 1e-3, 0.9 * editor.view.value_high, "\u00d7", true);
+    row("To", "The factor of the lightest colour");
+    ui::number("high", editor.view.value_high, 1.1 * editor.view.value_low, 1e3, "\u00d7", true);
+    row("", nullptr);
+    if (ui::button("Fit", "To what is painted")) {
+      const auto range = painting.painted_range().value_or(std::pair{0.25, 4.0});
+      editor.view.value_low = std::clamp(range.first, 1e-3, 500.0);
+      editor.view.value_high = std::max(range.second, 1.25 * editor.view.value_low);
+    }
+    ImGui::SameLine(0, ui::px(ui::kGap));
+    if (ui::button("Reset##colours", "A quarter to four times")) {
+      editor.view.value_low = 0.25;
+      editor.view.value_high = 4.0;
+    }
+  }
+
+  App& app_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_paint_panel(App& app) {
+  return std::make_unique<PaintPanel>(app);
+}
+
+}  // namespace pliant

@@ -1,0 +1,20 @@
+// What the colours of painted values mean: the ramp with numbers beside it.
+#pragma once
+
+#include <imgui.h>
+
+#include "editor/app/editor.h"
+
+namespace pliant {
+
+// As editor_solid.frag colours a share `t` [1] of the range.
+ImVec4 ramp(double t);
+// Places on the ramp [1] and the values there: for a factor powers of two, for a share tenths that matter; both ends.
+struct LegendTick {
+  double place, value;
+};
+std::vector<LegendTick> legend_ticks(bool share, double low, double high);
+// Its lower left corner at `at` [pixel].
+void draw_legend(const Editor& editor, Channel channel, ImVec2 at, ImDrawList& list);
+
+}  // namespace pliant
