@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 44, kBar = 26;                                                      // [point]
+constexpr float kTop = 40, kBar = 26;              // [point]
+constexpr float kTopPad = 9;                        // [point] above the buttons of the top bar
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
@@ -312,7 +313,7 @@ void App::say_figures(const std::string& name) {
 
 void App::draw_top() {
   const ui::Palette& p = ui::palette();
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(7)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(kTopPad)));
   begin_fixed("top", {0, 0}, {ImGui::GetIO().DisplaySize.x, ui::px(kTop)}, ImGuiWindowFlags_NoScrollbar);
   ImGui::PopStyleVar();
   {
@@ -358,7 +359,7 @@ void App::draw_top() {
   {
     const ui::Scope scope("View mode");
     const bool rendered = editor.view.shading == Shading::kRendered;
-    const float buttons = ui::px(160);
+    const float buttons = ImGui::CalcTextSize("SolidRendered").x + 4 * ImGui::GetStyle().FramePadding.x + ui::px(2);
     ImGui::SameLine(all - buttons - ui::px(ui::kPad));
     if (ui::choice_button("Solid", !rendered, "The level as it is edited, with painted values as colour")) {
       editor.view.shading = Shading::kSolid;
@@ -370,7 +371,7 @@ void App::draw_top() {
       dirty_picture_ = true;
     }
     const float room = all - buttons - ui::px(3 * ui::kWide) - wide;
-    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(7)});
+    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(kTopPad)});
     if (room > ui::px(620)) {
       ImGui::AlignTextToFramePadding();
       ImGui::PushStyleColor(ImGuiCol_Text, editor.document.dirty() ? p.text : p.dim);
