@@ -527,7 +527,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     dirty_picture_ = true;
   }
   if (in.over) editor.hovered = !dragging_view_ && !taken ? picture_.picked.node : kNoNode;
-  if (taken) dirty_picture_ = true;
+  if (taken && (in.dx != 0 || in.dy != 0 || in.pressed || in.released)) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
