@@ -309,6 +309,7 @@ void App::say_figures(const std::string& name) {
       name, all.size(), all[all.size() / 2], all[all.size() * 99 / 100], all.back(), slow, picture_.draw_ms);
   editor.say(line);
   fmt::print("{}\n", line);
+  std::fflush(stdout);
 }
 
 void App::draw_top() {
