@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "content/level/inner_sheet.h"
 #include "content/mesh/mesh_refine.h"
 #include "content/tets/lattice.h"
 #include "content/tets/tet_boundary.h"
@@ -160,9 +161,12 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     report_parts(count_parts(parts.tets), count_parts(parts.surface.mesh), parts.tets.report);
   }
   if (mesh) {
-    std::vector<Primitive> finer = mesh->primitives;
-    if (refine(finer, to_object, kLongestEdge * mean_edge(parts.tets)))
-      if (Status s = build(finer, to_object); !s) return s.error();
+    std::vector<Primitive> touched = mesh->primitives;
+    const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
+    const bool outer = filled && leave_out_covered(parts.surface, parts.tets, touched);
+    const bool finer = refine(touched, to_object, kLongestEdge * mean_edge(parts.tets));
+    if (outer || finer)
+      if (Status s = build(touched, to_object); !s) return s.error();
   }
   parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
   put_in_order(parts.tets, group);

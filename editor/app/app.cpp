@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 44, kBar = 26;                                                      // [point]
+constexpr float kTop = 40, kBar = 26;              // [point]
+constexpr float kTopPad = 9;                        // [point] above the buttons of the top bar
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
@@ -106,7 +107,7 @@ Status App::run() {
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
       ui::Script::Surroundings at;
-      at.settled = settled();
+      at.under_way = under_way();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
@@ -132,10 +133,16 @@ Status App::run() {
   return settings.save();
 }
 
-bool App::settled() const {
-  if (!editor.jobs.idle() || editor.painting->working() || editor.camera.moving()) return false;
-  if (play_.on()) return play_.ready();  // its pictures go on for ever
-  return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
+std::string App::under_way() const {
+  if (!editor.jobs.idle()) {
+    const std::vector<std::string> jobs = editor.jobs.under_way();
+    return jobs.empty() ? "a job" : jobs.front();
+  }
+  if (editor.painting->working()) return "a stroke";
+  if (editor.camera.moving()) return "the camera's way";
+  if (play_.on()) return play_.ready() ? "" : "opening the level to play";  // its pictures go on for ever
+  if (rendered_.waits()) return "the rendered picture";
+  return stage_->busy() || picture_.order != order_ || dirty_picture_ ? "a picture" : "";
 }
 
 ViewTool* App::tool() {
@@ -306,7 +313,7 @@ void App::say_figures(const std::string& name) {
 
 void App::draw_top() {
   const ui::Palette& p = ui::palette();
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(7)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(kTopPad)));
   begin_fixed("top", {0, 0}, {ImGui::GetIO().DisplaySize.x, ui::px(kTop)}, ImGuiWindowFlags_NoScrollbar);
   ImGui::PopStyleVar();
   {
@@ -352,7 +359,7 @@ void App::draw_top() {
   {
     const ui::Scope scope("View mode");
     const bool rendered = editor.view.shading == Shading::kRendered;
-    const float buttons = ui::px(160);
+    const float buttons = ImGui::CalcTextSize("SolidRendered").x + 4 * ImGui::GetStyle().FramePadding.x + ui::px(2);
     ImGui::SameLine(all - buttons - ui::px(ui::kPad));
     if (ui::choice_button("Solid", !rendered, "The level as it is edited, with painted values as colour")) {
       editor.view.shading = Shading::kSolid;
@@ -364,7 +371,7 @@ void App::draw_top() {
       dirty_picture_ = true;
     }
     const float room = all - buttons - ui::px(3 * ui::kWide) - wide;
-    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(7)});
+    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(kTopPad)});
     if (room > ui::px(620)) {
       ImGui::AlignTextToFramePadding();
       ImGui::PushStyleColor(ImGuiCol_Text, editor.document.dirty() ? p.text : p.dim);
@@ -520,7 +527,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     dirty_picture_ = true;
   }
   if (in.over) editor.hovered = !dragging_view_ && !taken ? picture_.picked.node : kNoNode;
-  if (taken) dirty_picture_ = true;
+  if (taken && (in.dx != 0 || in.dy != 0 || in.pressed || in.released)) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);

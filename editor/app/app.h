@@ -89,7 +89,8 @@ class App {
   void draw_question();
   void draw_banners();
   void set_look();
-  bool settled() const;
+  bool settled() const { return under_way().empty(); }
+  std::string under_way() const;  // what keeps the editor from being at rest; "": nothing
   void say_figures(const std::string& name);
   void take_screenshot(const std::filesystem::path& file);
 

@@ -9,6 +9,7 @@
 #include "content/keys/extension_table.h"
 #include "editor/panels/key_fields.h"
 #include "editor/panels/panels.h"
+#include "editor/tools/gizmo_math.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
@@ -74,8 +75,9 @@ class InspectorPanel : public Panel {
         vertices += p.position.size();
       }
       const vec3 size = mesh.box.empty() ? vec3(0) : mesh.box.size() * node.node.local.scale;
-      ui::dim(fmt::format("{} triangles, {} vertices, {:.3g} x {:.3g} x {:.3g} m", triangles, vertices, size.x, size.y,
-                          size.z)
+      ui::dim(fmt::format("{} triangles, {} vertices\n{} \u00d7 {} \u00d7 {}", triangles, vertices,
+                          length_text(static_cast<double>(size.x), 3), length_text(static_cast<double>(size.y), 3),
+                          length_text(static_cast<double>(size.z), 3))
                   .c_str());
     }
   }
@@ -111,7 +113,8 @@ class InspectorPanel : public Panel {
   void draw_transform(Editor& editor, const DocumentNode& node) {
     if (!ui::section("Place")) return;
     LocalTransform local = node.node.local;
-    const dvec3 euler = glm::degrees(glm::eulerAngles(dquat(local.rotation)));
+    // Floats know no more than five digits of an angle.
+    const dvec3 euler = glm::round(glm::degrees(glm::eulerAngles(dquat(local.rotation))) * 1e4) * 1e-4;
     dvec3 position(local.translation), turn = shown_turn_.first == node.id && same_turn(local.rotation)
                                                   ? shown_turn_.second
                                                   : euler,

@@ -27,6 +27,7 @@ class TreePanel : public Panel {
 
   void draw(Editor& editor) override {
     ui::gap(2);
+    ImGui::AlignTextToFramePadding();
     ImGui::PushFont(ui::font(ui::Type::kStrong));
     ImGui::TextUnformatted("Scene");
     ImGui::PopFont();

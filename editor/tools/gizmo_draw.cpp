@@ -108,7 +108,8 @@ void letter(ImDrawList& list, ImVec2 where, int axis, ImU32 color) {
   const char text[2] = {"xyz"[axis], 0};
   ImFont* const of = ui::font(ui::Type::kStrong);
   const ImVec2 size = of->CalcTextSizeA(of->FontSize, 1e6f, 0, text);
-  list.AddText(of, of->FontSize, {where.x - 0.5f * size.x, where.y - 0.5f * size.y}, color, text);
+  list.AddCircleFilled(where, 0.62f * of->FontSize, ui::color(ui::palette().window, 0.72f), 20);
+  list.AddText(of, of->FontSize, {where.x - 0.5f * size.x, where.y - 0.54f * size.y}, color, text);
 }
 
 void draw_arrows(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,

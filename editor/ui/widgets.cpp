@@ -111,17 +111,18 @@ bool icon_button(const char* label, Icon icon, bool down, const char* hint_text,
     ImGui::PushStyleColor(ImGuiCol_Button, p.accent);
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, p.accent);
   }
-  if (!enabled) ImGui::BeginDisabled();
+  const bool dimmed = !enabled && !down;
+  if (dimmed) ImGui::BeginDisabled();
   const float side = ImGui::GetFrameHeight();
   const bool pressed = ImGui::Button(fmt::format("##{}", label).c_str(), {side + px(6), side});
-  if (!enabled) ImGui::EndDisabled();
+  if (dimmed) ImGui::EndDisabled();
   if (down) ImGui::PopStyleColor(2);
   known_as(label);
   g_now.back().enabled = enabled;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   const ImVec2 c(std::round(0.5f * (low.x + high.x)), std::round(0.5f * (low.y + high.y)));
   const float r = std::round(0.25f * side);
-  const ImU32 ink = color(down ? p.accent_text : enabled ? p.text : p.faint, enabled ? 1.0f : 0.7f);
+  const ImU32 ink = color(down ? p.accent_text : enabled ? p.text : p.faint);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   switch (icon) {
     case Icon::kPlay:
@@ -150,7 +151,12 @@ bool icon_button(const char* label, Icon icon, bool down, const char* hint_text,
 }
 
 bool checkbox(const char* label, bool& value, const char* hint_text) {
+  // An empty box is seen as one.
+  ImVec4 back = palette().text;
+  back.w = 0.16f;
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, back);
   const bool changed = ImGui::Checkbox(label, &value);
+  ImGui::PopStyleColor();
   known_as(label);
   hint(hint_text);
   return changed;
@@ -175,7 +181,7 @@ bool number(const char* label, double& value, double least, double most, const c
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp |
                                  (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
                                  ImGuiSliderFlags_NoRoundToFormat;
-  double next = value;
+  double next = value + 0.0;  // -0 reads as 0
   const bool changed = ImGui::DragScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &next, speed, &least,
                                          &most, format.c_str(), flags & ~ImGuiSliderFlags_Logarithmic);
   known_as(label);
@@ -187,7 +193,7 @@ bool number(const char* label, double& value, double least, double most, const c
 bool slider(const char* label, double& value, double least, double most, const char* hint_text, float width) {
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
   const bool changed = ImGui::SliderScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &value, &least,
-                                           &most, "%.3g", ImGuiSliderFlags_AlwaysClamp);
+                                           &most, "", ImGuiSliderFlags_AlwaysClamp);
   known_as(label);
   hint(hint_text);
   return changed;

@@ -153,7 +153,11 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
     if (order.settings.nodes) {
       Pen pen(lines, selected[i] ? colors.selected : colors.plain);
       const std::size_t before = lines.size();
-      if (node.probe) draw_probe(pen, *node.probe, at, turn, small);
+      if (node.probe) {
+        const vec3 own = glm::pow(glm::clamp(node.probe->color, vec3(0), vec3(1)), vec3(1.0f / 2.2f));
+        Pen of_probe(lines, selected[i] ? colors.selected : vec4(glm::max(own, vec3(0.3f)), 1.0f));
+        draw_probe(of_probe, *node.probe, at, turn, small);
+      }
       if (node.light) draw_light(pen, *node.light, at, turn, small);
       if (node.camera) draw_camera(pen, *node.camera, at, turn, small);
       if (node.device && !node.probe) draw_device(pen, at, turn, small);

@@ -11,6 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
+constexpr double kTooLong = 1000.0;                                   // [ms] what is drawn in full must not bar the hand
 constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // of rest, a coarse picture is drawn in full
 constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
 
@@ -219,7 +220,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     done_ = std::move(done);
     finished_ = at;
     answered_ = number;
-    coarse_ = share < 1.0 && !(scenery_ && scenery_->moves());
+    coarse_ = share < 1.0 && took < kTooLong && !(scenery_ && scenery_->moves());
     if (last_.question && last_.question_number == done_.question) last_.question.reset();
   }
   if (!same && !refine) choose_share(took);

@@ -84,6 +84,19 @@ TEST(Wall, OfADoubleWallTheInsideIsFilledWhetherItIsClosedOrOpen) {
   }
 }
 
+TEST(Wall, OfAFilledOneOnlyTheOuterSheetIsTouched) {
+  Level level = test::level_of(capsule(0.01f)[0], {});
+  level.meshes[0].primitives = capsule(0.01f);
+  level.nodes[0].deformable.reset();
+  level.nodes[0].soft_body = SoftBody{};
+  const Result<SoftParts> parts = make_soft_parts(level.nodes[0], &level.meshes[0], mat4(1.0f), {});
+  ASSERT_TRUE(parts) << parts.error().message();
+  const Mesh& touched = parts->surface.mesh;
+  EXPECT_EQ(touched.triangles.size(), icosphere(4).index.size() / 3);
+  for (const uvec3& t : touched.triangles) ASSERT_NEAR(length(touched.position(t.x)), 1.0f, 1e-4f);
+  EXPECT_EQ(parts->tets.embedding.size(), touched.vertex_count);
+}
+
 TEST(Wall, ThickWallsStayHollowAndSolidsAreNoWalls) {
   for (const double cell : {0.0, 0.12}) {
     EXPECT_NEAR(total_volume(filled(built(capsule(0.5f)), {cell})), kBall * 0.875, 0.04 * kBall);
