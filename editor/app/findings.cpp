@@ -107,6 +107,11 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
     return QuickFix{"Reset " + key, [id, extension, key](const State& s, NodeId&) {
                       return with_default(s, std::span(&id, 1), extension, key);
                     }};
+  if (has_key && extension == "haptic_device" && key == "file" && it.device)  // its driver cannot do without
+    return QuickFix{"Without the script", [id](const State& s, NodeId&) {
+                      Result<State> next = with_value(s, std::span(&id, 1), "haptic_device", "driver", "null");
+                      return next ? with_default(*next, std::span(&id, 1), "haptic_device", "file") : next;
+                    }};
   if (has_key && finding.severity == Severity::kError && value_of_key(state, id, extension, key).is_string())
     return QuickFix{"Clear " + key, [id, extension, key](const State& s, NodeId&) {
                       return with_default(s, std::span(&id, 1), extension, key);

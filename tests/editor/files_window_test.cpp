@@ -10,7 +10,7 @@
 namespace pliant::testing {
 namespace {
 
-class WindowTest : public CommandTest {
+class FilesWindowTest : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
@@ -39,7 +39,7 @@ class WindowTest : public CommandTest {
   }
 };
 
-TEST_F(WindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFile) {
+TEST_F(FilesWindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFile) {
   write_text(folder / "taken.glb", "what somebody else wrote");
   const Said said = edit("small.glb",
                          "click Scene/finger/row\nkey Delete\n"
@@ -53,7 +53,7 @@ TEST_F(WindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFile) {
   EXPECT_FALSE(fs::exists(recovery_beside(folder / "small.glb")));
 }
 
-TEST_F(WindowTest, TheEditorNeverWritesOverABareMesh) {
+TEST_F(FilesWindowTest, TheEditorNeverWritesOverABareMesh) {
   write_text(folder / "plate.obj", plate_obj());
   const std::string before = read_text(folder / "plate.obj");
   const Said said = edit("plate.obj",
@@ -68,7 +68,7 @@ TEST_F(WindowTest, TheEditorNeverWritesOverABareMesh) {
   EXPECT_EQ(probe->node.probe_device, "probe");
 }
 
-TEST_F(WindowTest, TheEditorOpensAFileThatWasTypedAndRevertsToIt) {
+TEST_F(FilesWindowTest, TheEditorOpensAFileThatWasTypedAndRevertsToIt) {
   const Said said = edit("",
                          "expect Start/Open organ…\nscreenshot start.png\nkey Ctrl+O\nawait Files/Path\nset Files/Path " +
                              (folder / "small.glb").string() +
@@ -78,7 +78,7 @@ TEST_F(WindowTest, TheEditorOpensAFileThatWasTypedAndRevertsToIt) {
   ASSERT_EQ(said.status, 0) << said.err;
 }
 
-TEST_F(WindowTest, TheEditorKilledInTheMidstOffersWhatWasNotSaved) {
+TEST_F(FilesWindowTest, TheEditorKilledInTheMidstOffersWhatWasNotSaved) {
   write_text(folder / "killed.txt", "click Scene/finger/row\nkey Delete\nwait 1000\n");
   const std::string line = "cd " + quoted(folder.string()) + " && env -u DISPLAY -u WAYLAND_DISPLAY " + around() +
                            " sh -c 'echo $$ > pid; exec \"$0\" edit small.glb --config config --input killed.txt' " +
@@ -105,7 +105,7 @@ TEST_F(WindowTest, TheEditorKilledInTheMidstOffersWhatWasNotSaved) {
   EXPECT_FALSE(fs::exists(copy));
 }
 
-TEST_F(WindowTest, TheEditorListsWhatIsFoundAndMendsIt) {
+TEST_F(FilesWindowTest, TheEditorListsWhatIsFoundAndMendsIt) {
   Level level = sheet_and_finger();
   level.nodes[1].device.reset();
   level.nodes[1].probe_device.clear();
@@ -122,7 +122,7 @@ TEST_F(WindowTest, TheEditorListsWhatIsFoundAndMendsIt) {
   EXPECT_TRUE(saved.state().find("finger")->node.device);
 }
 
-TEST_F(WindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
+TEST_F(FilesWindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
   // Another program, by hand of the shell: it waits for the screenshot.
   Level other = sheet_and_finger();
   other.nodes[1].name = "stylus";
@@ -146,7 +146,7 @@ TEST_F(WindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
   ASSERT_EQ(both.status, 0) << both.err;
 }
 
-TEST_F(WindowTest, TheEditorsKeysAreShownAndRebound) {
+TEST_F(FilesWindowTest, TheEditorsKeysAreShownAndRebound) {
   const Said said = edit("small.glb",
                          "key F1\nawait Keys/view.grid/keys\nscreenshot keys.png\n"
                          "set Keys/Search Duplicate\nclick Keys/edit.duplicate/keys\nkey Ctrl+Z\n"
@@ -158,7 +158,7 @@ TEST_F(WindowTest, TheEditorsKeysAreShownAndRebound) {
   EXPECT_EQ(Json::parse(read_text(folder / "config" / "editor.json"))["keys"]["edit.duplicate"], "Ctrl+B");
 }
 
-TEST_F(WindowTest, TheEditorsLookIsChosenAndKept) {
+TEST_F(FilesWindowTest, TheEditorsLookIsChosenAndKept) {
   const Said said = edit("small.glb",
                          "key Ctrl+,\nawait Settings/Light\nclick Settings/Light\nscreenshot light.png\n"
                          "click Settings/150 %\nscreenshot large.png\nset Settings/every 12\nclick Settings/Close\nclose\n");
@@ -169,7 +169,7 @@ TEST_F(WindowTest, TheEditorsLookIsChosenAndKept) {
   EXPECT_EQ(kept["autosave"], 12.0);
 }
 
-TEST_F(WindowTest, TheEditorsHistoryGoesToAnyStep) {
+TEST_F(FilesWindowTest, TheEditorsHistoryGoesToAnyStep) {
   const Said said = edit("small.glb",
                          "click Menu/Add\nclick Light\nclick Menu/Add\nclick Empty node\nclick Menu/Add\n"
                          "click Camera, from here\nclick Tab/History\nexpect History/step 3\nclick History/step 1\n"
@@ -181,7 +181,7 @@ TEST_F(WindowTest, TheEditorsHistoryGoesToAnyStep) {
   EXPECT_TRUE(saved.state().find("camera")->node.camera);
 }
 
-TEST_F(WindowTest, TheEditorAsksForTheUnitOfAMeshThatIsTooLarge) {
+TEST_F(FilesWindowTest, TheEditorAsksForTheUnitOfAMeshThatIsTooLarge) {
   std::string text = plate_obj(4), large;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -201,7 +201,7 @@ TEST_F(WindowTest, TheEditorAsksForTheUnitOfAMeshThatIsTooLarge) {
   EXPECT_NEAR(saved.state().nodes.front()->node.local.scale.x, 1e-3, 1e-9);
 }
 
-TEST_F(WindowTest, TheEditorsConsoleIsFilteredAndCleared) {
+TEST_F(FilesWindowTest, TheEditorsConsoleIsFilteredAndCleared) {
   const Said said = edit("small.glb",
                          "click Scene/finger/row\nkey Delete\nkey Ctrl+Z\nclick Tab/Console\nsay Undone: Delete\n"
                          "click Console/Notes\nscreenshot console.png\nclick Console/Copy\nclick Console/Clear\nclose\n");
