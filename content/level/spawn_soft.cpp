@@ -82,13 +82,13 @@ Primitive boundary_primitive(const TetMesh& mesh) {
 
 }  // namespace
 
-Result<Tissue> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
-                           const std::stop_token& stop) {
+Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                               const std::stop_token& stop) {
   Result<TetMesh> tets = fill_surface(surface.mesh, {body.cell, body.fill, body.thickness, stop});
   if (!tets) return tets.error();
   Result<std::vector<NodeGroup>> group = group_nodes(tets->nodes, surface, body, handle);
   if (!group) return group.error();
-  Tissue tissue{std::move(*tets), std::move(*group)};
+  FilledBody tissue{std::move(*tets), std::move(*group)};
   const std::uint32_t kept = drop_small_parts(tissue.tets, tissue.group);
   if (tissue.tets.report.volume_dropped > kMostLost) return in_crumbs(tissue.tets, body, surface.mesh);
   report_parts(kept, count_parts(surface.mesh), tissue.tets.report);
@@ -143,7 +143,7 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
   const Handle6* const handle = node.handle ? &*node.handle : nullptr;
   std::vector<NodeGroup> group;
   if (body.mesh.empty()) {
-    Result<Tissue> tissue = make_tissue(parts.surface, body, handle);
+    Result<FilledBody> tissue = make_tissue(parts.surface, body, handle);
     if (!tissue) return tissue.error();
     parts.tets = std::move(tissue->tets);
     group = std::move(tissue->group);

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 40, kBar = 26;              // [point]
-constexpr float kTopPad = 9;                        // [point] above the buttons of the top bar
+constexpr float kTop = 40, kBar = 26;  // [point]
+constexpr float kTopPad = 9;           // [point] above the buttons of the top bar
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
@@ -248,8 +248,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     shown_view_ = editor.view;
     dirty_picture_ = true;
   }
-  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) &&
-                            !editor.painting->stroking())
+  if (ViewTool* t = tool();
+      !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) && !editor.painting->stroking())
     editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
@@ -575,8 +575,8 @@ void App::order_picture() {
   solid.hovered_color = as_vec(p.text, 0.55f);
   for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
   solid.sign = as_vec(p.dim, 0.9f);
-  const bool another = !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered ||
-                       ordered_size_ != viewport_size_now();
+  const bool another =
+      !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered || ordered_size_ != viewport_size_now();
   if (!dirty_picture_ && !another && order_ > 0) return;
   dirty_picture_ = false;
   ordered_ = solid;

@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
-constexpr double kTooLong = 1000.0;                                   // [ms] what is drawn in full must not bar the hand
+constexpr double kTooLong = 1000.0;                            // [ms] what is drawn in full must not bar the hand
 constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // of rest, a coarse picture is drawn in full
 constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
 

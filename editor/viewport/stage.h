@@ -98,9 +98,9 @@ class Stage {
   Target targets_[3];
   std::unique_ptr<SolidView> solid_;
   std::unique_ptr<Scenery> scenery_;
-  std::optional<StageOrder> drawn_;  // of the document, that the newest picture shows
-  double share_ = 1.0;               // [1] of the resolution, of the next picture
-  double fixed_ms_ = 0.0;            // of a picture, whatever its resolution
+  std::optional<StageOrder> drawn_;               // of the document, that the newest picture shows
+  double share_ = 1.0;                            // [1] of the resolution, of the next picture
+  double fixed_ms_ = 0.0;                         // of a picture, whatever its resolution
   double sample_pixels_ = 0.0, sample_ms_ = 0.0;  // [1] of all, [ms]: an earlier picture of another resolution
   bool software_ = false;
   std::string failure_;
