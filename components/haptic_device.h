@@ -8,12 +8,16 @@
 
 #include "components/math.h"
 #include "components/range.h"
+#include "pliant/driver.h"
 #include "pliant/parameters.h"
 #include "runtime/store.h"
 
 namespace pliant {
 
 enum class DriverKind : std::uint8_t { kNull, kScript, kOrbit, kMouse, kExternal };
+
+// Where no driver has said anything, nothing is limited but by the level.
+inline constexpr DeviceCapabilities kNoDriver{.senses_rotation = true, .renders_torque = true};
 
 // Unknown state means zero force.
 enum class DeviceStatus : std::uint8_t { kLost, kReady };
@@ -23,6 +27,10 @@ struct HapticDevice : DeviceParameters {
   DriverKind driver = DriverKind::kNull;
   std::string file;  // of the script, relative to the level
   std::string id;    // external drivers: which one
+
+  // Its driver's. Written where one is connected or released and never by an edit, so that none can lift them.
+  DeviceCapabilities can = kNoDriver;
+  double workspace = 1.0;  // [1] world metres per metre of the driver's; 1 where poses are in world coordinates
 
   Handle<Path> path;  // script, orbit
   DeviceStatus status = DeviceStatus::kReady;
@@ -35,10 +43,10 @@ struct HapticDevice : DeviceParameters {
 
 // What its numbers may be, in a file and in code.
 struct DeviceRange {
-  static constexpr Range kScale{0.0, 1e6, true};    // [1]
-  static constexpr Range kMaxForce{0.0, 1e3};       // [N]
-  static constexpr Range kMaxStiffness{0.0, 1e7};   // [N/m]
-  static constexpr Range kMaxSlew{0.0, 1e7, true};  // [N/s]
+  static constexpr Range kScale{0.0, 1e6, true};   // [1]
+  static constexpr Range kMaxForce{0.0, 1e3};      // [N]
+  static constexpr Range kMaxStiffness{0.0, 1e7};  // [N/m]
+  static constexpr Range kMaxSlew{1.0, 1e7};       // [N/s] slower, and no contact could be felt
 };
 
 }  // namespace pliant

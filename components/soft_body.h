@@ -33,6 +33,7 @@ struct SoftBodyRange {
   static constexpr Range kPoisson{0.0, 0.499};      // [1]
   static constexpr Range kDensity{0.0, 1e6, true};  // [kg/m3]
   static constexpr Range kCell{0.0, 1e3};           // [m]
+  static constexpr Range kThickness{0.0, 1e3};      // [m]
   static constexpr Range kMass{0.0, 1e9};           // [kg] of a rigid body
 };
 inline constexpr Range kPairRange{0.0, 1e9};        // of couplings' springs and dampers, and of Rayleigh's damping

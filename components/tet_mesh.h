@@ -26,6 +26,18 @@ struct TetQuality {
   double worst_ratio = 0.0, median_ratio = 0.0;            // [1] 3 x inradius / circumradius: 1 regular, 0 flat
 };
 
+// How tetrahedra came out of a surface, for whoever looks at them before they are simulated. Zeros: from a file.
+struct TetReport {
+  double cell = 0.0;                  // [m] of the lattice
+  double wall = 0.0;                  // [m] median thickness of the thin wall that the surface is; 0: it is none
+  std::uint32_t parts_dropped = 0;    // too small to keep
+  double volume_dropped = 0.0;        // [1] share of the tissue that they were
+  double thin = 0.0;                  // [1] share of the surface with less tissue behind it than thin_places.h asks for
+  double least_thickness = 0.0;       // [m] of that tissue; 0: nothing is thin
+  vec3 thinnest{0};                   // [m] where
+  std::vector<std::string> findings;  // what a person should know, one sentence each, without the body's name
+};
+
 struct TetMesh {
   std::string name;
   std::vector<dvec3> nodes;        // [m] rest. Order: free ones, then those on the handle, then the pinned
@@ -34,6 +46,7 @@ struct TetMesh {
   std::vector<Tet> tets;
   std::vector<Embedding> embedding;  // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
   TetQuality quality;
+  TetReport report;
 
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes.size()); }
   std::uint32_t pinned_begin() const { return free_count + handle_count; }

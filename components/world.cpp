@@ -20,7 +20,8 @@ std::vector<std::string> explain_dropped(std::uint32_t dropped) {
         "an object had more contacts than its list holds, and the others made no force; use fewer probes, or split the "
         "object");
   if (dropped & kDroppedNonFinite)
-    sentences.push_back("a pose or force was not a number and was replaced by zero; check the device");
+    sentences.push_back(
+        "a pose or force was not a number and was replaced by zero; check the device, and laws and shapes of your own");
   if (dropped & kDroppedTravel)
     sentences.push_back("a probe moved farther in a tick than the level is large; check the device's units");
   if (dropped & kDroppedReleases)

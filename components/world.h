@@ -31,7 +31,7 @@ namespace pliant {
 // What a step had to leave out, as bits; each says its cure.
 enum DroppedBit : std::uint32_t {  // 8 was one more, and is not given again
   kDroppedContacts = 1,   // more contacts on one object than it has room for: use fewer probes, or split the object
-  kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check the device
+  kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check device and registered laws
   kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
   kDroppedReleases = 32,  // more dents were recovering at once than the GPU's list holds: the oldest vanished
   kDroppedFactor = 64,    // a body's step could not be solved and it stood still: raise `young` or `density`, or mend

@@ -35,5 +35,7 @@ Status set_key(Level& level, const std::string& assignment);
 
 // spawn_level, and the panorama that the level names is decoded.
 Result<World> spawn(const Level& level, std::vector<std::string>* notes = nullptr);
+// The same, and the level's pictures become the World's: they may take half a gigabyte. All else of the level stays.
+Result<World> spawn_moving_images(Level& level, std::vector<std::string>* notes = nullptr);
 
 }  // namespace pliant

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "content/files/exr.h"
 #include "content/level_file.h"
 
@@ -12,6 +14,13 @@ Result<World> spawn(const Level& level, std::vector<std::string>* notes) {
   }
   Result<World> world = spawn_level(level, notes);
   if (world) world->environment.panorama = std::move(panorama);
+  return world;
+}
+
+Result<World> spawn_moving_images(Level& level, std::vector<std::string>* notes) {
+  std::vector<Image> images = std::exchange(level.images, {});
+  Result<World> world = spawn(level, notes);
+  if (world) world->images = std::move(images);
   return world;
 }
 

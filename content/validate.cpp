@@ -3,19 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 
 #include "content/files/exr.h"
 #include "content/gltf/gltf_document.h"
 #include "content/keys/extensions.h"
+#include "content/keys/unused_keys.h"
 #include "content/level/device_use.h"
 #include "content/level/script.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/tet_file.h"
-#include "content/tets/tet_parts.h"
 
 namespace pliant {
 
@@ -95,11 +96,14 @@ void find_outside(const Level& level, Findings& findings) {
   }
 }
 
-// How a deformable will feel where its mesh does not suit it.
-void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::string& pointer, Findings& findings) {
-  const Result<BuiltMesh> built =
-      build_mesh(node.name, mesh.primitives, mat4(1), {node.deformable ? node.deformable->crease_angle : 0.0});
-  if (!built) return findings.push_back({Severity::kError, pointer, built.error().what});
+// What building a mesh says of it: the mean edge [m], or -1 where it cannot be built.
+double find_in_mesh(const LevelNode& node, const LevelMesh& mesh, double crease, const std::string& pointer,
+                    Findings& findings) {
+  const Result<BuiltMesh> built = build_mesh(node.name, mesh.primitives, mat4(1), {crease});
+  if (!built) {
+    findings.push_back({Severity::kError, pointer, built.error().what});
+    return -1.0;
+  }
   const auto warn = [&](std::string message) { findings.push_back({Severity::kWarning, pointer, std::move(message)}); };
   const MeshReport& report = built->report;
   if (report.degenerate_triangles + report.duplicate_triangles > 0)
@@ -112,10 +116,30 @@ void find_in_mesh(const LevelNode& node, const LevelMesh& mesh, const std::strin
                      report.non_manifold_edges));
   if (const std::string turned = winding_note(report); !turned.empty()) warn(turned);
   if (const std::string doubt = winding_doubt(report); !doubt.empty()) warn(doubt);
-  if (node.deformable && node.deformable->reach > 0.0 &&
-      node.deformable->reach < static_cast<double>(built->mesh.mean_edge))
-    warn(fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices",
-                     node.deformable->reach, built->mesh.mean_edge));
+  return static_cast<double>(built->mesh.mean_edge);
+}
+
+// How surfaces will feel where their meshes do not suit them. What instances have in common is said of the first: a
+// mesh can be shown ten thousand times, and it is built once.
+void find_in_meshes(const Level& level, Findings& findings) {
+  std::map<std::pair<std::int32_t, double>, double> mean_edge;  // of a mesh and its crease angle
+  std::set<std::tuple<std::int32_t, double, double>> seen;      // and the reach
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (!node.in_scene || node.mesh < 0 || (!node.deformable && !node.rigid_body)) continue;
+    const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
+    const double reach = node.deformable ? node.deformable->reach : 0.0;
+    if (!seen.insert({node.mesh, crease, reach}).second) continue;
+    const auto [edge, is_new] = mean_edge.try_emplace({node.mesh, crease});
+    if (is_new)
+      edge->second =
+          find_in_mesh(node, level.meshes[static_cast<std::size_t>(node.mesh)], crease, pointer_of(level, i), findings);
+    if (reach > 0.0 && reach < edge->second)
+      findings.push_back(
+          {Severity::kWarning, pointer_of(level, i),
+           fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices", reach,
+                       edge->second)});
+  }
 }
 
 // What about soft and rigid bodies cannot go together, and what is read differently from their files.
@@ -124,9 +148,6 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene) continue;
     const std::string pointer = pointer_of(level, i);
-    if (node.handle && node.rigid_body && !node.soft_body && !node.handle->box.empty())
-      findings.push_back({Severity::kWarning, pointer,
-                          "PLIANT_handle/box has no effect on a rigid body, all of which is its handle; remove it"});
     if (const std::string fault = soft_fault(node); !fault.empty())
       findings.push_back({Severity::kError, pointer, fault});
     if (!node.soft_body || node.soft_body->mesh.empty()) continue;
@@ -135,8 +156,22 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
   }
 }
 
+// What is written and read by nobody, and what nothing moves.
+void find_idle(const Level& level, Findings& findings) {
+  for (const UnusedKey& key : find_unused_keys(level)) {
+    const std::string owner =
+        key.node < 0 ? scene_pointer(level) : pointer_of(level, static_cast<std::size_t>(key.node));
+    std::string pointer = owner + "/extensions/" + key.pointer;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');  // a key's dots are nested objects
+    findings.push_back({Severity::kNote, std::move(pointer), key.what});
+  }
+  for (const DeviceFault& idle : find_unmoved_probes(level))
+    findings.push_back({Severity::kNote, pointer_of(level, idle.node), idle.what});
+}
+
 // Scripts that are not there, or hold no path.
 void find_in_scripts(const Level& level, const fs::path& folder, Findings& findings) {
+  ScriptLibrary scripts;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
     const auto find = [&](const std::string& name, const char* key, bool reads) {
@@ -146,7 +181,7 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
       if (!file) return error(file.error().message());
       if (!fs::is_regular_file(*file)) return error("names the script " + name + ", which does not exist");
       if (!reads) return;
-      if (const Result<Path> script = load_script(*file); !script) error(script.error().message());
+      if (const Result<const Path*> script = scripts.read(*file, false); !script) error(script.error().message());
     };
     if (node.motion && !node.motion->script.empty()) find(node.motion->script, "PLIANT_motion/script", false);
     if (node.device && !node.device->file.empty())
@@ -160,12 +195,7 @@ void find_in_tissue(const Level& level, const World& world, Findings& findings) 
     const std::string node = pointer_of(level, world, entity);  // clang 14 captures no structured bindings
     const TetMesh& tets = world.tet_meshes[soft_body.tets];
     const auto warn = [&](std::string what) { findings.push_back({Severity::kWarning, node, std::move(what)}); };
-    const std::uint32_t parts = count_parts(tets), pieces = count_parts(world.meshes[soft_body.collision_mesh]);
-    if (parts > pieces)
-      warn(fmt::format(
-          "its tetrahedra fall into {} parts where its surface has {}: what joins them is thinner than the cell; "
-          "make `cell` smaller",
-          parts, pieces));
+    for (const std::string& finding : tets.report.findings) warn(finding);
     if (const std::string doubt = locking_doubt(soft_body, tets.tets.size()); !doubt.empty()) warn(doubt);
     if (tets.quality.smallest_dihedral < kSharp)
       warn(
@@ -182,57 +212,66 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
+  std::optional<SourceDocument> document;
+  Findings of_document;
   if (extension == ".gltf" || extension == ".glb") {
-    const std::optional<SourceDocument> document = open_gltf(path, findings);
+    document = open_gltf(path, of_document);
+    findings = of_document;
     if (!document) return findings;
     find_in_extensions(document->json, findings);
     if (any_error(findings)) return findings;
   }
-  Result<Level> level = load_level(path);
+  Result<Level> level = document ? load_document(std::move(*document), of_document, path) : load_level(path);
+  document.reset();
   if (!level) {
     findings.push_back({Severity::kError, level.error().pointer, level.error().what});
     return findings;
   }
   for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are among the findings
     findings.push_back({Severity::kNote, "", level->notes[i]});
-  const bool bare = !level->has_pliant();
+  level->path = path;
+  const Findings of_level = validate_level(*std::move(level), prepare);
+  findings.insert(findings.end(), of_level.begin(), of_level.end());
+  return findings;
+}
+
+Findings validate_level(Level level, const std::function<Status(World&)>& prepare) {
+  Findings findings;
+  const bool bare = !level.has_pliant();
   if (bare) {
     findings.push_back(
         {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
-    make_touchable(*level);
+    make_touchable(level);
   }
-  find_outside(*level, findings);
-  std::set<std::tuple<std::int32_t, double, double>> seen;  // mesh, crease angle, reach
-  for (std::size_t i = 0; i < level->nodes.size(); ++i) {
-    const LevelNode& node = level->nodes[i];
-    if (!node.in_scene || node.mesh < 0 || (!node.deformable && !node.rigid_body)) continue;
-    // What instances have in common is said of the first: a mesh can be shown ten thousand times.
-    const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
-    if (seen.insert({node.mesh, crease, node.deformable ? node.deformable->reach : 0.0}).second)
-      find_in_mesh(node, level->meshes[static_cast<std::size_t>(node.mesh)], pointer_of(*level, i), findings);
+  find_outside(level, findings);
+  if (const Status size = check_level_size(level); !size) {  // before a mesh is built
+    findings.push_back(from_spawn(level, size.error()));
+    return findings;
   }
-  for (const DeviceFault& fault : find_shared_devices(*level))
-    findings.push_back({Severity::kError, pointer_of(*level, fault.node), fault.what});
+  find_in_meshes(level, findings);
+  for (const DeviceFault& fault : find_shared_devices(level))
+    findings.push_back({Severity::kError, pointer_of(level, fault.node), fault.what});
+  find_idle(level, findings);
   // Files that the level names.
-  const fs::path folder = path.parent_path();
-  find_in_soft_nodes(*level, folder, findings);
-  find_in_scripts(*level, folder, findings);
-  if (level->environment && !level->environment->panorama.empty()) {
+  const fs::path folder = level.path.parent_path();
+  find_in_soft_nodes(level, folder, findings);
+  find_in_scripts(level, folder, findings);
+  if (level.environment && !level.environment->panorama.empty()) {
     std::vector<std::string> notes;
-    const Result<Panorama> panorama = load_named_panorama(folder, level->environment->panorama, &notes);
-    const std::string pointer = scene_pointer(*level) + "/extensions/PLIANT_environment/panorama";
+    const Result<Panorama> panorama = load_named_panorama(folder, level.environment->panorama, &notes);
+    const std::string pointer = scene_pointer(level) + "/extensions/PLIANT_environment/panorama";
     if (!panorama) findings.push_back({Severity::kError, pointer, panorama.error().message()});
     for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
   }
   if (any_error(findings)) return findings;
-  Result<World> world = spawn(*level);
+  Result<World> world = spawn_moving_images(level);
   if (!world) {
-    findings.push_back(from_spawn(*level, world.error()));
+    findings.push_back(from_spawn(level, world.error()));
     return findings;
   }
-  find_in_tissue(*level, *world, findings);
+  find_in_tissue(level, *world, findings);
   if (prepare)
-    if (const Status status = prepare(*world); !status) findings.push_back(from_prepare(*level, status.error()));
+    if (const Status status = prepare(*world); !status) findings.push_back(from_prepare(level, status.error()));
   return findings;
 }
 

@@ -6,6 +6,7 @@
 
 #include "components/world.h"
 #include "content/level/finding.h"
+#include "content/level/level.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -15,5 +16,8 @@ namespace pliant {
 // error. `prepare` is what a run does to a world before its first tick, and what it refuses then (content knows no
 // systems).
 Findings validate_level(const std::filesystem::path& path, const std::function<Status(World&)>& prepare = {});
+
+// The same of a level in memory, whose document has been heard; files that it names are sought beside `level.path`.
+Findings validate_level(Level level, const std::function<Status(World&)>& prepare = {});
 
 }  // namespace pliant

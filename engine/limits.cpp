@@ -80,13 +80,13 @@ std::vector<std::string> explain_limits(const World& world, Entity hand, const s
   const HandSafety safety = find_safety(world, hand);
   const HapticDevice* device = find_device(world, hand);
   if (!safety.force || !device) return sentences;
+  const SafetyLimits force = force_limits(*device);
   const std::string who = (safety.torque ? "tool `" : "probe `") + name + "`";
   explain(safety.force->tally, who,
-          {"force", "max_force", "N", device->max_force, device->max_slew, device->max_stiffness, "0.2 N"}, sentences);
+          {"force", "max_force", "N", force.force, force.slew, force.stiffness / force.scale, "0.2 N"}, sentences);
   if (!safety.torque) return sentences;
-  const Handle6& handle = world.registry.get<Handle6>(hand);
-  const double slew = device->max_slew * handle.max_torque / std::max(handle.max_force, 1e-9);
-  explain(safety.torque->tally, who, {"torque", "max_torque", "N m", handle.max_torque, slew, 0.0, "0.2 N m"},
+  const SafetyLimits torque = torque_limits(*device, world.registry.get<Handle6>(hand));
+  explain(safety.torque->tally, who, {"torque", "max_torque", "N m", torque.force, torque.slew, 0.0, "0.2 N m"},
           sentences);
   return sentences;
 }

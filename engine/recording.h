@@ -29,8 +29,9 @@ struct RecordingHeader {
   std::string level;
   double rate = 1000.0;  // [Hz]
   std::vector<std::string> probes;
-  std::uint64_t scene = 0;            // scene_hash() (engine/scene_check.h); 0: not known, of format 1
-  std::vector<std::string> settings;  // NODE.EXT.KEY=VALUE that were set on top of the level; --unit=METRES
+  std::uint64_t scene = 0;  // scene_hash() (engine/scene_check.h); 0: not known, of format 1
+  // NODE.EXT.KEY=VALUE that were set on top of the level; --unit=METRES; limits of drivers (engine/driver_limits.h).
+  std::vector<std::string> settings;
 };
 
 struct Recording {

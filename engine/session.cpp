@@ -8,6 +8,7 @@
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "engine/sources.h"
+#include "systems/safety/safety.h"
 #include "systems/soft/soft_state.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/touch/touch_state.h"
@@ -47,15 +48,14 @@ std::vector<std::string> Session::effectors() const {
 Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
   SessionEffector* const effector = parts_->find_effector(name);
   if (!effector) return parts_->unknown_effector(name);
-  const double size = glm::length(rotation);
-  if (!finite(position) || !(std::abs(size - 1.0) < kUnitWithin))
+  if (!finite(position) || !plausible_rotation(rotation))
     return Error{"Session::move `" + name + "`", "the pose is not finite or its rotation is not of unit length"};
   if (effector->source != EffectorSource::kPose) {
     if (Status s = parts_->stand_still("Session::move"); !s)
       return Error{"Session::move `" + name + "`", "it had no pose before start(); give it one first"};
     if (Status s = parts_->give(*effector, EffectorSource::kPose); !s) return s;
   }
-  effector->prescribed->write() = {position, rotation / size};
+  effector->prescribed->write() = {position, rotation / glm::length(rotation)};
   effector->prescribed->publish();
   return Done{};
 }
@@ -70,11 +70,10 @@ Status Session::follow(const std::string& name, Path path) {
     if (!finite(row.position) || !(row.time > before) || !std::isfinite(row.time))
       return Error{"Session::follow `" + name + "`", "times must ascend and positions must be finite"};
     before = row.time;
-    const double size = glm::length(row.rotation);
     if (!path.turns)
       row.rotation = dquat(1, 0, 0, 0);
-    else if (std::abs(size - 1.0) < kUnitWithin)
-      row.rotation /= size;
+    else if (plausible_rotation(row.rotation))
+      row.rotation /= glm::length(row.rotation);
     else
       return Error{"Session::follow `" + name + "`", "a rotation is not of unit length; normalise it"};
   }
@@ -189,12 +188,20 @@ Status Session::start() {
   if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
   limit_tool_ticks(p.world);
   p.ended = "it has run in real time";
-  if (p.recorder) p.recorder->start();
   TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
                    [&p] { p.clock_ended(); }};
   p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,
                                          std::numeric_limits<std::uint64_t>::max(), std::move(hooks));
-  p.clock->start();
+  try {
+    if (p.recorder) p.recorder->start();
+    p.clock->start();
+  } catch (const std::exception& thrown) {
+    p.clock.reset();
+    p.end("its clocks did not start");
+    return Error{"Session::start", std::string("no thread could be started (") + thrown.what() +
+                                       "); end other programs or raise the limit (ulimit -u), then call "
+                                       "Session::restart()"};
+  }
   return Done{};
 }
 
@@ -267,11 +274,7 @@ Status Session::set(const std::string& object, const std::string& key, double va
       DeviceParameters changed = device->second;
       changed.*(live.device) = value;
       if (Status s = check_device(object, changed); !s) return s;
-      std::swap(device->second, changed);
-      const SessionEffector& effector = *p.find_effector(object);
-      edit.entity = effector.device;
-      edit.value = p.limits_of(effector).*(live.device);  // never beyond what its driver can render
-      std::swap(device->second, changed);                 // until a tick takes it
+      edit.entity = p.find_effector(object)->device;
     }
     if (!p.edits->push(edit)) return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
     if (live.surface) surface->second.*(live.surface) = value;

@@ -38,8 +38,12 @@ SessionFigures Session::figures() const {
            prescribed.max,     prescribed.overruns, p.soft->latest().steps};
   } else {
     const Histogram& cost = p.schedule->total();
-    out = {p.ticks,    cost.percentile_us(0.5), cost.percentile_us(0.99), cost.max_us(),
-           p.overruns, p.soft->figures().steps};
+    out = {p.ticks,
+           cost.percentile_us(0.5),
+           cost.percentile_us(0.99),
+           cost.max_us(),
+           p.overruns,
+           p.soft ? p.soft->figures().steps : 0};  // none after a restart that failed
   }
   return out;
 }

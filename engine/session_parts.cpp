@@ -8,7 +8,9 @@
 #include "components/soft_body.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
+#include "systems/device/devices.h"
 #include "systems/device/hands.h"
+#include "systems/safety/safety.h"
 #include "systems/schedule.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
@@ -64,6 +66,8 @@ Status Session::Parts::prepare() {
     made = remake(before);
   } catch (const std::exception& thrown) {
     made = Error{"scene", std::string("cannot be made: ") + thrown.what()};
+  } catch (...) {
+    made = Error{"scene", "cannot be made: something that is no std::exception was thrown; look at what is registered"};
   }
   for (SessionEffector& effector : before) close_driver(effector);  // what the new world has no place for
   if (made)
@@ -192,7 +196,7 @@ Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
     device.driver = DriverKind::kScript;
     device.path = world.paths.add(Path(effector.path));
   }
-  static_cast<DeviceParameters&>(device) = limits_of(effector);
+  begin(effector);
   return Done{};
 }
 
@@ -202,20 +206,18 @@ void Session::Parts::take_away(SessionEffector& effector, EffectorSource source)
   device.driver = DriverKind::kNull;
   device.path = {};
   device.status = DeviceStatus::kLost;
-  device.force_sent = device.torque_sent = dvec3(0);
-  static_cast<DeviceParameters&>(device) = limits_of(effector);
   effector.source = source;
   effector.placed = effector.ready = false;
+  begin(effector);
 }
 
-DeviceParameters Session::Parts::limits_of(const SessionEffector& effector) const {
-  DeviceParameters limits = devices.at(effector.name);
-  const DeviceCapabilities& can = effector.can;
-  if (can.max_force > 0.0) limits.max_force = std::min(limits.max_force, can.max_force);
-  if (can.max_stiffness > 0.0)
-    limits.max_stiffness =
-        limits.max_stiffness > 0.0 ? std::min(limits.max_stiffness, can.max_stiffness) : can.max_stiffness;
-  return limits;
+void Session::Parts::begin(SessionEffector& effector) {
+  HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+  device.can = effector.driver ? effector.can : kNoDriver;
+  device.workspace = effector.driver ? device.scale : 1.0;
+  device.force_sent = device.torque_sent = dvec3(0);
+  begin_anew(world, effector.entity);
+  effector.renewed = ticks > 0;  // before the first tick there is nothing to lose
 }
 
 void Session::Parts::zero_drivers() noexcept {
@@ -272,7 +274,6 @@ void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
     effector.from = effector.placed ? effector.now : to;
     effector.heard_at = tick.time;
     effector.placed = true;
-    device.status = DeviceStatus::kReady;
   }
   if (clock && tick.time - effector.heard_at > kPrescribedHolds) effector.placed = false;  // it grows stale
   if (!effector.placed) return;
@@ -283,6 +284,7 @@ void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
   device.position = effector.now.position;
   device.rotation = effector.now.rotation;
   device.sensed_at = tick.time;
+  device.status = DeviceStatus::kReady;
 }
 
 // Without a new sample the device keeps what it said last; once that is old, safety takes it for lost.
@@ -290,12 +292,11 @@ void Session::Parts::read_driver(SessionEffector& effector, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
   DeviceSample sample;
   if (effector.driver->read(sample)) {
-    const double size = glm::length(sample.rotation);
-    device.position = device.scale * sample.position;
+    device.position = device.workspace * sample.position;
     if (!effector.can.senses_rotation)
       device.rotation = effector.placed_rotation;
-    else if (std::abs(size - 1.0) < kUnitWithin)
-      device.rotation = sample.rotation / size;
+    else if (plausible_rotation(sample.rotation))
+      device.rotation = sample.rotation / glm::length(sample.rotation);
     else
       device.rotation = sample.rotation;  // no rotation: the pose is not taken, and counted
     device.sensed_at = tick.time;
@@ -310,9 +311,21 @@ void Session::Parts::before(Tick tick) {
   Edit edit;
   while (edits->pop(edit)) apply_edit(world, edit);
   for (SessionEffector& effector : effectors) {
+    HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+    if (after_pause) forget(effector);
     if (effector.source == EffectorSource::kPose) read_prescribed(effector, tick);
     if (effector.source == EffectorSource::kDriver) read_driver(effector, tick);
+    if (effector.source == EffectorSource::kPath) device.status = DeviceStatus::kReady;
+    if (effector.renewed) device.status = DeviceStatus::kLost;
+    effector.renewed = false;
   }
+}
+
+// After a pause the pose from before it is old, however little time has passed by the clock: the gate would open on it.
+void Session::Parts::forget(SessionEffector& effector) {
+  if (effector.source != EffectorSource::kPose && effector.source != EffectorSource::kDriver) return;
+  effector.placed = effector.ready = false;
+  world.registry.get<HapticDevice>(effector.device).status = DeviceStatus::kLost;
 }
 
 void Session::Parts::idle() {
@@ -320,7 +333,7 @@ void Session::Parts::idle() {
   DeviceSample sample;
   for (SessionEffector& effector : effectors) {
     if (!effector.driver) continue;
-    if (effector.driver->read(sample)) effector.ready = sample.ready;
+    effector.driver->read(sample);
     effector.driver->write({});
   }
 }

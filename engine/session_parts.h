@@ -2,6 +2,7 @@
 // one runs; what the owner's thread and the clock exchange goes through exchanges.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -30,9 +31,6 @@ enum class EffectorSource : std::uint8_t { kNone, kReleased, kLevel, kPose, kPat
 // most kLongestWay: a program that draws 60 pictures a second sets 60 poses.
 inline constexpr double kPrescribedHolds = 0.25, kLongestWay = 0.1;
 
-// [1] How far from unit length a rotation may be: then it is normalised.
-inline constexpr double kUnitWithin = 0.01;
-
 struct PrescribedPose {
   dvec3 position{0};
   dquat rotation{1, 0, 0, 0};
@@ -46,9 +44,10 @@ struct SessionEffector {
   Path path;                                                 // of kPath, for restart()
   DeviceCapabilities can;                                    // its, while it is connected
   std::unique_ptr<Driver> driver;                            // of kDriver
-  bool ready = false;                                        // as its driver said last
+  bool ready = false;                                        // as its driver said last, since a pause
   dquat placed_rotation{1, 0, 0, 0};                         // where its driver senses none
   std::unique_ptr<TripleBuffer<PrescribedPose>> prescribed;  // owner -> touch clock
+  bool renewed = false;  // touch clock's: the next tick is its source's first, and has it lost
   // Touch clock's: the way to the newest pose that was set.
   bool placed = false;
   double heard_at = 0.0, lasts = 1e-3;  // [s] when that came, and how long the way to it takes
@@ -127,6 +126,7 @@ struct Session::Parts {
   bool after_pause = false;                     // touch clock's: the next tick is the first after a pause
   Tick last;                                    // touch clock's: the tick under way, or the last
   bool shown = true;                            // touch clock's: its readings are published
+  std::function<void(Tick)> noted;              // touch clock's: last of every tick; must not allocate, wait or throw
   std::map<std::string, std::map<std::uint32_t, SourcePlace>> places;  // by object, of vertices that were pressed
 
   explicit Parts(const Scene& from) : scene(from) {}
@@ -145,12 +145,11 @@ struct Session::Parts {
   void take_away(SessionEffector& effector, EffectorSource source);  // nobody moves it
   void close_driver(SessionEffector& effector) noexcept;
   void zero_drivers() noexcept;
-  void end(const char* why) noexcept;                             // every device is lost, and written zero
-  void show_let_go() noexcept;                                    // readings without force
-  void clock_ended() noexcept;                                    // last of all on the touch clock
-  DeviceWrench wrench_of(const SessionEffector& effector) const;  // what its device can render of the force sent
-  DeviceParameters limits_of(
-      const SessionEffector& effector) const;  // the level's or the driver's, whichever are smaller
+  void end(const char* why) noexcept;      // every device is lost, and written zero
+  void show_let_go() noexcept;             // readings without force
+  void clock_ended() noexcept;             // last of all on the touch clock
+  void begin(SessionEffector& effector);   // another source: its driver's limits, and a hand that is new
+  void forget(SessionEffector& effector);  // its pose, until its source says another
 
   // A force on a vertex of a refined mesh, shared by the source vertices around it.
   void share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force, std::vector<vec3>& out);
@@ -158,6 +157,7 @@ struct Session::Parts {
 
   // On the touch clock, or the caller's thread in lockstep.
   void before(Tick tick);
+  void begin_replay(Recording recording);
   Tick replayed_tick();  // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
   void read_driver(SessionEffector& effector, Tick tick);

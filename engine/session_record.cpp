@@ -8,6 +8,7 @@
 #include <span>
 
 #include "content/files/file_io.h"
+#include "engine/driver_limits.h"
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "runtime/printable.h"
@@ -43,9 +44,8 @@ SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
 
 void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready) {
   RecordedPose& last = last_[effector];
-  const double size = glm::length(device.rotation);
-  const bool sound = plausible_position(device.position) && std::abs(size - 1.0) < kUnitWithin;
-  if (sound) last = {device.position, device.rotation / size, ready};
+  const bool sound = plausible_position(device.position) && plausible_rotation(device.rotation);
+  if (sound) last = {device.position, device.rotation / glm::length(device.rotation), ready};
   last.ready = sound && ready;
   rows_.record({tick, effector, last});
 }
@@ -94,12 +94,9 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
     return Error{"Session::record", "the scene has no probe and no tool; there is nothing to record"};
   RecordingHeader header{p.world.name, p.world.simulation.touch_rate, effectors(), scene_hash(p.scene.level()), {}};
   for (const auto& [key, value] : p.settings) header.settings.push_back(key + "=" + value);
-  for (const SessionEffector& effector : p.effectors) {  // a driver's limits are felt as well
-    if (!effector.driver) continue;
-    const DeviceParameters limits = p.limits_of(effector);
-    header.settings.push_back(fmt::format("{}.haptic_device.max_force={}", effector.name, limits.max_force));
-    header.settings.push_back(fmt::format("{}.haptic_device.max_stiffness={}", effector.name, limits.max_stiffness));
-  }
+  for (const SessionEffector& effector : p.effectors)  // a driver's limits are felt as well
+    for (std::string& setting : driver_settings(effector.name, p.world.registry.get<HapticDevice>(effector.device)))
+      header.settings.push_back(std::move(setting));
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
   p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
@@ -132,15 +129,24 @@ Status Session::replay(const std::filesystem::path& file) {
   if (!recording->ticks.empty() && recording->ticks.front() != 0)
     p.notes.push_back(fmt::format("{} begins at tick {}: what was felt before is not in it", file.string(),
                                   recording->ticks.front()));
-  for (const std::string& setting : header.settings)
+  for (const std::string& setting : header.settings) {
+    if (is_driver_setting(setting)) continue;
     if (Status applied = apply_setting(*this, setting); !applied)
       p.notes.push_back(file.string() + ": its setting " + applied.error().message());
-  for (SessionEffector& effector : p.effectors) {
-    p.take_away(effector, EffectorSource::kNone);
-    p.world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
   }
-  p.replayed = std::move(recording).value();
+  const std::vector<std::string> settings = header.settings;
+  p.begin_replay(std::move(recording).value());
+  if (Status applied = apply_driver_settings(p.world, settings); !applied)
+    p.notes.push_back(file.string() + ": its setting " + applied.error().message());
   return Done{};
+}
+
+void Session::Parts::begin_replay(Recording recording) {
+  for (SessionEffector& effector : effectors) {
+    take_away(effector, EffectorSource::kNone);
+    world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
+  }
+  replayed = std::move(recording);
 }
 
 Tick Session::Parts::replayed_tick() {

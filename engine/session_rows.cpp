@@ -28,11 +28,6 @@ void add_contact(const World& world, const std::vector<Entity>& objects, const C
   row.weights[i] = vec3(contact.barycentric);
 }
 
-dvec3 at_most(dvec3 v, double most) {
-  const double size = glm::length(v);
-  return size > most ? v * (most / size) : v;
-}
-
 }  // namespace
 
 void Session::Parts::after(Tick tick) {
@@ -42,7 +37,7 @@ void Session::Parts::after(Tick tick) {
   for (std::size_t i = 0; i < effectors.size(); ++i) {
     SessionEffector& effector = effectors[i];
     const HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
-    const DeviceWrench wrench = wrench_of(effector);
+    const DeviceWrench wrench{device.force_sent, device.torque_sent};
     if (effector.driver) effector.driver->write(wrench);
     EffectorRow& row = out[i];
     const ProbeReading read = pliant::reading(world, effector.entity);
@@ -65,16 +60,7 @@ void Session::Parts::after(Tick tick) {
   after_pause = false;
   rows.publish();
   shown = true;
-}
-
-DeviceWrench Session::Parts::wrench_of(const SessionEffector& effector) const {
-  const HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
-  DeviceWrench wrench{device.force_sent, device.torque_sent};
-  if (!effector.driver) return wrench;
-  if (!effector.can.renders_force) wrench.force = dvec3(0);
-  if (!effector.can.renders_torque) wrench.torque = dvec3(0);
-  if (effector.can.max_torque > 0.0) wrench.torque = at_most(wrench.torque, effector.can.max_torque);
-  return wrench;
+  if (noted) noted(tick);
 }
 
 const std::vector<LiveKey>& live_keys() {

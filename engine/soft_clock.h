@@ -53,8 +53,9 @@ class SoftClock {
   // Real time.
   void start();
   void pause(bool paused) { paused_ = paused; }
-  void stop();
-  const SoftFigures& latest();  // from one thread only
+  void stop();                           // waits for the step under way
+  void tell_to_stop() { stop_ = true; }  // does not
+  const SoftFigures& latest();           // from one thread only
   // A step threw, and there will be no more of them. From any thread.
   bool failed() const { return failed_; }
 

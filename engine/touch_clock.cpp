@@ -29,8 +29,13 @@ TouchClock::TouchClock(World& world, Schedule<World>& schedule, SoftClock* soft,
 }
 
 void TouchClock::start() {
-  thread_ = std::thread([this] { run(); });
-  if (soft_) soft_->start();
+  try {
+    thread_ = std::thread([this] { run(); });
+    if (soft_) soft_->start();
+  } catch (...) {  // one thread could be started and the other not
+    stop();
+    throw;
+  }
 }
 
 void TouchClock::pause(bool paused) {
@@ -38,10 +43,12 @@ void TouchClock::pause(bool paused) {
   if (soft_) soft_->pause(paused);
 }
 
+// This thread is waited for first, so that forces are zero however long a solver takes, or hangs.
 void TouchClock::stop() {
-  if (soft_) soft_->stop();
+  if (soft_) soft_->tell_to_stop();
   stop_ = true;
   if (thread_.joinable()) thread_.join();
+  if (soft_) soft_->stop();
 }
 
 const TouchFigures& TouchClock::figures() {

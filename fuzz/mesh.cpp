@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "content/files/assimp_import.h"
+#include "fuzz/obj_buffer.h"
 #include "fuzz/sound_level.h"
 
 // What Assimp leaks where it throws goes with the child that import_mesh runs it in.
@@ -14,6 +15,7 @@ extern "C" const char* __asan_default_options() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr const char* kFormats[] = {".obj", ".ply", ".off", ".stl"};
   if (size < 1) return 0;
+  pliant::offer_obj_buffer(size);
   try {
     const auto level = pliant::import_mesh_here({data + 1, data + size}, kFormats[data[0] % 4]);
     if (level)

@@ -28,9 +28,11 @@ std::string note_line(const std::string& sentence) {
 
 std::string sentence_of(ExitStatus status, const Error& error) {
   std::string sentence = trimmed(error.message());
-  if (sentence.find("; ") == std::string::npos)  // a finding that is its own cure, to a reader who knows the format
-    sentence += status == kUsage ? "; see `pliant --help`" : "; mend the input: `pliant validate` lists every finding";
-  return sentence;
+  if (sentence.find("; ") != std::string::npos) return sentence;
+  if (status == kUsage) return sentence + "; see `pliant --help`";
+  // A finding in a level is its own cure to a reader who knows the format; `validate` knows of levels alone.
+  const bool in_level = !error.pointer.empty() || error.node >= 0;
+  return sentence + (in_level ? "; mend the level: `pliant validate` lists every finding" : "");
 }
 
 int fail(ExitStatus status, const Error& error) {

@@ -23,7 +23,7 @@ NodesMoved put_in_order(Level& level, const std::set<std::int32_t>& gone = {}) {
     for (std::size_t i = level.nodes.size(); i-- > 0;)
       if (level.nodes[i].parent < 0 && level.nodes[i].in_scene == in_scene)
         stack.push_back(static_cast<std::int32_t>(i));
-  NodesMoved moved(level.nodes.size(), kNoNode);
+  NodesMoved moved(level.nodes.size(), kNoLevelNode);
   while (!stack.empty()) {
     const std::int32_t node = stack.back();
     stack.pop_back();
@@ -33,7 +33,7 @@ NodesMoved put_in_order(Level& level, const std::set<std::int32_t>& gone = {}) {
     const std::vector<std::int32_t>& children = at(level, node).children;
     stack.insert(stack.end(), children.rbegin(), children.rend());
   }
-  const auto now = [&](std::int32_t node) { return node < 0 ? kNoNode : moved[static_cast<std::size_t>(node)]; };
+  const auto now = [&](std::int32_t node) { return node < 0 ? kNoLevelNode : moved[static_cast<std::size_t>(node)]; };
   std::vector<LevelNode> nodes;
   nodes.reserve(order.size());
   for (const std::int32_t node : order) {
@@ -41,7 +41,7 @@ NodesMoved put_in_order(Level& level, const std::set<std::int32_t>& gone = {}) {
     made.parent = now(made.parent);
     if (made.parent >= 0) made.in_scene = nodes[static_cast<std::size_t>(made.parent)].in_scene;
     for (std::int32_t& child : made.children) child = now(child);
-    erase(made.children, kNoNode);
+    erase(made.children, kNoLevelNode);
   }
   level.nodes = std::move(nodes);
   for (LevelAnimation& animation : level.animations) {
@@ -205,7 +205,7 @@ Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t paren
   // It is now the first node of all.
   level.nodes.erase(level.nodes.begin());
   for (LevelNode& each : level.nodes) {
-    each.parent = each.parent <= 0 ? kNoNode : each.parent - 1;
+    each.parent = each.parent <= 0 ? kNoLevelNode : each.parent - 1;
     for (std::int32_t& child : each.children) --child;
   }
   for (LevelAnimation& animation : level.animations)

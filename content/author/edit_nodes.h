@@ -10,23 +10,23 @@
 
 namespace pliant {
 
-inline constexpr std::int32_t kNoNode = -1;
+inline constexpr std::int32_t kNoLevelNode = -1;
 
 // `wanted`, or wanted_2, wanted_3...: a name that no node has.
 std::string free_name(const Level& level, const std::string& wanted);
 
-// Each of these says where nodes went: by their number before, their number now, kNoNode for those that are gone.
+// Each of these says where nodes went: by their number before, their number now, kNoLevelNode for those that are gone.
 using NodesMoved = std::vector<std::int32_t>;
 
-// The last child of `parent`, or the last root of the scene (kNoNode). The name is made free. Its number.
-std::int32_t add_node(Level& level, LevelNode node, std::int32_t parent = kNoNode, NodesMoved* moved = nullptr);
+// The last child of `parent`, or the last root of the scene (kNoLevelNode). The name is made free. Its number.
+std::int32_t add_node(Level& level, LevelNode node, std::int32_t parent = kNoLevelNode, NodesMoved* moved = nullptr);
 // A copy of a node and of all below it, beside it. Meshes are shared; names are made free; a probe or a handle whose
 // device is copied too goes by the copy. The number of the copy.
 std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved = nullptr);
 // With all below it. Meshes that nobody else shows go too, and so do channels of animations.
 NodesMoved remove_node(Level& level, std::int32_t node);
-// Under another parent (kNoNode: a root of the scene), as its `place`-th child; where it is in the world stays as far
-// as translation, rotation and scale can say it. Error: the parent is the node itself or below it.
+// Under another parent (kNoLevelNode: a root of the scene), as its `place`-th child; where it is in the world stays as
+// far as translation, rotation and scale can say it. Error: the parent is the node itself or below it.
 Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t parent, std::size_t place);
 // Probes and handles that go by this node's device follow, unless another node has the name. Error: it is empty.
 Status rename_node(Level& level, std::int32_t node, const std::string& name);

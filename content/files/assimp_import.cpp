@@ -131,7 +131,8 @@ Result<Primitive> read_primitive(const aiMesh& mesh) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) continue;
     for (unsigned i = 0; i < 3; ++i) {
-      if (face.mIndices[i] >= mesh.mNumVertices) return Error{"", "has a triangle with a vertex that does not exist"};
+      if (face.mIndices[i] >= mesh.mNumVertices)
+        return Error{"", "has a triangle with a vertex that does not exist; export it again"};
       out.index.push_back(face.mIndices[i]);
     }
   }
@@ -182,7 +183,7 @@ Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
       mesh.name = node.name;
       for (unsigned m = 0; m < visit.node->mNumMeshes; ++m) {
         const unsigned which = visit.node->mMeshes[m];
-        if (which >= scene.mNumMeshes) return Error{"", "refers to a mesh that it does not have"};
+        if (which >= scene.mNumMeshes) return Error{"", "refers to a mesh that it does not have; export it again"};
         Result<Primitive> primitive = read_primitive(*scene.mMeshes[which]);
         if (!primitive) return primitive.error();
         if (primitive->index.empty()) continue;
@@ -292,16 +293,18 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
     const auto at = [&](std::size_t v, std::size_t c) { return attribute.values[v * attribute.width + c]; };
     for (std::size_t v = 0; v < mesh->vertices; ++v)
       for (std::size_t c = 0; c < attribute.width; ++c)
-        if (!std::isfinite(at(v, c))) return Error{"Draco data", "has a number in " + semantic + " that is not finite"};
+        if (!std::isfinite(at(v, c)))
+          return Error{"Draco data", "has a number in " + semantic + " that is not finite; export it again"};
     if (semantic == "POSITION" && attribute.width != 3)
-      return Error{"Draco data", "has positions that are not in space"};
+      return Error{"Draco data", "has positions that are not in space; export it again"};
     for (std::size_t v = 0; v < mesh->vertices; ++v) {
       if (semantic == "POSITION") primitive.position.emplace_back(at(v, 0), at(v, 1), at(v, 2));
       if (semantic == "NORMAL" && attribute.width == 3) primitive.normal.emplace_back(at(v, 0), at(v, 1), at(v, 2));
       if (semantic == "TEXCOORD_0" && attribute.width == 2) primitive.uv.emplace_back(at(v, 0), 1.0f - at(v, 1));
     }
   }
-  if (primitive.position.empty() || primitive.index.empty()) return Error{"Draco data", "has no triangles to touch"};
+  if (primitive.position.empty() || primitive.index.empty())
+    return Error{"Draco data", "has no triangles to touch; export a mesh with faces"};
   for (const vec3 normal : primitive.normal)
     if (std::abs(length(normal) - 1.0f) > 0.006f) {
       primitive.normal.clear();  // made anew at spawn

@@ -153,7 +153,7 @@ Result<Panorama> load_named_panorama(const std::filesystem::path& folder, const 
 }
 
 Result<Panorama> load_panorama(const std::filesystem::path& path, std::vector<std::string>* notes) {
-  const Result<Bytes> bytes = read_file(path);
+  const Result<Bytes> bytes = read_file(path, limits::kPictureFile);
   if (!bytes) return bytes.error();
   return decode_panorama(*bytes, path.string(), notes);
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -33,12 +34,16 @@ int hex_digit(char c) {
 }  // namespace
 
 Result<Bytes> read_file(const fs::path& path, const Limit& limit) {
+  return read_beginning(path, limit, UINT64_MAX);
+}
+
+Result<Bytes> read_beginning(const fs::path& path, const Limit& limit, std::uint64_t wanted) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (error || !fs::exists(status)) return Error{path.string(), "no such file; check the path"};
   if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file; name a file"};
-  const std::uint64_t size = fs::file_size(path, error);
-  if (error) return Error{path.string(), "its size cannot be told: " + error.message()};
+  const std::uint64_t size = std::min<std::uint64_t>(fs::file_size(path, error), wanted);
+  if (error) return Error{path.string(), "its size cannot be told: " + error.message() + "; check the path"};
   if (size > most(limit))
     return Error{path.string(), "has " + beyond(limit, static_cast<double>(size), "use a smaller file")};
   const File file(std::fopen(path.c_str(), "rb"));
@@ -89,6 +94,30 @@ File open_aside(const fs::path& path, fs::path& aside) {
   }
 }
 
+// A file that is about to be replaced, and its second name; "" where none can be made.
+struct Replaced {
+  bool was_there = false;
+  fs::path kept;
+};
+Replaced keep_beside(const fs::path& path) {
+  std::error_code ignored;
+  Replaced out{fs::exists(fs::symlink_status(path, ignored)), {}};
+  for (int n = 1; out.was_there && n <= kMostAside; ++n) {
+    const fs::path name = fs::path(path).concat(fmt::format(".{}-{}.old", ::getpid(), n));
+    if (::link(path.c_str(), name.c_str()) == 0) {
+      out.kept = name;
+      break;
+    }
+    if (errno != EEXIST) break;
+  }
+  return out;
+}
+void forget(const std::vector<Replaced>& all) {
+  std::error_code ignored;
+  for (const Replaced& each : all)
+    if (!each.kept.empty()) fs::remove(each.kept, ignored);
+}
+
 }  // namespace
 
 Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
@@ -96,8 +125,11 @@ Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
   const auto taken = [](const fs::path& path) {
     return Error{path.string(), "is there already; name another, or replace it with --force"};
   };
-  for (const FileToWrite& each : files)
+  for (const FileToWrite& each : files) {
     if (existing == Existing::kRefuse && fs::exists(fs::symlink_status(each.path, ignored))) return taken(each.path);
+    if (fs::is_directory(fs::symlink_status(each.path, ignored)))
+      return Error{each.path.string(), "is a folder; name a file"};
+  }
   std::vector<fs::path> aside;
   const auto fail = [&](const fs::path& path, const char* what) {
     Error error{path.string(), fmt::format("{}: {}", what, why_not_written(errno))};
@@ -114,10 +146,21 @@ Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
         std::fflush(file.get()) != 0 || std::fclose(file.release()) != 0)
       return fail(each.path, "could not be written to its end");
   }
+  // Until the last is in place, what those before replaced is kept beside them.
+  std::vector<Replaced> replaced;
   for (std::size_t i = 0; i < files.size(); ++i) {
+    if (i + 1 < files.size()) replaced.push_back(keep_beside(files[i].path));
     errno = move_file(aside[i], files[i].path, existing == Existing::kReplace);
-    if (errno != 0) return fail(files[i].path, "cannot be put in place");
+    if (errno == 0) continue;
+    const Error error = fail(files[i].path, "cannot be put in place");
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!replaced[k].kept.empty()) fs::rename(replaced[k].kept, files[k].path, ignored);
+      if (!replaced[k].was_there) fs::remove(files[k].path, ignored);
+    }
+    forget(replaced);
+    return error;
   }
+  forget(replaced);
   return Done{};
 }
 
@@ -129,9 +172,9 @@ Result<fs::path> confined_file(const fs::path& folder, const fs::path& file) {
   const std::string name = file.string();
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  if (error) return Error{folder.string(), "cannot be resolved: " + error.message()};
+  if (error) return Error{folder.string(), "cannot be resolved: " + error.message() + "; check the path"};
   const fs::path whole = fs::weakly_canonical(root / file, error);
-  if (error) return Error{name, "cannot be resolved: " + error.message()};
+  if (error) return Error{name, "cannot be resolved: " + error.message() + "; check the path"};
   const fs::path from_root = whole.lexically_relative(root);
   if (file.is_absolute() || from_root.empty() || *from_root.begin() == "..")
     return Error{name, "lies outside the level's folder, where a level may not reach; copy the file beside the level"};
@@ -141,7 +184,7 @@ Result<fs::path> confined_file(const fs::path& folder, const fs::path& file) {
 Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
   if (uri.empty()) return Error{uri, "is an empty URI; name a file"};
   const auto confined = [&](const std::string& name) -> Result<fs::path> {
-    if (name.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte"};
+    if (name.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte; name a file"};
     // A colon before any slash makes a scheme (RFC 3986, 4.2).
     const std::size_t colon = name.find(':');
     if (colon != std::string::npos && name.find('/') > colon)
@@ -162,7 +205,8 @@ Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
     }
     const int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
     const int low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : -1;
-    if (high < 0 || low < 0) return Error{uri, "is not a valid URI (a % without two hexadecimal digits)"};
+    if (high < 0 || low < 0)
+      return Error{uri, "is not a valid URI (a % without two hexadecimal digits); write %25 for a % in a name"};
     decoded += static_cast<char>(high * 16 + low);
     i += 2;
   }

@@ -16,6 +16,8 @@ using Bytes = std::vector<std::uint8_t>;
 
 // Refuses what is not a regular file (a pipe would never end) or is larger than `limit`.
 Result<Bytes> read_file(const std::filesystem::path& path, const Limit& limit = limits::kFile);
+// No more than the first `wanted` bytes of it, which count for the limit.
+Result<Bytes> read_beginning(const std::filesystem::path& path, const Limit& limit, std::uint64_t wanted);
 
 // Why a file cannot be written, and the cure, of an `errno`.
 std::string why_not_written(int error);
@@ -33,7 +35,8 @@ struct FileToWrite {
   std::span<const std::uint8_t> bytes;
 };
 enum class Existing : std::uint8_t { kReplace, kRefuse };  // a file that is there already
-// Writes every file aside and renames them, in order, once all are written; on failure nothing is left behind.
+// Writes every file aside and renames them, in order, once all are written; on failure nothing is left behind, and
+// what was there is there again.
 Status write_files(const std::vector<FileToWrite>& files, Existing existing = Existing::kReplace);
 Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
                   Existing existing = Existing::kReplace);

@@ -1,11 +1,37 @@
 #include "content/files/image.h"
 
 #include <fmt/format.h>
-#include <stb_image.h>
 #include <stb_image_write.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
+
+namespace {
+
+// stb_image inflates all that a PNG holds, whatever size its header says: 2 MB can become 2 GB. Its blocks are bounded
+// while a picture is decoded; it takes its memory from functions without an argument of ours.
+thread_local std::size_t t_largest_block = SIZE_MAX;  // [byte]
+thread_local bool t_block_refused = false;
+
+void* bounded_realloc(void* block, std::size_t size) {
+  if (size <= t_largest_block) return std::realloc(block, size);
+  t_block_refused = true;
+  return nullptr;
+}
+
+}  // namespace
+
+// Compiled in rather than linked from Debian's library, for these functions.
+#define STBI_MALLOC(size) bounded_realloc(nullptr, size)
+#define STBI_REALLOC(block, size) bounded_realloc(block, size)
+#define STBI_FREE(block) std::free(block)
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#include <stb_image.h>
 
 namespace pliant {
 
@@ -33,6 +59,24 @@ bool png_chunks_fit(std::span<const std::uint8_t> bytes) {
 struct FreePixels {
   void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
+
+class BoundedBlocks {
+ public:
+  explicit BoundedBlocks(std::uint64_t largest) {
+    t_largest_block = largest;
+    t_block_refused = false;
+  }
+  ~BoundedBlocks() { t_largest_block = SIZE_MAX; }
+  BoundedBlocks(const BoundedBlocks&) = delete;
+  BoundedBlocks& operator=(const BoundedBlocks&) = delete;
+  static bool refused() { return t_block_refused; }
+};
+
+// The largest block that decoding takes: blocks grow by doubling, to what the file holds or to four channels of two
+// bytes; a JPEG's planes go up to whole blocks of 64 samples.
+std::uint64_t largest_block(std::uint64_t file, std::uint64_t width, std::uint64_t height, bool two_bytes) {
+  return 2 * file + (two_bytes ? 16 : 8) * (width + 64) * (height + 64);
+}
 
 }  // namespace
 
@@ -64,13 +108,18 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) || width <= 0 || height <= 0)
     return Error{name, fmt::format("is a damaged picture ({}); save it again", stbi_failure_reason())};
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  const std::uint64_t allowed = most(limits::kPicturePixels) / (stbi_is_16_bit_from_memory(bytes.data(), size) ? 2 : 1);
+  const bool two_bytes = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
+  const std::uint64_t allowed = most(limits::kPicturePixels) / (two_bytes ? 2 : 1);
   if (width > 16384 || height > 16384 || pixels > allowed)
     return Error{name, fmt::format("has {} x {} pixels, more than are read; use at most 8192 x 8192", width, height)};
   if (pixels > bytes.size() * kPixelsPerByte)
     return Error{name, fmt::format("claims {} x {} pixels in {} bytes; the picture is damaged", width, height, size)};
+  const BoundedBlocks bounded(
+      largest_block(bytes.size(), static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), two_bytes));
   const std::unique_ptr<stbi_uc, FreePixels> decoded(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4));
+  if (!decoded && BoundedBlocks::refused())
+    return Error{name, fmt::format("unpacks to far more than its {} x {} pixels; save it again", width, height)};
   if (!decoded) return Error{name, fmt::format("is a damaged picture ({}); save it again", stbi_failure_reason())};
   Image image;
   image.name = name;

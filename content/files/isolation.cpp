@@ -108,8 +108,9 @@ double processor_time(pid_t pid) {
 struct Ended {
   Bytes answer;
   int status = 0;
-  bool late = false;   // killed at the deadline
-  bool stuck = false;  // killed because it stood still
+  double seconds = 0.0;  // of processor time
+  bool late = false;     // killed at the deadline
+  bool stuck = false;    // killed because it stood still
 };
 
 // Reads what a child writes until it ends. `watch`: one that neither writes nor uses the processor for kStandsStill was
@@ -142,28 +143,36 @@ Ended wait_for(pid_t pid, int end, Clock::time_point deadline, bool watch) {
     moved = Clock::now();
   }
   if (out.late || out.stuck) kill(pid, SIGKILL);
-  while (waitpid(pid, &out.status, 0) < 0 && errno == EINTR) {
+  rusage usage{};
+  while (wait4(pid, &out.status, 0, &usage) < 0 && errno == EINTR) {
   }
+  for (const timeval& part : {usage.ru_utime, usage.ru_stime})
+    out.seconds += static_cast<double>(part.tv_sec) + 1e-6 * static_cast<double>(part.tv_usec);
   return out;
 }
 
 }  // namespace
 
+double reading_time(std::size_t input_bytes) {
+  return static_cast<double>(input_bytes) / 4e6;
+}
+
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds,
-                           double wall) {
+                           double wall, double* used) {
   const double allowed =
-      (seconds + static_cast<double>(input_bytes) / 4e6) * std::max(limit_factor(), 1.0);  // [s] of processor time
+      (seconds + reading_time(input_bytes)) * std::max(limit_factor(), 1.0);  // [s] of processor time
   const double wait = wall > 0.0 ? wall : std::max(kPatience * allowed, kLeastPatience);
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(wait * 1e3));
   const std::uint64_t memory = private_bytes() + most(limits::kReaderMemory) + 64 * std::uint64_t{input_bytes};
   Ended ended;
   for (int attempt = 1; attempt == 1 || ended.stuck; ++attempt) {
     int ends[2];
-    if (pipe(ends) != 0) return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno)};
+    if (pipe(ends) != 0)
+      return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno) + "; close other programs"};
     const pid_t pid = fork();
     if (pid < 0) {
       close(ends[0]), close(ends[1]);
-      return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno)};
+      return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno) + "; close other programs"};
     }
     if (pid == 0) {
       close(ends[0]);
@@ -172,6 +181,7 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
     close(ends[1]);
     ended = wait_for(pid, ends[0], deadline, attempt < kAttempts);
     close(ends[0]);
+    if (used) *used += ended.seconds;
   }
   const int status = ended.status;
   const bool spent = WIFSIGNALED(status) && (WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGXCPU);

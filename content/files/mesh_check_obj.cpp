@@ -52,14 +52,18 @@ class ObjCheck {
     words_.clear();
     joined_.clear();
     std::string_view line;
-    bool more = true, any = false;
+    bool more = true, any = false, numbers = false;
     while (more && text_.line(line)) {
       line_ = ++lines_;
-      any = true;
       more = !line.empty() && line.back() == '\\';
       if (more) line.remove_suffix(1);
+      if (!any) {
+        move_indent(line);
+        numbers = !line.empty() && (line[0] == 'v' || line[0] == 'f');
+      }
+      any = true;
       const std::size_t comment = std::min(line.find('#'), line.size());
-      if (comment > 0 && (line[0] == 'v' || line[0] == 'f')) blank(line.substr(comment));
+      if (numbers) blank(line.substr(comment));
       joined_.append(line.substr(0, comment)).append(" ");
     }
     TetText rest({reinterpret_cast<const std::uint8_t*>(joined_.data()), joined_.size()}, "");
@@ -67,10 +71,19 @@ class ObjCheck {
     return any;
   }
 
+  // The file's own bytes of a part of a line.
+  Bytes::iterator place_of(std::string_view part) {
+    return bytes_.begin() + (reinterpret_cast<const std::uint8_t*>(part.data()) - bytes_.data());
+  }
+
   // Assimp takes a comment behind a face for one of its corners.
-  void blank(std::string_view comment) {
-    const auto begin = reinterpret_cast<const std::uint8_t*>(comment.data()) - bytes_.data();
-    std::fill_n(bytes_.begin() + begin, comment.size(), std::uint8_t{' '});
+  void blank(std::string_view comment) { std::fill_n(place_of(comment), comment.size(), std::uint8_t{' '}); }
+
+  // Assimp drops a line that begins with a blank: its blanks go to its end.
+  void move_indent(std::string_view line) {
+    const std::size_t indent = std::min(line.find_first_not_of(" \t\v\f"), line.size());
+    const auto begin = place_of(line);
+    std::rotate(begin, begin + static_cast<std::ptrdiff_t>(indent), begin + static_cast<std::ptrdiff_t>(line.size()));
   }
 
   Status vertex() {
@@ -100,8 +113,7 @@ class ObjCheck {
       std::int64_t index = 0;
       if (i == 0 || !part.empty()) {
         if (!to_integer(part, index) || index == 0) return at(fmt::format("has the corner '{}' in a face", whole));
-        if (index < 0 && -index > count_[i])
-          return at(fmt::format("names {} {} with {} before it", kNames[i], index, count_[i]));
+        if (index < -count_[i]) return at(fmt::format("names {} {} with {} before it", kNames[i], index, count_[i]));
         if (index > largest_[i]) {
           largest_[i] = index;
           largest_at_[i] = line_;

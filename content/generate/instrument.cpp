@@ -4,48 +4,18 @@
 #include <cmath>
 #include <vector>
 
+#include "content/author/tube.h"
+
 namespace pliant::generate {
 namespace {
 
-constexpr int kAround = 12;                                       // corners of a ring
 constexpr double kShaft = 0.0026, kGrip = 0.0048, kEnd = 0.0036;  // [m] radii
 constexpr double kBendAt = -0.068, kTipReach = 0.028;             // [m] along the shaft; from there to the ball
 constexpr double kBend = 20.0;                                    // [degree]
 
-struct Ring {
-  dvec3 centre, along;  // [m]; unit, towards the next ring
-  double radius;        // [m]
-};
-
 dvec3 bent(double degree) {
   const double a = glm::radians(degree);
   return {0.0, -std::cos(a), -std::sin(a)};
-}
-
-// A row of rings becomes a closed tube with a vertex at either end. All axes lie in the plane x = 0.
-Net tube(dvec3 start, const std::vector<Ring>& rings, dvec3 end) {
-  Net net;
-  for (const Ring& ring : rings) {
-    const dvec3 x(1, 0, 0), z = cross(ring.along, x);
-    for (int i = 0; i < kAround; ++i) {
-      const double a = 2.0 * glm::pi<double>() * i / kAround;
-      net.position.push_back(ring.centre + ring.radius * (std::cos(a) * x + std::sin(a) * z));
-    }
-  }
-  const auto count = static_cast<std::uint32_t>(rings.size());
-  const auto at = [](std::uint32_t ring, int i) { return ring * kAround + static_cast<std::uint32_t>(i % kAround); };
-  const std::uint32_t first = count * kAround, last = first + 1;
-  net.position.push_back(start);
-  net.position.push_back(end);
-  for (int i = 0; i < kAround; ++i) {
-    net.triangles.emplace_back(first, at(0, i + 1), at(0, i));
-    net.triangles.emplace_back(last, at(count - 1, i), at(count - 1, i + 1));
-    for (std::uint32_t r = 0; r + 1 < count; ++r) {
-      net.triangles.emplace_back(at(r, i), at(r + 1, i + 1), at(r + 1, i));
-      net.triangles.emplace_back(at(r, i), at(r, i + 1), at(r + 1, i + 1));
-    }
-  }
-  return net;
 }
 
 }  // namespace
@@ -56,10 +26,10 @@ dvec3 stylus_tip() {
 
 Net stylus() {
   const dvec3 down(0, -1, 0), tilted = bent(kBend);
-  std::vector<Ring> rings = {{{0, 0.050, 0}, down, 0.6 * kEnd}, {{0, 0.0485, 0}, down, kEnd},
-                             {{0, 0.040, 0}, down, kGrip},      {{0, 0.010, 0}, down, kGrip},
-                             {{0, -0.020, 0}, down, kGrip},     {{0, -0.030, 0}, down, kShaft},
-                             {{0, -0.050, 0}, down, kShaft}};
+  std::vector<TubeRing> rings = {{{0, 0.050, 0}, down, 0.6 * kEnd}, {{0, 0.0485, 0}, down, kEnd},
+                                 {{0, 0.040, 0}, down, kGrip},      {{0, 0.010, 0}, down, kGrip},
+                                 {{0, -0.020, 0}, down, kGrip},     {{0, -0.030, 0}, down, kShaft},
+                                 {{0, -0.050, 0}, down, kShaft}};
   for (const double share : {0.0, 0.5, 1.0})
     rings.push_back({dvec3(0, kBendAt, 0) + 0.004 * (share - 0.5) * bent(kBend * share), bent(kBend * share), kShaft});
   // From where the shaft enters the ball to the far pole.

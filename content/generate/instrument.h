@@ -1,7 +1,8 @@
 // Instruments as closed meshes of few triangles.
 #pragma once
 
-#include "content/generate/surface_nets.h"
+#include "content/author/surface_nets.h"
+#include "content/generate/solid.h"
 
 namespace pliant::generate {
 

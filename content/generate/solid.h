@@ -1,18 +1,11 @@
-// Solids as functions: negative inside, positive outside, about a distance near the surface. All in metres.
+// The solids of levels that ship. All in metres.
 #pragma once
 
-#include <functional>
-
-#include "components/math.h"
+#include "content/author/solid.h"
 
 namespace pliant::generate {
 
-using Solid = std::function<double(dvec3)>;
-
-// Outward unit normal of the level set through p.
-dvec3 normal_at(const Solid& solid, dvec3 p);
-// The nearby surface point that p reaches by Newton steps along the gradient.
-dvec3 project(const Solid& solid, dvec3 p);
+using namespace solids;  // solids, nets and instruments are made with both
 
 // A smooth organ about 0.2 m wide: four lobes that flow into one another, and a groove down its front (+Z).
 Solid organ();

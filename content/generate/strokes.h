@@ -5,13 +5,11 @@
 #include <vector>
 
 #include "components/haptic_device.h"
+#include "content/author/save_script.h"
 #include "content/generate/solid.h"
 #include "runtime/result.h"
 
 namespace pliant::generate {
-
-// 0 before `from`, 1 after `to`, twice continuously differentiable. Times [s].
-double smooth_step(double from, double to, double t);
 
 struct Stroke {
   double duration = 8.0;                    // [s] of the whole script
@@ -26,6 +24,5 @@ struct Stroke {
 
 // 100 rows a second. Position, velocity and acceleration are continuous in time wherever the surface is smooth.
 Path trace(const Solid& solid, const Stroke& stroke);
-Status save_script(const Path& path, const std::string& comment, const std::filesystem::path& file);
 
 }  // namespace pliant::generate

@@ -1,6 +1,6 @@
 #include "content/generate/tool_levels.h"
 
-#include "content/generate/hand.h"
+#include "content/author/hand.h"
 #include "content/generate/stage.h"
 #include "content/generate/tool_stage.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "components/haptic_device.h"
+#include "content/author/surface_nets.h"
 #include "content/generate/solid.h"
-#include "content/generate/surface_nets.h"
 #include "content/level/level.h"
 
 namespace pliant::generate {

@@ -115,7 +115,7 @@ bool parse_json(std::span<const std::uint8_t> text, Json& json, Findings& findin
     std::string what = e.what();
     if (const std::size_t tag = what.find("] "); tag != std::string::npos) what.erase(0, tag + 2);
     std::replace(what.begin(), what.end(), '\n', ' ');
-    add_error(findings, "", "is not valid JSON: " + what.substr(0, 200));
+    add_error(findings, "", "is not valid JSON: " + what.substr(0, 200) + "; export it again");
     return false;
   }
   return lists_are_bounded(json, findings);

@@ -100,14 +100,18 @@ class DataCheck {
   void unit_vectors(std::size_t i, std::size_t width, bool sign) {
     const std::vector<float> values = read_floats(document_, i);
     // Exporters write zeros where triangles are degenerate: mend_directions makes them anew.
+    const auto is_zero = [&](std::size_t e) {
+      return values[e] == 0.0f && values[e + 1] == 0.0f && values[e + 2] == 0.0f;
+    };
     std::size_t zeros = 0, first = 0;
     for (std::size_t e = 0; e + width <= values.size(); e += width)
-      if (values[e] == 0.0f && values[e + 1] == 0.0f && values[e + 2] == 0.0f && zeros++ == 0) first = e / width;
+      if (is_zero(e) && zeros++ == 0) first = e / width;
     zero_directions_ |= zeros > 0;
     if (zeros > 0)
-      return warn(pointer_of(i), fmt::format("holds {} vector{} of length 0, the first in element {}; made anew", zeros,
-                                             zeros == 1 ? "" : "s", first));
+      warn(pointer_of(i), fmt::format("holds {} vector{} of length 0, the first in element {}; made anew", zeros,
+                                      zeros == 1 ? "" : "s", first));
     for (std::size_t e = 0; e + width <= values.size(); e += width) {
+      if (is_zero(e)) continue;
       const float norm = length(vec3(values[e], values[e + 1], values[e + 2]));
       if (std::abs(norm - 1.0f) > kUnitTolerance)
         return error(pointer_of(i),

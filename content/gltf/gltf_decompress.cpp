@@ -28,8 +28,8 @@ void add_bounds(Json& accessor, const std::vector<float>& values, std::size_t wi
   }
 }
 
-Status decompress_primitive(SourceDocument& document, Json& primitive, const std::string& pointer) {
-  Result<DracoMesh> mesh = decode_primitive(document, primitive, pointer);
+Status decompress_primitive(SourceDocument& document, DracoReader& draco, Json& primitive, const std::string& pointer) {
+  Result<DracoMesh> mesh = draco.read(primitive, pointer);
   if (!mesh) return mesh.error();
   if (mesh->vertices == 0 || mesh->index.empty()) return Error{pointer, "has no triangles in its Draco data"};
   for (const DracoAttribute& each : mesh->attributes) {
@@ -67,6 +67,7 @@ Status decompress_document(SourceDocument& document, bool all) {
   if (!extension_is_used(document.json, kDraco) || !document.json.contains("meshes")) return Done{};
   bool left = false;
   Json& meshes = document.json["meshes"];
+  DracoReader draco(document);
   for (std::size_t m = 0; m < meshes.size(); ++m)
     for (std::size_t p = 0; p < meshes[m]["primitives"].size(); ++p) {
       Json& primitive = meshes[m]["primitives"][p];
@@ -76,7 +77,7 @@ Status decompress_document(SourceDocument& document, bool all) {
         continue;
       }
       const std::string pointer = fmt::format("/meshes/{}/primitives/{}", m, p);
-      if (const Status status = decompress_primitive(document, primitive, pointer); !status) return status;
+      if (const Status status = decompress_primitive(document, draco, primitive, pointer); !status) return status;
     }
   if (!left)
     for (const char* list : {"extensionsUsed", "extensionsRequired"}) undeclare(document.json, list);

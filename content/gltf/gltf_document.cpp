@@ -45,6 +45,8 @@ std::optional<SourceDocument> open_gltf(std::span<const std::uint8_t> bytes, boo
   if (any_error(findings)) return std::nullopt;
   check_pictures(document, findings);
   if (any_error(findings)) return std::nullopt;
+  check_cost(document, findings);
+  if (any_error(findings)) return std::nullopt;
   const bool zero_directions = check_data(document, findings);
   if (any_error(findings)) return std::nullopt;
   if (zero_directions) {

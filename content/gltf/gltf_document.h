@@ -61,6 +61,8 @@ std::optional<SourceDocument> open_gltf(const std::filesystem::path& path, Findi
 std::optional<SourceDocument> open_gltf(std::span<const std::uint8_t> bytes, bool expect_glb,
                                         const std::filesystem::path& folder, Findings& findings);
 
+// The rest of load_level: the Level of a document that open_gltf let through with these findings.
+Result<Level> load_document(SourceDocument document, const Findings& findings, const std::filesystem::path& path);
 // The whole of load_level for a file in memory.
 Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, const std::filesystem::path& folder);
 

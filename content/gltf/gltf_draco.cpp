@@ -18,6 +18,8 @@ namespace {
 // Draco allocates by what a header claims. No mesh of this many elements compresses further than this share of a byte
 // each, beyond a first million that costs little.
 constexpr std::uint64_t kFreeElements = 1 << 20, kElementsPerByte = 64;
+// [byte] What several blobs that one process decodes may come to.
+constexpr std::size_t kMostTogether = std::size_t{64} << 20;
 
 // Reads counts from the header: the rest of the stream is left to the library.
 class HeaderReader {
@@ -180,8 +182,7 @@ Bytes pack(const DracoMesh& mesh) {
   }
   return out;
 }
-Result<DracoMesh> unpack(const Bytes& bytes) {
-  Taker in(bytes);
+Result<DracoMesh> unpack(Taker& in) {
   DracoMesh out;
   std::uint64_t sizes[3];
   bool good = in.take(sizes, sizeof sizes);
@@ -209,42 +210,74 @@ Result<DracoMesh> unpack(const Bytes& bytes) {
 
 using NamedAttributes = std::vector<std::pair<std::string, const draco::PointAttribute*>>;
 
-// The attributes that `wanted(mesh)` names, decoded in a child.
+// The attributes that `wanted(mesh)` names.
 template <class Wanted>
-Result<DracoMesh> decode(std::span<const std::uint8_t> blob, const Wanted& wanted) {
-  const Result<Bytes> packed = in_isolation(blob.size(), [&]() -> Result<Bytes> {
-    const Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(blob);
-    if (!mesh) return mesh.error();
-    DracoMesh out = read_faces(**mesh);
-    const Result<NamedAttributes> attributes = wanted(**mesh);
-    if (!attributes) return attributes.error();
-    for (const auto& [name, attribute] : *attributes) {
-      Result<DracoAttribute> values = read_attribute(**mesh, *attribute);
-      if (!values) return values.error();
-      values->name = name;
-      out.attributes.push_back(std::move(*values));
-    }
-    return pack(out);
-  });
-  if (!packed) return packed.error().where.empty() ? Error{"Draco data", packed.error().what} : packed.error();
-  return unpack(*packed);
+Result<DracoMesh> decode_here(std::span<const std::uint8_t> blob, const Wanted& wanted) {
+  const Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(blob);
+  if (!mesh) return mesh.error();
+  DracoMesh out = read_faces(**mesh);
+  const Result<NamedAttributes> attributes = wanted(**mesh);
+  if (!attributes) return attributes.error();
+  for (const auto& [name, attribute] : *attributes) {
+    Result<DracoAttribute> values = read_attribute(**mesh, *attribute);
+    if (!values) return values.error();
+    values->name = name;
+    out.attributes.push_back(std::move(*values));
+  }
+  return out;
+}
+
+Error in_draco(const Error& error) {
+  return error.where.empty() ? Error{"Draco data", error.what} : error;
+}
+
+Result<NamedAttributes> with_ids(const draco::Mesh& mesh, const std::vector<std::uint32_t>& ids) {
+  NamedAttributes attributes;
+  for (const std::uint32_t id : ids) {
+    attributes.emplace_back("", mesh.GetAttributeByUniqueId(id));
+    if (!attributes.back().second) return refuse(fmt::format("has no attribute {}, which the primitive names", id));
+  }
+  return attributes;
 }
 
 }  // namespace
 
-Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids) {
-  return decode(blob, [&](const draco::Mesh& mesh) -> Result<NamedAttributes> {
-    NamedAttributes attributes;
-    for (const std::uint32_t id : ids) {
-      attributes.emplace_back("", mesh.GetAttributeByUniqueId(id));
-      if (!attributes.back().second) return refuse(fmt::format("has no attribute {}, which the primitive names", id));
+Result<std::vector<DracoMesh>> decode_draco(const std::vector<DracoBlob>& blobs, double seconds, double* used) {
+  std::size_t size = 0;
+  for (const DracoBlob& each : blobs) size += each.bytes.size();
+  const auto work = [&]() -> Result<Bytes> {
+    Bytes out;
+    for (const DracoBlob& each : blobs) {
+      const Result<DracoMesh> mesh =
+          decode_here(each.bytes, [&](const draco::Mesh& decoded) { return with_ids(decoded, each.ids); });
+      if (!mesh) return mesh.error();
+      const Bytes packed = pack(*mesh);
+      append_bytes(out, packed.data(), packed.size());
+      if (blobs.size() > 1 && out.size() > kMostTogether) return refuse("is too much for one process");
     }
-    return attributes;
-  });
+    return out;
+  };
+  const Result<Bytes> packed = in_isolation(size, work, seconds, 0.0, used);
+  if (!packed) return in_draco(packed.error());
+  Taker in(*packed);
+  std::vector<DracoMesh> meshes;
+  for (std::size_t i = 0; i < blobs.size(); ++i) {
+    Result<DracoMesh> mesh = unpack(in);
+    if (!mesh) return mesh.error();
+    meshes.push_back(std::move(*mesh));
+  }
+  return meshes;
+}
+
+Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids,
+                               double seconds, double* used) {
+  Result<std::vector<DracoMesh>> meshes = decode_draco({{blob, ids}}, seconds, used);
+  if (!meshes) return meshes.error();
+  return std::move(meshes->front());
 }
 
 Result<DracoMesh> decode_draco_file(std::span<const std::uint8_t> blob) {
-  return decode(blob, [](const draco::Mesh& mesh) -> Result<NamedAttributes> {
+  const auto wanted = [](const draco::Mesh& mesh) -> Result<NamedAttributes> {
     using Kind = draco::GeometryAttribute;
     NamedAttributes attributes;
     for (const auto& [name, kind] : {std::pair{"POSITION", Kind::POSITION}, std::pair{"NORMAL", Kind::NORMAL},
@@ -252,7 +285,15 @@ Result<DracoMesh> decode_draco_file(std::span<const std::uint8_t> blob) {
       if (const draco::PointAttribute* attribute = mesh.GetNamedAttribute(kind))
         attributes.emplace_back(name, attribute);
     return attributes;
+  };
+  const Result<Bytes> packed = in_isolation(blob.size(), [&]() -> Result<Bytes> {
+    const Result<DracoMesh> mesh = decode_here(blob, wanted);
+    if (!mesh) return mesh.error();
+    return pack(*mesh);
   });
+  if (!packed) return in_draco(packed.error());
+  Taker in(*packed);
+  return unpack(in);
 }
 
 Result<Bytes> encode_draco(DracoMesh& in, int bits) {
@@ -276,12 +317,14 @@ Result<Bytes> encode_draco(DracoMesh& in, int bits) {
     encoder.SetTrackEncodedProperties(true);
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
-    if (!status.ok()) return Error{"Draco", std::string("could not compress the mesh: ") + status.error_msg()};
+    if (!status.ok())
+      return Error{"Draco",
+                   std::string("could not compress the mesh: ") + status.error_msg() + "; save it without --draco"};
     in.vertices = encoder.num_encoded_points();
     in.index.resize(encoder.num_encoded_faces() * 3);
     return Bytes(buffer.data(), buffer.data() + buffer.size());
   } catch (const std::exception& e) {
-    return Error{"Draco", std::string("could not compress the mesh: ") + e.what()};
+    return Error{"Draco", std::string("could not compress the mesh: ") + e.what() + "; save it without --draco"};
   }
 }
 

@@ -27,7 +27,16 @@ struct DracoMesh {
 };
 
 // The attributes with these unique ids, as floats; integers keep their stored value.
-Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids);
+struct DracoBlob {
+  std::span<const std::uint8_t> bytes;
+  std::vector<std::uint32_t> ids;
+};
+// All of them in one child, which has `seconds` of processor time beside what their bytes allow it; `used`: where those
+// are added that it took. Nothing where one of them is damaged, or they come to more than a child may hand over.
+Result<std::vector<DracoMesh>> decode_draco(const std::vector<DracoBlob>& blobs,
+                                            double seconds = limits::kReaderTime.most, double* used = nullptr);
+Result<DracoMesh> decode_draco(std::span<const std::uint8_t> blob, const std::vector<std::uint32_t>& ids,
+                               double seconds = limits::kReaderTime.most, double* used = nullptr);
 
 // A bare .drc file: its attributes come named POSITION, NORMAL and TEXCOORD_0.
 Result<DracoMesh> decode_draco_file(std::span<const std::uint8_t> blob);

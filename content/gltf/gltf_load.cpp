@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "content/files/assimp_import.h"
 #include "content/gltf/gltf_animation.h"
@@ -218,45 +219,10 @@ Result<std::string> read_about(const fs::path& path) {
   return about_of(document->json);
 }
 
-Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, const fs::path& folder) {
-  Findings findings;
-  std::optional<SourceDocument> document;
-  Level level;
-  try {
-    document = open_gltf(bytes, expect_glb, folder, findings);
-    if (!document) {
-      for (const Finding& finding : findings)
-        if (finding.severity == Severity::kError) return Error{finding.pointer, finding.message};
-      return Error{"", "cannot be read"};
-    }
-    for (const Finding& finding : findings)
-      if (finding.severity == Severity::kWarning)
-        level.notes.push_back(finding.pointer.empty() ? finding.message : finding.pointer + ": " + finding.message);
-    level.document_notes = level.notes.size();
-    const Status status = fill(*document, level);
-    if (!status) return status.error();
-  } catch (const std::bad_alloc&) {
-    return Error{"", "needs more memory than there is; split the level"};
-  } catch (const Json::exception& e) {
-    return Error{"", std::string("cannot be read: ") + e.what()};
-  }
-  level.source = std::make_shared<SourceDocument>(std::move(*document));
-  return level;
-}
+namespace {
 
-Result<Level> load_level(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  const bool is_gltf = extension == ".gltf" || extension == ".glb";
-  Result<Level> level = Error{"", ""};
-  if (is_gltf) {
-    Result<Bytes> bytes = read_file(path);
-    if (!bytes) return bytes.error();
-    level = load_gltf(*bytes, extension == ".glb", path.parent_path());
-  } else {
-    level = is_tet_file(path) ? import_tets(path) : import_mesh(path);
-  }
+// Names the file in an error and in the Level.
+Result<Level> from_file(Result<Level> level, const fs::path& path) {
   if (!level) {
     const std::string where = level.error().where;
     if (where.empty() || where == path.string()) return Error{path.string(), level.error().what};
@@ -265,6 +231,62 @@ Result<Level> load_level(const fs::path& path) {
   level->name = path.stem().string();
   level->path = path;
   return level;
+}
+
+// Of the file as a whole `validate` says no more than this.
+std::string with_cure(const Finding& finding) {
+  const bool needs = finding.pointer.empty() && finding.message.find("; ") == std::string::npos;
+  return finding.message + (needs ? "; export or save it again" : "");
+}
+
+Result<Level> level_of(SourceDocument document, const Findings& findings) {
+  Level level;
+  for (const Finding& finding : findings)
+    if (finding.severity == Severity::kWarning)
+      level.notes.push_back(finding.pointer.empty() ? finding.message : finding.pointer + ": " + finding.message);
+  level.document_notes = level.notes.size();
+  if (const Status status = fill(document, level); !status) return status.error();
+  level.source = std::make_shared<SourceDocument>(std::move(document));
+  return level;
+}
+
+// What may throw where memory ends, or where the checks have missed something.
+Result<Level> guarded(const std::function<Result<Level>()>& read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+    return Error{"", "needs more memory than there is; split the level"};
+  } catch (const Json::exception& e) {
+    return Error{"", std::string("cannot be read: ") + e.what()};
+  }
+}
+
+}  // namespace
+
+Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, const fs::path& folder) {
+  return guarded([&]() -> Result<Level> {
+    Findings findings;
+    std::optional<SourceDocument> document = open_gltf(bytes, expect_glb, folder, findings);
+    if (document) return level_of(std::move(*document), findings);
+    for (const Finding& finding : findings)
+      if (finding.severity == Severity::kError) return Error{finding.pointer, with_cure(finding)};
+    return Error{"", "cannot be read; export it again"};
+  });
+}
+
+Result<Level> load_document(SourceDocument document, const Findings& findings, const fs::path& path) {
+  return from_file(guarded([&] { return level_of(std::move(document), findings); }), path);
+}
+
+Result<Level> load_level(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension != ".gltf" && extension != ".glb")
+    return from_file(is_tet_file(path) ? import_tets(path) : import_mesh(path), path);
+  Result<Bytes> bytes = read_file(path);
+  if (!bytes) return bytes.error();
+  return from_file(load_gltf(*bytes, extension == ".glb", path.parent_path()), path);
 }
 
 }  // namespace pliant

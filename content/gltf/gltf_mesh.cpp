@@ -76,18 +76,7 @@ struct MeshReader::Source {
   bool draco = false;
 };
 
-MeshReader::MeshReader(const SourceDocument& document) : document_(document) {
-  // Many primitives over the same few bytes would fill any memory; this is far more than a sound file decodes to.
-  std::uint64_t stored = 0;
-  for (const Bytes& buffer : document.buffers) stored += buffer.size();
-  budget_ = most(limits::kDecoded) + 64 * stored;
-}
-
-Status MeshReader::spend(std::uint64_t bytes, const std::string& pointer) {
-  if (bytes > budget_) return Error{pointer, "makes the level decode to far more than the file holds; split the level"};
-  budget_ -= bytes;
-  return Done{};
-}
+MeshReader::MeshReader(const SourceDocument& document) : document_(document), draco_(document) {}
 
 std::vector<float> MeshReader::attribute(const Source& source, const char* name) const {
   if (const auto found = source.decoded.find(name); found != source.decoded.end()) return found->second;
@@ -96,44 +85,8 @@ std::vector<float> MeshReader::attribute(const Source& source, const char* name)
                                             : read_floats(document_, static_cast<std::size_t>(member->second));
 }
 
-Result<DracoMesh> decode_primitive(const SourceDocument& document, const Json& json, const std::string& pointer) {
-  const Json& extension = json["extensions"]["KHR_draco_mesh_compression"];
-  const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
-  const Json& view = document.json["bufferViews"][extension["bufferView"].get<std::size_t>()];
-  const Bytes& buffer = document.buffers[view["buffer"].get<std::size_t>()];
-  if (buffer.empty()) return Error{here, "stands on a buffer without data"};
-  std::vector<std::string> names;
-  std::vector<std::uint32_t> ids;
-  for (const auto& [name, id] : extension["attributes"].items()) {
-    if (!json["attributes"].contains(name)) return Error{here, "names " + name + ", which the primitive does not have"};
-    names.push_back(name);
-    ids.push_back(id.get<std::uint32_t>());
-  }
-  Result<DracoMesh> mesh = decode_draco(
-      std::span(buffer).subspan(value_of<std::size_t>(view, "byteOffset", 0), view["byteLength"].get<std::size_t>()),
-      ids);
-  if (!mesh) return Error{here, mesh.error().message()};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const AccessorLayout layout =
-        layout_of(document.json["accessors"][json["attributes"][names[i]].get<std::size_t>()]);
-    mesh->attributes[i].name = names[i];
-    std::vector<float>& values = mesh->attributes[i].values;
-    if (layout.components() != mesh->attributes[i].width || layout.count != mesh->vertices)
-      return Error{here, fmt::format("holds {} x {} numbers for {}, its accessor says {} x {}", mesh->vertices,
-                                     mesh->attributes[i].width, names[i], layout.count, layout.components())};
-    if (layout.normalized) {
-      const float scale = layout.component_type == kUnsignedByte ? 255.0f
-                          : layout.component_type == kByte       ? 127.0f
-                          : layout.component_type == kShort      ? 32767.0f
-                                                                 : 65535.0f;
-      for (float& value : values) value = std::max(value / scale, -1.0f);
-    }
-  }
-  return mesh;
-}
-
 Status MeshReader::read_draco(const Json& json, const std::string& pointer, Source& source) {
-  Result<DracoMesh> mesh = decode_primitive(document_, json, pointer);
+  Result<DracoMesh> mesh = draco_.read(json, pointer);
   if (!mesh) return mesh.error();
   source.draco = true;
   source.vertices = mesh->vertices;
@@ -173,9 +126,6 @@ Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t numbe
     }
     const bool indexed = primitive.indices >= 0;
     const std::size_t indices = static_cast<std::size_t>(primitive.indices);
-    const std::uint64_t corners = indexed ? document_.model.accessors[indices].count : source.vertices;
-    // What is decoded is 64 bytes a vertex at most, and three indices a corner of a strip.
-    if (const Status status = spend(source.vertices * 64 + corners * 16, pointer); !status) return status.error();
     if (indexed) {
       source.index = read_integers(document_, indices);
     } else {
@@ -252,12 +202,9 @@ Result<LevelMesh> MeshReader::read_skinned(std::size_t mesh, std::size_t skin, c
         inverse_bind[static_cast<int>(c / 4)][static_cast<int>(c % 4)] = bind[16 * j + c];
     motion[j] = to_node * world[static_cast<std::size_t>(joints[j])] * inverse_bind;
   }
-  std::size_t next = 0;  // primitives without triangles are not in the mesh that was read
-  for (std::size_t p = 0; p < document_.model.meshes[mesh].primitives.size(); ++p) {
-    if (next >= read_mesh->primitives.size()) break;
+  for (Primitive& out : read_mesh->primitives) {
+    const auto p = static_cast<std::size_t>(out.source);
     const tinygltf::Primitive& primitive = document_.model.meshes[mesh].primitives[p];
-    if (!has_triangles(primitive) || primitive.attributes.count("POSITION") == 0) continue;
-    Primitive& out = read_mesh->primitives[next++];
     Source source;
     source.attributes = &primitive.attributes;
     if (const Json& json = json_of(document_, mesh, p); is_draco(json))

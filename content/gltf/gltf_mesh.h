@@ -5,7 +5,7 @@
 #include <string>
 
 #include "content/gltf/gltf_document.h"
-#include "content/gltf/gltf_draco.h"
+#include "content/gltf/gltf_draco_reader.h"
 
 namespace pliant {
 
@@ -13,15 +13,13 @@ namespace pliant {
 // (glTF 2.0, 3.7.2.1).
 std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> corners);
 
-// The Draco data of a primitive that has any, its attributes by name; normalised integers as in read_floats.
-Result<DracoMesh> decode_primitive(const SourceDocument& document, const Json& primitive, const std::string& pointer);
-
 class MeshReader {
  public:
   explicit MeshReader(const SourceDocument& document);
 
   // Every primitive that has triangles: strips, fans, quantised, sparse and Draco data resolved. Points and lines are
-  // left out, with a note. Errors: what Draco data turn out to be, non-finite numbers, too much for memory.
+  // left out, with a note; Primitive::source says which are not. Errors: what Draco data turn out to be, non-finite
+  // numbers.
   Result<LevelMesh> read(std::size_t mesh);
 
   // The mesh as `skin` shows it at rest: vertices moved by joint matrices times inverse bind matrices, then back into
@@ -34,11 +32,10 @@ class MeshReader {
   struct Source;  // one primitive's attributes, wherever they come from
   Result<Primitive> read_primitive(std::size_t mesh, std::size_t primitive);
   Status read_draco(const Json& extension, const std::string& pointer, Source& source);
-  Status spend(std::uint64_t bytes, const std::string& pointer);
   std::vector<float> attribute(const Source& source, const char* name) const;
 
   const SourceDocument& document_;
-  std::uint64_t budget_ = 0;  // [byte] that may still be decoded
+  DracoReader draco_;
   std::set<std::string> notes_;
 };
 

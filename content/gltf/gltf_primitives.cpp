@@ -108,6 +108,15 @@ class MeshCheck {
         check_.error(pointer, semantic + " sets are not numbered 0, 1, 2 without gaps");
   }
 
+  // A vertex has its weights once: the same numbers under two names would count twice.
+  void weight_sets(const Json& attributes, const std::string& pointer) {
+    std::set<std::size_t> seen;
+    for (const auto& [name, value] : attributes.items())
+      if (name.rfind("WEIGHTS_", 0) == 0 && !seen.insert(value.get<std::size_t>()).second)
+        return check_.error(pointer + "/attributes/" + escaped(name),
+                            "is the accessor of another set of weights as well; remove one of the sets");
+  }
+
   void indices(const Json& primitive, const std::string& pointer) {
     const std::size_t index = primitive["indices"].get<std::size_t>();
     const Json& accessor = json_["accessors"][index];
@@ -152,6 +161,7 @@ class MeshCheck {
     }
     if (!attributes.contains("POSITION")) check_.warn(pointer + "/attributes", "have no POSITION: nothing is shown");
     continuous(sets, pointer + "/attributes");
+    weight_sets(attributes, pointer);
     if (sets["JOINTS"].size() != sets["WEIGHTS"].size())
       check_.error(pointer + "/attributes", "have more JOINTS than WEIGHTS or fewer");
     if (primitive.contains("indices")) indices(primitive, pointer);

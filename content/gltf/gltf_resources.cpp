@@ -99,9 +99,9 @@ bool is_missing(const SourceDocument& document, const std::string& uri) {
   return path && !fs::exists(*path, ignored);
 }
 
-// The bytes that a buffer's or picture's URI stands for.
+// The bytes that a buffer's or picture's URI stands for; of a file the first `wanted`.
 std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, const std::string& pointer,
-                             Findings& findings) {
+                             const Limit& limit, std::uint64_t wanted, Findings& findings) {
   if (is_data_uri(uri)) {
     std::optional<DataUri> data = parse_data_uri(uri);
     if (!data) add_error(findings, pointer, "is not a valid base64 data URI");
@@ -112,7 +112,7 @@ std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, con
     add_error(findings, pointer, path.error().message());
     return std::nullopt;
   }
-  Result<Bytes> bytes = read_file(*path);
+  Result<Bytes> bytes = read_beginning(*path, limit, wanted);
   if (!bytes) {
     add_error(findings, pointer, bytes.error().message());
     return std::nullopt;
@@ -133,8 +133,8 @@ Bytes fetch_buffer(const SourceDocument& document, std::size_t number, const Con
   if (is_remote(value_of<std::string>(buffer, "uri", ""))) {
     add_warning(findings, pointer, "lies on another machine and is not fetched; download it beside the level");
   } else if (buffer.contains("uri")) {
-    std::optional<DataUri> data =
-        fetch(buffer["uri"].get_ref<const std::string&>(), document.folder, pointer + "/uri", findings);
+    std::optional<DataUri> data = fetch(buffer["uri"].get_ref<const std::string&>(), document.folder, pointer + "/uri",
+                                        limits::kFile, length, findings);
     if (!data) return {};
     if (is_data_uri(buffer["uri"]) && data->mime != "application/octet-stream" &&
         data->mime != "application/gltf-buffer")
@@ -164,7 +164,7 @@ Bytes fetch_picture(const SourceDocument& document, std::size_t number, Findings
     add_warning(findings, pointer, "names " + uri.substr(0, 100) + ", which does not exist; shown as plain white");
     return {};
   }
-  std::optional<DataUri> data = fetch(uri, document.folder, pointer, findings);
+  std::optional<DataUri> data = fetch(uri, document.folder, pointer, limits::kPictureFile, UINT64_MAX, findings);
   return data ? std::move(data->bytes) : Bytes{};
 }
 
@@ -172,22 +172,33 @@ Bytes fetch_picture(const SourceDocument& document, std::size_t number, Findings
 
 FetchedBytes fetch_bytes(const SourceDocument& document, const Container& container, Findings& findings) {
   FetchedBytes out;
+  // Several may name the same file, and each is held for itself: they are added up before they are read.
   const Json& buffers = array_of(document.json, "buffers");
-  std::uint64_t total = 0;
+  double total = 0.0;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
-    out.buffers.push_back(fetch_buffer(document, i, container, findings));
-    if (any_error(findings)) return out;
     const bool in_bin = i == 0 && container.has_bin && !buffers[i].contains("uri");
-    out.is_placeholder.push_back(out.buffers.back().empty() && !in_bin);
-    if (!out.is_placeholder.back()) total += buffers[i]["byteLength"].get<std::uint64_t>();
-    if (total > most(limits::kFile)) {
+    if (in_bin || (buffers[i].contains("uri") && !is_remote(buffers[i]["uri"])))
+      total += buffers[i]["byteLength"].get<double>();
+    if (total > static_cast<double>(most(limits::kFile))) {
       add_error(findings, fmt::format("/buffers/{}", i),
-                "makes the buffers " + beyond(limits::kFile, static_cast<double>(total), "split the level"));
+                "makes the buffers " + beyond(limits::kFile, total, "split the level"));
       return out;
     }
+    out.buffers.push_back(fetch_buffer(document, i, container, findings));
+    if (any_error(findings)) return out;
+    out.is_placeholder.push_back(out.buffers.back().empty() && !in_bin);
   }
-  for (std::size_t i = 0; i < array_of(document.json, "images").size() && !any_error(findings); ++i)
+  const Json& images = array_of(document.json, "images");
+  total = 0.0;
+  for (std::size_t i = 0; i < images.size() && !any_error(findings); ++i) {
     out.images.push_back(fetch_picture(document, i, findings));
+    total += static_cast<double>(out.images.back().size());
+    if (images[i].contains("bufferView"))
+      total += document.json["bufferViews"][images[i]["bufferView"].get<std::size_t>()]["byteLength"].get<double>();
+    if (total > static_cast<double>(most(limits::kPictureFile)))
+      add_error(findings, fmt::format("/images/{}", i),
+                "makes the files of pictures " + beyond(limits::kPictureFile, total, "shrink the pictures"));
+  }
   return out;
 }
 

@@ -35,6 +35,16 @@ constexpr const char* word_of(Distance distance) {
   return nullptr;
 }
 
+constexpr const char* word_of(Fill fill) {
+  switch (fill) {
+    case Fill::kSolid:
+      return "solid";
+    case Fill::kWall:
+      return "wall";
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(ProbeMeets meets) {
   switch (meets) {
     case ProbeMeets::kAll:

@@ -242,13 +242,14 @@ std::vector<Key> device_keys() {
   keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
-  keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale), "workspace to world"));
+  keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
+                        "workspace of a device with the driver `external` to world"));
   keys.push_back(
       number("max_force", "N", {DeviceRange::kMaxForce, {0.1, 50.0}}, d(&H::max_force), "norm of the force sent"));
   keys.push_back(number("max_stiffness", "N/m", {DeviceRange::kMaxStiffness, {10.0, 1e5}}, d(&H::max_stiffness),
-                        "limit on the rise of force with displacement; 0: none"));
+                        "limit on the rise of force with displacement, per metre of the world; 0: none"));
   keys.push_back(number("max_slew", "N/s", {DeviceRange::kMaxSlew, {1.0, 1e6}}, d(&H::max_slew),
-                        "limit on the change of force with time"));
+                        "limit on the rise of force with time; what is let go falls by 1000 N/s at least"));
   return keys;
 }
 
@@ -262,8 +263,13 @@ std::vector<Key> soft_body_keys() {
       fmt::format("Poisson's ratio; from {} on the tetrahedra lock: tissue is over 10 % too stiff", kLockingPoisson)));
   keys.push_back(number("density", "kg/m3", {SoftBodyRange::kDensity, {10.0, 25e3}}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
+  keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
+                        fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
   keys.push_back(
-      number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell), "lattice cell; 0: sized from the bounds"));
+      choice("fill", s(&S::fill),
+             "what is filled: all that the surface encloses, the cavity of a thin wall too, or only the wall"));
+  keys.push_back(number("thickness", "m", {SoftBodyRange::kThickness, {1e-4, 0.5}}, s(&S::thickness),
+                        "of a wall, inwards from the surface; 0: the wall as the surface has it"));
   keys.push_back(
       text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
   keys.push_back(

@@ -4,10 +4,20 @@
 
 namespace pliant {
 
-std::vector<DeviceFault> find_shared_devices(const Level& level) {
-  std::unordered_map<std::string, std::size_t> by_name;  // first node in the scene with this name
+namespace {
+
+// The first node in the scene with a name.
+std::unordered_map<std::string, std::size_t> nodes_by_name(const Level& level) {
+  std::unordered_map<std::string, std::size_t> by_name;
   for (std::size_t n = 0; n < level.nodes.size(); ++n)
     if (level.nodes[n].in_scene) by_name.try_emplace(level.nodes[n].name, n);
+  return by_name;
+}
+
+}  // namespace
+
+std::vector<DeviceFault> find_shared_devices(const Level& level) {
+  const std::unordered_map<std::string, std::size_t> by_name = nodes_by_name(level);
   std::unordered_map<std::size_t, std::size_t> moves;  // device -> probe or tool
   std::vector<DeviceFault> faults;
   const auto use = [&](std::size_t n, const std::string& named) {
@@ -28,6 +38,28 @@ std::vector<DeviceFault> find_shared_devices(const Level& level) {
     if (node.handle) use(n, node.handle->device);
   }
   return faults;
+}
+
+std::vector<DeviceFault> find_unmoved_probes(const Level& level) {
+  const std::unordered_map<std::string, std::size_t> by_name = nodes_by_name(level);
+  std::vector<DeviceFault> found;
+  for (std::size_t n = 0; n < level.nodes.size(); ++n) {
+    const LevelNode& node = level.nodes[n];
+    if (!node.in_scene || !node.probe) continue;
+    std::size_t mover = n;
+    if (!node.probe_device.empty()) {
+      const auto named = by_name.find(node.probe_device);
+      if (named == by_name.end()) continue;  // spawn says so
+      mover = named->second;
+    }
+    const std::optional<HapticDevice>& device = level.nodes[mover].device;
+    const std::string cure = "give it one that moves it, or run it with --probe " + node.name + "=orbit";
+    if (!device)
+      found.push_back({n, "is a probe without a PLIANT_haptic_device, so nothing moves it; " + cure});
+    else if (device->driver == DriverKind::kNull)
+      found.push_back({n, "is a probe whose device has the `driver` `null`, so nothing moves it; " + cure});
+  }
+  return found;
 }
 
 }  // namespace pliant

@@ -135,5 +135,7 @@ void make_touchable(Level& level);
 // for touch (prepare_touch), and its environment has no panorama (level_file.h: spawn). `notes` gets what was read
 // differently than a user might expect of the files that the level names.
 Result<World> spawn_level(const Level& level, std::vector<std::string>* notes = nullptr);
+// Whether what the nodes make of the meshes is within limits (content/files/limits.h): said before a mesh is built.
+Status check_level_size(const Level& level);
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "content/files/file_io.h"
+#include "content/level/level_budget.h"
 
 namespace pliant {
 namespace {
@@ -53,7 +54,10 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view line = take_line(text);
-    const auto error = [&](const char* what) { return Error{where + ":" + std::to_string(number), what}; };
+    const auto error = [&](const std::string& what) {
+      const char* cure = what.find("; ") == std::string::npos ? "; correct the line" : "";
+      return Error{where + ":" + std::to_string(number), what + cure};
+    };
     if (line.empty() || line.front() == '#') continue;
     if (columns == 0) {
       const std::string names = without_blanks(line);
@@ -89,6 +93,20 @@ Result<Path> load_script(const std::filesystem::path& path) {
   const Result<Bytes> bytes = read_file(path, limits::kScriptFile);
   if (!bytes) return bytes.error();
   return parse_script({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string());
+}
+
+Result<const Path*> ScriptLibrary::read(const std::filesystem::path& file, bool copied) {
+  auto known = scripts_.find(file);
+  const bool is_new = known == scripts_.end();
+  if (is_new) known = scripts_.emplace(file, load_script(file)).first;
+  const Result<Path>& script = known->second;
+  if (!script) return script.error();
+  if (is_new) rows_ += static_cast<double>(script->rows.size());
+  if (copied) rows_ += static_cast<double>(script->rows.size());
+  if (const std::string over = LevelBudget::ask(limits::kScriptRows, rows_, "sample the scripts more coarsely");
+      !over.empty())
+    return Error{file.string(), over};
+  return &*script;
 }
 
 }  // namespace pliant

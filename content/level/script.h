@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string_view>
 
 #include "components/haptic_device.h"
@@ -17,5 +18,17 @@ Result<Path> load_script(const std::filesystem::path& path);
 
 // The same from text; `where` stands in front of errors.
 Result<Path> parse_script(std::string_view text, const std::string& where);
+
+// The scripts of a level: a file is read once, however many nodes name it, and all rows together are at most
+// limits::kScriptRows.
+class ScriptLibrary {
+ public:
+  // The script in a file. Its rows count once, and again whenever who asks makes a copy of them.
+  Result<const Path*> read(const std::filesystem::path& file, bool copied);
+
+ private:
+  std::map<std::filesystem::path, Result<Path>> scripts_;
+  double rows_ = 0.0;
+};
 
 }  // namespace pliant

@@ -74,12 +74,12 @@ class Spawner {
       world_.environment.rotation = static_cast<float>(level_.environment->rotation);
     }
     entities_.assign(level_.nodes.size(), kNoEntity);
-    Result<LevelMotions> motions = make_motions(level_, folder_);
+    Result<LevelMotions> motions = make_motions(level_, folder_, scripts_);
     if (!motions) return motions.error();
     motions_ = std::move(*motions);
     notes_.insert(notes_.end(), motions_.notes.begin(), motions_.notes.end());
     baked_.resize(level_.meshes.size());
-    if (Status s = check_size(); !s) return s;
+    if (Status s = count(); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = node(n); !s) return s;
     say_refinement();
@@ -92,6 +92,12 @@ class Spawner {
     const std::vector<DeviceFault> shared = find_shared_devices(level_);
     if (!shared.empty()) return at(shared.front().node, shared.front().what);
     return Done{};
+  }
+  // Only the count of run(). A motion that cannot be made is for run() to refuse: without it nothing moves.
+  Status check_size() {
+    Result<LevelMotions> motions = make_motions(level_, folder_, scripts_);
+    motions_ = motions ? std::move(*motions) : unmoved(level_);
+    return count();
   }
   World take() { return std::move(world_); }
   const std::vector<std::string>& notes() const { return notes_; }
@@ -196,6 +202,7 @@ class Spawner {
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
     for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
+    for (const std::string& finding : parts->tets.report.findings) notes_.push_back("`" + node.name + "`: " + finding);
     note_winding(node.mesh, parts->surface);
     world_.registry.add<Pose>(entities_[n], pose);
     SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
@@ -206,7 +213,7 @@ class Spawner {
   }
 
   // What the nodes want is counted before the first of it is built.
-  Status check_size() {
+  Status count() {
     std::set<std::pair<std::int32_t, Shape>> shapes;
     MeshSize wanted;
     double surfaces = 0.0, soft_bodies = 0.0, hands = 0.0;
@@ -310,9 +317,11 @@ class Spawner {
         return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
       const Result<std::filesystem::path> file = confined_path(folder_, device.file);
       if (!file) return at(n, file.error().message());
-      Result<Path> path = load_script(*file);
+      Result<const Path*> path = scripts_.read(*file, false);
       if (!path) return path.error();
-      device.path = world_.paths.add(std::move(*path));
+      const auto [shared, is_new] = paths_.try_emplace(*path);
+      if (is_new) shared->second = world_.paths.add(Path(**path));
+      device.path = shared->second;
     }
     device.position = dvec3(motions_.world[n][3]);
     world_.registry.add<HapticDevice>(entities_[n], std::move(device));
@@ -368,6 +377,8 @@ class Spawner {
   World world_;
   std::vector<Entity> entities_;  // of each node; kNoEntity: not in the scene
   LevelMotions motions_;
+  ScriptLibrary scripts_;
+  std::map<const Path*, Handle<Path>> paths_;               // of the scripts that move devices
   std::unordered_map<std::string, std::size_t> by_name_;    // first node in the scene with this name
   std::vector<std::map<Shape, std::vector<Baked>>> baked_;  // of each mesh of the level
   std::set<std::int32_t> noted_;                            // meshes whose winding a note speaks of
@@ -385,6 +396,10 @@ class Spawner {
 };
 
 }  // namespace
+
+Status check_level_size(const Level& level) {
+  return Spawner(level).check_size();
+}
 
 Result<World> spawn_level(const Level& level, std::vector<std::string>* notes) {
   Spawner spawner(level);

@@ -40,8 +40,8 @@ bool is_even(const dmat4& frame) {
 
 class MotionMaker {
  public:
-  MotionMaker(const Level& level, const std::filesystem::path& folder)
-      : level_(level), folder_(folder), channels_(level.nodes.size()) {}
+  MotionMaker(const Level& level, const std::filesystem::path& folder, ScriptLibrary& scripts)
+      : level_(level), folder_(folder), scripts_(scripts), channels_(level.nodes.size()) {}
 
   Result<LevelMotions> make() {
     const std::size_t count = level_.nodes.size();
@@ -136,8 +136,9 @@ class MotionMaker {
   Status read_script(std::size_t n, const std::string& file, PrescribedMotion& motion) {
     const Result<std::filesystem::path> path = confined_path(folder_, file);
     if (!path) return at(n, path.error().message());
-    const Result<Path> script = load_script(*path);
-    if (!script) return at(n, script.error().message());
+    const Result<const Path*> read = scripts_.read(*path, true);
+    if (!read) return at(n, read.error().message());
+    const Path* script = *read;
     for (const PathRow& row : script->rows) {
       const dvec3 far = glm::abs(row.position);
       if (row.time < 0.0 || row.time > kFarthest || std::max({far.x, far.y, far.z}) > kFarthest)
@@ -191,6 +192,7 @@ class MotionMaker {
 
   const Level& level_;
   const std::filesystem::path& folder_;
+  ScriptLibrary& scripts_;
   std::vector<std::vector<Source>> channels_;  // of each node, in the order of the file
   std::vector<bool> touched_;
   bool something_is_pushed_ = false;
@@ -200,8 +202,20 @@ class MotionMaker {
 
 }  // namespace
 
-Result<LevelMotions> make_motions(const Level& level, const std::filesystem::path& folder) {
-  return MotionMaker(level, folder).make();
+Result<LevelMotions> make_motions(const Level& level, const std::filesystem::path& folder, ScriptLibrary& scripts) {
+  return MotionMaker(level, folder, scripts).make();
+}
+
+LevelMotions unmoved(const Level& level) {
+  LevelMotions out;
+  out.motion.resize(level.nodes.size());
+  out.moves.assign(level.nodes.size(), false);
+  for (const LevelNode& node : level.nodes) {
+    out.local.push_back(node.local);
+    const dmat4 above = node.parent < 0 ? dmat4(1.0) : out.world[static_cast<std::size_t>(node.parent)];
+    out.world.push_back(above * local_frame(node.local).matrix());
+  }
+  return out;
 }
 
 }  // namespace pliant

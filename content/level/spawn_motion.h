@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "content/level/level.h"
+#include "content/level/script.h"
 
 namespace pliant {
 
@@ -21,6 +22,8 @@ struct LevelMotions {
 // Errors, each with the node: scripts that cannot be read, animations that are not there, a script that turns a surface
 // under uneven scales, soft and rigid bodies that would be carried. An animation that would change the scale of
 // something that can be touched, or turn it under uneven scales, loses that part, with a note.
-Result<LevelMotions> make_motions(const Level& level, const std::filesystem::path& folder);
+Result<LevelMotions> make_motions(const Level& level, const std::filesystem::path& folder, ScriptLibrary& scripts);
+// The same where nothing moves.
+LevelMotions unmoved(const Level& level);
 
 }  // namespace pliant

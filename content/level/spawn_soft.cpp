@@ -4,12 +4,15 @@
 
 #include <algorithm>
 
+#include "content/level/inner_sheet.h"
 #include "content/mesh/mesh_refine.h"
 #include "content/tets/lattice.h"
 #include "content/tets/tet_boundary.h"
 #include "content/tets/tet_embed.h"
 #include "content/tets/tet_file.h"
+#include "content/tets/tet_findings.h"
 #include "content/tets/tet_groups.h"
+#include "content/tets/tet_parts.h"
 #include "content/tets/tet_quality.h"
 
 namespace pliant {
@@ -51,6 +54,25 @@ double mean_edge(const TetMesh& mesh) {
   return sum / static_cast<double>(6 * mesh.tets.size());
 }
 
+constexpr double kMostLost = 0.5;  // [1] of the tissue, in parts too small to keep
+
+// Bits of what is thinner than the cell.
+Error in_crumbs(const TetMesh& tets, const SoftBody& body, const Mesh& surface) {
+  const TetReport& report = tets.report;
+  const std::string cell = length_text(report.cell);
+  const std::string what = fmt::format("falls into {} bits, which hold {:.0f} % of its tissue: ", report.parts_dropped,
+                                       1e2 * report.volume_dropped);
+  if (report.wall > 0.0 && body.fill == Fill::kWall)
+    return {"mesh `" + tets.name + "`",
+            what + fmt::format("a wall of {} is thinner than the cell of {}; fill the inside (\"fill\": \"solid\"), or "
+                               "give it a `thickness` of at least {}",
+                               length_text(std::max(report.wall, body.thickness)), cell,
+                               length_text(least_wall(surface, true)))};
+  return {"mesh `" + tets.name + "`", what +
+                                          fmt::format("it is thinner than the cell of {}; make `cell` smaller", cell) +
+                                          (body.fill == Fill::kWall ? ", or `thickness` larger" : "")};
+}
+
 Primitive boundary_primitive(const TetMesh& mesh) {
   Primitive p;
   p.position.assign(mesh.nodes.begin(), mesh.nodes.end());
@@ -59,6 +81,21 @@ Primitive boundary_primitive(const TetMesh& mesh) {
 }
 
 }  // namespace
+
+Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                               const std::stop_token& stop) {
+  Result<TetMesh> tets = fill_surface(surface.mesh, {body.cell, body.fill, body.thickness, stop});
+  if (!tets) return tets.error();
+  Result<std::vector<NodeGroup>> group = group_nodes(tets->nodes, surface, body, handle);
+  if (!group) return group.error();
+  FilledBody tissue{std::move(*tets), std::move(*group)};
+  const std::uint32_t kept = drop_small_parts(tissue.tets, tissue.group);
+  if (tissue.tets.report.volume_dropped > kMostLost) return in_crumbs(tissue.tets, body, surface.mesh);
+  report_parts(kept, count_parts(surface.mesh), tissue.tets.report);
+  if (std::find(tissue.group.begin(), tissue.group.end(), NodeGroup::kFree) == tissue.group.end())
+    return Error{"PLIANT_soft_body", "has no free node: what is not pinned or on the handle was too small to keep"};
+  return tissue;
+}
 
 std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
   const double bound = tetrahedra < kManyTets ? kLockingPoisson : kLockingPoissonOfMany;
@@ -103,10 +140,13 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
   };
   if (mesh)
     if (Status s = build(mesh->primitives, to_object); !s) return s.error();
+  const Handle6* const handle = node.handle ? &*node.handle : nullptr;
+  std::vector<NodeGroup> group;
   if (body.mesh.empty()) {
-    Result<TetMesh> tets = make_lattice(parts.surface.mesh, body.cell);
-    if (!tets) return tets.error();
-    parts.tets = std::move(*tets);
+    Result<FilledBody> tissue = make_tissue(parts.surface, body, handle);
+    if (!tissue) return tissue.error();
+    parts.tets = std::move(tissue->tets);
+    group = std::move(tissue->group);
   } else {
     Result<TetMesh> tets = read_tets(node.name, body.mesh, to_object, folder, parts.notes);
     if (!tets) return tets.error();
@@ -114,20 +154,22 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     const Primitive boundary = boundary_primitive(parts.tets);
     if (!mesh)
       if (Status s = build({&boundary, 1}, mat4(1.0f)); !s) return s.error();
-    parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
     parts.tets.quality = measure_quality(parts.tets.nodes, parts.tets.tets);
+    Result<std::vector<NodeGroup>> grouped = group_nodes(parts.tets.nodes, parts.surface, body, handle);
+    if (!grouped) return grouped.error();
+    group = std::move(*grouped);
+    report_parts(count_parts(parts.tets), count_parts(parts.surface.mesh), parts.tets.report);
   }
-  Result<std::vector<NodeGroup>> group =
-      group_nodes(parts.tets.nodes, parts.surface, body, node.handle ? &*node.handle : nullptr);
-  if (!group) return group.error();
   if (mesh) {
-    std::vector<Primitive> finer = mesh->primitives;
-    if (refine(finer, to_object, kLongestEdge * mean_edge(parts.tets))) {
-      if (Status s = build(finer, to_object); !s) return s.error();
-      parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
-    }
+    std::vector<Primitive> touched = mesh->primitives;
+    const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
+    const bool outer = filled && leave_out_covered(parts.surface, parts.tets, touched);
+    const bool finer = refine(touched, to_object, kLongestEdge * mean_edge(parts.tets));
+    if (outer || finer)
+      if (Status s = build(touched, to_object); !s) return s.error();
   }
-  put_in_order(parts.tets, *group);
+  parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
+  put_in_order(parts.tets, group);
   return parts;
 }
 

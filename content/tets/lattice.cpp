@@ -10,6 +10,7 @@
 #include "content/tets/lattice_grid.h"
 #include "content/tets/lattice_stuffing.h"
 #include "content/tets/tet_embed.h"
+#include "content/tets/tet_findings.h"
 #include "content/tets/tet_order.h"
 #include "content/tets/tet_quality.h"
 #include "runtime/parallel.h"
@@ -23,8 +24,9 @@ constexpr double kSure = 1.1;       // [1] of the limit: what is estimated above
 
 // [1] About how many tetrahedra a cell makes: twelve for each cube of it in the volume, by the share of a regular grid
 // of places that lie inside. Filling a box with millions only to find them too many takes half a minute.
-double estimated_tets(const Mesh& surface, const Inside& inside, double cell) {
-  const dvec3 low(surface.box.min), size(surface.box.size());
+double estimated_tets(const FillRegion& region, double cell) {
+  const Box box = region.box();
+  const dvec3 low(box.min), size(box.size());
   const double step = std::cbrt(size.x * size.y * size.z / kSamples);
   if (!(step > 0.0)) return 0.0;
   const glm::ivec3 count = glm::max(glm::ivec3(glm::ceil(glm::min(size / step, dvec3(kSamples)))), glm::ivec3(1));
@@ -36,68 +38,122 @@ double estimated_tets(const Mesh& surface, const Inside& inside, double cell) {
     for (std::size_t z = begin; z < end; ++z)
       for (int y = 0; y < count.y; ++y)
         for (int x = 0; x < count.x; ++x)
-          enclosed[z] += inside(low + size * (dvec3(x, y, static_cast<double>(z)) + 0.5) / dvec3(count));
+          enclosed[z] += region(low + size * (dvec3(x, y, static_cast<double>(z)) + 0.5) / dvec3(count));
   });
   const std::size_t sum = std::accumulate(enclosed.begin(), enclosed.end(), std::size_t{0});
   const double share = static_cast<double>(sum) / static_cast<double>(all);
   return 12.0 * share * size.x * size.y * size.z / (cell * cell * cell);
 }
 
+struct Found {
+  double cell = 0.0;  // [m]
+  Stuffing stuffing;
+};
+
 // The cell whose stuffing has about kUsualTets tetrahedra: their number goes with the cube of the cell. Begins where a
-// box filled by a third would need no change.
-Result<Stuffing> stuff_usual(const Mesh& surface, const Inside& inside, Progress& progress) {
-  const dvec3 size(surface.box.size());
+// box filled by a third would need no change. What is thinner than its cell makes numbers that jump about: the nearest
+// one of all tries then counts.
+Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, Progress& progress,
+                          const std::stop_token& stop) {
+  const Box box = region.box();
+  const dvec3 size(box.size());
   const double longest = std::max({size.x, size.y, size.z});
   double volume = 1.0;
   for (int i = 0; i < 3; ++i) volume *= std::max(size[i], 0.01 * longest);
   double cell = std::cbrt(12.0 * 0.33 * volume / static_cast<double>(kUsualTets));
-  Stuffing best;
+  Found best;
   for (int n = 0; n < kTries; ++n) {
-    if (LatticeGrid::node_count(surface.box, cell) > static_cast<double>(most(limits::kLatticeNodes))) break;
-    Result<Stuffing> stuffing = stuff(surface, inside, cell, most(limits::kTets), progress);
-    if (!stuffing) return stuffing;
+    if (LatticeGrid::node_count(box, cell) > kMostUsualNodes) break;
+    Result<Stuffing> stuffing = stuff(surface, region, cell, kMostUsualTets, progress, stop);
+    if (!stuffing) return stuffing.error();
     const double share = static_cast<double>(stuffing->tets.size()) / static_cast<double>(kUsualTets);
-    best = std::move(*stuffing);
-    if (share > 0.9 && share < 1.1) break;
+    const auto off = [](std::size_t tets) {
+      return std::abs(std::log(static_cast<double>(tets) / static_cast<double>(kUsualTets)));
+    };
+    const bool usual = share > 0.9 && share < 1.1;
+    if (!stuffing->beyond && !stuffing->tets.empty() &&
+        (usual || best.stuffing.tets.empty() || off(stuffing->tets.size()) < off(best.stuffing.tets.size())))
+      best = {cell, std::move(*stuffing)};
+    if (usual) break;
     cell *= std::clamp(std::cbrt(share), 0.4, 2.5);
   }
   return best;
 }
 
-Result<Stuffing> stuff_cell(const Mesh& surface, const Inside& inside, double cell, Progress& progress) {
-  const auto too_many = [&](const Limit& limit, double count) {
-    return Error{"mesh `" + surface.name + "`", fmt::format("a cell of {:.3g} m makes {}", cell,
-                                                            beyond(limit, std::ceil(count), "choose a larger one"))};
+Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, double cell, Progress& progress,
+                         const std::stop_token& stop) {
+  const auto too_many = [&](const std::string& how_many) {
+    return Error{"mesh `" + surface.name + "`", fmt::format("a cell of {:.3g} m makes {}", cell, how_many)};
   };
-  const double nodes = LatticeGrid::node_count(surface.box, cell);
-  if (nodes > static_cast<double>(most(limits::kLatticeNodes))) return too_many(limits::kLatticeNodes, nodes);
-  const double tets = estimated_tets(surface, inside, cell);
-  if (tets > kSure * static_cast<double>(most(limits::kTets))) return too_many(limits::kTets, tets);
-  return stuff(surface, inside, cell, most(limits::kTets), progress);
+  const auto count = [&](const Limit& limit, double found) {
+    return too_many(beyond(limit, std::ceil(found), "choose a larger one"));
+  };
+  const double nodes = LatticeGrid::node_count(region.box(), cell);
+  if (nodes > static_cast<double>(most(limits::kLatticeNodes))) return count(limits::kLatticeNodes, nodes);
+  const double tets = estimated_tets(region, cell);
+  if (tets > kSure * static_cast<double>(most(limits::kTets))) return count(limits::kTets, tets);
+  Result<Stuffing> stuffing = stuff(surface, region, cell, most(limits::kTets), progress, stop);
+  if (!stuffing) return stuffing.error();
+  if (stuffing->beyond)
+    return too_many(
+        fmt::format("more than {} tetrahedra; choose a larger one, or allow it with --limits 2", most(limits::kTets)));
+  return Found{cell, std::move(*stuffing)};
+}
+
+// Why nothing could be filled, and what to do.
+Error nothing_held(const Mesh& surface, const SurfaceShape& shape, const LatticeWish& wish) {
+  const std::string where = "mesh `" + surface.name + "`";
+  const bool sheet = shape.kind == SurfaceKind::kSheet;
+  if (sheet && wish.fill == Fill::kWall && wish.thickness > 0.0)
+    return {where, fmt::format("holds no tetrahedra: its layer of {} is thinner than the cell; make `thickness` larger "
+                               "or `cell` smaller",
+                               length_text(wish.thickness))};
+  if (shape.kind == SurfaceKind::kWall && wish.fill == Fill::kWall)
+    return {where,
+            fmt::format("holds no tetrahedra: a wall of {} is thinner than any usual cell; fill the inside (\"fill\": "
+                        "\"solid\"), or give it a `thickness` of at least {}",
+                        length_text(shape.thickness), length_text(least_wall(surface, true)))};
+  if (sheet)
+    return {where,
+            "holds no tetrahedra: it is an open surface that encloses nothing; close it, or give it a thickness "
+            "(\"fill\": \"wall\", \"thickness\" in metres)"};
+  return {where,
+          "holds no tetrahedra: it encloses nothing, or is thinner than the cell; close it, or make `cell` smaller"};
 }
 
 }  // namespace
 
-Result<TetMesh> make_lattice(const Mesh& surface, double cell) {
-  if (!(cell >= 0.0) || !std::isfinite(cell))
+Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish) {
+  if (!(wish.cell >= 0.0) || !std::isfinite(wish.cell))
     return Error{"mesh `" + surface.name + "`",
                  "its cell is not a length; give it in metres, or 0 for one sized from the bounds"};
+  if (!(wish.thickness >= 0.0) || !std::isfinite(wish.thickness))
+    return Error{"mesh `" + surface.name + "`", "its thickness is not a length; give it in metres"};
   Progress progress;
+  const SurfaceShape shape = measure_shape(surface);
   const Inside inside(surface);
-  Result<Stuffing> stuffing =
-      cell > 0.0 ? stuff_cell(surface, inside, cell, progress) : stuff_usual(surface, inside, progress);
-  if (!stuffing) return stuffing.error();
-  if (stuffing->tets.empty())
-    return Error{"mesh `" + surface.name + "`",
-                 "holds no tetrahedra: it encloses nothing, or is thinner than the cell; close it, or make `cell` "
-                 "smaller"};
+  const FillRegion region(surface, inside, shape, wish.fill, wish.thickness);
+  if (shape.kind == SurfaceKind::kSheet && wish.fill == Fill::kWall && !(wish.thickness > 0.0))
+    return nothing_held(surface, shape, wish);
+  Result<Found> found = wish.cell > 0.0 ? stuff_cell(surface, region, wish.cell, progress, wish.stop)
+                                        : stuff_usual(surface, region, progress, wish.stop);
+  if (!found) return found.error();
+  if (found->stuffing.tets.empty()) return nothing_held(surface, shape, wish);
   TetMesh mesh;
   mesh.name = surface.name;
-  mesh.nodes = std::move(stuffing->nodes);
-  mesh.tets = std::move(stuffing->tets);
+  mesh.nodes = std::move(found->stuffing.nodes);
+  mesh.tets = std::move(found->stuffing.tets);
   put_in_order(mesh, {});
-  mesh.embedding = embed(surface, mesh.nodes, mesh.tets);
   mesh.quality = measure_quality(mesh.nodes, mesh.tets);
+  mesh.report.cell = found->cell;
+  report_wall(shape, wish.fill, wish.thickness, mesh.report);
+  report_thin_places(shape, region, total_volume(mesh), wish.cell > 0.0, mesh.report);
+  return mesh;
+}
+
+Result<TetMesh> make_lattice(const Mesh& surface, double cell) {
+  Result<TetMesh> mesh = fill_surface(surface, {cell, Fill::kSolid, 0.0, {}});
+  if (mesh) mesh->embedding = embed(surface, mesh->nodes, mesh->tets);
   return mesh;
 }
 

@@ -7,17 +7,36 @@
 // that doubles its mass. Deterministic, and independent of the number of threads.
 #pragma once
 
+#include <stop_token>
+
 #include "components/mesh.h"
 #include "components/tet_mesh.h"
+#include "pliant/parameters.h"
 #include "runtime/result.h"
 
 namespace pliant {
 
 inline constexpr std::size_t kUsualTets = 2'000;  // aimed at where the level names no cell
+// ... and never more than this, however thin or bent the surface is: a step of some 30 ms (step_cost.h).
+inline constexpr std::size_t kMostUsualTets = 4 * kUsualTets;
+// Lattice nodes that the search for the usual cell looks at in one try: 0.1 s. Whatever fills so little
+// of its box that it would need more gets fewer tetrahedra.
+inline constexpr double kMostUsualNodes = 100'000;
 
-// Fills what the surface encloses (small holes do not matter) with tetrahedra of about `cell` [m]; 0: about kUsualTets
-// of them. Every vertex of the surface is embedded. All nodes are free, in Hilbert order. Errors: a cell that is not
-// positive and finite, nothing enclosed, more than limits::kTets. Progress over a second goes to stderr.
+struct LatticeWish {
+  double cell = 0.0;         // [m] 0: the one that makes about kUsualTets
+  Fill fill = Fill::kSolid;  // ... and `thickness` [m]: as SoftBodyParameters
+  double thickness = 0.0;
+  std::stop_token stop;  // a filling that is no longer wanted ends with an error
+};
+
+// Fills a surface (small holes do not matter) with tetrahedra, without embedding it in them: a wall's cavity as `fill`
+// says, an open sheet with `thickness`. All nodes are free, in Hilbert order; parts are as they come (tet_parts.h).
+// TetMesh::report says what it found but what concerns parts. Errors: a cell or thickness that is not a finite length,
+// nothing enclosed, more than limits::kTets. Progress over a second goes to stderr.
+Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish);
+
+// ... of a solid, with every vertex of the surface embedded.
 Result<TetMesh> make_lattice(const Mesh& surface, double cell = 0.0);
 
 }  // namespace pliant

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "content/tets/surface_rays.h"
+
 namespace pliant {
 namespace {
 
@@ -15,22 +17,6 @@ struct Visit {
 };
 // Each level leaves at most kTreeWidth - 1 siblings waiting; 32 levels hold any index.
 constexpr std::size_t kDeepest = 32 * kTreeWidth;
-
-// Whether the way from + s along, s in [0, 1], meets the box; `over` is 1 / along.
-bool meets(const Box& box, dvec3 from, dvec3 along, dvec3 over) {
-  double in = 0.0, out = 1.0;
-  for (int i = 0; i < 3; ++i) {
-    const double low = static_cast<double>(box.min[i]), high = static_cast<double>(box.max[i]);
-    if (along[i] == 0.0) {
-      if (from[i] < low || from[i] > high) return false;
-      continue;
-    }
-    const double a = (low - from[i]) * over[i], b = (high - from[i]) * over[i];
-    in = std::max(in, std::min(a, b));
-    out = std::min(out, std::max(a, b));
-  }
-  return in <= out + 1e-9;
-}
 
 }  // namespace
 
@@ -112,37 +98,10 @@ double Inside::winding(dvec3 p) const {
   return sum / (4.0 * std::numbers::pi);
 }
 
-// Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
-void Inside::find_hits(dvec3 from, dvec3 along, std::vector<double>& shares) const {
-  const auto& boxes = surface_.tree.levels;
-  const dvec3 over = 1.0 / along;
-  Visit stack[kDeepest];
-  std::size_t depth = 0;
-  stack[depth++] = {static_cast<std::uint32_t>(boxes.size() - 1), 0};
-  while (depth > 0) {
-    const Visit at = stack[--depth];
-    if (!meets(boxes[at.level][at.box], from, along, over)) continue;
-    if (at.level > 0) {
-      const auto end = std::min<std::size_t>((at.box + 1) * kTreeWidth, boxes[at.level - 1].size());
-      for (std::uint32_t c = at.box * kTreeWidth; c < end; ++c) stack[depth++] = {at.level - 1, c};
-      continue;
-    }
-    const auto end = std::min<std::size_t>((at.box + 1) * kLeafSize, surface_.triangles.size());
-    for (std::uint32_t i = at.box * kLeafSize; i < end; ++i) {
-      const uvec3 t = surface_.triangles[i];
-      const dvec3 a(surface_.position(t.x)), ab = dvec3(surface_.position(t.y)) - a,
-                                             ac = dvec3(surface_.position(t.z)) - a;
-      const dvec3 p = cross(along, ac), s = from - a, q = cross(s, ab);
-      const double det = dot(ab, p), u = dot(s, p) / det, v = dot(along, q) / det, share = dot(ac, q) / det;
-      if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && share >= 0.0 && share <= 1.0) shares.push_back(share);
-    }
-  }
-}
-
 double Inside::crossing(dvec3 inside, dvec3 outside) const {
   const dvec3 along = outside - inside;
   std::vector<double> hits;
-  find_hits(inside, along, hits);
+  find_hits(surface_, inside, along, hits);
   std::sort(hits.begin(), hits.end());
   double in = 0.0, out = 1.0;
   if (hits.empty()) {

@@ -29,7 +29,6 @@ class Inside {
     dvec3 area;     // [m2] sum of area times normal
     double reach2;  // [m2] squared distance beyond which the dipole stands for the cluster
   };
-  void find_hits(dvec3 from, dvec3 along, std::vector<double>& shares) const;
   double solid_angle(std::uint32_t triangle, dvec3 p) const;
 
   const Mesh& surface_;

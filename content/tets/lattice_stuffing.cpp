@@ -1,11 +1,10 @@
 #include "content/tets/lattice_stuffing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
+#include "content/files/limits.h"
 #include "content/tets/lattice_grid.h"
 #include "content/tets/tet_quality.h"
 #include "runtime/parallel.h"
@@ -31,22 +30,31 @@ struct Cut {
 
 class Stuffer {
  public:
-  Stuffer(const Mesh& surface, const Inside& inside, double cell, std::size_t most, Progress& progress)
-      : grid_(surface.box, cell), inside_(inside), most_(most), progress_(progress), name_(surface.name) {}
+  Stuffer(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, Progress& progress,
+          const std::stop_token& stop)
+      : grid_(region.box(), cell),
+        region_(region),
+        most_(most),
+        progress_(progress),
+        stop_(stop),
+        name_(surface.name) {}
 
   Result<Stuffing> run() {
-    find_sides();
+    if (Status s = find_sides(); !s) return s.error();
     find_cuts();
+    if (stop_.stop_requested()) return stopped();
     warp();
-    if (Status s = fill(); !s) return s.error();
+    fill();
     return std::move(out_);
   }
 
  private:
   void report() { progress_.say("filling `" + name_ + "` with tetrahedra"); }
 
+  Error stopped() const { return {"mesh `" + name_ + "`", "its filling was stopped; nothing is wrong with it"}; }
+
   // The outermost nodes stay outside: the grid reaches two cells beyond the surface.
-  void find_sides() {
+  Status find_sides() {
     side_.assign(grid_.size(), kOutside);
     const Place cubes = grid_.cubes();
     for (std::uint32_t first = 0; first < grid_.size(); first += grid_.layer_size()) {
@@ -55,11 +63,13 @@ class Stuffer {
           const Place p = grid_.place(first + static_cast<std::uint32_t>(i));
           bool rim = false;
           for (int c = 0; c < 3; ++c) rim = rim || p[c] < 4 || p[c] > 2 * cubes[c] - 4;
-          if (!rim && inside_(grid_.position(p))) side_[first + i] = kInside;
+          if (!rim && region_(grid_.position(p))) side_[first + i] = kInside;
         }
       });
       report();
+      if (stop_.stop_requested()) return stopped();
     }
+    return Done{};
   }
 
   void find_cuts() {
@@ -72,7 +82,7 @@ class Stuffer {
     parallel_for(cuts_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Place p = grid_.place(cuts_[i].node);
-        cuts_[i].share = inside_.crossing(grid_.position(p), grid_.position(p + kStep[cuts_[i].step]));
+        cuts_[i].share = region_.crossing(grid_.position(p), grid_.position(p + kStep[cuts_[i].step]));
       }
     });
     report();
@@ -122,7 +132,7 @@ class Stuffer {
   }
 
   // The twelve lattice tetrahedra of each cube: four around the face that it shares with the next along each axis.
-  Status fill() {
+  void fill() {
     output_.assign(grid_.size(), 0xffffffffu);
     const Place cubes = grid_.cubes();
     for (int z = 0; z < cubes.z; ++z, report())
@@ -137,13 +147,11 @@ class Stuffer {
             const Place face = here + along;
             const Place ring[4] = {face - u - v, face + u - v, face + u + v, face - u + v};
             for (std::size_t e = 0; e < 4; ++e) clip({here, here + 2 * along, ring[e], ring[(e + 1) % 4]});
-            if (out_.tets.size() > most_)
-              return Error{"mesh `" + name_ + "`",
-                           fmt::format("a cell of {:.3g} m makes more than {} tetrahedra; choose a larger one, or "
-                                       "allow it with --limits 2",
-                                       grid_.cell(), most_)};
+            if (out_.tets.size() > most_) {
+              out_.beyond = true;
+              return;
+            }
           }
-    return Done{};
   }
 
   // Output nodes, made when first used.
@@ -211,7 +219,7 @@ class Stuffer {
     const Tet tet = tet_volume(p, {0, 1, 2, 3}) > 0.0 ? Tet{0, 1, 2, 3} : Tet{0, 1, 3, 2};
     const TetQuality quality = measure_quality(p, {&tet, 1});
     return quality.smallest_dihedral > kBridgeSmallest && quality.largest_dihedral < kBridgeLargest &&
-           inside_(0.25 * (p[0] + p[1] + p[2] + p[3]));
+           region_(0.25 * (p[0] + p[1] + p[2] + p[3]));
   }
 
   // What of a lattice tetrahedron lies inside.
@@ -263,9 +271,10 @@ class Stuffer {
   }
 
   const LatticeGrid grid_;
-  const Inside& inside_;
+  const FillRegion& region_;
   const std::size_t most_;
   Progress& progress_;
+  const std::stop_token& stop_;
   const std::string name_;
   std::vector<std::int8_t> side_;  // of each lattice node
   std::vector<Cut> cuts_;
@@ -276,8 +285,9 @@ class Stuffer {
 
 }  // namespace
 
-Result<Stuffing> stuff(const Mesh& surface, const Inside& inside, double cell, std::size_t most, Progress& progress) {
-  return Stuffer(surface, inside, cell, most, progress).run();
+Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, Progress& progress,
+                       const std::stop_token& stop) {
+  return Stuffer(surface, region, cell, most, progress, stop).run();
 }
 
 }  // namespace pliant

@@ -1,11 +1,12 @@
 // One isosurface stuffing at one cell size: nodes and tetrahedra, in the order of the lattice.
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "components/tet_mesh.h"
 #include "content/level/progress.h"
-#include "content/tets/lattice_inside.h"
+#include "content/tets/fill_region.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -13,9 +14,11 @@ namespace pliant {
 struct Stuffing {
   std::vector<dvec3> nodes;  // [m]
   std::vector<Tet> tets;     // positive volume
+  bool beyond = false;       // there are more than were allowed: given up
 };
 
-// Empty where no lattice point lies inside. Error: more than `most` tetrahedra.
-Result<Stuffing> stuff(const Mesh& surface, const Inside& inside, double cell, std::size_t most, Progress& progress);
+// Empty where no lattice point lies in the region. Error: whoever waits wants no more of it.
+Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, Progress& progress,
+                       const std::stop_token& stop = {});
 
 }  // namespace pliant

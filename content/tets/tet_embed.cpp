@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "content/tets/surface_rays.h"
 #include "runtime/assert.h"
 #include "runtime/parallel.h"
 
@@ -13,21 +14,6 @@ constexpr std::uint32_t kNoTet = 0xffffffffu;
 // Of tetrahedra about equally near, the one that extrapolates least wins: a flat one next to the vertex would throw it
 // about.
 constexpr double kAboutEqual = 1.5;
-
-// Ericson, "Real-Time Collision Detection" (2005), 5.1.5.
-dvec3 closest_on_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
-  const dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
-               d6 = dot(ac, cp);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
-  if (d3 >= 0.0 && d4 <= d3) return b;
-  if (d6 >= 0.0 && d5 <= d6) return c;
-  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
-  if (va <= 0.0 && d4 >= d3 && d5 >= d6) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  return a + ab * (vb / (va + vb + vc)) + ac * (vc / (va + vb + vc));
-}
 
 // An implicit tree of boxes over tetrahedra that lie along the Hilbert curve.
 class Tree {
@@ -108,6 +94,7 @@ class Embedder {
     ASSERT(found.tet != kNoTet);
     return found;
   }
+  bool holds(dvec3 p) const { return best_near(p, 0.0, nullptr).tet != kNoTet; }
 
  private:
   // Weights by Cramer's rule; the first is what the others leave, so that they sum to 1. False: the element is flat.
@@ -179,6 +166,16 @@ std::vector<Embedding> embed(const Mesh& surface, const std::vector<dvec3>& node
     }
   });
   return collision_mesh;
+}
+
+std::vector<std::uint8_t> are_inside(const std::vector<dvec3>& points, const std::vector<dvec3>& nodes,
+                                     const std::vector<Tet>& tets) {
+  const Embedder embedder(nodes, tets);
+  std::vector<std::uint8_t> inside(points.size());
+  parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) inside[i] = embedder.holds(points[i]);
+  });
+  return inside;
 }
 
 }  // namespace pliant

@@ -77,7 +77,8 @@ bool TetText::skip_past(std::string_view mark) {
   return true;
 }
 
-Error TetText::fault(const std::string& what) const {
+Error TetText::fault(const std::string& fault) const {
+  const std::string what = fault.find("; ") == std::string::npos ? fault + "; save the mesh again" : fault;
   if (binary_) return {fmt::format("{} at byte {}", name_, at_), what};
   const std::string_view before = text().substr(0, taken_);
   return {fmt::format("{}:{}", name_, 1 + std::count(before.begin(), before.end(), '\n')), what};

@@ -10,6 +10,7 @@
 #include <ctime>
 
 #include "content/files/image.h"
+#include "editor/app/files.h"
 #include "editor/tools/painting.h"
 #include "editor/ui/widgets.h"
 #include "runtime/clock.h"
@@ -20,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 44, kBar = 26;                                                      // [point]
+constexpr float kTop = 40, kBar = 26;  // [point]
+constexpr float kTopPad = 9;           // [point] above the buttons of the top bar
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
@@ -53,17 +55,28 @@ App::App(const EditOptions& options, Window& window) : options_(options), window
   std::string note;
   settings = Settings::load(options.config, note);
   host_.emplace(window_);
-  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
-                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
+  set_look();
   editor.request_close = [this] { close(); };
   editor.jobs.wake = [] { glfwPostEmptyEvent(); };
+  files_ = std::make_unique<Files>(*this, options.input.empty());
   actions_ = make_actions(*this);
   tools_ = make_tools(*this);
   panels_ = make_panels(*this);
+  play_.show = [this](auto make) {
+    rendered_.forget();
+    stage_->show(std::move(make));
+  };
+  editor.on_change.push_back([this](const State& before, const State& after) { play_.changed(before, after); });
   if (!note.empty()) editor.say(note, Severity::kWarning);
 }
 
+void App::set_look() {
+  host_->set_theme(settings.light ? ui::Theme::kLight : ui::Theme::kDark,
+                   settings.scale > 0.0 ? static_cast<float>(settings.scale) : window_.scale());
+}
+
 App::~App() {
+  play_.stop();  // devices are let go before anything else
   stage_.reset();
   host_.reset();
 }
@@ -77,11 +90,14 @@ Status App::run() {
     if (!script) return script.error();
     script_ = *std::move(script);
   }
-  if (!options_.file.empty()) {
+  if (!options_.file.empty() && find_recovery(options_.file, state_folder())) {
+    files_->open(options_.file, options_.unit);  // asks which
+  } else if (!options_.file.empty()) {
     auto document = Document::open(options_.file, options_.unit);
     if (!document) return document.error();
     editor.take(*std::move(document));
     settings.used(options_.file);
+    (void)settings.save();  // the next start knows it, whatever becomes of this one
   }
   window_.show("Pliant");
   std::uint64_t before = now_ns();
@@ -91,12 +107,15 @@ Status App::run() {
     const bool busy = script_ || !settled() || editor.playing || dragging_view_;
     events.clear();
     window_.poll(events, busy ? kBusyWait : kIdleWait);
-    if (Window::lost()) return Window::loss();
+    if (Window::lost()) {
+      files_->save_what_can_be();
+      return Window::loss();
+    }
     const std::uint64_t now = now_ns();
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
       ui::Script::Surroundings at;
-      at.settled = settled();
+      at.under_way = under_way();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
@@ -110,16 +129,28 @@ Status App::run() {
       }
       if (script_->done() && settled()) script_.reset();
     }
+    if (std::exchange(look_changed_, false)) {
+      set_look();
+      dirty_picture_ = true;
+    }
     frame(events, static_cast<double>(now - before) * 1e-9);
     before = now;
     window_.present();
   }
+  files_->close_in_order();
   return settings.save();
 }
 
-bool App::settled() const {
-  return editor.jobs.idle() && !editor.painting->working() && !stage_->busy() && picture_.order == order_ &&
-         !editor.camera.moving() && !dirty_picture_;
+std::string App::under_way() const {
+  if (!editor.jobs.idle()) {
+    const std::vector<std::string> jobs = editor.jobs.under_way();
+    return jobs.empty() ? "a job" : jobs.front();
+  }
+  if (editor.painting->working()) return "a stroke";
+  if (editor.camera.moving()) return "the camera's way";
+  if (play_.on()) return play_.ready() ? "" : "opening the level to play";  // its pictures go on for ever
+  if (rendered_.waits()) return "the rendered picture";
+  return stage_->busy() || picture_.order != order_ || dirty_picture_ ? "a picture" : "";
 }
 
 ViewTool* App::tool() {
@@ -141,7 +172,7 @@ Panel* App::panel(const std::string& name) {
 }
 
 void App::show_panel(const std::string& name) {
-  wanted_tab_ = name;
+  wanted_tabs_.insert(name);
   open_[name] = true;
 }
 
@@ -159,7 +190,7 @@ void App::do_action(const std::string& id) {
 }
 
 void App::leave_document(std::function<void()> then) {
-  if (!editor.document.dirty()) {
+  if (!editor.document.worth_keeping()) {
     then();
     return;
   }
@@ -167,20 +198,7 @@ void App::leave_document(std::function<void()> then) {
 }
 
 void App::open(const fs::path& file) {
-  leave_document([this, file] {
-    editor.jobs.start("open", "Opening " + file.filename().string(), [file](const Jobs::Stop&) {
-      auto document = std::make_shared<Result<Document>>(Document::open(file));
-      return [document, file](Editor& to) {
-        if (!*document) {
-          to.say(document->error().message(), Severity::kError);
-          return;
-        }
-        to.take(std::move(**document));
-        to.say("Opened " + file.filename().string());
-      };
-    });
-    settings.used(file);
-  });
+  files_->open(file);
 }
 
 void App::new_document() {
@@ -188,17 +206,7 @@ void App::new_document() {
 }
 
 bool App::save() {
-  if (editor.document.file().empty()) {
-    do_action("file.save_as");
-    return false;
-  }
-  if (Status s = editor.document.save(); !s) {
-    editor.say(s.error().message(), Severity::kError);
-    return false;
-  }
-  settings.used(editor.document.file());
-  editor.say("Saved " + editor.document.file().filename().string());
-  return true;
+  return files_->save();
 }
 
 void App::close() {
@@ -214,8 +222,14 @@ void App::keys(std::span<const InputEvent> events) {
     if (event.kind == InputKind::kClose) close();
     if (event.kind == InputKind::kDrop) open(event.file);
     if (event.kind != InputKind::kKey) continue;
-    const bool typing = ImGui::GetIO().WantTextInput;
+    ViewTool* const t = tool();
+    const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    if (!rebinding.empty()) {
+      if (!pressed.empty()) rebound = pressed;
+      continue;
+    }
+    if (!questions_.empty() || after_leaving_) continue;  // they come first
     for (const Action& action : actions_) {
       if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
       if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") continue;
@@ -232,6 +246,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   ui::begin_widgets();
   editor.jobs.deliver(editor);
   editor.painting->update();
+  files_->update();
+  findings_.update(editor);
   keys(events);
   if (editor.document.revision() != shown_revision_) {
     shown_revision_ = editor.document.revision();
@@ -241,7 +257,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     shown_view_ = editor.view;
     dirty_picture_ = true;
   }
-  if (!ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !editor.painting->stroking())
+  if (ViewTool* t = tool();
+      !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) && !editor.painting->stroking())
     editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
@@ -259,8 +276,10 @@ void App::frame(std::span<const InputEvent> events, double dt) {
               right = size.x - ui::px(static_cast<float>(settings.right)), top = ui::px(kTop),
               bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
 
+  play_.update();
+  rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
-  editor.hovered = kNoNode;  // until a row of the tree or the viewport says another
+  editor.hovered = kNoNode;  // the tree and the viewport say what it is
   draw_top();
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
   draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
@@ -275,9 +294,11 @@ void App::frame(std::span<const InputEvent> events, double dt) {
       const ui::Scope scope(each->name());
       each->draw(editor);
     }
+  draw_banners();
   draw_toasts();
   ask_to_leave();
-  wanted_tab_.clear();
+  draw_question();
+  wanted_tabs_.clear();
   host_->end();
   order_picture();
   extra_lines.clear();
@@ -305,7 +326,7 @@ void App::say_figures(const std::string& name) {
 
 void App::draw_top() {
   const ui::Palette& p = ui::palette();
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(7)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(kTopPad)));
   begin_fixed("top", {0, 0}, {ImGui::GetIO().DisplaySize.x, ui::px(kTop)}, ImGuiWindowFlags_NoScrollbar);
   ImGui::PopStyleVar();
   {
@@ -343,13 +364,15 @@ void App::draw_top() {
       ImGui::SameLine(0, ui::px(2));
     }
   }
+  ImGui::SameLine(0, ui::px(ui::kWide));
+  draw_play_buttons();
   // The document, in the middle of what is left; how it is shown at the right.
   const std::string title = editor.document.title() + (editor.document.dirty() ? "  \u2022" : "");
   const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
   {
     const ui::Scope scope("View mode");
     const bool rendered = editor.view.shading == Shading::kRendered;
-    const float buttons = ui::px(160);
+    const float buttons = ImGui::CalcTextSize("SolidRendered").x + 4 * ImGui::GetStyle().FramePadding.x + ui::px(2);
     ImGui::SameLine(all - buttons - ui::px(ui::kPad));
     if (ui::choice_button("Solid", !rendered, "The level as it is edited, with painted values as colour")) {
       editor.view.shading = Shading::kSolid;
@@ -361,7 +384,7 @@ void App::draw_top() {
       dirty_picture_ = true;
     }
     const float room = all - buttons - ui::px(3 * ui::kWide) - wide;
-    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(7)});
+    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(kTopPad)});
     if (room > ui::px(620)) {
       ImGui::AlignTextToFramePadding();
       ImGui::PushStyleColor(ImGuiCol_Text, editor.document.dirty() ? p.text : p.dim);
@@ -391,8 +414,8 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       if (each->place() != place || !each->shown(editor)) continue;
       const std::string badge = each->badge(editor);
       const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
-      const bool open =
-          ImGui::BeginTabItem(tab.c_str(), nullptr, wanted_tab_ == each->name() ? ImGuiTabItemFlags_SetSelected : 0);
+      const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
+                                            wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
       ImGui::BeginChild(each->name());
@@ -458,8 +481,17 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.shift = io.KeyShift;
   in.control = io.KeyCtrl;
   in.alt = io.KeyAlt;
-  in.view = editor.camera.viewpoint();
-  in.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
+  // The hand points at what it sees, though the camera may be ahead of the picture.
+  in.view = picture_.number > 0 ? picture_.view : editor.camera.viewpoint();
+  in.orthographic = picture_.number > 0 ? picture_.orthographic : orthographic();
+  if (!io.WantTextInput) {
+    for (const ImWchar c : io.InputQueueCharacters)
+      if (c >= 32 && c < 127) in.typed += static_cast<char>(c);
+    const auto key = [](ImGuiKey_ k) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(k)); };
+    in.enter = key(ImGuiKey_Enter) || key(ImGuiKey_KeyPadEnter);
+    in.escape = key(ImGuiKey_Escape);
+    in.erase = key(ImGuiKey_Backspace);
+  }
   in.under = picture_.picked.node;
   in.under_at = picture_.picked.point;
   in.dt = dt;
@@ -473,7 +505,9 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   // The tool has the first word, then the camera, then selecting.
   const bool start = editor.state().nodes.empty() && editor.document.file().empty();
   bool taken = false;
-  if (!start && !in.alt)
+  const bool playing = play_.on();
+  if (!start && !in.alt && playing) taken = touch(in);
+  if (!start && !in.alt && !taken)
     if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
   const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
                                                                     (in.alt || moved_since_press_) && !in.shift));
@@ -491,10 +525,13 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_ = ++question_;
     select_adds_ = in.shift || in.control;
     dirty_picture_ = true;
-  } else if (in.over && (in.dx != 0 || in.dy != 0) && !dragging_view_ && !stage_->busy()) {
-    asked_ = dvec2(in.x, in.y);
-    ++question_;
-    dirty_picture_ = true;
+  } else if (!playing && in.over && (wants_question_ || in.dx != 0 || in.dy != 0)) {
+    wants_question_ = dragging_view_ || taken || stage_->busy();
+    if (!wants_question_) {
+      asked_ = dvec2(in.x, in.y);
+      ++question_;
+      dirty_picture_ = true;
+    }
   }
   if (in.released) pressed_in_view_ = false;
   if (selects_ && picture_.question >= *selects_) {
@@ -502,22 +539,22 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     selects_.reset();
     dirty_picture_ = true;
   }
-  if (in.over && !dragging_view_) editor.hovered = picture_.picked.node;
-  if (hovered_ != editor.hovered) {
-    hovered_ = editor.hovered;
-    dirty_picture_ = true;
-  }
+  if (in.over) editor.hovered = !dragging_view_ && !taken ? picture_.picked.node : kNoNode;
   if (taken && (in.dx != 0 || in.dy != 0 || in.pressed || in.released)) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
-  for (const auto& each : panels_) (void)each;
+  if (!start) ViewBar::draw_over(editor, in, list);
+  draw_play_over(list, low, high);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
   list.PopClipRect();
   ImGui::End();
-  if (start) draw_start(low, high);
+  if (start)
+    draw_start(low, high);
+  else
+    view_bar_.draw(editor, tool(), low, high);
 }
 
 void App::draw_start(ImVec2 low, ImVec2 high) {
@@ -530,32 +567,49 @@ void App::draw_start(ImVec2 low, ImVec2 high) {
 }
 
 void App::order_picture() {
-  if (editor.playing) dirty_picture_ = true;
-  if (!dirty_picture_ && order_ > 0) return;
-  dirty_picture_ = false;
   const ui::Palette& p = ui::palette();
+  SolidOrder solid;
+  solid.view = editor.camera.viewpoint();
+  solid.orthographic = orthographic();
+  solid.settings = editor.view;
+  solid.selected = editor.selected;
+  solid.hovered = editor.hovered;
+  solid.lines = extra_lines;
+  if (ViewTool* t = tool()) t->lines(editor, solid.lines);
+  if (editor.view.creases) {
+    creases_.update(editor);
+    solid.creases = creases_.known();
+  }
+  solid.above = as_vec(p.raised);
+  solid.below = as_vec(p.window);
+  solid.grid = as_vec(p.text, 0.16f);
+  solid.selected_color = as_vec(p.accent);
+  solid.hovered_color = as_vec(p.text, 0.55f);
+  for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
+  solid.sign = as_vec(p.dim, 0.9f);
+  const bool another =
+      !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered || ordered_size_ != viewport_size_now();
+  if (!dirty_picture_ && !another && order_ > 0) return;
+  dirty_picture_ = false;
+  ordered_ = solid;
+  lines_ = solid.lines;
+  ordered_size_ = viewport_size_now();
   StageOrder order;
-  order.width = std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x));
-  order.height = std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y));
+  order.width = ordered_size_.first;
+  order.height = ordered_size_.second;
+  order.solid = std::move(solid);
   order.solid.state = editor.state();
-  order.solid.view = editor.camera.viewpoint();
-  order.solid.orthographic = editor.view.orthographic ? editor.camera.orthographic_height() : 0.0;
-  order.solid.settings = editor.view;
-  order.solid.selected = editor.selected;
-  order.solid.hovered = editor.hovered;
-  order.solid.lines = extra_lines;
-  if (ViewTool* t = tool()) t->lines(editor, order.solid.lines);
-  order.solid.above = as_vec(p.raised);
-  order.solid.below = as_vec(p.window);
-  order.solid.grid = as_vec(p.text, 0.16f);
-  order.solid.selected_color = as_vec(p.accent);
-  order.solid.hovered_color = as_vec(p.text, 0.55f);
   if (asked_) {
     order.question = asked_;
     order.question_number = question_;
     asked_.reset();
   }
   order_ = stage_->order(std::move(order));
+}
+
+std::pair<int, int> App::viewport_size_now() const {
+  return {std::max(1, static_cast<int>(viewport_high_.x - viewport_low_.x)),
+          std::max(1, static_cast<int>(viewport_high_.y - viewport_low_.y))};
 }
 
 void App::draw_bottom_bar() {
@@ -630,9 +684,9 @@ void App::ask_to_leave() {
   };
   if (ui::strong_button("Save", nullptr, true, 110)) {
     if (editor.document.file().empty()) {
-      after_leaving_ = nullptr;
+      auto then = std::exchange(after_leaving_, nullptr);
       ImGui::CloseCurrentPopup();
-      do_action("file.save_as");
+      files_->save_as(std::move(then));
     } else if (save()) {
       go();
     }

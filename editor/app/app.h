@@ -1,19 +1,29 @@
 // The program `pliant edit`: a window, its panels around the viewport, and a turn of its loop.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
+#include "editor/app/findings.h"
 #include "editor/app/panel.h"
+#include "editor/app/question.h"
 #include "editor/app/settings.h"
 #include "editor/edit.h"
+#include "editor/play/play.h"
+#include "editor/play/rendered.h"
 #include "editor/ui/host.h"
 #include "editor/ui/script.h"
+#include "editor/viewport/crease_lines.h"
 #include "editor/viewport/stage.h"
+#include "editor/viewport/view_bar.h"
 
 namespace pliant {
+
+class Files;
 
 class App {
  public:
@@ -24,6 +34,9 @@ class App {
   Editor editor;
   Settings settings;
   Stage& stage() { return *stage_; }
+  Play& play() { return play_; }
+  void toggle_play();              // play, pause, go on
+  void step_play(double seconds);  // 0: one tick
   Window& window() { return window_; }
   const std::vector<Action>& actions() const { return actions_; }
   const std::vector<std::unique_ptr<ViewTool>>& tools() const { return tools_; }
@@ -35,6 +48,13 @@ class App {
   void close_panel(const std::string& name) { open_[name] = false; }
   std::string keys_of(const Action& action) const;  // as bound now
   void do_action(const std::string& id);
+
+  Files& files() { return *files_; }
+  const std::vector<std::filesystem::path>& shipped() const { return options_.levels; }
+  void ask(Question question);                   // questions are asked one after the other
+  void look_changed() { look_changed_ = true; }  // of the settings; holds from the next frame on
+  // The keys page waits for new keys of this action, and gets them as text in `rebound`.
+  std::string rebinding, rebound;
 
   // Opens a file, asking first where something is not saved.
   void open(const std::filesystem::path& file);
@@ -57,11 +77,20 @@ class App {
   void draw_side(Panel::Place place, ImVec2 low, ImVec2 high);
   void draw_viewport(ImVec2 low, ImVec2 high, double dt);
   void draw_start(ImVec2 low, ImVec2 high);
+  void draw_play_buttons();
+  void draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high);
+  bool touch(const ViewportInput& in);  // the mouse in a level that is played; true: it is taken
+  bool as_played() const;               // the picture is the renderer's
+  double orthographic() const;          // [m]; the renderer has perspective alone
   void draw_toasts();
   void splitter(const char* name, double& place, bool vertical, ImVec2 low, ImVec2 high, double sign);
   void order_picture();
   void ask_to_leave();
-  bool settled() const;
+  void draw_question();
+  void draw_banners();
+  void set_look();
+  bool settled() const { return under_way().empty(); }
+  std::string under_way() const;  // what keeps the editor from being at rest; "": nothing
   void say_figures(const std::string& name);
   void take_screenshot(const std::filesystem::path& file);
 
@@ -69,27 +98,42 @@ class App {
   Window& window_;
   std::optional<ui::Host> host_;
   std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Files> files_;
+  FindingsWatch findings_;
   std::vector<std::unique_ptr<Panel>> panels_;
   std::vector<std::unique_ptr<ViewTool>> tools_;
   std::vector<Action> actions_;
   std::optional<ui::Script> script_;
-  std::map<std::string, bool> open_;  // dialogs
-  std::string wanted_tab_;            // comes to the front in the next frame
+  std::map<std::string, bool> open_;   // dialogs
+  std::set<std::string> wanted_tabs_;  // come to the front in the next frame
   StagePicture picture_;
   std::uint64_t order_ = 0, question_ = 0;
   std::optional<dvec2> asked_;
+  ViewBar view_bar_;
+  CreaseLines creases_;
+  std::pair<int, int> viewport_size_now() const;  // [pixel] of a picture
+  std::pair<int, int> ordered_size_{0, 0};
+  SolidOrder ordered_;           // of the last picture that was ordered; its state is not kept
+  bool wants_question_ = false;  // the mouse has moved since the last question
   ImVec2 viewport_low_{0, 0}, viewport_high_{1, 1};
   bool dragging_view_ = false, pressed_in_view_ = false, moved_since_press_ = false;
   ImVec2 pressed_at_{0, 0};
+  Play play_{editor};
+  Rendered rendered_;
+  enum class Hand : std::uint8_t { kNone, kAsked, kHolds, kView };
+  Hand hand_ = Hand::kNone;               // what a press in a level that is played has become
+  std::uint64_t hand_asked_ = 0;          // the question whose answer decides that
+  std::vector<ViewLine> lines_;           // of the picture ordered last
   std::optional<std::uint64_t> selects_;  // the question whose answer is selected
   bool select_adds_ = false;
   bool closing_ = false, dirty_picture_ = true;
   std::function<void()> after_leaving_;  // what waits for an answer about unsaved changes
+  std::deque<Question> questions_;
+  bool look_changed_ = false;
   std::filesystem::path shot_;
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
   ViewSettings shown_view_;
-  NodeId hovered_ = kNoNode;  // as the picture shows it
-  double frame_ms_ = 0.0;     // of the interface
+  double frame_ms_ = 0.0;  // of the interface
   double most_computed_ms_ = 0.0;
   std::vector<double> frames_ms_;  // while a script runs
 };

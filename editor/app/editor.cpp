@@ -1,9 +1,10 @@
 #include "editor/app/editor.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "editor/tools/painting.h"
-#include "editor/viewport/solid_view.h"
+#include "editor/viewport/frames.h"
 
 namespace pliant {
 
@@ -26,6 +27,7 @@ bool Editor::apply(const std::string& what, Result<State> next, const std::strin
 void Editor::take(Document next) {
   const State before = state();
   document = std::move(next);
+  ++documents;
   selected.clear();
   hovered = kNoNode;
   surfaces_.clear();
@@ -36,6 +38,28 @@ void Editor::take(Document next) {
   for (const std::string& note : document.notes()) say(note);
 }
 
+void Editor::revert_to(Level level, const FileStamp& stamp, const std::string& what) {
+  const State before = state();
+  std::vector<std::string> names;
+  for (const NodeId id : selected)
+    if (const DocumentNode* node = before.find(id)) names.push_back(node->node.name);
+  document.revert_to(std::move(level), stamp, what);
+  selected.clear();
+  for (const std::string& name : names)
+    if (const DocumentNode* node = state().find(name)) selected.push_back(node->id);
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+  for (const std::string& note : document.notes()) say(note);
+}
+
+void Editor::go_to_step(std::size_t step) {
+  if (step >= document.step_count() || step == document.step()) return;
+  const State before = state();
+  document.go_to_step(step);
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
+}
+
 void Editor::undo() {
   if (!document.can_undo()) return;
   const State before = state();
@@ -44,6 +68,13 @@ void Editor::undo() {
   for (const auto& each : on_change) each(before, state());
   forget_gone();
   say("Undone: " + what);
+}
+
+void Editor::drop_gesture(const std::string& gesture) {
+  const State before = state();
+  if (!document.drop_gesture(gesture)) return;
+  for (const auto& each : on_change) each(before, state());
+  forget_gone();
 }
 
 void Editor::redo() {
@@ -71,9 +102,12 @@ void Editor::select(NodeId id, bool add) {
 }
 
 void Editor::forget_gone() {
-  std::erase_if(selected, [this](NodeId id) { return !state().find(id); });
-  if (!state().find(hovered)) hovered = kNoNode;
-  std::erase_if(view.isolated, [this](NodeId id) { return !state().find(id); });
+  std::unordered_set<NodeId> there;
+  for (const auto& each : state().nodes) there.insert(each->id);
+  const auto gone = [&](NodeId id) { return !there.contains(id); };
+  std::erase_if(selected, gone);
+  if (gone(hovered)) hovered = kNoNode;
+  std::erase_if(view.isolated, gone);
 }
 
 void Editor::say(const std::string& text, Severity severity) {

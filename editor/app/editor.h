@@ -51,10 +51,15 @@ class Editor {
   const State& state() const { return document.state(); }
   // The one way of every panel and tool to change the level: says what went wrong. True: it is as was asked.
   bool apply(const std::string& what, Result<State> next, const std::string& gesture = {});
-  // Replaces the document; asks nothing. `frame`: the camera goes to where all is seen.
+  // Replaces the document; asks nothing.
   void take(Document next);
+  std::uint64_t documents = 0;                                                              // taken so far
+  void revert_to(Level level, const FileStamp& stamp, const std::string& what = "Revert");  // as Document; keeps what
+                                                                                            // is selected, by name
+  void go_to_step(std::size_t step);                                                        // of the document's history
   void undo();
   void redo();
+  void drop_gesture(const std::string& gesture);  // what is being dragged goes back to where it was
   // Called after every change of what is shown, undo and redo included.
   std::vector<std::function<void(const State& before, const State& after)>> on_change;
 
@@ -76,6 +81,7 @@ class Editor {
   // --- Findings of the document as it stands
   std::vector<EditorFinding> findings;
   std::uint64_t found_at = ~std::uint64_t{0};  // the revision that they are of
+  std::uint64_t files_read = 0;  // grows when a file that the level names (a script, a panorama) is another one on disk
 
   // --- View
   ViewSettings view;
@@ -94,6 +100,11 @@ class Editor {
   void copy();
   void cut();
   void paste();
+
+  // --- The path that is edited (app/path_editing.h)
+  std::size_t path_key = 0;   // that is active
+  double path_depth = 0.005;  // [m] of the next key
+  double path_speed = 0.02;   // [m/s] on the way to it
 
   Jobs jobs;
   std::string tool = "Select";          // the active one of the viewport

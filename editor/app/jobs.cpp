@@ -8,7 +8,7 @@
 namespace pliant {
 
 Jobs::~Jobs() {
-  for (const auto& job : jobs_) job->stop = true;
+  for (const auto& job : jobs_) job->cancel();
   for (const auto& job : jobs_)
     if (job->thread.joinable()) job->thread.join();
 }
@@ -35,7 +35,7 @@ void Jobs::start(const std::string& key, const std::string& what, Work work) {
 
 void Jobs::cancel(const std::string& key) {
   for (const auto& job : jobs_)
-    if (job->key == key) job->stop = true;
+    if (job->key == key) job->cancel();
 }
 
 bool Jobs::running(const std::string& key) const {
@@ -43,7 +43,8 @@ bool Jobs::running(const std::string& key) const {
 }
 
 bool Jobs::idle() const {
-  return std::none_of(jobs_.begin(), jobs_.end(), [](const auto& job) { return !job->stop.load(); });
+  return std::none_of(jobs_.begin(), jobs_.end(),
+                      [](const auto& job) { return !job->stop.load() && !job->what.empty(); });
 }
 
 std::vector<std::string> Jobs::under_way() const {

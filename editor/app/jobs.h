@@ -4,7 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,13 +15,18 @@ class Editor;
 
 class Jobs {
  public:
-  using Stop = std::atomic<bool>;
+  // Set once the result is not wanted any more; the same as a std::stop_token of `source`.
+  struct Stop : std::atomic<bool> {
+    using std::atomic<bool>::atomic;
+    std::stop_source source;
+  };
   // Called on a thread; must end soon after `stop` is set. What it returns is called on the interface's thread unless
   // the job was cancelled; it may be empty.
   using Work = std::function<std::function<void(Editor&)>(const Stop& stop)>;
 
   ~Jobs();  // stops all and waits
-  // `key`: a job of the same key that is under way is cancelled. `what` is shown while it lasts.
+  // `key`: a job of the same key that is under way is cancelled. `what` is shown while it lasts; empty: nothing is
+  // shown, and nobody waits for it.
   void start(const std::string& key, const std::string& what, Work work);
   void cancel(const std::string& key);
   bool running(const std::string& key) const;
@@ -35,6 +40,10 @@ class Jobs {
   struct Job {
     std::string key, what;
     Stop stop{false};
+    void cancel() {
+      stop.store(true);
+      stop.source.request_stop();
+    }
     std::atomic<bool> done{false};
     std::function<void(Editor&)> result;
     std::thread thread;

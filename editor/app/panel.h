@@ -18,6 +18,7 @@ class Panel {
     kRight,   // a tab at the right
     kBottom,  // a tab below the viewport
     kOver,    // draws its own window, when it is asked for (a dialog)
+    kBanner,  // a line over the upper edge of the viewport, while it is shown()
   };
   virtual ~Panel() = default;
   virtual const char* name() const = 0;  // on its tab, and first in its widgets' addresses
@@ -38,10 +39,12 @@ struct ViewportInput {
   bool shift = false, control = false, alt = false;
   double pressure = 1.0;  // [1] of a tablet's pen; 1 of a mouse
   Viewpoint view;
-  double orthographic = 0.0;  // [m] height; 0: perspective
-  NodeId under = kNoNode;     // what the picture shows under the mouse, as known last
-  dvec3 under_at{0};          // [m] world
-  double dt = 0.0;            // [s]
+  double orthographic = 0.0;                          // [m] height; 0: perspective
+  NodeId under = kNoNode;                             // what the picture shows under the mouse, as known last
+  dvec3 under_at{0};                                  // [m] world
+  double dt = 0.0;                                    // [s]
+  std::string typed;                                  // what was typed while no field had the keys
+  bool enter = false, escape = false, erase = false;  // keys of the same
   ViewRay ray() const { return view_ray(view, orthographic, x, y, width, height); }
 };
 
@@ -59,6 +62,11 @@ class ViewTool {
   // Lines in the world, for the next picture.
   virtual void lines(const Editor&, std::vector<struct ViewLine>&) const {}
   virtual void leave(Editor&) {}  // another tool is taken
+  // What can be set about it, as widgets in a row, in a strip at the viewport's upper left.
+  virtual bool has_options() const { return false; }
+  virtual void options(Editor&) {}
+  // What is typed is its own now: no action's keys count, and its gesture goes on without the mouse.
+  virtual bool wants_keys() const { return false; }
 };
 
 // Something that can be done, by a menu, a key or a button.

@@ -1,7 +1,9 @@
 // Every panel, tool and action of the editor. A new one is a line here.
 #include <numbers>
 
+#include "editor/app/add.h"
 #include "editor/app/app.h"
+#include "editor/app/files.h"
 #include "editor/panels/panels.h"
 #include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
@@ -12,15 +14,29 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   std::vector<std::unique_ptr<Panel>> panels;
   panels.push_back(make_tree_panel());
   panels.push_back(make_inspector_panel(app));
+  panels.push_back(make_soft_panel(app));
+  panels.push_back(make_path_panel(app));
   panels.push_back(make_paint_panel(app));
-  panels.push_back(make_console_panel());
+  panels.push_back(make_history_panel());
+  panels.push_back(make_findings_panel());
+  panels.push_back(make_console_panel(app));
+  panels.push_back(make_unit_banner());
+  panels.push_back(make_file_browser(app));
+  panels.push_back(make_keys_page(app));
+  panels.push_back(make_settings_panel(app));
   panels.push_back(make_start_page(app));
+  panels.push_back(make_play_panel(app));
+  panels.push_back(make_plots_panel(app));
   return panels;
 }
 
-std::vector<std::unique_ptr<ViewTool>> make_tools(App&) {
+std::vector<std::unique_ptr<ViewTool>> make_tools(App& app) {
   std::vector<std::unique_ptr<ViewTool>> tools;
   tools.push_back(make_select_tool());
+  tools.push_back(make_move_tool(app.settings));
+  tools.push_back(make_turn_tool(app.settings));
+  tools.push_back(make_scale_tool(app.settings));
+  tools.push_back(make_path_tool());
   tools.push_back(make_paint_tool());
   return tools;
 }
@@ -38,8 +54,16 @@ std::vector<Action> make_actions(App& app) {
                    [](const Editor&) { return true; }, [of](const Editor& e) { return e.view.*of; }});
   };
   add({"file.new", "File", "New", "Ctrl+N", [&app](Editor&) { app.new_document(); }});
+  add({"file.open", "File", "Open\u2026", "Ctrl+O", [&app](Editor&) { app.files().ask_open(); }});
   add({"file.save", "File", "Save", "Ctrl+S", [&app](Editor&) { app.save(); }});
   all.back().while_typing = true;
+  all.back().separator = true;
+  add({"file.save_as", "File", "Save as\u2026", "Ctrl+Shift+S", [&app](Editor&) { app.files().save_as(); }});
+  add({"file.save_copy", "File", "Save a copy\u2026", "", [&app](Editor&) { app.files().save_copy(); }});
+  add({"file.revert", "File", "Revert", "", [&app](Editor&) { app.files().revert(); },
+       [](const Editor& e) { return e.document.dirty() && !e.document.file().empty(); }});
+  add({"file.settings", "File", "Settings\u2026", "Ctrl+,", [&app](Editor&) { app.show_panel("Settings"); }});
+  all.back().separator = true;
   add({"file.quit", "File", "Quit", "Ctrl+Q", [&app](Editor&) { app.close(); }});
   all.back().separator = true;
 
@@ -66,12 +90,24 @@ std::vector<Action> make_actions(App& app) {
        }});
   all.back().separator = true;
 
+  const auto take = [&](const char* id, const char* label, const char* keys, const char* tool) {
+    add({id, "Edit", label, keys, [&app, tool](Editor&) { app.take_tool(tool); }, [](const Editor&) { return true; },
+         [tool](const Editor& e) { return e.tool == tool; }});
+  };
+  take("tool.select", "Select with the mouse", "Q", "Select");
+  all.back().separator = true;
+  take("tool.move", "Move", "M", "Move");
+  take("tool.turn", "Turn", "T", "Turn");
+  take("tool.scale", "Scale", "S", "Scale");
+
   add({"view.frame", "View", "Frame selected", "F", [](Editor& e) { e.frame_selected(); }});
   add({"view.home", "View", "Frame all", "Home", [](Editor& e) { e.camera.frame(e.scene_box()); }});
   add({"view.front", "View", "From the front", "1", look(0, 0)});
   all.back().separator = true;
   add({"view.right", "View", "From the right", "3", look(kRight, 0)});
+  add({"view.left", "View", "From the left", "Ctrl+3", look(-kRight, 0)});
   add({"view.top", "View", "From above", "7", look(0, kRight)});
+  add({"view.bottom", "View", "From below", "Ctrl+7", look(0, -kRight)});
   add({"view.back", "View", "From behind", "9", look(2 * kRight, 0)});
   toggle("view.orthographic", "Orthographic", "5", &ViewSettings::orthographic);
   toggle("view.grid", "Grid", "G", &ViewSettings::grid);
@@ -109,6 +145,26 @@ std::vector<Action> make_actions(App& app) {
   all.back().separator = true;
   add({"paint.fill", "Paint", "Fill all", "", [](Editor& e) { e.painting->fill_all(); }, meshed});
   add({"paint.clear", "Paint", "Clear", "", [](Editor& e) { e.painting->clear(); }, meshed});
+  const auto plays = [&app](const Editor&) { return app.play().on(); };
+  const auto stands = [&app](const Editor&) { return app.play().may_step(); };
+  add({"play.toggle", "Play", "Play or pause", "Space", [&app](Editor&) { app.toggle_play(); },
+       [](const Editor& e) { return !e.state().nodes.empty(); }});
+  add({"play.stop", "Play", "Stop", "Shift+Space", [&app](Editor&) { app.play().stop(); }, plays});
+  add({"play.restart", "Play", "Restart", "Ctrl+R", [&app](Editor&) { app.play().restart(); }, plays});
+  add({"play.step", "Play", "Step 1/60 s", ".", [&app](Editor&) { app.step_play(1.0 / 60.0); }, stands});
+  all.back().separator = true;
+  add({"play.tick", "Play", "Step a tick", "Shift+.", [&app](Editor&) { app.step_play(0.0); }, stands});
+  toggle("play.forces", "Show forces", "", &ViewSettings::forces);
+  all.back().group = "Play";
+  all.back().separator = true;
+  toggle("play.contacts", "Show contacts", "", &ViewSettings::contacts);
+  all.back().group = "Play";
+  add({"add.empty", "Add", "Empty node", "", [](Editor& e) { add_empty(e); }});
+  add({"add.probe", "Add", "Probe with a device", "", [](Editor& e) { add_probe(e); }});
+  add({"add.light", "Add", "Light", "", [](Editor& e) { add_light(e); }});
+  add({"add.camera", "Add", "Camera, from here", "", [](Editor& e) { add_camera(e); }});
+  add({"help.keys", "Help", "Keys\u2026", "F1", [&app](Editor&) { app.show_panel("Keys"); }});
+  all.back().while_typing = true;
   return all;
 }
 

@@ -56,6 +56,7 @@ Settings Settings::load(const fs::path& folder, std::string& note) {
   if (json.contains("snap") && json["snap"].is_boolean()) s.snap = json["snap"];
   if (json.contains("local_axes") && json["local_axes"].is_boolean()) s.local_axes = json["local_axes"];
   s.scale = between(json, "scale", s.scale, 0.0, 4.0);
+  s.autosave = between(json, "autosave", s.autosave, 0.1, 3600.0);
   s.left = between(json, "left", s.left, 120, 2000);
   s.right = between(json, "right", s.right, 160, 2000);
   s.bottom = between(json, "bottom", s.bottom, 60, 2000);
@@ -73,11 +74,20 @@ Settings Settings::load(const fs::path& folder, std::string& note) {
 Status Settings::save() const {
   std::error_code failed;
   fs::create_directories(file_.parent_path(), failed);
-  const Json json{{"light", light},           {"scale", scale},         {"left", left},
-                  {"right", right},           {"bottom", bottom},       {"recent", recent},
-                  {"keys", keys},             {"presets", presets},     {"snap", snap},
-                  {"snap_move", snap_move},   {"snap_turn", snap_turn}, {"snap_scale", snap_scale},
-                  {"local_axes", local_axes}};
+  const Json json{{"light", light},
+                  {"scale", scale},
+                  {"left", left},
+                  {"right", right},
+                  {"bottom", bottom},
+                  {"recent", recent},
+                  {"keys", keys},
+                  {"presets", presets},
+                  {"snap", snap},
+                  {"snap_move", snap_move},
+                  {"snap_turn", snap_turn},
+                  {"snap_scale", snap_scale},
+                  {"local_axes", local_axes},
+                  {"autosave", autosave}};
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return write_file(file_, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }

@@ -15,6 +15,7 @@ Document::Document(State state, NodeId next) : next_id_(next) {
 }
 
 Result<Document> Document::open(const fs::path& file, double unit) {
+  const FileStamp stamp = stamp_of(file);  // what is written while it is read is noticed later
   Result<Level> level = load_level(file);
   if (!level) return level.error();
   const bool is_level = level->source && level->has_pliant();
@@ -25,21 +26,23 @@ Result<Document> Document::open(const fs::path& file, double unit) {
   Document document(std::move(state), next);
   document.notes_ = std::move(notes);
   document.folder_ = file.parent_path();
+  document.read_scripts(document.steps_[0].state);
   if (is_level) {
     document.file_ = file;
-    document.remember_file();
+    document.stamp_ = stamp;
   } else {
     document.saved_ = ~std::uint64_t{0};  // what stands here is nowhere yet
   }
   return document;
 }
 
-Result<Document> Document::recover(const fs::path& copy, const fs::path& file) {
+Result<Document> Document::recover(const fs::path& copy, const fs::path& file, const fs::path& folder) {
   Result<Document> document = open(copy);
   if (!document) return document;
   document->file_ = file;
-  document->folder_ = file.empty() ? copy.parent_path() : file.parent_path();
+  document->folder_ = !file.empty() ? file.parent_path() : folder.empty() ? copy.parent_path() : folder;
   document->saved_ = ~std::uint64_t{0};
+  document->recovered_ = true;
   document->remember_file();
   return document;
 }
@@ -58,6 +61,14 @@ Status Document::change(const std::string& what, Result<State> next, const std::
   steps_.push_back({what, std::move(*next), next_revision_++});
   ++now_;
   return Done{};
+}
+
+bool Document::drop_gesture(const std::string& gesture) {
+  if (gesture.empty() || gesture != gesture_ || now_ == 0 || now_ + 1 != steps_.size()) return false;
+  gesture_.clear();
+  steps_.pop_back();
+  --now_;
+  return true;
 }
 
 void Document::undo() {
@@ -80,8 +91,27 @@ std::string Document::title() const {
   return state().rest->name.empty() ? "untitled" : state().rest->name + " (not saved)";
 }
 
-Status Document::write(const fs::path& file, const State& state) const {
+// Scripts come first: a level that names one never stands without it.
+Status Document::write(const fs::path& file, const State& state, bool scripts_too) const {
+  if (scripts_too)
+    for (const auto& [name, keys] : state.scripts) {
+      const auto before = scripts_on_disk_.find(name);
+      const bool here = file.parent_path() == folder_;
+      if (here && before != scripts_on_disk_.end() && before->second == keys) continue;
+      if (Status s = save_keys(*keys, file.parent_path() / name); !s) return s;
+    }
   return save_state(state, file);
+}
+
+void Document::read_scripts(State& state) {
+  for (const auto& each : state.nodes) {
+    const std::optional<HapticDevice>& device = each->node.device;
+    if (!device || device->driver != DriverKind::kScript || state.scripts.contains(device->file)) continue;
+    if (device->file.find('/') != std::string::npos || device->file.find('%') != std::string::npos) continue;
+    if (Result<ScriptKeys> keys = load_keys(folder_ / device->file))
+      state.scripts[device->file] = std::make_shared<const ScriptKeys>(*std::move(keys));
+  }
+  scripts_on_disk_ = state.scripts;
 }
 
 Status Document::save() {
@@ -90,7 +120,8 @@ Status Document::save() {
 }
 
 Status Document::save_as(const fs::path& file) {
-  if (Status s = write(file, state()); !s) return s;
+  if (Status s = write(file, state(), true); !s) return s;
+  scripts_on_disk_ = state().scripts;
   file_ = file;
   folder_ = file.parent_path();
   saved_ = revision();
@@ -99,41 +130,43 @@ Status Document::save_as(const fs::path& file) {
 }
 
 Status Document::save_copy(const fs::path& file) const {
-  return write(file, state());
+  return write(file, state(), file.parent_path() != folder_);
 }
 
 Status Document::revert() {
   if (file_.empty()) return Error{"revert", "the level has no file yet; undo instead"};
+  const FileStamp stamp = stamp_of(file_);
   Result<Level> level = load_level(file_);
   if (!level) return level.error();
-  notes_ = level->notes;
-  State state = state_of(std::move(*level), next_id_);
-  gesture_.clear();
-  steps_.resize(now_ + 1);
-  steps_.push_back({"Revert", std::move(state), next_revision_++});
-  ++now_;
-  saved_ = revision();
-  remember_file();
+  revert_to(std::move(*level), stamp);
   return Done{};
 }
 
+void Document::revert_to(Level level, const FileStamp& stamp, const std::string& what) {
+  notes_ = level.notes;
+  State state = state_of(std::move(level), next_id_);
+  read_scripts(state);
+  gesture_.clear();
+  steps_.resize(now_ + 1);
+  steps_.push_back({what, std::move(state), next_revision_++});
+  ++now_;
+  saved_ = revision();
+  stamp_ = stamp;
+}
+
 void Document::remember_file() {
-  std::error_code gone;
-  file_time_ = fs::last_write_time(file_, gone);
-  file_size_ = fs::file_size(file_, gone);
+  stamp_ = stamp_of(file_);
 }
 
 bool Document::file_changed() const {
   if (file_.empty()) return false;
-  std::error_code gone;
-  const auto time = fs::last_write_time(file_, gone);
-  if (gone) return false;  // taken away: what is here is still here
-  const auto size = fs::file_size(file_, gone);
-  return !gone && (time != file_time_ || size != file_size_);
+  const FileStamp now = stamp_of(file_);
+  return now.there && now != stamp_;  // taken away: what is here is still here
 }
 
 void Document::accept_file() {
   remember_file();
+  saved_ = ~std::uint64_t{0};
 }
 
 }  // namespace pliant

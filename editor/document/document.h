@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/document/file_stamp.h"
 #include "editor/document/state.h"
 #include "runtime/result.h"
 
@@ -23,8 +24,10 @@ class Document {
   // A level or a mesh. A bare mesh is a level without anything that can be touched yet, which has no file: saving asks
   // for one. `unit` [m] that one unit of a bare mesh is.
   static Result<Document> open(const std::filesystem::path& file, double unit = 1.0);
-  // As `open` of `copy`, but what was saved last is `file`: after a crash. `file` may be empty.
-  static Result<Document> recover(const std::filesystem::path& copy, const std::filesystem::path& file);
+  // As `open` of `copy`, but what was saved last is `file`: after a crash. `file` may be empty; files that the level
+  // names are sought beside it, else in `folder`.
+  static Result<Document> recover(const std::filesystem::path& copy, const std::filesystem::path& file,
+                                  const std::filesystem::path& folder = {});
 
   const State& state() const { return steps_[now_].state; }
   // Another number for every state that was ever shown; the same number is the same state.
@@ -33,6 +36,8 @@ class Document {
   // The one way to change. An error changes nothing and comes back; nothing happens where nothing differs.
   Status change(const std::string& what, Result<State> next, const std::string& gesture = {});
   void end_gesture() { gesture_.clear(); }
+  // The gesture that is under way never was; true: it had changed something.
+  bool drop_gesture(const std::string& gesture);
   NodeId new_id() { return next_id_++; }
   NodeId& next_id() { return next_id_; }
 
@@ -48,6 +53,8 @@ class Document {
   void go_to_step(std::size_t i);
 
   bool dirty() const { return revision() != saved_; }
+  // Something was done that is in no file: more than a bare mesh was opened.
+  bool worth_keeping() const { return dirty() && (revision() != 0 || recovered_); }
   const std::filesystem::path& file() const { return file_; }      // empty: it has none yet
   const std::filesystem::path& folder() const { return folder_; }  // where files that it names are sought
   std::string title() const;                                       // the file's name; "untitled"
@@ -55,9 +62,11 @@ class Document {
   Status save_as(const std::filesystem::path& file);               // and from now on there
   Status save_copy(const std::filesystem::path& file) const;
   Status revert();  // as the file is now; one step that can be undone
+  void revert_to(Level level, const FileStamp& stamp, const std::string& what = "Revert");  // to what was read of it
   // Whether the file is another than the one that was read or written here last.
   bool file_changed() const;
-  void accept_file();  // keep what is here, whatever the file is now
+  const FileStamp& file_stamp() const { return stamp_; }
+  void accept_file();  // keep what is here, whatever the file is now: from now on that is a change
 
   // What was read differently than one might expect.
   const std::vector<std::string>& notes() const { return notes_; }
@@ -69,8 +78,9 @@ class Document {
     std::uint64_t revision;
   };
   explicit Document(State state, NodeId next);
-  Status write(const std::filesystem::path& file, const State& state) const;
+  Status write(const std::filesystem::path& file, const State& state, bool scripts_too) const;
   void remember_file();
+  void read_scripts(State& state);
 
   std::vector<Step> steps_;
   std::size_t now_ = 0;
@@ -79,8 +89,9 @@ class Document {
   std::uint64_t next_revision_ = 1, saved_ = 0;
   std::filesystem::path file_, folder_;
   std::vector<std::string> notes_;
-  std::filesystem::file_time_type file_time_;  // of the file as read or written last
-  std::uintmax_t file_size_ = 0;
+  std::map<std::string, std::shared_ptr<const ScriptKeys>> scripts_on_disk_;
+  FileStamp stamp_;  // of the file as read or written last
+  bool recovered_ = false;
 };
 
 }  // namespace pliant

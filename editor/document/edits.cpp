@@ -28,7 +28,7 @@ std::optional<Change> changing(const State& state, NodeId id) {
 }
 
 // Every reference to a node by its name.
-void rename_references(State& state, const std::string& from, const std::string& to) {
+void rename_references(State& state, const std::string from, const std::string to) {
   for (auto& each : state.nodes) {
     const LevelNode& node = each->node;
     const bool probe = node.probe && node.probe_device == from, handle = node.handle && node.handle->device == from;
@@ -73,16 +73,16 @@ LocalTransform local_of(const dmat4& m) {
   return local;
 }
 
-// The ids that no other one of them stands above.
+// The ids that no other one of them stands above, each once.
 std::vector<NodeId> topmost(const State& state, NodeIds ids) {
+  const std::set<NodeId> wanted(ids.begin(), ids.end());
+  std::set<NodeId> inside;  // below one of them
+  for (const auto& each : state.nodes)
+    if (wanted.contains(each->parent) || inside.contains(each->parent)) inside.insert(each->id);
   std::vector<NodeId> top;
-  for (const NodeId id : ids) {
-    const DocumentNode* const node = state.find(id);
-    if (!node || std::find(top.begin(), top.end(), id) != top.end()) continue;
-    bool inside = false;
-    for (const NodeId other : ids) inside |= other != id && state.below(id, other);
-    if (!inside) top.push_back(id);
-  }
+  std::set<NodeId> taken;
+  for (const NodeId id : ids)
+    if (!inside.contains(id) && state.find(id) && taken.insert(id).second) top.push_back(id);
   return top;
 }
 
@@ -293,16 +293,29 @@ Result<State> reparented(const State& state, NodeIds ids, NodeId parent, NodeId 
   return next;
 }
 
+Result<State> placed(const State& state, std::span<const Placing> all) {
+  State next = state;
+  bool any = false;
+  for (const auto& [id, local] : all) {
+    for (int i = 0; i < 3; ++i)
+      if (!std::isfinite(local.translation[i]) || !std::isfinite(local.scale[i]) || local.scale[i] == 0.0f)
+        return Error{"transform", "a position must be finite and a scale other than 0"};
+    if (!(std::abs(glm::length(local.rotation) - 1.0f) < 1e-3f))
+      return Error{"transform", "a rotation must be a unit quaternion"};
+    const std::size_t at = next.place(id);
+    if (at >= next.nodes.size()) continue;
+    auto node = std::make_shared<DocumentNode>(*next.nodes[at]);
+    node->node.local = local;
+    next.nodes[at] = std::move(node);
+    any = true;
+  }
+  if (!any) return kNoSuchNode;
+  return next;
+}
+
 Result<State> placed(const State& state, NodeId id, const LocalTransform& local) {
-  for (int i = 0; i < 3; ++i)
-    if (!std::isfinite(local.translation[i]) || !std::isfinite(local.scale[i]) || local.scale[i] == 0.0f)
-      return Error{"transform", "a position must be finite and a scale other than 0"};
-  if (!(std::abs(glm::length(local.rotation) - 1.0f) < 1e-3f))
-    return Error{"transform", "a rotation must be a unit quaternion"};
-  std::optional<Change> change = changing(state, id);
-  if (!change) return kNoSuchNode;
-  change->node->node.local = local;
-  return std::move(change->state);
+  const Placing one{id, local};
+  return placed(state, std::span(&one, 1));
 }
 
 Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light) {
@@ -382,9 +395,13 @@ Result<State> with_value(const State& state, NodeIds ids, const std::string& ext
   if (!found) return found.error();
   const Extension& of = *find_extension(extension);
   if (const std::string wrong = check_value(**found, value); !wrong.empty()) return Error{key, wrong};
-  if ((*found)->type == KeyType::kNode && !value.get_ref<const std::string&>().empty() &&
-      !state.find(value.get<std::string>()))
-    return Error{key, "names the node '" + value.get<std::string>() + "', which is not there"};
+  if ((*found)->type == KeyType::kNode)
+    if (const std::string name = value.get<std::string>(); !name.empty()) {
+      const DocumentNode* const named = state.find(name);
+      if (!named || !named->node.device)
+        return Error{key, "names '" + name +
+                              (named ? "', which has no haptic device; add one to it first" : "', which is not there")};
+    }
   if (of.on_scene) {
     Level scene = scene_of(state);
     if (!of.present(&scene)) of.add(&scene);
@@ -467,36 +484,57 @@ Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh) {
   return std::move(change->state);
 }
 
+Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys) {
+  std::optional<Change> change = changing(state, id);
+  if (!change) return kNoSuchNode;
+  LevelNode& node = change->node->node;
+  if (!node.device) return Error{node.name, "has no haptic device; add one first"};
+  if (file.empty() || file.find('/') != std::string::npos)
+    return Error{file, "is no name for a script; it lies beside the level, without a folder"};
+  node.device->driver = keys.keys.empty() ? DriverKind::kNull : DriverKind::kScript;
+  node.device->file = keys.keys.empty() ? "" : file;
+  if (keys.keys.empty())
+    change->state.scripts.erase(file);
+  else
+    change->state.scripts[file] = std::make_shared<const ScriptKeys>(keys);
+  return std::move(change->state);
+}
+
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
   Level level = level_of(state);
+  // Nodes are known again by a mark, wherever the edit puts new ones between them.
+  constexpr std::int32_t kMark = -2;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) level.nodes[i].source = kMark - static_cast<std::int32_t>(i);
   if (Status s = edit(level); !s) return s.error();
   if (level.nodes.size() < state.nodes.size() || level.meshes.size() < state.meshes.size())
     return Error{"edit", "an edit of a level may not remove nodes or meshes"};
+  std::vector<NodeId> id_of;  // of each node of the changed level
+  NodeId fresh = next_id;
+  for (LevelNode& node : level.nodes) {
+    const bool known = node.source <= kMark;
+    const auto before = static_cast<std::size_t>(kMark - node.source);
+    id_of.push_back(known ? state.nodes[before]->id : fresh++);
+    node.source = known ? state.nodes[before]->node.source : -1;
+  }
   const std::size_t mesh_count = state.meshes.size();
-  // Meshes that were there stay shared; what was painted on them is looked at.
-  NodeId ids = next_id;
-  State after = state_of(std::move(level), ids);
-  State next = after;
+  NodeId numbers = 1;
+  State next = state_of(std::move(level), numbers);  // numbered from 1 on, in order
+  for (auto& each : next.nodes) {
+    auto node = std::make_shared<DocumentNode>(*each);
+    node->id = id_of[each->id - 1];
+    if (each->parent != kNoNode) node->parent = id_of[each->parent - 1];
+    each = std::move(node);
+  }
+  next_id = fresh;
+  // What was there stays shared.
   for (std::size_t i = 0; i < mesh_count; ++i) next.meshes[i] = state.meshes[i];
   for (auto& [key, layer] : next.paint)
     if (const auto before = state.paint.find(key); before != state.paint.end() && before->second == layer)
       layer = before->second;
-  // Nodes keep their ids; new ones get theirs.
-  std::map<NodeId, NodeId> id_of{{kNoNode, kNoNode}};
-  NodeId fresh = next_id;
-  for (std::size_t i = 0; i < after.nodes.size(); ++i)
-    id_of[after.nodes[i]->id] = i < state.nodes.size() ? state.nodes[i]->id : fresh++;
-  for (auto& each : next.nodes) {
-    auto node = std::make_shared<DocumentNode>(*each);
-    node->id = id_of.at(each->id);
-    node->parent = id_of.at(each->parent);
-    each = std::move(node);
-  }
-  next_id = fresh;
-  next.rest = state.rest;
-  if (after.rest->materials.size() != state.rest->materials.size() ||
-      after.rest->images.size() != state.rest->images.size())
-    next.rest = after.rest;
+  const bool same_looks = next.rest->materials.size() == state.rest->materials.size() &&
+                          next.rest->images.size() == state.rest->images.size();
+  if (same_looks) next.rest = state.rest;
+  next.scripts = state.scripts;
   return next;
 }
 

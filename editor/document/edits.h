@@ -32,6 +32,11 @@ Result<State> reparented(const State& state, NodeIds ids, NodeId parent, NodeId 
 
 // --- One node
 Result<State> placed(const State& state, NodeId id, const LocalTransform& local);
+struct Placing {
+  NodeId id = kNoNode;
+  LocalTransform local;
+};
+Result<State> placed(const State& state, std::span<const Placing> all);  // those that are gone are left out
 Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light);
 Result<State> with_camera(const State& state, NodeId id, const std::optional<Camera>& camera);
 
@@ -52,6 +57,9 @@ Result<State> with_layer(const State& state, const LayerKey& key, PaintLayer lay
 Result<State> without_layer(const State& state, std::uint32_t mesh, Channel channel);  // of all its primitives
 // The node gets a mesh of its own (refined, say); other nodes keep theirs. Painted values are the mesh's own arrays.
 Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh);
+
+// The node's device follows these keys, in a script of that name beside the level, from now on.
+Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys);
 
 // An edit that is written for Levels (content/author): it may change nodes and scene and append nodes and meshes.
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit);

@@ -1,6 +1,7 @@
 #include "editor/document/state.h"
 
 #include <algorithm>
+#include <cctype>
 #include <unordered_map>
 
 #include "content/keys/extensions.h"
@@ -62,36 +63,24 @@ DocumentMesh::DocumentMesh(LevelMesh mesh) : LevelMesh(std::move(mesh)) {
     for (const vec3& p : primitive.position) box.add(p);
 }
 
-const char* name_of(Channel channel) {
-  constexpr const char* kNames[] = {"stiffness", "friction", "damping", "relaxation", "pinned", "handle"};
-  return kNames[static_cast<std::size_t>(channel)];
-}
-
-bool is_share(Channel channel) {
-  return channel == Channel::kPinned || channel == Channel::kHandle;
-}
-
-std::vector<float>& painted(Primitive& primitive, Channel channel) {
-  switch (channel) {
-    case Channel::kStiffness:
-      return primitive.stiffness;
-    case Channel::kFriction:
-      return primitive.friction;
-    case Channel::kDamping:
-      return primitive.damping;
-    case Channel::kRelaxation:
-      return primitive.relaxation;
-    case Channel::kPinned:
-      return primitive.pinned;
-    case Channel::kHandle:
-      break;
-  }
-  return primitive.handle;
+std::string name_of(Channel channel) {
+  std::string name = painted_attribute(channel).name + 1;
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
 }
 
 std::size_t State::place(NodeId id) const {
-  const auto it = std::find_if(nodes.begin(), nodes.end(), [&](const auto& each) { return each->id == id; });
-  return static_cast<std::size_t>(it - nodes.begin());
+  // Ids are given in order, and edits shift nodes by little: the search begins where the node would be had nothing been
+  // changed, and goes both ways.
+  const std::size_t count = nodes.size();
+  if (count == 0) return 0;
+  const std::size_t first = nodes.front()->id;
+  const std::size_t guess = id > first ? std::min<std::size_t>(id - first, count - 1) : 0;
+  for (std::size_t away = 0; away < count; ++away) {
+    if (guess + away < count && nodes[guess + away]->id == id) return guess + away;
+    if (away <= guess && nodes[guess - away]->id == id) return guess - away;
+  }
+  return count;
 }
 
 const DocumentNode* State::find(NodeId id) const {
@@ -186,6 +175,8 @@ bool same(const State& a, const State& b) {
   if (a.nodes.size() != b.nodes.size() || a.meshes != b.meshes || a.about != b.about || a.rest != b.rest) return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i)
     if (a.nodes[i] != b.nodes[i] && !same_node(*a.nodes[i], *b.nodes[i])) return false;
+  const auto same_script = [](const auto& x, const auto& y) { return x.first == y.first && *x.second == *y.second; };
+  if (!std::equal(a.scripts.begin(), a.scripts.end(), b.scripts.begin(), b.scripts.end(), same_script)) return false;
   return a.paint == b.paint && scene_extensions(outline_of(a), Json()) == scene_extensions(outline_of(b), Json());
 }
 

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "content/level/level.h"
-#include "editor/paint/paint_layer.h"
+#include "editor/document/script_keys.h"
+#include "editor/paint/paint.h"
 
 namespace pliant {
 
@@ -31,15 +32,20 @@ struct DocumentMesh : LevelMesh {
 };
 
 // What is painted on a mesh, one value a vertex of a primitive.
-enum class Channel : std::uint8_t { kStiffness, kFriction, kDamping, kRelaxation, kPinned, kHandle };
+using Channel = PaintAttribute;
 inline constexpr Channel kChannels[] = {Channel::kStiffness,  Channel::kFriction, Channel::kDamping,
                                         Channel::kRelaxation, Channel::kPinned,   Channel::kHandle};
-const char* name_of(Channel channel);  // "stiffness"
-bool is_share(Channel channel);        // 0 to 1, 0 where nothing is painted; else a factor, 1 there
-inline float unpainted(Channel channel) {
-  return is_share(channel) ? 0.0f : 1.0f;
+std::string name_of(Channel channel);  // "stiffness"
+// 0 to 1, 0 where nothing is painted; else a factor, 1 there.
+inline bool is_share(Channel channel) {
+  return channel >= Channel::kPinned;
 }
-std::vector<float>& painted(Primitive& primitive, Channel channel);
+inline float unpainted(Channel channel) {
+  return painted_attribute(channel).unpainted;
+}
+inline std::vector<float>& painted(Primitive& primitive, Channel channel) {
+  return primitive.*painted_attribute(channel).values;
+}
 
 struct LayerKey {
   std::uint32_t mesh = 0, primitive = 0;  // into State::meshes, its primitives
@@ -56,6 +62,8 @@ struct State {
   std::string about;                     // what the level shows
   std::optional<LevelEnvironment> environment;
   Simulation simulation;
+  // Paths that devices follow, by the file that they name, relative to the level; files that cannot be read are absent.
+  std::map<std::string, std::shared_ptr<const ScriptKeys>> scripts;
 
   const DocumentNode* find(NodeId id) const;
   const DocumentNode* find(const std::string& name) const;  // the first of that name

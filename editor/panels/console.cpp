@@ -1,6 +1,7 @@
 // What has been said: by the level, by a run, by the editor itself.
 #include <fmt/format.h>
 
+#include "editor/app/app.h"
 #include "editor/panels/panels.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
@@ -8,18 +9,27 @@
 namespace pliant {
 namespace {
 
+const char* word_of(Severity severity) {
+  return severity == Severity::kError ? "error" : severity == Severity::kWarning ? "warning" : "";
+}
+
+std::string text_of(const Said& said) {
+  return printable(said.text) + (said.times > 1 ? fmt::format("  ({} times)", said.times) : "");
+}
+
 class ConsolePanel : public Panel {
  public:
+  explicit ConsolePanel(App& app) : app_(app) {}
   const char* name() const override { return "Console"; }
   Place place() const override { return Place::kBottom; }
 
   void draw(Editor& editor) override {
+    filters(editor);
     ImGui::BeginChild("lines", {0, 0});
     const ui::Palette& p = ui::palette();
     for (const Said& said : editor.said) {
-      const char* word = said.severity == Severity::kError     ? "error"
-                         : said.severity == Severity::kWarning ? "warning"
-                                                               : "";
+      if (!is_shown(said)) continue;
+      const char* const word = word_of(said.severity);
       ImGui::PushFont(ui::font(ui::Type::kSmall));
       ImGui::TextColored(p.faint, "%s", fmt::format("{:7.1f} s", said.time).c_str());
       ImGui::PopFont();
@@ -29,8 +39,7 @@ class ConsolePanel : public Panel {
         ImGui::SameLine();
       }
       ImGui::PushTextWrapPos(0);
-      const std::string text = printable(said.text) + (said.times > 1 ? fmt::format("  ({} times)", said.times) : "");
-      ImGui::TextUnformatted(text.c_str());
+      ImGui::TextUnformatted(text_of(said).c_str());
       ImGui::PopTextWrapPos();
     }
     if (editor.said.size() != shown_) ImGui::SetScrollHereY(1.0f);
@@ -39,13 +48,38 @@ class ConsolePanel : public Panel {
   }
 
  private:
+  bool is_shown(const Said& said) const {
+    return said.severity == Severity::kError ? errors_ : said.severity == Severity::kWarning ? warnings_ : notes_;
+  }
+
+  void filters(Editor& editor) {
+    ui::checkbox("Errors", errors_);
+    ImGui::SameLine();
+    ui::checkbox("Warnings", warnings_);
+    ImGui::SameLine();
+    ui::checkbox("Notes", notes_);
+    ImGui::SameLine(std::max(ImGui::GetWindowContentRegionMax().x - ui::px(148), ui::px(260)));
+    if (ui::button("Copy", "The lines that are shown, to the clipboard", !editor.said.empty(), 70)) {
+      std::string all;
+      for (const Said& said : editor.said)
+        if (is_shown(said))
+          all += fmt::format("{:.1f} s  {}{}{}\n", said.time, word_of(said.severity),
+                             *word_of(said.severity) ? ": " : "", text_of(said));
+      app_.window().set_clipboard(all);
+    }
+    ImGui::SameLine();
+    if (ui::button("Clear", nullptr, !editor.said.empty(), 70)) editor.said.clear();
+  }
+
+  App& app_;
   std::size_t shown_ = 0;
+  bool errors_ = true, warnings_ = true, notes_ = true;
 };
 
 }  // namespace
 
-std::unique_ptr<Panel> make_console_panel() {
-  return std::make_unique<ConsolePanel>();
+std::unique_ptr<Panel> make_console_panel(App& app) {
+  return std::make_unique<ConsolePanel>(app);
 }
 
 }  // namespace pliant

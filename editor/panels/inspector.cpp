@@ -9,6 +9,7 @@
 #include "content/keys/extension_table.h"
 #include "editor/panels/key_fields.h"
 #include "editor/panels/panels.h"
+#include "editor/tools/gizmo_math.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
@@ -74,8 +75,9 @@ class InspectorPanel : public Panel {
         vertices += p.position.size();
       }
       const vec3 size = mesh.box.empty() ? vec3(0) : mesh.box.size() * node.node.local.scale;
-      ui::dim(fmt::format("{} triangles, {} vertices, {:.3g} x {:.3g} x {:.3g} m", triangles, vertices, size.x, size.y,
-                          size.z)
+      ui::dim(fmt::format("{} triangles, {} vertices\n{} \u00d7 {} \u00d7 {}", triangles, vertices,
+                          length_text(static_cast<double>(size.x), 3), length_text(static_cast<double>(size.y), 3),
+                          length_text(static_cast<double>(size.z), 3))
                   .c_str());
     }
   }
@@ -111,10 +113,10 @@ class InspectorPanel : public Panel {
   void draw_transform(Editor& editor, const DocumentNode& node) {
     if (!ui::section("Place")) return;
     LocalTransform local = node.node.local;
-    const dvec3 euler = glm::degrees(glm::eulerAngles(dquat(local.rotation)));
-    dvec3 position(local.translation), turn = shown_turn_.first == node.id && same_turn(local.rotation)
-                                                  ? shown_turn_.second
-                                                  : euler,
+    // Floats know no more than five digits of an angle.
+    const dvec3 euler = glm::round(glm::degrees(glm::eulerAngles(dquat(local.rotation))) * 1e4) * 1e-4;
+    dvec3 position(local.translation),
+        turn = shown_turn_.first == node.id && same_turn(local.rotation) ? shown_turn_.second : euler,
         scale(local.scale);
     bool changed = false;
     changed |= triple("Position", "m", position, "Of the node's origin, in its parent's frame");
@@ -241,8 +243,7 @@ class InspectorPanel : public Panel {
     ImGui::SetNextItemWidth(-1);
     changed |= ImGui::ColorEdit3("##light colour", &light.color.x, ImGuiColorEditFlags_Float);
     ui::known_as("colour");
-    if (changed)
-      editor.apply("Light", with_light(editor.state(), node.id, light), "light " + std::to_string(node.id));
+    if (changed) editor.apply("Light", with_light(editor.state(), node.id, light), "light " + std::to_string(node.id));
     if (ui::button("Remove light")) editor.apply("Remove light", with_light(editor.state(), node.id, {}));
   }
 
@@ -267,9 +268,8 @@ class InspectorPanel : public Panel {
     if (!ImGui::BeginPopup("add component")) return;
     for (const Extension& each : extension_table()) {
       if (each.on_scene) continue;
-      const bool everywhere = std::all_of(editor.selected.begin(), editor.selected.end(), [&](NodeId id) {
-        return has_component(editor.state(), id, each.name);
-      });
+      const bool everywhere = std::all_of(editor.selected.begin(), editor.selected.end(),
+                                          [&](NodeId id) { return has_component(editor.state(), id, each.name); });
       if (ui::menu_item(words(each.name).c_str(), nullptr, false, !everywhere))
         editor.apply("Add " + words(each.name), with_component(editor.state(), editor.selected, each.name));
       ui::hint(each.doc.c_str());

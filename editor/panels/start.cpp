@@ -1,9 +1,11 @@
-// The first page: files that were open before, and the levels that ship.
+// The first page: what was not saved, files that were open before, and the levels that ship.
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "editor/app/app.h"
+#include "editor/app/files.h"
+#include "editor/panels/level_pictures.h"
 #include "editor/panels/panels.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
@@ -11,30 +13,165 @@
 namespace pliant {
 namespace {
 
+namespace fs = std::filesystem;
+
 class StartPage : public Panel {
  public:
   explicit StartPage(App& app) : app_(app) {}
   const char* name() const override { return "Start"; }
   Place place() const override { return Place::kOver; }
 
-  void draw(Editor&) override {
-    ui::gap(ui::kWide);
-    ui::title("Pliant");
-    ui::dim("Bring an organ's mesh, make it soft, and touch it.");
-    ui::gap(ui::kPad);
-    if (ui::strong_button("Open a file\u2026", "A level, or any mesh: glTF, OBJ, STL, PLY, OFF, tetrahedra", true, 180))
-      app_.do_action("file.open");
-    ui::gap(ui::kPad);
-    if (!app_.settings.recent.empty()) ui::dim("Recent files");
-    for (const std::string& file : app_.settings.recent)
-      if (ui::selectable(printable(file).c_str(), false)) {
-        app_.open(file);
-        break;
-      }
+  void draw(Editor& editor) override {
+    if (editor.now - looked_ > kLook) look(editor);
+    const float wide = ImGui::GetContentRegionAvail().x, left = std::min(ui::px(300), 0.42f * wide);
+    ui::gap(ui::kGap);
+    ImGui::BeginChild("files", {left, 0});
+    files();
+    ImGui::EndChild();
+    ImGui::SameLine(0, ui::px(ui::kWide));
+    ImGui::BeginChild("levels");
+    levels(editor);
+    ImGui::EndChild();
   }
 
  private:
+  static constexpr double kLook = 2.0;  // [s] between two looks at what is on disk
+  struct Recent {
+    std::string file;
+    bool there = true;
+    std::optional<RecoveryCopy> copy;
+  };
+
+  void look(Editor& editor) {
+    looked_ = editor.now;
+    editor.jobs.start("start page", "", [this, files = app_.settings.recent](const Jobs::Stop&) {
+      auto recent = std::make_shared<std::vector<Recent>>();
+      std::error_code gone;
+      for (const std::string& file : files)
+        recent->push_back({file, fs::is_regular_file(file, gone), find_recovery(file, state_folder())});
+      auto lost = std::make_shared<std::vector<RecoveryCopy>>();
+      for (RecoveryCopy& copy : find_recoveries(state_folder()))
+        if (copy.file.empty() || std::find(files.begin(), files.end(), copy.file.string()) == files.end())
+          lost->push_back(std::move(copy));
+      return [this, recent, lost](Editor&) {
+        recent_ = *recent;
+        lost_ = *lost;
+      };
+    });
+  }
+
+  void files() {
+    ui::title("Pliant");
+    ui::dim("Bring an organ's mesh, make it soft, and touch it.");
+    ui::gap(ui::kPad);
+    if (ui::strong_button("Open organ\u2026", "A level, or any mesh: glTF, OBJ, STL, PLY, OFF, tetrahedra", true, 160))
+      app_.do_action("file.open");
+    ui::gap(ui::kPad);
+    unsaved();
+    if (recent_.empty()) return;
+    ui::dim("Recent files");
+    for (const Recent& each : recent_) {
+      const fs::path file = each.file;
+      const ui::Scope scope("Recent");
+      const std::string shown =
+          printable(file.filename().string()) + (each.there ? "" : "  (missing)") + "##" + each.file;
+      if (!each.there) ImGui::PushStyleColor(ImGuiCol_Text, ui::palette().faint);
+      const bool pressed = ui::selectable(shown.c_str(), false);
+      ui::known_as(file.filename().string());
+      if (!each.there) ImGui::PopStyleColor();
+      ui::hint(printable(each.file).c_str());
+      if (pressed && each.there) return app_.open(file);
+      if (pressed) {
+        app_.editor.say(printable(each.file) + " is not there any more", Severity::kWarning);
+        std::erase(app_.settings.recent, each.file);
+        looked_ = -1e9;
+        return;
+      }
+    }
+  }
+
+  void unsaved() {
+    bool first = true;
+    const auto offer = [&](const RecoveryCopy& copy) {
+      if (first) ui::dim("Not saved when the editor ended");
+      first = false;
+      const ui::Scope scope("Unsaved " + copy.title);
+      ImGui::PushID(copy.copy.c_str());
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextColored(ui::palette().warning, "%s", printable(copy.title).c_str());
+      ui::hint(printable(copy.file.empty() ? copy.copy.string() : copy.file.string()).c_str());
+      if (ui::button("Recover", "Opens it as it was; save it to keep it", true, 90)) app_.files().recover(copy);
+      ImGui::SameLine();
+      const bool sure = sure_ == copy.copy;
+      if (ui::button(sure ? "Really discard##discard" : "Discard##discard", "It cannot be brought back", true)) {
+        if (sure) {
+          remove_recovery(copy);
+          looked_ = -1e9;
+        }
+        sure_ = sure ? fs::path() : copy.copy;
+      }
+      ui::known_as("Discard");
+      ImGui::PopID();
+    };
+    for (const Recent& each : recent_)
+      if (each.copy) offer(*each.copy);
+    for (const RecoveryCopy& copy : lost_) offer(copy);
+    if (!first) ui::gap(ui::kPad);
+  }
+
+  void levels(Editor& editor) {
+    if (app_.shipped().empty()) return;
+    ui::dim("Levels that ship, to look at and to begin with");
+    ui::gap(ui::kGap);
+    pictures_.update(editor, app_.shipped());
+    const float wide = ImGui::GetContentRegionAvail().x, gap = ui::px(ui::kPad);
+    const int columns = std::max(1, static_cast<int>((wide + gap) / (ui::px(170) + gap)));
+    const float w = (wide - gap * static_cast<float>(columns - 1) - ui::px(ui::kPad)) / static_cast<float>(columns),
+                picture = 0.6f * w, h = picture + ui::px(62);
+    int n = 0;
+    for (const fs::path& level : app_.shipped()) {
+      if (n++ % columns != 0) ImGui::SameLine(0, gap);
+      card(level, w, picture, h);
+    }
+  }
+
+  void card(const fs::path& level, float w, float picture, float h) {
+    const ui::Palette& p = ui::palette();
+    const ui::Scope scope("Levels");
+    const ImVec2 at = ImGui::GetCursorScreenPos(), end(at.x + w, at.y + h);
+    ImGui::PushID(level.c_str());
+    const bool pressed = ImGui::InvisibleButton("card", {w, h});
+    ui::known_as(level.stem().string());
+    const bool hot = ImGui::IsItemHovered();
+    const LevelPicture& shown = pictures_.of(level);
+    ui::hint(shown.about.c_str());
+    ImGui::PopID();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float round = ui::px(6);
+    list.AddRectFilled(at, end, ui::color(hot ? p.field_hot : p.field), round);
+    const ImVec2 low(at.x, at.y), high(end.x, at.y + picture);
+    if (shown.texture != 0)
+      list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(shown.texture)), low, high,
+                           shown.low, shown.high, IM_COL32_WHITE, round, ImDrawFlags_RoundCornersTop);
+    else
+      list.AddRectFilled(low, high, ui::color(p.raised), round, ImDrawFlags_RoundCornersTop);
+    if (hot) list.AddRect(at, end, ui::color(p.accent), round, 0, ui::px(1.5f));
+    list.PushClipRect({at.x + ui::px(8), at.y}, {end.x - ui::px(8), end.y - ui::px(4)}, true);
+    const float y = at.y + picture + ui::px(6);
+    list.AddText(ui::font(ui::Type::kStrong), ui::font(ui::Type::kStrong)->FontSize, {at.x + ui::px(8), y},
+                 ui::color(p.text), level.stem().c_str());
+    list.AddText(ui::font(ui::Type::kSmall), ui::font(ui::Type::kSmall)->FontSize, {at.x + ui::px(8), y + ui::px(20)},
+                 ui::color(p.dim), shown.about.c_str(), nullptr, w - ui::px(16));
+    list.PopClipRect();
+    if (pressed) app_.open(level);
+  }
+
   App& app_;
+  double looked_ = -1e9;  // [s]
+  std::vector<Recent> recent_;
+  std::vector<RecoveryCopy> lost_;
+  fs::path sure_;
+  LevelPictures pictures_;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "editor/tools/tools.h"
 #include "editor/ui/theme.h"
-#include "editor/viewport/solid_view.h"
+#include "editor/viewport/frames.h"
 
 namespace pliant {
 namespace {

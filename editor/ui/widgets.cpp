@@ -105,8 +105,58 @@ bool choice_button(const char* label, bool down, const char* hint_text, bool ena
   return pressed;
 }
 
+bool icon_button(const char* label, Icon icon, bool down, const char* hint_text, bool enabled) {
+  const Palette& p = palette();
+  if (down) {
+    ImGui::PushStyleColor(ImGuiCol_Button, p.accent);
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, p.accent);
+  }
+  const bool dimmed = !enabled && !down;
+  if (dimmed) ImGui::BeginDisabled();
+  const float side = ImGui::GetFrameHeight();
+  const bool pressed = ImGui::Button(fmt::format("##{}", label).c_str(), {side + px(6), side});
+  if (dimmed) ImGui::EndDisabled();
+  if (down) ImGui::PopStyleColor(2);
+  known_as(label);
+  g_now.back().enabled = enabled;
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 c(std::round(0.5f * (low.x + high.x)), std::round(0.5f * (low.y + high.y)));
+  const float r = std::round(0.25f * side);
+  const ImU32 ink = color(down ? p.accent_text : enabled ? p.text : p.faint);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  switch (icon) {
+    case Icon::kPlay:
+      list.AddTriangleFilled({c.x - 0.8f * r, c.y - r}, {c.x - 0.8f * r, c.y + r}, {c.x + r, c.y}, ink);
+      break;
+    case Icon::kPause:
+      list.AddRectFilled({c.x - 0.8f * r, c.y - r}, {c.x - 0.25f * r, c.y + r}, ink);
+      list.AddRectFilled({c.x + 0.25f * r, c.y - r}, {c.x + 0.8f * r, c.y + r}, ink);
+      break;
+    case Icon::kStep:
+      list.AddTriangleFilled({c.x - 0.9f * r, c.y - r}, {c.x - 0.9f * r, c.y + r}, {c.x + 0.5f * r, c.y}, ink);
+      list.AddRectFilled({c.x + 0.6f * r, c.y - r}, {c.x + r, c.y + r}, ink);
+      break;
+    case Icon::kStop:
+      list.AddRectFilled({c.x - 0.85f * r, c.y - 0.85f * r}, {c.x + 0.85f * r, c.y + 0.85f * r}, ink);
+      break;
+    case Icon::kRestart:
+      list.PathArcTo(c, 0.85f * r, -0.35f * 3.14159f, 1.3f * 3.14159f, 20);
+      list.PathStroke(ink, 0, px(1.75f));
+      list.AddTriangleFilled({c.x - 0.1f * r, c.y - 1.35f * r}, {c.x + 0.95f * r, c.y - 0.85f * r},
+                             {c.x - 0.05f * r, c.y - 0.1f * r}, ink);
+      break;
+  }
+  hint(hint_text);
+  return pressed && enabled;
+}
+
 bool checkbox(const char* label, bool& value, const char* hint_text) {
+  // An empty box is seen as one.
+  ImVec4 back = palette().text;
+  back.w = 0.16f;
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, back);
   const bool changed = ImGui::Checkbox(label, &value);
+  ImGui::PopStyleColor();
   known_as(label);
   hint(hint_text);
   return changed;
@@ -131,12 +181,21 @@ bool number(const char* label, double& value, double least, double most, const c
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp |
                                  (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
                                  ImGuiSliderFlags_NoRoundToFormat;
-  double next = value;
+  double next = value + 0.0;  // -0 reads as 0
   const bool changed = ImGui::DragScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &next, speed, &least,
                                          &most, format.c_str(), flags & ~ImGuiSliderFlags_Logarithmic);
   known_as(label);
   if (finished) *finished = ImGui::IsItemDeactivatedAfterEdit();
   if (changed) value = next;
+  return changed;
+}
+
+bool slider(const char* label, double& value, double least, double most, const char* hint_text, float width) {
+  ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
+  const bool changed = ImGui::SliderScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &value, &least,
+                                           &most, "", ImGuiSliderFlags_AlwaysClamp);
+  known_as(label);
+  hint(hint_text);
   return changed;
 }
 
@@ -180,9 +239,17 @@ bool begin_menu(const char* label, bool enabled) {
 }
 
 bool section(const char* label, bool open_at_first) {
+  // Calm: the accent is for what is selected or active.
+  ImVec4 back = palette().text;
+  back.w = 0.05f;
+  ImGui::PushStyleColor(ImGuiCol_Header, back);
+  back.w = 0.09f;
+  ImGui::PushStyleColor(ImGuiCol_HeaderHovered, back);
+  ImGui::PushStyleColor(ImGuiCol_HeaderActive, back);
   ImGui::PushFont(font(Type::kStrong));
   const bool open = ImGui::CollapsingHeader(label, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   ImGui::PopFont();
+  ImGui::PopStyleColor(3);
   known_as(label);
   return open;
 }

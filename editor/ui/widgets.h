@@ -43,6 +43,8 @@ bool button(const char* label, const char* hint_text = nullptr, bool enabled = t
 bool strong_button(const char* label, const char* hint_text = nullptr, bool enabled = true, float width = 0);
 // One of a row of which one is down.
 bool choice_button(const char* label, bool down, const char* hint_text = nullptr, bool enabled = true);
+enum class Icon : std::uint8_t { kPlay, kPause, kStep, kStop, kRestart };
+bool icon_button(const char* label, Icon icon, bool down, const char* hint_text = nullptr, bool enabled = true);
 bool checkbox(const char* label, bool& value, const char* hint_text = nullptr);
 bool text_field(const char* label, std::string& value, const char* placeholder = "", float width = 0,
                 ImGuiInputTextFlags flags = 0);
@@ -50,6 +52,9 @@ bool text_field(const char* label, std::string& value, const char* placeholder =
 // the like. True while it changes; `finished` when a gesture has ended.
 bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic = false,
             float width = 0, bool* finished = nullptr);
+// Between two ends, dragged along its whole width.
+bool slider(const char* label, double& value, double least, double most, const char* hint_text = nullptr,
+            float width = 0);
 bool combo(const char* label, std::string& value, const std::vector<std::string>& choices, float width = 0);
 bool selectable(const char* label, bool selected, ImGuiSelectableFlags flags = 0, ImVec2 size = {0, 0});
 bool menu_item(const char* label, const char* shortcut = nullptr, bool checked = false, bool enabled = true);

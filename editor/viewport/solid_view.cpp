@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <set>
-#include <unordered_map>
+#include <tuple>
+
+#include "editor/viewport/signs.h"
+#include "editor/viewport/view_camera.h"
 
 namespace pliant {
 namespace {
 
 constexpr float kEncode = 1.0f / 2.2f;
-constexpr float kCreaseCosine = 0.77f;  // [1] edges that turn by more than about 40 degrees
+constexpr std::size_t kMostNormals = 20'000;  // more lines than that hide the mesh
+constexpr std::size_t kMostDots = 30'000;     // of what is pinned
+constexpr double kSignReach = 9.0;            // [pixel] about a sign that picks its node
 
 struct SolidVertex {
   vec3 position, normal;
@@ -36,50 +40,23 @@ vec3 encoded(vec3 linear) {
   return glm::pow(glm::clamp(linear, vec3(0), vec3(1)), vec3(kEncode));
 }
 
-bool shown(const SolidOrder& order, std::size_t node) {
-  const DocumentNode& it = *order.state.nodes[node];
-  if (!it.node.in_scene) return false;
-  if (order.settings.isolated.empty()) return true;
-  return std::any_of(order.settings.isolated.begin(), order.settings.isolated.end(),
-                     [&](NodeId id) { return order.state.below(it.id, id); });
-}
-
 }  // namespace
 
-std::vector<dmat4> world_frames(const State& state) {
-  std::vector<dmat4> frames;
-  std::unordered_map<NodeId, std::size_t> place;
-  for (const auto& each : state.nodes) {
-    const LocalTransform& local = each->node.local;
-    dmat4 m = glm::mat4_cast(dquat(local.rotation));
-    for (int c = 0; c < 3; ++c) m[c] *= static_cast<double>(local.scale[c]);
-    m[3] = glm::dvec4(dvec3(local.translation), 1.0);
-    const auto parent = place.find(each->parent);
-    place[each->id] = frames.size();
-    frames.push_back(parent == place.end() ? m : frames[parent->second] * m);
-  }
-  return frames;
+double grid_step(const Viewpoint& view, double orthographic) {
+  const double seen = orthographic > 0.0
+                          ? orthographic
+                          : 2.0 * length(view.target - view.eye) * std::tan(0.5 * static_cast<double>(view.yfov));
+  return std::pow(10.0, std::floor(std::log10(std::max(seen, 1e-12) / 4.0)));
 }
 
-Box bounds_of(const State& state, const std::vector<NodeId>& only) {
-  const std::vector<dmat4> frames = world_frames(state);
-  Box box, points;
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    const DocumentNode& each = *state.nodes[i];
-    if (!each.node.in_scene) continue;
-    if (!only.empty() && std::none_of(only.begin(), only.end(), [&](NodeId id) { return state.below(each.id, id); }))
-      continue;
-    points.add(vec3(dvec3(frames[i][3])));
-    if (each.node.mesh < 0) continue;
-    const Box& of = state.meshes[static_cast<std::size_t>(each.node.mesh)]->box;
-    if (of.empty()) continue;
-    for (int corner = 0; corner < 8; ++corner) {
-      const vec3 p(corner & 1 ? of.max.x : of.min.x, corner & 2 ? of.max.y : of.min.y,
-                   corner & 4 ? of.max.z : of.min.z);
-      box.add(vec3(dvec3(frames[i] * glm::dvec4(dvec3(p), 1.0))));
-    }
-  }
-  return box.empty() ? points : box;
+bool same_scene(const SolidOrder& a, const SolidOrder& b) {
+  const auto view = [](const SolidOrder& o) {
+    return std::tuple(o.view.eye, o.view.target, o.view.up, o.view.yfov, o.orthographic, o.above, o.below, o.grid,
+                      o.axis[0], o.axis[1], o.axis[2], o.sign, o.selected_color);
+  };
+  return view(a) == view(b) && a.settings == b.settings && a.selected == b.selected && a.lines == b.lines &&
+         a.creases == b.creases && a.state.nodes == b.state.nodes && a.state.meshes == b.state.meshes &&
+         a.state.rest == b.state.rest && a.state.paint == b.state.paint;
 }
 
 mat4 clip_from_world(const Viewpoint& view, double orthographic, double aspect, const Box& box) {
@@ -93,13 +70,13 @@ mat4 clip_from_world(const Viewpoint& view, double orthographic, double aspect, 
       nearest = std::min(nearest, depth);
       farthest = std::max(farthest, depth);
     }
-  const double away = std::max(length(view.target - view.eye), 1e-9);
+  const double away = std::max(length(view.target - view.eye), 1e-12);
   farthest = std::max(1.1 * farthest, 4.0 * away);
   if (orthographic > 0.0) {
     const double h = 0.5 * orthographic, w = h * aspect;
     return mat4(glm::ortho(-w, w, -h, h, std::min(nearest, 0.0) - farthest, farthest) * eye);
   }
-  nearest = std::clamp(0.5 * nearest, std::max(1e-3 * away, 1e-4 * farthest), 0.5 * away);
+  nearest = std::clamp(0.5 * nearest, std::min(std::max(1e-3 * away, 1e-5 * farthest), 0.5 * away), 0.5 * away);
   return mat4(glm::perspective(static_cast<double>(view.yfov), aspect, nearest, farthest) * eye);
 }
 
@@ -123,10 +100,6 @@ SolidView::MeshOnGpu& SolidView::on_gpu(const std::shared_ptr<const DocumentMesh
   out.seen = true;
   if (out.of) return out;
   out.of = mesh;
-  const float normal_length = 0.012f * mesh->box.diagonal();
-  std::size_t vertex_count = 0;
-  for (const Primitive& primitive : mesh->primitives) vertex_count += primitive.position.size();
-  const std::size_t every = std::max<std::size_t>(1, vertex_count / 20'000);  // more lines than that hide the mesh
   for (const Primitive& primitive : mesh->primitives) {
     PrimitiveOnGpu p;
     const std::vector<SolidVertex> vertices = vertices_of(primitive);
@@ -139,12 +112,77 @@ SolidView::MeshOnGpu& SolidView::on_gpu(const std::shared_ptr<const DocumentMesh
     p.layout.floats(1, 0, 3, sizeof(vec3));
     p.layout.indices(p.indices);
     out.primitives.push_back(std::move(p));
-    for (std::size_t i = 0; i < vertices.size(); i += every) {
-      out.normal_ends.push_back(vertices[i].position);
-      out.normal_ends.push_back(vertices[i].position + normal_length * vertices[i].normal);
-    }
   }
   return out;
+}
+
+void SolidView::add_edges(PrimitiveOnGpu& to, const Primitive& primitive) {
+  if (to.edge_count != 0 || primitive.index.empty()) return;
+  std::vector<std::uint64_t> edges;
+  edges.reserve(primitive.index.size());
+  for (std::size_t t = 0; t + 2 < primitive.index.size(); t += 3)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = primitive.index[t + i], b = primitive.index[t + (i + 1) % 3];
+      edges.push_back(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b));
+    }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<std::uint32_t> ends;
+  ends.reserve(2 * edges.size());
+  double sum = 0;
+  for (const std::uint64_t edge : edges) {
+    ends.push_back(static_cast<std::uint32_t>(edge >> 32));
+    ends.push_back(static_cast<std::uint32_t>(edge));
+    sum += static_cast<double>(length(primitive.position[ends.back()] - primitive.position[ends[ends.size() - 2]]));
+  }
+  to.mean_edge = sum / static_cast<double>(edges.size());
+  to.edge_count = static_cast<GLsizei>(ends.size());
+  to.edges = gpu::Buffer::fixed<std::uint32_t>(ends);
+  to.edge_layout = gpu::VertexArray::make();
+  to.edge_layout.source(0, to.vertices, sizeof(SolidVertex));
+  to.edge_layout.floats(0, 0, 3, 0);
+  to.edge_layout.floats(1, 0, 3, sizeof(vec3));
+  to.edge_layout.indices(to.edges);
+}
+
+void SolidView::add_normals(MeshOnGpu& mesh) {
+  if (mesh.has_normals) return;
+  mesh.has_normals = true;
+  const float normal_length = 0.012f * mesh.of->box.diagonal();
+  std::size_t vertex_count = 0;
+  for (const Primitive& primitive : mesh.of->primitives) vertex_count += primitive.position.size();
+  const std::size_t every = std::max<std::size_t>(1, vertex_count / kMostNormals);
+  for (const Primitive& primitive : mesh.of->primitives) {
+    const std::vector<SolidVertex> vertices = vertices_of(primitive);
+    for (std::size_t i = 0; i < vertices.size(); i += every) {
+      mesh.normal_ends.push_back(vertices[i].position);
+      mesh.normal_ends.push_back(vertices[i].position + normal_length * vertices[i].normal);
+    }
+  }
+}
+
+// Dots where at least half is pinned, or a handle.
+void SolidView::add_regions(MeshOnGpu& mesh, std::size_t number, const SolidOrder& order, const mat4& world,
+                            std::vector<LineEnd>& points) {
+  for (std::uint32_t i = 0; i < mesh.primitives.size(); ++i)
+    for (const int which : {0, 1}) {
+      const Channel channel = which == 0 ? Channel::kPinned : Channel::kHandle;
+      const auto it = order.state.paint.find({static_cast<std::uint32_t>(number), i, channel});
+      if (it == order.state.paint.end()) continue;
+      PrimitiveOnGpu& p = mesh.primitives[i];
+      const std::vector<vec3>& position = mesh.of->primitives[i].position;
+      if (!(p.regions[which] == it->second)) {
+        p.regions[which] = it->second;
+        p.region_points[which].clear();
+        std::vector<vec3> all;
+        for (std::size_t v = 0; v < position.size() && v < it->second.size(); ++v)
+          if (it->second.value(v) >= 0.5f) all.push_back(position[v]);
+        const std::size_t every = 1 + all.size() / kMostDots;
+        for (std::size_t v = 0; v < all.size(); v += every) p.region_points[which].push_back(all[v]);
+      }
+      for (const vec3& at : p.region_points[which])
+        points.push_back({vec3(world * vec4(at, 1.0f)), which == 0 ? kPinnedColor : kHandleColor});
+    }
 }
 
 // Sends the chunks that differ from those that are shown.
@@ -198,59 +236,53 @@ void SolidView::make_room(int width, int height) {
   glNamedFramebufferDrawBuffers(frame, 2, both);
 }
 
-// Lines a round number of metres apart on the floor, y = 0, as fine as the picture shows.
-void SolidView::add_grid(const SolidOrder& order, std::vector<ViewLine>& lines) const {
+// Lines a round number of metres apart on the floor, y = 0, as fine as the picture shows; they fade away.
+void SolidView::add_grid(const SolidOrder& order, std::vector<LineEnd>& ends) {
   if (!order.settings.grid) return;
-  const double seen = order.orthographic > 0.0
-                          ? order.orthographic
-                          : 2.0 * length(order.view.target - order.view.eye) * std::tan(0.5 * order.view.yfov);
-  const double step = std::pow(10.0, std::floor(std::log10(std::max(seen, 1e-9) / 4.0)));
-  const int half = 20;
+  const double step = grid_step(order.view, order.orthographic);
+  const int half = 30, pieces = 6;
   const double cx = std::round(order.view.target.x / step) * step, cz = std::round(order.view.target.z / step) * step;
-  const float far = static_cast<float>(half * step);
-  for (int i = -half; i <= half; ++i) {
-    const auto x = static_cast<float>(cx + i * step), z = static_cast<float>(cz + i * step);
-    const auto tint = [&](double place) {
-      const bool tenth = std::abs(std::remainder(place, 10 * step)) < 0.1 * step;
-      vec4 c = order.grid;
-      c.a *= tenth ? 1.0f : 0.45f;
-      return c;
-    };
-    const auto mx = static_cast<float>(cx), mz = static_cast<float>(cz);
-    lines.push_back({{x, 0, mz - far}, {x, 0, mz + far}, tint(cx + i * step), false});
-    lines.push_back({{mx - far, 0, z}, {mx + far, 0, z}, tint(cz + i * step), false});
-  }
+  const double far = half * step;
+  const auto faded = [&](vec4 c, double x, double z) {
+    const double away = std::hypot(x - cx, z - cz) / far;
+    c.a *= static_cast<float>(std::clamp(1.0 - away * away, 0.0, 1.0));
+    return c;
+  };
+  for (int i = -half; i <= half; ++i)
+    for (const bool along_x : {false, true}) {
+      const double place = (along_x ? cz : cx) + i * step, middle = along_x ? cx : cz;
+      vec4 tint = order.grid;
+      if (std::abs(place) < 0.1 * step)
+        tint = vec4(vec3(order.axis[along_x ? 0 : 2]), 0.75f);
+      else if (std::abs(std::remainder(place, 10 * step)) >= 0.1 * step)
+        tint.a *= 0.45f;
+      for (int k = 0; k < pieces; ++k)
+        for (const int end : {k, k + 1}) {
+          const double on = middle + far * (2.0 * end / pieces - 1.0), x = along_x ? on : place,
+                       z = along_x ? place : on;
+          ends.push_back({vec3(dvec3(x, 0, z)), faded(tint, x, z)});
+        }
+    }
 }
 
-void SolidView::draw_lines(const SolidOrder& order, const mat4& from_world, bool over) {
-  std::vector<ViewLine> lines;
-  if (!over) add_grid(order, lines);
-  for (const ViewLine& line : order.lines)
-    if (line.over == over) lines.push_back(line);
-  if (lines.empty()) return;
-  struct End {
-    vec3 position;
-    vec4 tint;
-  };
-  std::vector<End> ends;
-  for (const ViewLine& line : lines) {
-    ends.push_back({line.from, line.color});
-    ends.push_back({line.to, line.color});
-  }
-  line_ends_.write<End>(ends);
+void SolidView::draw_ends(const std::vector<LineEnd>& ends, const mat4& from_world, bool over, bool points) {
+  if (ends.empty()) return;
+  line_ends_.write<LineEnd>(ends);
   line_layout_ = gpu::VertexArray::make();
-  glVertexArrayVertexBuffer(line_layout_.id(), 0, line_ends_.id(), 0, sizeof(End));
+  glVertexArrayVertexBuffer(line_layout_.id(), 0, line_ends_.id(), 0, sizeof(LineEnd));
   line_layout_.floats(0, 0, 3, 0);
   line_layout_.floats(1, 0, 4, sizeof(vec3));
   lines_program_.use();
   glUniformMatrix4fv(0, 1, GL_FALSE, &from_world[0][0]);
+  glUniform1f(1, over ? 0.0f : 2e-5f);
   if (over) glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDrawBuffer(GL_COLOR_ATTACHMENT0);
   glBindVertexArray(line_layout_.id());
-  glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(ends.size()));
+  glPointSize(3.0f);
+  glDrawArrays(points ? GL_POINTS : GL_LINES, 0, static_cast<GLsizei>(ends.size()));
   const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
   glDrawBuffers(2, both);
   glDisable(GL_BLEND);
@@ -258,9 +290,12 @@ void SolidView::draw_lines(const SolidOrder& order, const mat4& from_world, bool
   glEnable(GL_DEPTH_TEST);
 }
 
-void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int height) {
+void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
   make_room(width, height);
-  const Box box = bounds_of(order.state);
+  const std::vector<dmat4> frames = world_frames(order.state);
+  const std::vector<bool> shown = shown_nodes(order.state, order.settings.isolated),
+                          selected = at_or_below(order.state, order.selected);
+  const Box box = bounds_of(order.state, frames, {});
   const mat4 from_world = clip_from_world(order.view, order.orthographic, static_cast<double>(width) / height, box);
   world_from_clip_ = glm::inverse(from_world);
   glDisable(GL_FRAMEBUFFER_SRGB);
@@ -276,27 +311,24 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
   glDepthFunc(GL_LEQUAL);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
-  draw_lines(order, from_world, false);
+  std::vector<LineEnd> behind, over, dots;
+  add_grid(order, behind);
+  draw_ends(behind, from_world, false);
+  behind.clear();
 
   for (auto& [ignored, mesh] : meshes_) mesh.seen = false;
   triangles_ = 0;
   // What is selected gets the highest numbers, so that one comparison tells.
   numbered_.clear();
-  const auto is_selected = [&](NodeId id) {
-    return std::any_of(order.selected.begin(), order.selected.end(),
-                       [&](NodeId s) { return order.state.below(id, s); });
-  };
   std::vector<std::size_t> to_draw;
-  for (const bool selected : {false, true})
-    for (std::size_t i = 0; i < order.state.nodes.size(); ++i) {
-      const DocumentNode& node = *order.state.nodes[i];
-      if (node.node.mesh < 0 || !shown(order, i) || is_selected(node.id) != selected) continue;
-      to_draw.push_back(i);
-    }
-  std::uint32_t first_selected = 0xffffffffu;
-  const std::vector<dmat4> frames = world_frames(order.state);
+  for (const bool these : {false, true})
+    for (std::size_t i = 0; i < order.state.nodes.size(); ++i)
+      if (order.state.nodes[i]->node.mesh >= 0 && shown[i] && selected[i] == these) to_draw.push_back(i);
+  first_selected_ = 0xffffffffu;
   const dmat4 eye = glm::lookAt(order.view.eye, order.view.target, order.view.up);
   const mat3 eye_frame{dmat3(eye)};
+  const double away = length(order.view.target - order.view.eye);
+  const dvec3 forward = (order.view.target - order.view.eye) / away;
   vec4 clip(0);
   if (const ClipPlane& plane = order.settings.clip; plane.on && !box.empty()) {
     const float at = glm::mix(box.min[plane.axis], box.max[plane.axis], static_cast<float>(plane.place));
@@ -312,7 +344,11 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
   glUniform1i(5, !order.settings.channel ? 0 : share ? 2 : 1);
   glUniform4fv(7, 1, &clip.x);
   glUniform1f(9, 0.0f);
-  std::vector<ViewLine> extra;
+  const auto add = [&](const ViewLine& line) {
+    std::vector<LineEnd>& to = line.over ? over : behind;
+    to.push_back({line.from, line.color});
+    to.push_back({line.to, line.color});
+  };
   for (const std::size_t i : to_draw) {
     const DocumentNode& node = *order.state.nodes[i];
     const auto number = static_cast<std::size_t>(node.node.mesh);
@@ -320,12 +356,22 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
     show_values(mesh, number, order);
     numbered_.push_back(node.id);
     const auto here = static_cast<GLuint>(numbered_.size());
-    if (first_selected == 0xffffffffu && is_selected(node.id)) first_selected = here;
+    if (first_selected_ == 0xffffffffu && selected[i]) first_selected_ = here;
     const mat4 world(frames[i]);
-    const mat3 normal_frame(glm::transpose(glm::inverse(dmat3(frames[i]))));
+    // The cofactors turn normals as the inverse does, and are there where a scale is 0.
+    const dmat3 linear(frames[i]);
+    const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    dmat3 cofactors(side * cross(linear[1], linear[2]), side * cross(linear[2], linear[0]),
+                    side * cross(linear[0], linear[1]));
+    const double largest = std::max({length(cofactors[0]), length(cofactors[1]), length(cofactors[2])});
+    if (largest > 0.0) cofactors /= largest;
+    const mat3 normal_frame(cofactors);
     glUniformMatrix4fv(1, 1, GL_FALSE, &world[0][0]);
     glUniformMatrix3fv(2, 1, GL_FALSE, &normal_frame[0][0]);
     glUniform1ui(8, here);
+    const Box& own_box = mesh.of->box;
+    const dvec3 middle =
+        own_box.empty() ? dvec3(frames[i][3]) : dvec3(frames[i] * glm::dvec4(dvec3(own_box.center()), 1.0));
     glFrontFace(glm::determinant(dmat3(frames[i])) < 0.0 ? GL_CW : GL_CCW);
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const PrimitiveOnGpu& primitive = mesh.primitives[p];
@@ -344,30 +390,56 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
       triangles_ += static_cast<std::size_t>(primitive.index_count) / 3;
       if (order.settings.wireframe) {
         glDisable(GL_POLYGON_OFFSET_FILL);
-        glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+        add_edges(mesh.primitives[p], mesh.of->primitives[p]);
+        // Edges as dense as pixels would hide the surface.
+        const double depth = std::max(dot(middle - order.view.eye, forward), 1e-3 * away),
+                     pixel = order.orthographic > 0.0
+                                 ? order.orthographic / height
+                                 : 2.0 * depth * std::tan(0.5 * static_cast<double>(order.view.yfov)) / height;
+        const double apart = primitive.mean_edge * std::cbrt(std::abs(glm::determinant(linear))) / pixel;
         glUniform1f(9, 1.0f);
-        glUniform4f(10, 0.05f, 0.07f, 0.1f, 1.0f);
-        glDrawElements(GL_TRIANGLES, primitive.index_count, GL_UNSIGNED_INT, nullptr);
+        glUniform4f(10, 0.04f, 0.06f, 0.09f, static_cast<float>(std::clamp(apart / 10.0, 0.06, 0.8)));
+        glEnablei(GL_BLEND, 0);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        glBindVertexArray(primitive.edge_layout.id());
+        glDrawElements(GL_LINES, primitive.edge_count, GL_UNSIGNED_INT, nullptr);
+        glDisablei(GL_BLEND, 0);
         glUniform1f(9, 0.0f);
-        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
       }
     }
-    if (order.settings.normals)
+    if (order.settings.normals) {
+      add_normals(mesh);
       for (std::size_t k = 0; k + 1 < mesh.normal_ends.size(); k += 2)
-        extra.push_back({vec3(world * vec4(mesh.normal_ends[k], 1)), vec3(world * vec4(mesh.normal_ends[k + 1], 1)),
-                         vec4(0.35f, 0.75f, 0.95f, 1.0f), false});
+        add({vec3(world * vec4(mesh.normal_ends[k], 1)), vec3(world * vec4(mesh.normal_ends[k + 1], 1)),
+             vec4(0.35f, 0.75f, 0.95f, 1.0f), false});
+    }
+    if (const auto creases = order.creases.find(order.state.meshes[number].get());
+        order.settings.creases && creases != order.creases.end() && creases->second)
+      for (std::size_t k = 0; k + 1 < creases->second->size(); k += 2)
+        add({vec3(world * vec4((*creases->second)[k], 1)), vec3(world * vec4((*creases->second)[k + 1], 1)),
+             vec4(0.98f, 0.86f, 0.30f, 1.0f), false});
+    if (order.settings.regions) add_regions(mesh, number, order, world, dots);
   }
   glFrontFace(GL_CCW);
-  if (!extra.empty()) {
-    SolidOrder more;
-    more.lines = std::move(extra);
-    more.settings.grid = false;
-    draw_lines(more, from_world, false);
-  }
-  draw_lines(order, from_world, true);
+  signs_.clear();
+  std::vector<ViewLine> lines = order.lines;
+  add_signs(order, frames, shown, selected, {order.sign, order.selected_color, kPinnedColor, kHandleColor}, lines,
+            signs_);
+  for (const ViewLine& line : lines) add(line);
+  draw_ends(behind, from_world, false);
+  draw_ends(dots, from_world, false, true);
+  draw_ends(over, from_world, true);
   std::erase_if(meshes_, [](const auto& each) { return !each.second.seen; });
+}
 
+void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int height) {
+  if (!drawn_ || width != width_ || height != height_ || !same_scene(order, last_)) {
+    draw_scene(order, width, height);
+    last_ = order;
+    drawn_ = true;
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  glViewport(0, 0, width, height);
   glDisable(GL_DEPTH_TEST);
   screen_.use();
   glBindTextureUnit(0, color_.id());
@@ -380,7 +452,7 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
   glUniform1ui(4, order.hovered == kNoNode || hovered == numbered_.end()
                       ? 0
                       : static_cast<GLuint>(hovered - numbered_.begin()) + 1);
-  glUniform1ui(5, first_selected);
+  glUniform1ui(5, first_selected_);
   glUniform1i(6, height > 1600 ? 2 : 1);
   glBindVertexArray(empty_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -390,6 +462,16 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
 SolidPicked SolidView::pick(double x, double y) const {
   const int px = static_cast<int>(x), py = height_ - 1 - static_cast<int>(y);
   if (px < 0 || py < 0 || px >= width_ || py >= height_) return {};
+  // Signs lie over everything, and are thin: the nearest one counts that is close by.
+  double nearest = kSignReach * std::max(1.0, height_ / 1080.0);
+  SolidPicked sign;
+  for (const auto& [id, place] : signs_)
+    if (const auto at = on_picture(last_.view, last_.orthographic, width_, height_, place))
+      if (const double away = std::hypot(at->x - x, at->y - y); away < nearest) {
+        nearest = away;
+        sign = {id, place};
+      }
+  if (sign.node != kNoNode) return sign;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());
   GLuint number = 0;
   float depth = 1.0f;

@@ -11,6 +11,8 @@ namespace pliant {
 namespace {
 
 constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
+constexpr double kTooLong = 1000.0;                            // [ms] what is drawn in full must not bar the hand
+constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // of rest, a coarse picture is drawn in full
 constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
 
 }  // namespace
@@ -58,7 +60,7 @@ StagePicture Stage::picture() {
 
 bool Stage::busy() const {
   const std::lock_guard lock(mutex_);
-  return answered_ != ordered_ || !tasks_.empty();
+  return answered_ != ordered_ || !tasks_.empty() || coarse_;
 }
 
 void Stage::post(std::function<void()> task) {
@@ -89,14 +91,18 @@ void Stage::run() {
     std::vector<std::function<void()>> tasks;
     std::optional<StageOrder> order;
     std::uint64_t number = 0;
+    bool refine = false;
     {
       std::unique_lock lock(mutex_);
       const auto ready = [this] { return stop_ || next_ || !tasks_.empty(); };
       if (scenery_ && scenery_->moves())
         changed_.wait_for(lock, std::chrono::milliseconds(8), ready);
+      else if (coarse_)
+        refine = !changed_.wait_for(lock, kRefineAfter, ready);
       else
         changed_.wait(lock, ready);
       if (stop_) break;
+      if (!refine && !next_ && tasks_.empty() && !(scenery_ && scenery_->wants_picture())) continue;
       tasks.swap(tasks_);
       if (next_) last_ = *next_;
       order = last_;
@@ -105,7 +111,7 @@ void Stage::run() {
     }
     if (Window::lost()) break;
     for (const auto& task : tasks) task();
-    if (ordered_ > 0) draw(*order, number);
+    if (number > 0) draw(*order, number, refine);
     wake_();
   }
   scenery_.reset();
@@ -119,15 +125,42 @@ void Stage::run() {
   }
 }
 
-void Stage::draw(const StageOrder& order, std::uint64_t number) {
+// What was asked, of the picture that is there.
+void Stage::answer(const StageOrder& order, std::uint64_t number) {
+  StagePicture done;
+  {
+    const std::lock_guard lock(mutex_);
+    done = done_;
+  }
+  done.order = number;
+  if (order.question && order.question_number != 0) {
+    const dvec2 pixel = *order.question * done.share;
+    done.question = order.question_number;
+    done.picked = solid_->pick(pixel.x, pixel.y);
+  }
+  const std::lock_guard lock(mutex_);
+  done_ = std::move(done);
+  answered_ = number;
+  if (last_.question && last_.question_number == done_.question) last_.question.reset();
+}
+
+void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
+  const bool same = solid_ && !scenery_ && drawn_ && drawn_->width == order.width && drawn_->height == order.height &&
+                    same_scene(drawn_->solid, order.solid);
+  if (same && !refine && drawn_->solid.hovered == order.solid.hovered) {
+    answer(order, number);
+    return;
+  }
+  // The same picture but for what is outlined is cheap, as fine as it is.
+  const double share = refine ? 1.0 : same ? done_.share : share_;
   int at = 0;
   {
     const std::lock_guard lock(mutex_);
     while (at == showing_ || at == finished_) ++at;
   }
   Target& target = targets_[at];
-  const int width = std::max(1, static_cast<int>(std::lround(order.width * share_))),
-            height = std::max(1, static_cast<int>(std::lround(order.height * share_)));
+  const int width = std::max(1, static_cast<int>(std::lround(order.width * share))),
+            height = std::max(1, static_cast<int>(std::lround(order.height * share)));
   if (target.width != width || target.height != height) {
     glDeleteFramebuffers(1, &target.frame);
     glDeleteTextures(1, &target.texture);
@@ -144,30 +177,35 @@ void Stage::draw(const StageOrder& order, std::uint64_t number) {
   const std::uint64_t began = now_ns();
   StagePicture done;
   done.trouble = failure_;
+  drawn_.reset();
   try {
     bool drawn = false;
     if (scenery_) {
+      scenery_->ask(order.question && order.question_number != 0 ? std::optional(*order.question * share_)
+                                                                 : std::nullopt);
       const Status status = scenery_->draw(order.solid, target.frame, width, height);
       drawn = status.ok();
       if (!drawn) done.trouble = status.error().message();
     }
-    if (!drawn && solid_) solid_->draw(order.solid, target.frame, width, height);
+    if (!drawn && solid_) {
+      solid_->draw(order.solid, target.frame, width, height);
+      if (!scenery_) drawn_ = order;
+    }
     if (order.question && order.question_number != 0) {
-      const dvec2 pixel = *order.question * share_;
+      const dvec2 pixel = *order.question * share;
       done.question = order.question_number;
-      done.picked = drawn ? scenery_->pick(pixel.x, pixel.y)
-                          : solid_ ? solid_->pick(pixel.x, pixel.y) : SolidPicked{};
+      done.picked = drawn ? scenery_->pick(pixel.x, pixel.y) : solid_ ? solid_->pick(pixel.x, pixel.y) : SolidPicked{};
     }
   } catch (const std::exception& error) {
     done.trouble = std::string("the picture failed: ") + error.what();
   }
   glFinish();  // the other context may show it from now on
-  draw_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
+  const double took = static_cast<double>(now_ns() - began) * 1e-6;
   done.texture = target.texture;
   done.width = width;
   done.height = height;
-  done.share = share_;
-  done.draw_ms = draw_ms_;
+  done.share = share;
+  done.draw_ms = same && !refine ? done_.draw_ms : took;
   done.triangles = solid_ ? solid_->triangles() : 0;
   done.order = number;
   done.view = order.solid.view;
@@ -182,12 +220,26 @@ void Stage::draw(const StageOrder& order, std::uint64_t number) {
     done_ = std::move(done);
     finished_ = at;
     answered_ = number;
+    coarse_ = share < 1.0 && took < kTooLong && !(scenery_ && scenery_->moves());
     if (last_.question && last_.question_number == done_.question) last_.question.reset();
   }
-  // A picture that comes late is worse than a coarse one.
+  if (!same && !refine) choose_share(took);
+}
+
+void Stage::choose_share(double took) {
+  // A picture that comes late is worse than a coarse one, but only pixels can be spared: what the triangles cost is
+  // known from two pictures of different resolution.
+  const double pixels = share_ * share_;
+  if (std::abs(pixels - sample_pixels_) > 0.05 && sample_pixels_ > 0.0)
+    fixed_ms_ = std::clamp(took - pixels * (took - sample_ms_) / (pixels - sample_pixels_), 0.0, took);
+  fixed_ms_ = std::min(fixed_ms_, took);
   const double finest = software_ ? 1.0 : kFinest;
-  if (draw_ms_ > kSlowDraw || (draw_ms_ < kFastDraw && share_ < finest)) {
-    share_ = std::clamp(share_ * std::sqrt(kWantedDraw / std::max(draw_ms_, 1.0)), kCoarsest, finest);
+  if (took > kSlowDraw || (took < kFastDraw && share_ < finest)) {
+    const double per_pixel = std::max(took - fixed_ms_, 0.1) / pixels,
+                 room = std::max(kWantedDraw - fixed_ms_, 0.5 * fixed_ms_);
+    sample_pixels_ = pixels;
+    sample_ms_ = took;
+    share_ = std::clamp(std::sqrt(room / per_pixel), std::max(kCoarsest, 0.5 * share_), std::min(finest, 2.0 * share_));
     if (std::abs(share_ - 1.0) < 0.1) share_ = 1.0;
   }
 }

@@ -36,7 +36,7 @@ std::optional<dvec3> on_picture(const Viewpoint& view, double orthographic, int 
   const dvec3 away = place - view.eye;
   const double depth = dot(away, forward), aspect = static_cast<double>(width) / height;
   const double half = orthographic > 0.0 ? 0.5 * orthographic : depth * std::tan(0.5 * static_cast<double>(view.yfov));
-  if (orthographic <= 0.0 && depth <= 1e-9) return {};
+  if (orthographic <= 0.0 && depth <= 1e-9 * length(view.target - view.eye)) return {};
   return dvec3(0.5 * width * (1.0 + dot(away, right) / (half * aspect)), 0.5 * height * (1.0 - dot(away, up) / half),
                depth);
 }

@@ -19,7 +19,7 @@ struct ClipPlane {
   int axis = 0;          // x, y, z of the world
   double place = 0.5;    // [1] of the scene's box along it
   bool flipped = false;  // the other side is cut away
-  friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
+  bool operator==(const ClipPlane&) const = default;
 };
 
 struct ViewSettings {
@@ -33,11 +33,13 @@ struct ViewSettings {
   bool tetrahedra = false;
   bool forces = true, contacts = false;       // while playing
   bool nodes = true;                          // probes, lights, cameras, instruments' frames as signs
+  bool names = false;                         // of what has a sign or is selected
+  bool regions = true;                        // what is pinned or a handle, by box and by paint
   std::optional<Channel> channel;             // painted values as colour
   double value_low = 0.25, value_high = 4.0;  // of a factor, the ends of the colours
   ClipPlane clip;
   std::vector<NodeId> isolated;  // only these and what is below them; empty: all
-  friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
+  bool operator==(const ViewSettings&) const = default;
 };
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 // Component `content` of the package.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,7 +17,10 @@ namespace pliant {
 struct SafetyCap {
   double max_force = 10.0;  // [N] of a hand's device; what its driver can render is a limit beside this one
   // [N/s] From nothing to max_force no faster than the usual device from nothing to its own: in 3.3 ms.
-  double max_slew() const { return max_force * DeviceParameters().max_slew / DeviceParameters().max_force; }
+  // 1 N/s at least, which is the least that a device may have.
+  double max_slew() const {
+    return std::max(1.0, max_force * DeviceParameters().max_slew / DeviceParameters().max_force);
+  }
   // [N m] Of a tool: max_force at the end of a lever of 10 cm.
   double max_torque() const { return 0.1 * max_force; }
 };

@@ -34,7 +34,7 @@ struct DeviceCapabilities {
   bool renders_torque = false;   // the same
   double max_force = 0.0;      // [N] what the device can render; 0: not said. The smaller of this and the level's holds
   double max_torque = 0.0;     // [N m] the same
-  double max_stiffness = 0.0;  // [N/m] what it can render stably; 0: not said. The smaller holds here too
+  double max_stiffness = 0.0;  // [N/m] per metre of its workspace, what it can render stably; 0: not said
 };
 
 class Driver {

@@ -59,13 +59,21 @@ enum class SolverKind : std::uint8_t {
   kDense,              // for tests
 };
 
+// What of a surface is filled with tissue.
+enum class Fill : std::uint8_t {
+  kSolid,  // what it encloses; of a thin wall (inner and outer sheet close to each other) its cavity, too
+  kWall,   // only the wall: as it is, or a layer of `thickness` behind the surface
+};
+
 // Tissue: co-rotational FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
 struct SoftBodyParameters {
   double young = 5e3;                    // [Pa]
   double poisson = 0.45;                 // [1]
   double density = 1000.0;               // [kg/m3]
   std::array<double, 2> rayleigh{0, 0};  // alpha [1/s], beta [s]
-  double cell = 0.0;                     // [m] lattice cell; 0: sized from the bounds
+  double cell = 0.0;                     // [m] lattice cell; 0: sized for some 2,000 tetrahedra
+  Fill fill = Fill::kSolid;              // what the lattice fills
+  double thickness = 0.0;                // [m] of a wall, inwards from the surface; 0: the wall as the surface has it
   std::string mesh;                      // tetrahedra file, instead of `cell`
   Box pinned;                            // [m] object frame; empty: nothing (or the attribute _PINNED)
   double friction_static = 0.4;          // [1]
@@ -118,10 +126,12 @@ struct ProbeParameters {
 
 // What may leave for the hand that holds the device. Keys of PLIANT_haptic_device.
 struct DeviceParameters {
-  double scale = 1.0;          // [1] a driver's workspace -> world
-  double max_force = 3.3;      // [N] norm of the force sent
-  double max_stiffness = 0.0;  // [N/m] 0: no limit; else the force may not rise faster with displacement than this
-  double max_slew = 1000.0;    // [N/s] of the norm of the change
+  double scale = 1.0;      // [1] a driver's workspace -> world
+  double max_force = 3.3;  // [N] norm of the force sent
+  // [N/m] per metre of the world: the force may not rise faster with displacement than this; 0: no limit. What a driver
+  // says of itself (DeviceCapabilities) is per metre of its own workspace.
+  double max_stiffness = 0.0;
+  double max_slew = 1000.0;  // [N/s] of the norm of the change; force that is let go falls by 1000 N/s at least
 };
 
 // A path in time: script files and orbits. Linear between rows, slerp for rotation; holds the last row.

@@ -167,6 +167,7 @@ class Session {
 
  private:
   friend class Pictures;
+  friend struct SessionInside;  // engine/session_inside.h; not part of the public interface
   explicit Session(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };

@@ -58,35 +58,54 @@ bool inside(const Body& body, dvec3 x, double radius) {
   return true;
 }
 
+// Names, each once: "`a`, `b`".
+class Names {
+ public:
+  void add(const std::string& name) {
+    if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
+  }
+  std::size_t size() const { return names_.size(); }
+  std::string list() const {
+    std::string list;
+    for (std::size_t i = 0; i < names_.size() && i < kNamed; ++i) list += (i ? ", `" : "`") + names_[i] + "`";
+    return names_.size() > kNamed ? list + ", ..." : list;
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
 }  // namespace
 
 std::optional<std::string> unfelt_bodies(const World& world) {
   const std::vector<Body> felt = surfaces(world), unfelt = bodies(world);
-  std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
+  Names probes, passed;
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     if (probe.meets != ProbeMeets::kSurfaces) continue;
+    const std::string name = name_of(world, entity);
+    const auto pass = [&](const Body& body) {
+      probes.add(name);
+      passed.add(body.name);
+    };
     if (felt.empty())
-      for (const Body& body : unfelt) add(body.name);
+      for (const Body& body : unfelt) pass(body);
     const HapticDevice* device = find_device(world, entity);
     if (!device || !device->path.valid()) continue;
+    const double radius = probe.radius;  // clang 14 captures no structured bindings
     const std::vector<PathRow>& rows = world.paths[device->path].rows;
     const auto enters = [&](const Body& body) {
       return std::any_of(rows.begin(), rows.end(),
-                         [&](const PathRow& row) { return inside(body, row.position, probe.radius); });
+                         [&](const PathRow& row) { return inside(body, row.position, radius); });
     };
     if (std::any_of(felt.begin(), felt.end(), enters)) continue;
     for (const Body& body : unfelt)
-      if (enters(body)) add(body.name);
+      if (enters(body)) pass(body);
   }
-  if (names.empty()) return {};
-  std::string list;
-  for (std::size_t i = 0; i < names.size() && i < kNamed; ++i) list += (i ? ", `" : "`") + names[i] + "`";
-  if (names.size() > kNamed) list += ", ...";
-  return "probes whose PLIANT_probe/meets is `surfaces` pass through soft and rigid bodies (here " + list +
-         "); set it to `all` or `bodies` where they shall be felt";
+  if (probes.size() == 0) return {};
+  const bool one = probes.size() == 1;
+  return "the probe" + std::string(one ? " " : "s ") + probes.list() + (one ? " passes" : " pass") +
+         " through soft and rigid bodies (here " + passed.list() + "), because " + (one ? "its" : "their") +
+         " PLIANT_probe/meets is `surfaces`; set it to `all` or `bodies` where they shall be felt";
 }
 
 }  // namespace pliant

@@ -8,6 +8,8 @@
 
 #include "components/haptic_device.h"
 #include "components/world.h"
+#include "content/author/instruments.h"
+#include "content/author/presets.h"
 #include "content/files/limits.h"
 #include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
@@ -17,6 +19,7 @@
 #include "player/exit.h"
 #include "player/standard_streams.h"
 #include "player/study/study.h"
+#include "player/verbs/content_folder.h"
 #include "player/verbs/verbs.h"
 #include "pliant/content.h"
 
@@ -180,6 +183,35 @@ void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, Conver
   verb->footer("Example:\n  pliant validate level.gltf");
 }
 
+void add_author(CLI::App& app, AuthorOptions& options) {
+  std::vector<std::string> presets, tools, sides{"none"};
+  for (const TissuePreset& preset : tissue_presets()) presets.emplace_back(preset.word);
+  for (const Instrument& tool : instruments()) tools.emplace_back(tool.word);
+  tools.emplace_back("none");
+  for (const Side side : {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack})
+    sides.emplace_back(word_of(side));
+  CLI::App* verb = app.add_subcommand("author", "a first level from an organ's mesh: soft, pinned, with an instrument");
+  verb->add_option("in", options.in, "mesh or level")->required()->check(named());
+  verb->add_option("-o,--out", options.out, "the level: .glb or .gltf")->required()->check(named())->type_name("FILE");
+  for (const auto& [name, nodes, what] :
+       {std::tuple("--soft", &options.soft, "becomes a soft body (default: the largest mesh); may be repeated"),
+        std::tuple("--surface", &options.surface, "becomes a deformable surface instead; may be repeated")})
+    verb->add_option(name, *nodes, what)->take_all()->allow_extra_args(false)->check(named())->type_name("NODE");
+  verb->add_option("--preset", options.preset, "tissue: " + joined(presets) + " (liver)")->check(one_of(presets));
+  verb->add_option("--pin", options.pin, "which side of what is soft is held: " + joined(sides) + " (bottom)")
+      ->check(one_of(sides));
+  verb->add_option("--tool", options.tool, joined(tools) + " (rod where something is soft)")->check(one_of(tools));
+  verb->add_flag("--probe", options.probe, "a probe, too");
+  verb->add_flag("--force", options.force, "replace what is there");
+  add_limits(verb);
+  add_unit(verb, options.unit, "what one unit of a bare mesh is (m)");
+  verb->footer(
+      "Examples:\n"
+      "  pliant author organ.glb -o level.glb\n"
+      "  pliant author organ.glb --soft capsule --preset liver --pin bottom --tool sphere_tip -o level.glb\n"
+      "  pliant author scan.stl --unit mm --surface scan --preset skin -o level.glb");
+}
+
 void add_study(CLI::App& app, StudyOptions& options) {
   CLI::App* verb = app.add_subcommand("study", "speed against error: figures, data and a plot");
   CLI::Option* name = verb->add_option("name", options.name, "of a study, or all");
@@ -261,7 +293,9 @@ int parse_and_run(int argc, const char* const* argv) {
   ConvertOptions conversion;
   std::string inspected, validated;
   bool inspect_json = false, devices_json = false;
+  AuthorOptions authoring;
   add_run(app, run_options);
+  add_author(app, authoring);
   add_files(app, inspected, inspect_json, conversion, validated);
   CLI::App* verb = app.add_subcommand("devices", "haptic and pointing devices found, and how to use each");
   verb->add_flag("--json", devices_json, "as JSON");
@@ -286,12 +320,14 @@ int parse_and_run(int argc, const char* const* argv) {
   if (name == "run") return run_options.list ? list_levels() : run(run_options);
   if (name == "inspect") return inspect(inspected, inspect_json);
   if (name == "convert") return convert(conversion);
+  if (name == "author") return author(authoring);
   if (name == "validate") return validate(validated);
   if (name == "devices") return devices(devices_json);
   if (name == "study") return study(study_options);
   const Result<double> unit = parse_unit(edit_unit);
   if (!unit) return fail(kUsage, unit.error());
   edit_options.unit = *unit;
+  edit_options.levels = shipped_levels();
   const Status edited = edit(edit_options);
   return edited ? kDone : fail(kFailed, edited.error());
 }

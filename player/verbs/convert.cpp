@@ -131,8 +131,11 @@ void say_left_behind(const Level& level, const fs::path& out) {
   names.erase("");
   std::string missing;
   std::error_code ignored;
-  for (const std::string& name : names)
-    if (!fs::exists(out.parent_path() / name, ignored)) missing += (missing.empty() ? "`" : ", `") + name + "`";
+  for (const std::string& name : names) {
+    const Result<fs::path> file = confined_path(out.parent_path(), name);  // else a panorama that all levels share
+    if (!fs::exists(file ? *file : out.parent_path() / name, ignored))
+      missing += (missing.empty() ? "`" : ", `") + name + "`";
+  }
   if (!missing.empty())
     note("the level names files that are not beside " + out.string() + ": " + missing + "; copy them there");
 }
@@ -149,9 +152,6 @@ int convert(const ConvertOptions& options) {
   if (!level) return fail(kFailed, level.error());
   if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
   for (const std::string& sentence : level->notes) note(sentence);
-  if (options.unit != 1.0 && level->has_pliant())
-    return fail(kUsage, {"--unit",
-                         "is for bare meshes; this level's PLIANT extensions name lengths in metres: scale its nodes"});
   scale_roots(*level, options.unit);
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());

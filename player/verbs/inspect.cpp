@@ -2,10 +2,17 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stop_token>
+#include <thread>
 
 #include "content/keys/enum_words.h"
+#include "content/keys/unused_keys.h"
+#include "content/level/device_use.h"
 #include "content/level/level_budget.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
@@ -24,6 +31,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::chrono::milliseconds kTissueTime{2000};  // for what bare meshes would be as tissue, all of them
+
+// Stops what takes a token of it when its time is over.
+class Deadline {
+ public:
+  explicit Deadline(std::chrono::milliseconds time)
+      : timer_([this, time](const std::stop_token& done) {
+          std::unique_lock lock(mutex_);
+          if (!over_.wait_for(lock, done, time, [] { return false; })) source_.request_stop();
+        }) {}
+  std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+  std::mutex mutex_;
+  std::condition_variable_any over_;
+  std::jthread timer_;  // last: ended first
+};
+
 // One node with a mesh, as it would be touched: in world scale, welded and cleaned.
 struct ObjectReport {
   std::string name;
@@ -32,7 +58,8 @@ struct ObjectReport {
   std::string refused;  // why it cannot be touched; empty: it can
   Mesh mesh;
   MeshReport report;
-  Box box;  // [m] world
+  Box box;         // [m] world
+  Json as_tissue;  // of a bare mesh; null: there was no time for it
 };
 
 std::vector<ObjectReport> inspect_objects(const Level& level) {
@@ -40,6 +67,7 @@ std::vector<ObjectReport> inspect_objects(const Level& level) {
   const std::vector<mat4> world = world_matrices(level);
   const bool bare = !level.has_pliant();
   const LevelBudget budget(level);
+  const Deadline deadline(kTissueTime);
   double triangles = 0.0, surfaces = 0.0;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
@@ -64,6 +92,7 @@ std::vector<ObjectReport> inspect_objects(const Level& level) {
     auto built = build_mesh(object.name, source.primitives, world[i],
                             {node.deformable ? node.deformable->crease_angle : 0.0, std::nullopt, touched});
     if (built) {
+      if (bare && !deadline.token().stop_requested()) object.as_tissue = describe_as_tissue(*built, deadline.token());
       object.mesh = std::move(built->mesh);
       object.report = built->report;
       object.box = object.mesh.box;
@@ -146,7 +175,8 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
                     {"undecided_parts", object.report.undecided_parts},
                     {"creases", count_creases(object.mesh)},
                     {"bounds_m", to_json(object.box)},
-                    {"problems", problems(object)}});
+                    {"problems", problems(object)},
+                    {"as_tissue", object.as_tissue}});
   }
   std::vector<std::string> probes, devices;
   std::set<std::string> extensions;
@@ -180,7 +210,11 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   json["bare_mesh"] = !level.has_pliant();
   json["objects"] = list;
   json["flesh"] = describe_tissue(level);
-  json["notes"] = level.notes;
+  std::vector<std::string> notes = level.notes;
+  for (std::string& sentence : unused_key_notes(level)) notes.push_back(std::move(sentence));
+  for (const DeviceFault& idle : find_unmoved_probes(level))
+    notes.push_back("`" + level.nodes[idle.node].name + "` " + idle.what);
+  json["notes"] = notes;
   return json;
 }
 
@@ -201,6 +235,7 @@ void print_text(const Json& json, const Box& box) {
     print("  bounds: {:.4g} x {:.4g} x {:.4g} m about ({:.4g}, {:.4g}, {:.4g})\n", box.size().x, box.size().y,
           box.size().z, box.center().x, box.center().y, box.center().z);
   if (const std::string hint = json["unit_hint"]; !hint.empty()) print("  unit: {}\n", hint);
+  std::size_t left_out = 0;
   for (const Json& object : json["objects"]) {
     print("  object {}: {} vertices (of {}), {} triangles (of {}), {} zones, {}{}\n", object["name"].get<std::string>(),
           object["vertices"].get<std::size_t>(), object["file_vertices"].get<std::size_t>(),
@@ -208,7 +243,10 @@ void print_text(const Json& json, const Box& box) {
           object["zones"].get<std::size_t>(), object["closed"].get<bool>() ? "closed" : "open",
           object["deformable"].get<bool>() ? ", deformable" : "");
     for (const Json& problem : object["problems"]) print("    {}\n", problem.get<std::string>());
+    print_as_tissue(object["as_tissue"]);
+    left_out += json["bare_mesh"].get<bool>() && object["vertices"] != 0 && object["as_tissue"].is_null();
   }
+  if (left_out > 0) print("  {} object{} not tried as tissue, to answer soon\n", left_out, left_out == 1 ? "" : "s");
   for (const Json& tool : json["tools"]) {
     const std::string device = tool["device"];
     print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),

@@ -2,10 +2,13 @@
 
 #include <numbers>
 
+#include "content/level/soft_preview.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
+#include "content/tets/step_cost.h"
 #include "content/tets/tet_boundary.h"
 #include "content/tets/tet_file.h"
+#include "content/tets/tet_findings.h"
 #include "content/tets/tet_parts.h"
 #include "content/tets/tet_quality.h"
 #include "player/exit.h"
@@ -34,7 +37,30 @@ Json describe(const TetMesh& mesh) {
           {"largest_dihedral_deg", mesh.quality.largest_dihedral * kDegrees},
           {"worst_ratio", mesh.quality.worst_ratio},
           {"median_ratio", mesh.quality.median_ratio},
-          {"bounds_m", {{"min", corner(box.min)}, {"max", corner(box.max)}}}};
+          {"bounds_m", {{"min", corner(box.min)}, {"max", corner(box.max)}}},
+          {"cell_m", mesh.report.cell},
+          {"wall_m", mesh.report.wall},
+          {"parts_lost", mesh.report.parts_dropped},
+          {"tissue_lost", mesh.report.volume_dropped},
+          {"thin_share", mesh.report.thin},
+          {"step_ms", step_ms(mesh.tets.size(), machine_slowness())}};
+}
+
+// A level of the tissue alone: what else is in it takes its time, and its faults are not the tissue's.
+Level tissue_of(const Level& level) {
+  Level bodies = level;
+  bodies.environment.reset();
+  for (LevelNode& node : bodies.nodes) {
+    node.probe.reset();
+    node.device.reset();
+    node.deformable.reset();
+    node.rigid_body.reset();
+    if (node.handle) node.handle->device.clear();
+    if (node.soft_body) continue;
+    node.handle.reset();
+    node.mesh = -1;
+  }
+  return bodies;
 }
 
 }  // namespace
@@ -44,14 +70,12 @@ Json describe_tissue(const Level& level) {
   bool any = false;
   for (const LevelNode& node : level.nodes) any = any || (node.in_scene && node.soft_body);
   if (!any) return list;
-  Level bodies = level;
-  bodies.environment.reset();  // a sky that is missing keeps nobody from looking at tissue
-  const Result<World> world = spawn(bodies);
+  const Result<World> world = spawn(tissue_of(level));
   if (!world) return Json::array({{{"problem", world.error().message()}}});
   for (auto [entity, body] : world->registry.view<const SoftBody>()) {
     const TetMesh& tets = world->tet_meshes[body.tets];
     Json tissue = describe(tets);
-    tissue["problems"] = Json::array();
+    tissue["problems"] = tets.report.findings;
     if (const std::string doubt = locking_doubt(body, tets.tets.size()); !doubt.empty())
       tissue["problems"].push_back(doubt);
     list.push_back(std::move(tissue));
@@ -75,8 +99,42 @@ void print_tissue(const Json& tissue) {
     print("    dihedral angles {:.1f} to {:.1f} degrees, 3 r/R {:.3f} at worst, {:.3f} at the median\n",
           body["smallest_dihedral_deg"].get<double>(), body["largest_dihedral_deg"].get<double>(),
           body["worst_ratio"].get<double>(), body["median_ratio"].get<double>());
+    print("    {}about {:.2g} ms a soft step (an estimate)\n",
+          body["cell_m"].get<double>() > 0.0 ? "a cell of " + length_text(body["cell_m"].get<double>()) + ", " : "",
+          body["step_ms"].get<double>());
     for (const Json& problem : body.value("problems", Json::array())) print("    {}\n", problem.get<std::string>());
   }
+}
+
+Json describe_as_tissue(const BuiltMesh& surface, const std::stop_token& stop) {
+  const Result<SoftPreview> preview = preview_soft_body(surface, SoftBody{}, nullptr, stop);
+  if (!preview && stop.stop_requested()) return nullptr;
+  if (!preview) return {{"problem", preview.error().what}};
+  return {{"cell_m", preview->cell},
+          {"nodes", preview->nodes.size()},
+          {"tetrahedra", preview->tetrahedra},
+          {"parts", preview->parts},
+          {"parts_lost", preview->parts_lost},
+          {"volume_m3", preview->volume},
+          {"wall_m", preview->wall},
+          {"smallest_dihedral_deg", preview->quality.smallest_dihedral * kDegrees},
+          {"largest_dihedral_deg", preview->quality.largest_dihedral * kDegrees},
+          {"worst_ratio", preview->quality.worst_ratio},
+          {"step_ms", preview->step_ms},
+          {"problems", preview->findings}};
+}
+
+void print_as_tissue(const Json& tissue) {
+  if (tissue.is_null()) return;
+  if (tissue.contains("problem")) {
+    print("    as tissue: {}\n", tissue["problem"].get<std::string>());
+    return;
+  }
+  print(
+      "    as tissue: {} tetrahedra, a cell of {}, 3 r/R {:.3f} at worst, about {:.2g} ms a soft step (an estimate)\n",
+      tissue["tetrahedra"].get<std::size_t>(), length_text(tissue["cell_m"].get<double>()),
+      tissue["worst_ratio"].get<double>(), tissue["step_ms"].get<double>());
+  for (const Json& problem : tissue["problems"]) print("      {}\n", problem.get<std::string>());
 }
 
 int inspect_tets(const std::filesystem::path& path, bool as_json) {

@@ -6,10 +6,12 @@
 #include <algorithm>
 
 #include "content/keys/enum_words.h"
+#include "content/keys/unused_keys.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/safety_cap.h"
+#include "engine/driver_limits.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "player/run/unfelt.h"
@@ -44,7 +46,7 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
 }
 
 // In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets
-// one; not where there is a tool, which it takes hold of (window_carrier.h).
+// one; not where there is a tool, which it takes hold of (window/carrier.h).
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
     if (node.handle || (node.device && node.device->driver == DriverKind::kMouse)) return {};
@@ -144,7 +146,7 @@ void say_creeping(Prepared& run) {
 Outcome apply_settings(const RunOptions& options, double unit, Level& level, Prepared& run) {
   if (run.replay && !run.replay->header.settings.empty()) {
     for (const std::string& setting : run.replay->header.settings)
-      if (!setting.starts_with(kUnitSetting)) run.settings.push_back(setting);
+      if (!setting.starts_with(kUnitSetting) && !is_driver_setting(setting)) run.settings.push_back(setting);
     if (const Status status = set_keys(level, run.settings); !status)
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
     say(run, fmt::format("the recording's settings hold:{}{}{}",
@@ -230,10 +232,11 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
         "the level is not as it was when the recording was made (its file, or --set, --unit or --tool-force of this "
         "run): "
         "forces will differ");
-  auto spawned = spawn(level, &notes);
+  auto spawned = spawn_moving_images(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
+  for (const std::string& sentence : unused_key_notes(level)) say(run, sentence);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   say_unmoved(windowed, run);
   if (windowed) repeat_scripts(run.world);
@@ -245,6 +248,8 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   say_creeping(run);
   say_locking(run);
   if (run.replay) {
+    if (const Status status = apply_driver_settings(run.world, run.replay->header.settings); !status)
+      return failed({options.replay, "its setting " + status.error().message()});
     if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
     if (run.replay->header.rate != run.world.simulation.touch_rate)
       return wrong_arguments(

@@ -46,6 +46,18 @@ struct ConvertOptions {
 };
 int convert(const ConvertOptions& options);
 
+struct AuthorOptions {
+  std::string in, out;
+  std::vector<std::string> soft, surface;  // names of nodes; none: the largest becomes soft
+  std::string preset = "liver";            // content/author/presets.h
+  std::string pin = "bottom";              // a Side, or none
+  std::string tool;                        // an Instrument, or none; empty: rod where something is soft
+  bool probe = false;
+  double unit = 1.0;   // [m] that one unit of the input is
+  bool force = false;  // replaces what is there
+};
+int author(const AuthorOptions& options);
+
 int validate(const std::string& level);
 
 int devices(bool json);

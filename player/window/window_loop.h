@@ -6,11 +6,11 @@
 #include <optional>
 
 #include "player/window/overlay.h"
-#include "player/window/window_carrier.h"
 #include "player/window/window_picture.h"
-#include "player/window/window_pointer.h"
 #include "player/window/window_session.h"
 #include "window/camera_control.h"
+#include "window/carrier.h"
+#include "window/pointer.h"
 
 namespace pliant {
 

@@ -39,6 +39,11 @@ dvec3 surface_displacement(const World& world, Entity probe, double dt) {
   return forces > 0.0 ? sum / forces : dvec3(0);
 }
 
+// What is not rendered is not wanted either: there is nothing to clip, and nothing that a hand misses.
+dvec3 rendered(dvec3 wanted, bool renders) {
+  return renders ? wanted : dvec3(0);
+}
+
 // A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is
 // unknown of the one is unknown of the other, so that both are let go and engaged together. They share one account of
 // energy: a push at a fingertip is a force and a torque about the wrist, which give and take only together.
@@ -48,19 +53,17 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // Ready without a pose: no pose at all
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
-  SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew, tool.weight};
-  SafetyLimits torque_limits{handle.max_torque, 0.0,
-                             device.max_slew * handle.max_torque / std::max(handle.max_force, 1e-9),
-                             cross(tool.sensed.pose.rotation * tool.balance, tool.weight), kSlowTurn};
-  torque_limits.fastest = kFastestTurn;
-  limits.jumped = torque_limits.jumped = jumps(tool.force_safety, device, limits, device.position, tick.dt) ||
-                                         jumps(tool.torque_safety, device, torque_limits, tool.turned, tick.dt);
+  SafetyLimits limits = force_limits(device), turning = torque_limits(device, handle);
+  limits.weight = tool.weight;
+  turning.weight = cross(tool.sensed.pose.rotation * tool.balance, tool.weight);
+  limits.jumped = turning.jumped = jumps(tool.force_safety, device, limits, device.position, tick.dt) ||
+                                   jumps(tool.torque_safety, device, turning, tool.turned, tick.dt);
   tool.force_safety.work = tool.torque_safety.work;
-  const SafetyResult force = make_safe(tool.force_safety, device, limits, known ? linear(tool.device_wrench) : unknown,
-                                       device.position, tick.time, tick.dt);
+  const dvec3 push = known ? rendered(linear(tool.device_wrench), device.can.renders_force) : unknown;
+  const dvec3 turn = known ? rendered(angular(tool.device_wrench), device.can.renders_torque) : unknown;
+  const SafetyResult force = make_safe(tool.force_safety, device, limits, push, device.position, tick.time, tick.dt);
   tool.torque_safety.work = tool.force_safety.work;
-  const SafetyResult torque = make_safe(tool.torque_safety, device, torque_limits,
-                                        known ? angular(tool.device_wrench) : unknown, tool.turned, tick.time, tick.dt);
+  const SafetyResult torque = make_safe(tool.torque_safety, device, turning, turn, tool.turned, tick.time, tick.dt);
   for (const SafetyResult& result : {force, torque}) {
     if (result.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
     if (result.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
@@ -99,12 +102,12 @@ void write_devices(World& world, Tick tick) {
   for (ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-    SafetyLimits limits{device.max_force, device.max_stiffness, device.max_slew};
+    SafetyLimits limits = force_limits(device);
     limits.carried = surface_displacement(world, state.entity, tick.dt);
     const ToolTouchState* const among_bodies = find_tool(world, state.entity);
     const dvec3 pressed = probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0));
-    const dvec3 wanted =
-        plausible_rotation(device.rotation) ? pressed : dvec3(std::numeric_limits<double>::quiet_NaN());
+    const dvec3 wanted = plausible_rotation(device.rotation) ? rendered(pressed, device.can.renders_force)
+                                                             : dvec3(std::numeric_limits<double>::quiet_NaN());
     const SafetyResult safe = make_safe(state.safety, device, limits, wanted, device.position, tick.time, tick.dt);
     if (safe.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
     if (safe.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
@@ -114,6 +117,22 @@ void write_devices(World& world, Tick tick) {
   if (!world.tools) return;
   for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools)
     if (!tool->is_probe) write_tool(world, *tool, tick);
+}
+
+void begin_anew(World& world, Entity hand) {
+  const auto anew = [](SafetyState& safety) {
+    SafetyState next;
+    next.tally = safety.tally;
+    safety = next;
+  };
+  for (ProbeState& state : world.touch->probes)
+    if (state.entity == hand) anew(state.safety);
+  if (Probe* probe = world.registry.find<Probe>(hand)) probe->placed = false;
+  ToolTouchState* const tool = find_tool(world, hand);
+  if (!tool) return;
+  anew(tool->force_safety);
+  anew(tool->torque_safety);
+  tool->sensing = false;
 }
 
 }  // namespace pliant

@@ -10,4 +10,8 @@ namespace pliant {
 void read_devices(World& world, Tick tick);   // HapticDevice -> Probe pose and velocity
 void write_devices(World& world, Tick tick);  // Probe force, tool wrench -> safety -> HapticDevice
 
+// Somebody else moves this probe or tool from now on: nothing of the hand before is true of the next. Its gate is
+// closed, its force begins at zero, and it has given no energy yet. What was counted stays.
+void begin_anew(World& world, Entity hand);
+
 }  // namespace pliant

@@ -12,7 +12,7 @@ void take_over(World& world, Entity taken, MouseInput& mouse) {
   if (!device || device->driver == DriverKind::kMouse) return;
   device->driver = DriverKind::kMouse;
   device->path = {};
-  mouse.position = device->position;
+  mouse.position = mouse.to = device->position;
 }
 
 }  // namespace
@@ -27,15 +27,16 @@ void read_mouse(World& world, Tick tick) {
     mouse.heard = true;
     mouse.heard_at = tick.time;
     take_over(world, mouse.samples.read().takes, mouse);
+    const bool free_now = mouse.samples.read().free, arrived = mouse.position == mouse.to;
     mouse.to = mouse.samples.read().position;
-    const bool free_now = mouse.samples.read().free;
-    free = free_now && mouse.free;  // the way out of a press is travelled: force acts along it
+    free = free_now && mouse.free && arrived;  // the way out of a press is travelled: force acts along it
     mouse.free = free_now;
     mouse.from = free ? mouse.to : mouse.position;
+    mouse.lasts = std::max(mouse.lasts, length(mouse.to - mouse.from) / kMouseFastest);
   }
   if (!mouse.heard || tick.time - mouse.heard_at > kMouseSilence) return;
   const double share = std::min(1.0, (tick.time - mouse.heard_at + tick.dt) / mouse.lasts);
-  mouse.position = mouse.from + share * (mouse.to - mouse.from);
+  mouse.position = share < 1.0 ? mouse.from + share * (mouse.to - mouse.from) : mouse.to;
   for (auto [entity, device] : world.registry.view<HapticDevice>()) {
     if (device.driver != DriverKind::kMouse) continue;
     if (first) device.status = DeviceStatus::kReady;

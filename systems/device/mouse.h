@@ -10,6 +10,10 @@ namespace pliant {
 inline constexpr double kMouseSilence = 0.25;      // [s] unheard for so long: no more poses, so safety sends no force
 inline constexpr double kMouseSlowestFrame = 0.1;  // [s] a pose that came later than this is reached as if it had not
 
+// [m/s] Faster, and a jump of the pointer is felt as a blow. Pictures that were held up come in ticks that follow each
+// other, so that no way may be as short in time as what lies between them.
+inline constexpr double kMouseFastest = 0.5;
+
 // Where the pointing hand wants the probe. Written by the visual clock every frame, also when nothing moved.
 struct MouseSample {
   dvec3 position{0};         // [m] world
@@ -18,7 +22,7 @@ struct MouseSample {
 };
 
 // One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at
-// most a frame late.
+// most a frame late, where that is no faster than kMouseFastest.
 struct MouseInput {
   explicit MouseInput(dvec3 start) : from(start), position(start), to(start) {}
 

@@ -49,7 +49,7 @@ dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wa
   const double beside = dot(wanted - weight, along), total = dot(wanted, along), size = length(wanted);
   double most = 0.0;
   if (budget > 0) {
-    most = stoppable(budget, step, limits.slew * dt);
+    most = stoppable(budget, step, std::max(limits.slew, limits.fall) * dt);
   } else {
     most = -std::min(-budget / step, size * std::min(1.0, way / (limits.slow * dt)));
   }
@@ -58,6 +58,20 @@ dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wa
   const double room = total + std::sqrt(std::max(0.0, limits.force * limits.force - across));
   const double reduction = std::min({beside - most, size, room});
   return reduction > 0 ? wanted - reduction * along : wanted;
+}
+
+// `force` without as much as may go at once, at most `most`, of what no longer is in `wanted`: never across, so that
+// nothing comes in by it.
+dvec3 let_fall(dvec3 force, dvec3 wanted, double most) {
+  const double size = length(force);
+  if (!(size > 0.0)) return force;
+  const double kept = std::max(0.0, dot(wanted, force) / size);
+  return kept < size ? force * (std::max(kept, size - most) / size) : force;
+}
+
+// Of a level's limit and a driver's, where 0 is: not said.
+double smaller(double level, double driver) {
+  return driver > 0.0 ? std::min(level, driver) : level;
 }
 
 void book(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx) {
@@ -75,7 +89,7 @@ void count(SafetyTally& tally, SafetyLimit limit, double missing, double size) {
 bool jumps(const SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 position,
            double dt) {
   const double elapsed = std::max(dt, device.sensed_at - state.sensed_at);
-  return state.placed && length(position - state.position) > limits.fastest * elapsed * (1 + 1e-9);
+  return state.placed && length(position / limits.scale - state.position) > limits.fastest * elapsed * (1 + 1e-9);
 }
 
 bool plausible_position(dvec3 position) {
@@ -84,7 +98,29 @@ bool plausible_position(dvec3 position) {
 
 bool plausible_rotation(dquat rotation) {
   const double size = length(rotation);
-  return std::isfinite(size) && size > 0.5 && size < 2.0;
+  return std::abs(size - 1.0) < kUnitWithin;  // false for NaN
+}
+
+SafetyLimits force_limits(const HapticDevice& device) {
+  const DeviceCapabilities& can = device.can;
+  SafetyLimits limits;
+  limits.scale = device.workspace;
+  limits.force = can.renders_force ? smaller(device.max_force, can.max_force) : 0.0;
+  limits.stiffness =
+      device.max_stiffness > 0.0 ? smaller(device.max_stiffness * limits.scale, can.max_stiffness) : can.max_stiffness;
+  limits.slew = device.max_slew;
+  return limits;
+}
+
+SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& handle) {
+  const auto of_torque = [&](double force) { return force * handle.max_torque / std::max(handle.max_force, 1e-9); };
+  SafetyLimits limits;
+  limits.force = device.can.renders_torque ? smaller(handle.max_torque, device.can.max_torque) : 0.0;
+  limits.slew = of_torque(device.max_slew);
+  limits.fall = of_torque(kLeastFall);
+  limits.slow = kSlowTurn;
+  limits.fastest = kFastestTurn;
+  return limits;
 }
 
 void SafetyTally::add(SafetyLimit limit, double share) {
@@ -96,20 +132,22 @@ void SafetyTally::add(SafetyLimit limit, double share) {
 
 SafetyResult make_safe(SafetyState& state, const HapticDevice& device, dvec3 wanted, dvec3 position, double now,
                        double dt) {
-  return make_safe(state, device, {device.max_force, device.max_stiffness, device.max_slew}, wanted, position, now, dt);
+  return make_safe(state, device, force_limits(device), wanted, position, now, dt);
 }
 
 SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 wanted,
                        dvec3 position, double now, double dt) {
   SafetyResult result;
   state.tally.now = 0;
-  if (!finite(wanted) || !finite(limits.weight) || !finite(limits.carried) || !plausible_position(position)) {
+  const dvec3 at = position / limits.scale;
+  if (!finite(wanted) || !finite(limits.weight) || !finite(limits.carried) || !plausible_position(position) ||
+      !plausible_position(at)) {
     result.event = SafetyEvent::kNonFinite;
   } else if (device.status != DeviceStatus::kReady || stale(device, now)) {
     result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;
   } else {
     const bool jumped = limits.jumped || jumps(state, device, limits, position, dt);
-    const dvec3 dx = state.placed && !jumped ? position - state.position - limits.carried : dvec3(0);
+    const dvec3 dx = state.placed && !jumped ? at - state.position - limits.carried / limits.scale : dvec3(0);
     if (jumped) {
       result.event = SafetyEvent::kJumped;
       state.engaged = false;
@@ -138,11 +176,16 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
       const double rise = limits.stiffness * length(dx) + length(weight - state.weight);
       if (length(passive) > length(state.force)) most = std::min(most, rise);
     }
-    force = state.force + clamp_norm(passive - state.force, most);
+    dvec3 last = state.force;
+    if (limits.fall > limits.slew) {
+      last = let_fall(state.force, passive, limits.fall * dt);
+      most = std::min(most, limits.fall * dt - length(state.force - last));  // what comes in has the rest
+    }
+    force = last + clamp_norm(passive - last, most);
     count(state.tally, SafetyLimit::kSlewed, length(passive - force), std::max(length(passive), length(force)));
     book(state, force, weight, dx);
     result.force = force;
-    state.position = position;
+    state.position = at;
     state.sensed_at = device.sensed_at;
     state.placed = true;
     state.force = result.force;

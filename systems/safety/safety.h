@@ -1,6 +1,7 @@
 // What may leave for a hand: finite, clamped, slew-limited, passive force, and nothing at all while anything is
-// unknown. Order: finite -> status -> engage gate -> norm clamp -> passivity -> stiffness limit -> slew. Whatever is
-// taken from the wanted force while the pose is known is counted (SafetyTally), so that a run can report it.
+// unknown. Order: finite -> status -> engage gate -> norm clamp -> passivity -> stiffness limit -> slew. What is
+// written to a device is what comes out, unchanged: the account of work is of what the hand got. Whatever is taken from
+// the wanted force while the pose is known is counted (SafetyTally), so that a run can report it.
 //
 // Passivity (methods.md 1.9). An observer adds up the work on the hand over the whole history, trapezoidal. The force
 // may give back what it took, and kPassivityShare of the most that the hand had stored beside. What would go beyond is
@@ -16,6 +17,9 @@
 // A device that is farther from its last place than a hand gets in that time did not move there: tracking was lost, or
 // the device was taken elsewhere. No work is counted for the way, the force goes to zero within the slew limit, and the
 // gate must be passed again.
+//
+// The slew limit is for what comes in. What of the last force is no longer wanted falls at kLeastFall at least: a limit
+// set low may not hold a hand, nor keep it from a lowered max_force.
 //
 // A surface that a prescribed motion carries may push a hand, as an engine would: passivity and the limit on stiffness
 // hold for the hand's motion against that surface. Clamp and slew bound what the engine can do.
@@ -43,7 +47,12 @@ inline constexpr double kSlowTurn = 0.2;           // [rad/s] the same of what t
 inline constexpr double kFastestHand = 20.0;   // [m/s] what is faster is a jump, not a hand's motion
 inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same of what turns
 
+inline constexpr double kLeastFall = 1000.0;  // [N/s] force that is no longer wanted falls as fast as this at least
+
 inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
+
+// [1] How far from unit length a rotation may be: then it is normalised. Farther, it is no pose.
+inline constexpr double kUnitWithin = 0.01;
 
 // A rotation that means something: finite and of about unit length.
 bool plausible_rotation(dquat rotation);
@@ -84,7 +93,7 @@ struct SafetyState {
   dvec3 weight{0};         // [N] last tick's, as felt
   bool placed = false;     // `position` means something
   double sensed_at = 0.0;  // [s] last tick's pose's
-  dvec3 position{0};       // [m] last tick's
+  dvec3 position{0};       // [m] last tick's, in the hand's metres
   dvec3 force{0};          // [N] last tick's, as sent
   dvec3 wanted{0};         // [N] last tick's beside the weight, clamped to the device's limit
   double work = 0.0;       // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
@@ -99,17 +108,24 @@ struct SafetyResult {
   SafetyEvent event = SafetyEvent::kNone;
 };
 
-// What the layer holds to. A torque has the same, in [N m], [N m/rad], [N m/s] and [rad/s].
+// What the layer holds to. A torque has the same, in [N m], [N m/rad], [N m/s] and [rad/s]. Stiffness, speeds and work
+// are of the hand: where a driver's workspace is scaled to the world, a metre of the hand is `scale` metres of it.
 struct SafetyLimits {
   double force = 0.0;             // [N]
-  double stiffness = 0.0;         // [N/m] 0: none
+  double stiffness = 0.0;         // [N/m] of the hand's metres; 0: none
   double slew = 0.0;              // [N/s]
   dvec3 weight{0};                // [N] part of what is wanted: of a tool that nothing carries
   double slow = kSlowHand;        // [m/s]
-  dvec3 carried{0};               // [m] how far the surface that is touched has come along in this tick; 0: it stands
+  dvec3 carried{0};               // [m] world; how far the surface that is touched has come along in this tick
   double fastest = kFastestHand;  // [m/s]
   bool jumped = false;            // whatever `position` says: the device is somewhere else
+  double fall = kLeastFall;       // [N/s] force that is no longer wanted falls so fast where `slew` is lower
+  double scale = 1.0;             // [1] world metres per metre of the hand
 };
+
+// Of the level and of the driver, the smaller. What is not rendered has the limit 0.
+SafetyLimits force_limits(const HapticDevice& device);
+SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& handle);
 
 // Whether the device has come to `position` faster than a hand can. A device that is sampled more slowly than the touch
 // clock has had the time since its last sample.

@@ -16,9 +16,8 @@ namespace {
 // had to skip some. Over one tick alone, the coupling's damper would answer a late tick with a blow. False: nothing is
 // known, and nothing may be felt.
 bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick) {
-  const double size = glm::dot(device.rotation, device.rotation);
-  const bool turned = tool.is_probe ? plausible_rotation(device.rotation) : std::abs(size - 1.0) < 1e-3;
-  if (device.status != DeviceStatus::kReady || !plausible_position(device.position) || !turned)
+  if (device.status != DeviceStatus::kReady || !plausible_position(device.position) ||
+      !plausible_rotation(device.rotation))
     return tool.sensing = false;
   const RigidMotion before = tool.sensed;
   const double since = tick.time - tool.sensed_at;
@@ -30,7 +29,7 @@ bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick) {
     const dvec3 turn = vector_of(tool.sensed.pose.rotation * glm::conjugate(before.pose.rotation));
     const dvec3 went = tool.sensed.pose.position - before.pose.position;
     // What jumps has no velocity that could damp anything.
-    if (length(went) < kFastestHand * dt && length(turn) < kFastestTurn * dt)
+    if (length(went) < kFastestHand * device.workspace * dt && length(turn) < kFastestTurn * dt)
       tool.sensed.velocity = join(went / dt, turn / dt);
     tool.turned += turn;
   }

@@ -70,7 +70,7 @@ class Loads {
       pressing_ ^= wrong;
       if (pressing_ == 0) pressing_ = std::bit_floor(wrong);
     }
-    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = std::max(0.0, l_[i]);
+    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i];  // no number stays none
   }
 
   double overlap(std::size_t i, std::size_t j) const { return A_[i][j]; }
@@ -204,6 +204,10 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) 
   double energy = 0.0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     LoadedContact& a = contacts[i];
+    if (!std::isfinite(a.load)) {
+      a.load = 0.0;
+      energy = std::numeric_limits<double>::quiet_NaN();
+    }
     a.share = a.load > 0 ? a.load / loads.strength(i) : 0.0;
     a.force = a.share * a.pull;
     energy += loads.strength(i) * a.load - 0.5 * a.load * a.load;

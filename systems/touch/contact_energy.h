@@ -40,7 +40,8 @@ struct LoadedContact {
   dvec3 force{0};         // [N] out: -dU/dx
 };
 
-// Finds the loads and the forces. Returns U [J]. At most kMaxLoaded contacts.
+// Finds the loads and the forces. Returns U [J], no number where a load was none and became 0. At most kMaxLoaded
+// contacts.
 inline constexpr std::size_t kMaxLoaded = 64;
 double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel);
 

@@ -161,11 +161,16 @@ void friction_feedback(World& world, Tick tick) {
       if (contact.height < 0 && store(object, deformable, mesh, field, pressing[count], loaded[count])) {
         ++count;
       } else {
+        if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
         release(contact);
       }
     }
     object.stored = count > 0 ? share_load({loaded.data(), count}, object.kernel) : 0.0;
     if (count == 0) continue;
+    if (!std::isfinite(object.stored)) {  // a registered law's or shape's
+      world.dropped |= kDroppedNonFinite;
+      object.stored = 0.0;
+    }
     const Pose& pose = registry.get<Pose>(object.entity);
     for (std::size_t i = 0; i < count; ++i) {
       if (loaded[i].share > 0) {

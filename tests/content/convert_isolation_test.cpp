@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "content/files/isolation.h"
+#include "tests/content/lowered.h"
 
 namespace pliant::test {
 namespace {
@@ -89,6 +90,18 @@ TEST(Isolation, MoreMemoryThanTheFileWarrantsIsRefused) {
     return Bytes{static_cast<std::uint8_t>(taken[taken.size() / 2])};
   });
   EXPECT_FALSE(answer.ok());
+}
+
+TEST(Isolation, TheLimitOfReadersMemoryIsTheirs) {
+  const auto work = []() -> Result<Bytes> {
+    const std::vector<char> taken(std::size_t{64} << 20, 1);
+    return Bytes{static_cast<std::uint8_t>(taken[taken.size() / 2])};
+  };
+  EXPECT_TRUE(in_isolation(0, work).ok());
+  const Lowered lowered(8.0 * limits::kMiB / limits::kReaderMemory.most);
+  const Result<Bytes> refused = in_isolation(0, work);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message().find("needs more memory"), std::string::npos) << refused.error().message();
 }
 #endif
 

@@ -7,13 +7,13 @@
 #include <fstream>
 #include <iterator>
 
+#include "content/author/hand.h"
+#include "content/author/surface_nets.h"
 #include "content/files/exr.h"
-#include "content/generate/hand.h"
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/levels.h"
 #include "content/generate/sky.h"
 #include "content/generate/strokes.h"
-#include "content/generate/surface_nets.h"
 #include "content/generate/textures.h"
 #include "content/level/script.h"
 #include "content/level_file.h"

@@ -131,6 +131,37 @@ TEST(Gltf, ASkinAtRestShowsVerticesWhereJointsAndBindMatricesPutThem) {
   EXPECT_FALSE(level->notes.empty());
 }
 
+TEST(Gltf, ASkinMovesThePrimitiveItBelongsToWhateverStandsBefore) {
+  // The first primitive has no triangle, the second is left out, the third is carried 10 along x.
+  Gltf gltf;
+  std::vector<float> bind(16, 0.0f);
+  for (std::size_t i = 0; i < 4; ++i) bind[5 * i] = 1.0f;
+  bind[12] = 10.0f;
+  const std::size_t position = gltf.positions(kSquare);
+  const std::size_t weights =
+      gltf.accessor(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", kFloat);
+  const std::size_t joints = gltf.accessor(std::vector<std::uint8_t>(16, 0), "VEC4", kUnsignedByte);
+  const std::size_t corners = gltf.accessor(std::vector<std::uint16_t>{0, 1, 2, 2, 1, 3}, "SCALAR", kUnsignedShort);
+  const std::vector<float> one(12, 0.25f);
+  gltf.primitive({{"POSITION", gltf.positions({0, 0, 0, 1, 0, 0, 0, 1, 0})},
+                  {"JOINTS_0", gltf.accessor(std::vector<std::uint8_t>(12, 0), "VEC4", kUnsignedByte)},
+                  {"WEIGHTS_0", gltf.accessor(one, "VEC4", kFloat)}})["indices"] =
+      gltf.accessor(std::vector<std::uint16_t>{0, 1}, "SCALAR", kUnsignedShort);
+  Json& primitives = gltf.json["meshes"][0]["primitives"];
+  const Json attributes = {{"POSITION", position}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}};
+  primitives.push_back({{"attributes", attributes}, {"mode", 0}});
+  primitives.push_back({{"attributes", attributes}, {"indices", corners}});
+  gltf.json["nodes"][0]["skin"] = 0;
+  gltf.json["nodes"].push_back(Json::object());
+  gltf.json["skins"] = Json::array({{{"joints", {1}}, {"inverseBindMatrices", gltf.accessor(bind, "MAT4", kFloat)}}});
+  const Result<Level> level = gltf.load();
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  const LevelMesh& mesh = level->meshes[static_cast<std::size_t>(level->nodes[0].mesh)];
+  ASSERT_EQ(mesh.primitives.size(), 1u);
+  for (std::size_t v = 0; v < 4; ++v)
+    EXPECT_LT(length(mesh.primitives[0].position[v] - vec3(kSquare[3 * v] + 10, kSquare[3 * v + 1], 0)), 1e-5f) << v;
+}
+
 TEST(Gltf, ParentsStandBeforeChildrenAndOtherScenesAreMarked) {
   Gltf gltf;
   gltf.json["nodes"] = Json::array(

@@ -149,13 +149,13 @@ class Editing {
       made.mesh = static_cast<std::int32_t>(level_.meshes.size());
       level_.meshes.push_back({"made", {triangle}});
     }
-    add_node(level_, made, below(2) ? node() : kNoNode);
+    add_node(level_, made, below(2) ? node() : kNoLevelNode);
   }
   void remove() {
     if (level_.nodes.size() > 3) remove_node(level_, node());
   }
   void reparent() {
-    if (!skinned_) (void)move_node(level_, node(), below(3) ? node() : kNoNode, below(4));
+    if (!skinned_) (void)move_node(level_, node(), below(3) ? node() : kNoLevelNode, below(4));
   }
   void rename() { EXPECT_TRUE(rename_node(level_, node(), "name " + std::to_string(below(1000))).ok()); }
   void paint() {

@@ -150,7 +150,10 @@ TEST_F(MeshCheck, ObjIsReadWithNegativeAndForwardReferencesAndLinesThatGoOn) {
                 {"c.obj", "f 1 2 3\n" + v, 1},
                 {"d.obj", v + "f 1 2 \\\n3\n", 1},
                 {"e.obj", v + "vn 0 0 1\nf 1//1 2//1 3//-1 # up\n", 1},
-                {"f.obj", v + "vt 0 0\nf 1/1 2/1 3/1\n", 1}});
+                {"f.obj", v + "vt 0 0\nf 1/1 2/1 3/1\n", 1},
+                {"g.obj", " v 0 0 0\n\tv 1 0 0\n  v 0 1 0 # indented\nv 1 1 0\n  f 1 2 3\n\tf 2 4 3\nf 1 2 4\n", 3},
+                {"h.obj", v + " f 1 2 3 # 7 8\nf 3 2 1\n", 2},
+                {"i.obj", v + "f 1 2 \\\n  3 # 7 8\nf 3 2 \\\n\t1\n", 2}});
 }
 
 TEST_F(MeshCheck, BrokenObjIsRefusedByTheLine) {
@@ -158,6 +161,7 @@ TEST_F(MeshCheck, BrokenObjIsRefusedByTheLine) {
   expect_refused({{"a.obj", v + "f 1 2 9\n", "line 4: names vertex 9 of 3"},
                   {"b.obj", v + "f 0 1 2\n", "'0'"},
                   {"c.obj", v + "f -1 -2 -9\n", "vertex -9"},
+                  {"c2.obj", v + "f -9223372036854775808 1 2\n", "vertex -9223372036854775808 with 3 before it"},
                   {"d.obj", v + "vt 0 0\nf 1/1 2/1 3/7\n", "texture coordinate 7 of 1"},
                   {"e.obj", v + "vn 0 0 1\nf 1//1 2//1 3//7\n", "normal 7 of 1"},
                   {"f.obj", v + "f 1 2 3\nf 1 2\n", "line 5"},

@@ -98,6 +98,21 @@ TEST_F(SoundGltf, NormalsOfLengthZeroAreMadeOfTheTrianglesAroundThemAndSavedMend
   EXPECT_EQ(mended->meshes[0].primitives[0].normal, normal);
 }
 
+TEST_F(SoundGltf, AVectorOfLengthZeroHidesNoOtherFaultOfItsAccessor) {
+  Gltf normals = tetrahedron();
+  normals.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      normals.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 5, 0, 0, 0, 0, 1}, "VEC3", kFloat);
+  EXPECT_NE(findings(normals).find("holds a vector of length 5 instead of 1 in element 2"), std::string::npos)
+      << findings(normals);
+  Gltf tangents = tetrahedron();
+  Json& attributes = tangents.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["NORMAL"] = tangents.accessor(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", kFloat);
+  attributes["TANGENT"] =
+      tangents.accessor(std::vector<float>{0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0.5f, 1, 0, 0, -1}, "VEC4", kFloat);
+  EXPECT_NE(findings(tangents).find("a tangent whose w is neither 1 nor -1 in element 2"), std::string::npos)
+      << findings(tangents);
+}
+
 TEST_F(SoundGltf, ARealOrganWithAZeroNormalIsConvertedWithoutOne) {
   const fs::path kidney = fs::path(PLIANT_CORPUS_DIR) / "meshes-valid/hra/VH_F_Kidney_L.glb";
   if (!fs::exists(kidney)) GTEST_SKIP() << "the corpus is not beside the project";

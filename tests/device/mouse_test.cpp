@@ -91,6 +91,37 @@ TEST(Mouse, APressTravelsBetweenFramesAndIsFelt) {
   EXPECT_NEAR(s.stage.read(s.probe).normal_force, 300 * 0.004, 0.02);
 }
 
+// Pictures that were held up come in two ticks that follow each other, and the pointer has gone far meanwhile.
+TEST(Mouse, AJumpOfAPressIsTravelledNoFasterThanAHandWould) {
+  MouseScene s;
+  s.say({0, 0.15, 0}, true);
+  s.run(16);
+  s.say({0, 0.15, 0}, false);
+  s.run(1);
+  const dvec3 goal(0.03, 0.14, 0);
+  s.say(goal, false);
+  dvec3 before = s.stage.device(s.probe).position;
+  int ticks = 0;
+  for (; ticks < 200 && s.stage.device(s.probe).position != goal; ++ticks) {
+    s.run(1);
+    const dvec3 now = s.stage.device(s.probe).position;
+    EXPECT_LE(length(now - before), kMouseFastest * 1e-3 * (1 + 1e-9)) << "tick " << ticks;
+    before = now;
+  }
+  EXPECT_EQ(ticks, static_cast<int>(std::ceil(length(goal - dvec3(0, 0.15, 0)) / kMouseFastest / 1e-3)));
+}
+
+TEST(Mouse, AWayOutThatIsNotOverIsTravelledToItsEndHoweverManyPicturesHover) {
+  MouseScene s;
+  s.say({0, 0.102, 0}, false);
+  s.run(200);
+  for (int picture = 0; picture < 3; ++picture) {
+    s.say({0, 0.2, 0}, true);
+    s.run(2);
+    EXPECT_LT(s.stage.device(s.probe).position.y, 0.11) << "picture " << picture;
+  }
+}
+
 TEST(Mouse, LettingGoOfAPressGivesOutNoEnergy) {
   MouseScene s;
   scenes::WorkMeter meter;

@@ -105,8 +105,8 @@ TEST(Safety, LostOrStaleDeviceGetsZeroWithinOneTickAndMustEngageAgain) {
   }
 }
 
-// A device that is suddenly elsewhere: the force falls by the slew limit, no work is counted for the way, and the gate
-// must be passed again. As fast as a hand can be, nothing happens.
+// A device that is suddenly elsewhere: the force falls as fast as what is let go falls, no work is counted for the way,
+// and the gate must be passed again. As fast as a hand can be, nothing happens.
 TEST(Safety, ADeviceThatJumpsIsLetGo) {
   HapticDevice device = plain();
   device.max_force = 10.0;
@@ -121,13 +121,13 @@ TEST(Safety, ADeviceThatJumpsIsLetGo) {
     const double way = jump ? 0.3 : step;
     SafetyResult r = make_safe(state, device, {0, 4, 0}, {way, -1e-3, 0}, 0, dt);
     EXPECT_EQ(r.event, jump ? SafetyEvent::kJumped : SafetyEvent::kNone);
-    EXPECT_NEAR(r.force.y, jump ? 3.5 : 4.0, 1e-12);
+    EXPECT_NEAR(r.force.y, jump ? 4.0 - kLeastFall * dt : 4.0, 1e-12);
     if (!jump) continue;
     EXPECT_EQ(state.work, work);
     for (int i = 1; i < 8; ++i) {
       r = make_safe(state, device, {0, 4, 0}, {way, -1e-3, 0}, 0, dt);
       EXPECT_EQ(r.event, SafetyEvent::kNone);
-      EXPECT_NEAR(r.force.y, std::max(0.0, 3.5 - 0.5 * i), 1e-12);
+      EXPECT_NEAR(r.force.y, std::max(0.0, 4.0 - kLeastFall * dt * (1 + i)), 1e-12);
     }
     EXPECT_GT(state.tally.of(SafetyLimit::kGated).ticks, 5u);
     EXPECT_EQ(make_safe(state, device, {0, 4, 0}, {way, -1e-3, 0}, 0, dt).force, dvec3(0)) << "still wanted";
@@ -139,6 +139,60 @@ TEST(Safety, ADeviceThatJumpsIsLetGo) {
   make_safe(state, device, dvec3(0), dvec3(0), 1.0, dt);
   device.sensed_at = 1.05;
   EXPECT_EQ(make_safe(state, device, dvec3(0), {0.5, 0, 0}, 1.05, dt).event, SafetyEvent::kNone);
+}
+
+// However low the slew limit: force comes in slowly, and what is no longer wanted goes fast, along itself alone.
+TEST(Safety, ALowSlewLimitHoldsNoForceThatIsNoLongerWanted) {
+  HapticDevice device = plain();
+  device.max_slew = 1000.0;
+  const double dt = 1e-3;
+  const auto pressed = [&] {
+    SafetyState state;
+    make_safe(state, device, dvec3(0), dvec3(0), 0, dt);
+    for (int i = 0; i < 5; ++i) make_safe(state, device, {0, 3, 0}, dvec3(0), 0, dt);
+    EXPECT_NEAR(state.force.y, 3.0, 1e-12);
+    return state;
+  };
+  SafetyState none = pressed(), across = pressed(), against = pressed(), less = pressed(), more = pressed();
+  device.max_slew = 1.0;
+  for (int i = 1; i <= 10; ++i) {
+    const auto next = [&](SafetyState& state, dvec3 wanted) {
+      return make_safe(state, device, wanted, dvec3(0), 0, dt).force;
+    };
+    const double left = std::max(0.0, 3.0 - kLeastFall * dt * i), in = device.max_slew * dt;
+    EXPECT_NEAR(next(none, dvec3(0)).y, left, in) << i;
+    const dvec3 turned = next(across, {3, 0, 0}), opposite = next(against, {0, -3, 0});
+    EXPECT_NEAR(turned.y, left, in * i) << i;
+    EXPECT_LE(turned.x, in * i * (1 + 1e-9)) << i;
+    EXPECT_NEAR(opposite.y, left, in * i) << i;
+    EXPECT_NEAR(next(less, {0, 0.5, 0}).y, std::max(0.5, left), in) << i;
+    EXPECT_NEAR(next(more, {0, 3.2, 0}).y, 3.0 + in * i, 1e-12) << i;
+  }
+  EXPECT_EQ(none.force, dvec3(0));
+  EXPECT_LT(against.force.y, 0.0) << "then it comes in, slowly";
+}
+
+// Work, stiffness and speed are the hand's, in its own metres, where a driver's workspace is scaled to the world.
+TEST(Safety, AScaledWorkspaceIsHeldToTheHandsOwnMetres) {
+  for (const double scale : {0.1, 1.0, 10.0}) {
+    SafetyState state;
+    HapticDevice device = plain();
+    device.workspace = scale;
+    device.max_stiffness = 300.0;  // of the world
+    device.can.max_stiffness = 500.0;
+    device.max_force = 100.0;
+    device.max_slew = 1e9;
+    const double most = std::min(300.0 * scale, 500.0);  // [N/m] of the hand
+    make_safe(state, device, dvec3(0), dvec3(0), 0, 1e-3);
+    double before = 0.0;
+    for (int n = 1; n < 50; ++n) {
+      const dvec3 world(0, -1e-5 * scale * n, 0);
+      const double force = make_safe(state, device, {0, 1e4 * 1e-5 * n, 0}, world, 0, 1e-3).force.y;
+      EXPECT_NEAR(force - before, most * 1e-5, most * 1e-11) << scale;
+      before = force;
+    }
+    EXPECT_NEAR(-state.work, 0.5 * most * std::pow(49e-5, 2), 1e-9) << "in joules of the hand";
+  }
 }
 
 TEST(Safety, PassivityHoldsForAnActiveForceToo) {

@@ -177,8 +177,48 @@ TEST(Extend, ASolverFromOutsideMovesABodyAsTheBuiltInOneDoes) {
   const auto none = register_solver("makes_nothing", [] { return std::unique_ptr<BlackBoxSolver>(); });
   ASSERT_TRUE(none);
   Scene scene;
-  scene.add_soft_body("cube", sheet(), {.cell = 0.01, .solver = *none});
-  EXPECT_FALSE(Session::open(scene));
+  scene.add_soft_body("cube", box(0.02f), {.cell = 0.01, .solver = *none});
+  const auto session = Session::open(scene);
+  ASSERT_FALSE(session);
+  EXPECT_THAT(session.error().message(), HasSubstr("factory makes none"));
+}
+
+// Whatever it says of deep presses, alone and where two share a dent: no force, and it is said why.
+TEST(Extend, ALawThatIsNoNumberGivesNoForceAndIsSaid) {
+  static bool broken = false;
+  struct Broken final : SpringFunction {
+    static double or_nothing(double h, double value) { return broken && h < -0.002 ? std::nan("") : value; }
+    double force(double h, const SpringConstants&) const override { return or_nothing(h, h); }
+    double potential(double h, const SpringConstants&) const override { return or_nothing(h, 0.5 * h * h); }
+    double slope(double h, const SpringConstants&) const override { return or_nothing(h, 1.0); }
+  };
+  broken = false;
+  const auto law = register_spring("breaks", std::make_shared<Broken>());
+  ASSERT_TRUE(law) << law.error().message();
+  for (const int fingers : {1, 2}) {
+    for (const bool breaks : {false, true}) {
+      broken = false;
+      Scene scene;
+      scene.add_surface("tissue", sheet(), {.spring = *law, .stiffness = 300.0, .reach = 0.02});
+      scene.add_probe("finger");
+      scene.add_probe("thumb");
+      Session session = opened(scene);
+      for (double y = 0.0005; y > -0.003; y -= 1e-5) {
+        broken = breaks;
+        ASSERT_TRUE(session.move("finger", {-0.003, y, 0}));
+        ASSERT_TRUE(session.move("thumb", {0.003, fingers == 2 ? y : 0.01, 0}));
+        ASSERT_TRUE(session.step());
+      }
+      ASSERT_TRUE(session.step(10));
+      EXPECT_EQ(length(session.reading("finger")->force) == 0.0, breaks) << fingers;
+      const auto findings = *session.findings();
+      if (breaks)
+        EXPECT_THAT(findings, testing::Contains(HasSubstr("not a number"))) << fingers;
+      else
+        EXPECT_THAT(findings, testing::Not(testing::Contains(HasSubstr("not a number")))) << fingers;
+    }
+  }
+  broken = false;
 }
 
 struct Wrong final : SpringFunction {

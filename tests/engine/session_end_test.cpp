@@ -1,9 +1,11 @@
 // However a session ends, whatever a driver does: no force is left, and the sentence says why.
 #include <gmock/gmock.h>
+#include <pthread.h>
 
 #include <cmath>
 #include <limits>
 
+#include "pliant/linear_solver.h"
 #include "tests/engine/session_rig.h"
 
 namespace pliant {
@@ -215,6 +217,128 @@ TEST(SessionEnd, ForcesOfARefinedMeshAreOnTheVerticesThatWereGiven) {
   const dvec3 lever = moment / -felt.y;  // of a force along y at (x, ., z): (-z, 0, x) per newton
   EXPECT_NEAR(lever.z, 0.012, 1e-3);
   EXPECT_NEAR(-lever.x, 0.02, 1e-3);
+}
+
+// A body's solver that is told what to do while it runs.
+enum class Does : int { kSolves, kHangs, kThrowsANumber, kThrows };
+std::atomic<Does> does{Does::kSolves};
+std::atomic<int> hanging{0};
+class ToldSolver final : public BlackBoxSolver {
+ public:
+  bool factorise(const BlockRows& matrix) override {
+    diagonal_.assign(3 * matrix.size, 1.0);
+    for (std::uint32_t row = 0; row < matrix.size; ++row)
+      for (std::uint32_t k = matrix.first[row]; k < matrix.first[row + 1]; ++k)
+        if (matrix.column[k] == row)
+          for (int i = 0; i < 3; ++i) diagonal_[3 * row + i] = matrix.value[9 * k + 4 * i];
+    return true;
+  }
+  void solve(std::span<const double> b, std::span<double> x) const override {
+    while (does == Does::kHangs) {
+      hanging = 1;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = b[i] / diagonal_[i];
+  }
+
+ private:
+  std::vector<double> diagonal_;
+};
+Scene cube_scene() {
+  static const auto kind = register_solver("session_end_told", []() -> std::unique_ptr<BlackBoxSolver> {
+    if (does == Does::kThrowsANumber) throw 7;
+    if (does == Does::kThrows) throw std::runtime_error("no licence");
+    return std::make_unique<ToldSolver>();
+  });
+  EXPECT_TRUE(kind);
+  Scene scene = press_scene();
+  scene.add_soft_body("cube", box(0.02f), {.cell = 0.02, .solver = *kind}, {.position = {0.2, 0.05, 0}});
+  return scene;
+}
+
+TEST(SessionEnd, ASolverThatHangsKeepsNoDeviceDriven) {
+  does = Does::kSolves;
+  hanging = 0;
+  Log log;
+  Session session = opened(cube_scene());
+  ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
+  ASSERT_TRUE(session.start());
+  for (int i = 0; i < 400 && log.last < 0.1; ++i) {
+    log.height = std::max(-0.003, 0.004 - 2e-5 * i);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_TRUE(within_five_seconds([&] { return log.last > 0.1; }));
+  does = Does::kHangs;
+  EXPECT_TRUE(within_five_seconds([&] { return hanging == 1; }));
+  EXPECT_GT(log.last, 0.1) << "the touch clock goes on";
+  std::atomic<bool> stopped{false};
+  std::thread stopping([&] {
+    EXPECT_TRUE(session.stop());
+    stopped = true;
+  });
+  EXPECT_TRUE(within_five_seconds([&] { return log.last == 0.0; })) << "the solver still hangs";
+  EXPECT_FALSE(stopped);
+  does = Does::kSolves;
+  stopping.join();
+}
+
+TEST(SessionEnd, WhateverASolverThrowsWhenItIsMadeIsASentence) {
+  for (const Does what : {Does::kThrows, Does::kThrowsANumber}) {
+    does = Does::kSolves;
+    Log log;
+    Session session = opened(cube_scene());
+    ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
+    ASSERT_TRUE(session.step(20));
+    does = what;
+    EXPECT_FALSE(Session::open(cube_scene()));
+    const Status failed = session.restart();
+    ASSERT_FALSE(failed);
+    EXPECT_THAT(failed.error().message(), HasSubstr(what == Does::kThrows ? "no licence" : "no std::exception"));
+    EXPECT_EQ(log.closed, 1) << "nobody writes to it any more";
+    EXPECT_EQ(log.last, 0.0);
+    EXPECT_EQ(session.figures().soft_steps, 0u) << "what is asked now has an answer";
+    EXPECT_FALSE(session.step());
+    EXPECT_FALSE(session.start());
+    does = Does::kSolves;
+    ASSERT_TRUE(session.restart());
+    EXPECT_TRUE(session.step(3));
+  }
+}
+
+// No address space holds such a stack, so that no thread can be made.
+class NoThreads {
+ public:
+  NoThreads() {
+    pthread_getattr_default_np(&before_);
+    pthread_attr_t huge;
+    pthread_attr_init(&huge);
+    pthread_attr_setstacksize(&huge, std::size_t{1} << 47);
+    EXPECT_EQ(pthread_setattr_default_np(&huge), 0);
+    pthread_attr_destroy(&huge);
+  }
+  ~NoThreads() { pthread_setattr_default_np(&before_); }
+
+ private:
+  pthread_attr_t before_;
+};
+
+TEST(SessionEnd, WithoutAThreadStartIsASentenceAndNoForceIsLeft) {
+  does = Does::kSolves;
+  Log log;
+  Session session = opened(cube_scene());
+  ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
+  {
+    const NoThreads none;
+    const Status started = session.start();
+    ASSERT_FALSE(started);
+    EXPECT_THAT(started.error().message(), HasSubstr("thread"));
+  }
+  EXPECT_FALSE(session.running());
+  EXPECT_EQ(log.last, 0.0);
+  EXPECT_THAT(session.start().error().message(), HasSubstr("restart()"));
+  ASSERT_TRUE(session.restart());
+  ASSERT_TRUE(session.start());
+  EXPECT_TRUE(session.stop());
 }
 
 TEST(SessionEnd, WhatIsReleasedStaysReleasedThroughARestart) {

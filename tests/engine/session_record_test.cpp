@@ -92,6 +92,52 @@ TEST_F(SessionRecord, APoseThatIsNoneDoesNotSpoilIt) {
   EXPECT_FALSE(session.step());
 }
 
+// Live as in its recording: a rotation that is far from unit length is no pose.
+TEST_F(SessionRecord, ARotationThatIsNoneIsNoneLiveToo) {
+  class Long final : public Driver {
+   public:
+    explicit Long(double& length, double& height) : length_(length), height_(height) {}
+    Status open(const std::string&) override { return Done{}; }
+    DeviceCapabilities capabilities() const override { return {.senses_rotation = true}; }
+    bool read(DeviceSample& sample) override {
+      sample.position = {0, height_, 0};
+      sample.rotation = dquat(length_, 0, 0, 0);
+      return true;
+    }
+    void write(const DeviceWrench&) override {}
+    void close() override {}
+
+   private:
+    double &length_, &height_;
+  };
+  const auto file = folder_ / "long.rec";
+  for (const double size : {1.005, 0.6, 1.3, 1.9}) {
+    double length = 1.0, height = 0.001;
+    std::vector<Reading> live;
+    {
+      Session session = opened(press_scene());
+      ASSERT_TRUE(session.connect("finger", std::make_unique<Long>(length, height)));
+      ASSERT_TRUE(session.record(file, true));
+      for (int i = 0; i < 300; ++i) {
+        if (i == 200) length = size;
+        height = 0.001 - 1e-5 * i;
+        ASSERT_TRUE(session.step());
+        live.push_back(*session.reading("finger"));
+      }
+      ASSERT_TRUE(session.end_recording());
+      const bool is_one = std::abs(size - 1.0) < 0.01;
+      EXPECT_EQ(live.back().force.y > 0.1, is_one) << size;
+      EXPECT_EQ(session.findings()->empty(), is_one) << "it is counted";
+    }
+    Session session = opened(press_scene());
+    ASSERT_TRUE(session.replay(file));
+    for (std::size_t i = 0; i < live.size(); ++i) {
+      ASSERT_TRUE(session.step());
+      ASSERT_EQ(session.reading("finger")->force, live[i].force) << size << " tick " << i;
+    }
+  }
+}
+
 TEST_F(SessionRecord, AnotherSourceIsRefusedWhileItReplays) {
   const auto file = folder_ / "only.rec";
   {

@@ -13,6 +13,7 @@
 #include "engine/recording.h"
 #include "engine/soft_clock.h"
 #include "engine/sources.h"
+#include "player/exit.h"
 #include "player/record/csv.h"
 #include "player/record/keeper.h"
 #include "player/record/pen.h"
@@ -31,6 +32,15 @@
 namespace pliant {
 namespace {
 namespace fs = std::filesystem;
+
+TEST(Exit, PointsAtAHelpThatKnowsMore) {
+  EXPECT_EQ(sentence_of(kFailed, {"a.obj", "has no faces; export it again"}), "a.obj: has no faces; export it again");
+  EXPECT_EQ(sentence_of(kFailed, {"a.obj", "has no faces"}), "a.obj: has no faces") << "`validate` would say no more";
+  EXPECT_NE(sentence_of(kFailed, {"a.glb /nodes/0", "has no mesh", -1, "/nodes/0"}).find("; mend the level: `pliant v"),
+            std::string::npos);
+  EXPECT_NE(sentence_of(kFailed, {"node `a`", "has no mesh", 0}).find("`pliant validate`"), std::string::npos);
+  EXPECT_NE(sentence_of(kUsage, {"--rate", "is no number"}).find("; see `pliant --help`"), std::string::npos);
+}
 
 TEST(Csv, AnyNameIsOneCell) {
   EXPECT_EQ(csv_text("finger"), "finger");

@@ -1,12 +1,13 @@
 // The mouse as a probe and as a hand that holds a tool: where they are put for what the picture shows.
+#include "window/pointer.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "components/soft_body.h"
-#include "player/window/window_carrier.h"
-#include "player/window/window_pointer.h"
 #include "systems/device/mouse.h"
+#include "window/carrier.h"
 
 namespace pliant {
 namespace {

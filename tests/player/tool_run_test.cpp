@@ -346,7 +346,8 @@ TEST_F(ToolRun, AProbePressesARigidBodyOrPassesItAsItIsTold) {
   EXPECT_EQ(finger(report("passed"))["contact_ticks"], 0);
   EXPECT_EQ(finger(report("passed"))["max_force_N"], 0.0);
   const std::string said =
-      "probes whose PLIANT_probe/meets is `surfaces` pass through soft and rigid bodies (here `ground`)";
+      "the probe `finger` passes through soft and rigid bodies (here `ground`), because its PLIANT_probe/meets is "
+      "`surfaces`";
   const std::size_t first = passed.err.find(said);
   EXPECT_NE(first, std::string::npos) << passed.err;
   EXPECT_EQ(passed.err.find(said, first + 1), std::string::npos) << "once";

@@ -1,0 +1,27 @@
+#include "content/author/save_script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pliant {
+
+double smooth_step(double from, double to, double t) {
+  const double s = std::clamp((t - from) / (to - from), 0.0, 1.0);
+  return s * s * s * (s * (s * 6.0 - 15.0) + 10.0);
+}
+
+Status save_script(const Path& path, const std::string& comment, const std::filesystem::path& file, Existing existing) {
+  bool turns = false;
+  for (const PathRow& row : path.rows) turns = turns || row.rotation != dquat(1, 0, 0, 0);
+  std::string text = "# " + comment + (turns ? "\ntime_s,x,y,z,qw,qx,qy,qz\n" : "\ntime_s,x,y,z\n");
+  for (const PathRow& row : path.rows) {
+    const dvec3 p = row.position;
+    const dquat q = row.rotation;
+    text += fmt::format("{:.2f},{:.7f},{:.7f},{:.7f}", row.time, p.x, p.y, p.z);
+    text += turns ? fmt::format(",{:.8f},{:.8f},{:.8f},{:.8f}\n", q.w, q.x, q.y, q.z) : "\n";
+  }
+  return write_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, existing);
+}
+
+}  // namespace pliant

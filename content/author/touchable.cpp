@@ -1,0 +1,102 @@
+#include "content/author/touchable.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+
+namespace {
+
+constexpr double kBeyond = 0.02;  // [1] of the extent by which a pinned box is larger than the object, so that rounding
+                                  // leaves out no node of its surface
+
+Status check_area(const Level& level, std::int32_t node) {
+  const LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
+  if (it.mesh < 0) return Error{it.name, "has no mesh; choose a node that shows one"};
+  const dmat3 frame(world_matrices(level.nodes)[static_cast<std::size_t>(node)]);
+  if (!has_area(level.meshes[static_cast<std::size_t>(it.mesh)], frame))
+    return Error{it.name, "has a mesh without area; choose another node"};
+  return Done{};
+}
+
+}  // namespace
+
+Status make_touchable_surface(Level& level, std::int32_t node, const DeformableParameters& parameters) {
+  if (const Status status = check_area(level, node); !status) return status;
+  LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
+  it.soft_body.reset();
+  it.rigid_body.reset();
+  it.handle.reset();
+  it.deformable = Deformable{};
+  static_cast<DeformableParameters&>(*it.deformable) = parameters;
+  return Done{};
+}
+
+Status make_soft(Level& level, std::int32_t node, const SoftBodyParameters& parameters) {
+  if (const Status status = check_area(level, node); !status) return status;
+  LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
+  it.deformable.reset();
+  it.rigid_body.reset();
+  it.soft_body = SoftBody{};
+  static_cast<SoftBodyParameters&>(*it.soft_body) = parameters;
+  return Done{};
+}
+
+Status pin(Level& level, std::int32_t node, Side side, double share) {
+  LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
+  if (!it.soft_body) return Error{it.name, "has no soft body to pin; make it soft first"};
+  if (!(share > 0.0 && share <= 1.0))
+    return Error{it.name, fmt::format("cannot be pinned by a share of {:g}; use more than 0, at most 1", share)};
+  const ObjectFrame frame = object_frame(level, node);
+  const dvec3 direction = glm::conjugate(frame.pose.rotation) * direction_of(level, side);
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(direction[i]) > std::abs(direction[axis])) axis = i;
+  const vec3 size = frame.box.size(), margin = static_cast<float>(kBeyond) * vec3(std::max({size.x, size.y, size.z}));
+  Box box{frame.box.min - margin, frame.box.max + margin};
+  const float depth = static_cast<float>(share) * size[axis];
+  if (direction[axis] > 0.0)
+    box.min[axis] = frame.box.max[axis] - depth;
+  else
+    box.max[axis] = frame.box.min[axis] + depth;
+  it.soft_body->pinned.add(box);
+  return Done{};
+}
+
+void unpin(Level& level, std::int32_t node) {
+  LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
+  if (it.soft_body) it.soft_body->pinned = {};
+  if (it.mesh < 0) return;
+  for (Primitive& primitive : own_mesh(level, node).primitives) primitive.pinned.clear();
+}
+
+LevelMesh& own_mesh(Level& level, std::int32_t node) {
+  LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
+  const bool shared = std::count_if(level.nodes.begin(), level.nodes.end(),
+                                    [&](const LevelNode& other) { return other.mesh == it.mesh; }) > 1;
+  if (shared) {
+    level.meshes.push_back(LevelMesh(level.meshes[static_cast<std::size_t>(it.mesh)]));
+    it.mesh = static_cast<std::int32_t>(level.meshes.size()) - 1;
+  }
+  return level.meshes[static_cast<std::size_t>(it.mesh)];
+}
+
+Status pin_vertices(Level& level, std::int32_t node, std::size_t primitive, std::span<const std::uint32_t> vertices,
+                    float value) {
+  const LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
+  if (it.mesh < 0 || primitive >= level.meshes[static_cast<std::size_t>(it.mesh)].primitives.size())
+    return Error{it.name, fmt::format("has no primitive {} to pin", primitive)};
+  if (!(value >= 0.0f && value <= 1.0f))
+    return Error{it.name, fmt::format("cannot be pinned by {:g}; use 0 to 1", value)};
+  Primitive& to = own_mesh(level, node).primitives[primitive];
+  for (const std::uint32_t vertex : vertices)
+    if (vertex >= to.position.size())
+      return Error{it.name, fmt::format("has no vertex {}; the last one is {}", vertex, to.position.size() - 1)};
+  if (to.pinned.empty()) to.pinned.assign(to.position.size(), 0.0f);
+  for (const std::uint32_t vertex : vertices) to.pinned[vertex] = value;
+  return Done{};
+}
+
+}  // namespace pliant

@@ -1,0 +1,135 @@
+#include "content/keys/unused_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "content/keys/extension_table.h"
+
+namespace pliant {
+
+namespace {
+
+// When a key is read by nobody, for those that are not always read. A key without a row is read wherever it stands.
+struct Row {
+  const char *extension, *key;
+  bool (*unused)(const LevelNode&);
+  const char* what;
+};
+
+// A law that a program has registered may read any constant.
+bool is_law_other_than(SpringLaw law, const LevelNode& node) {
+  return node.deformable->spring != law && node.deformable->spring <= SpringLaw::kStandardLinearSolid;
+}
+
+constexpr Row kRows[] = {
+    {"deformable", "cubic", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kCubic, n); },
+     "is read with `spring` `cubic` only; set that, or remove the key"},
+    {"deformable", "stiffening", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kExponential, n); },
+     "is read with `spring` `exponential` only; set that, or remove the key"},
+    {"deformable", "relaxation.stiffness",
+     [](const LevelNode& n) { return is_law_other_than(SpringLaw::kStandardLinearSolid, n); },
+     "is read with `spring` `sls` only; set that, or remove the key"},
+    {"deformable", "relaxation.time",
+     [](const LevelNode& n) { return is_law_other_than(SpringLaw::kStandardLinearSolid, n); },
+     "is read with `spring` `sls` only; set that, or remove the key"},
+    {"deformable", "volume", [](const LevelNode& n) { return n.deformable->shape != Shape::kVolume; },
+     "is read with `shape` `volume` only; set that, or remove the key"},
+    {"deformable", "poisson", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
+     "is read with `young` only; give that too, or remove the key"},
+    {"deformable", "thickness", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
+     "is read with `young` only; give that too, or remove the key"},
+    {"probe", "coupling", [](const LevelNode& n) { return n.probe->meets == ProbeMeets::kSurfaces; },
+     "is for soft and rigid bodies, which a probe whose `meets` is `surfaces` does not meet; set `meets` to `all`, or "
+     "remove the key"},
+    {"haptic_device", "file", [](const LevelNode& n) { return n.device->driver != DriverKind::kScript; },
+     "is read with `driver` `script` only; set that, or remove the key"},
+    {"haptic_device", "id", [](const LevelNode& n) { return n.device->driver != DriverKind::kExternal; },
+     "is read with `driver` `external` only; set that, or remove the key"},
+    {"haptic_device", "scale", [](const LevelNode& n) { return n.device->driver != DriverKind::kExternal; },
+     "is of a real device's workspace, which only the `driver` `external` has: a path is in metres of the world; "
+     "write the path as large as it shall be, or remove the key"},
+    {"soft_body", "cell", [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
+     "is not needed where `mesh` gives the tetrahedra; remove one of them"},
+    {"handle", "box", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
+     "has no effect on a rigid body, all of which is its handle; remove it"},
+    {"handle", "attachment", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
+     "is how tissue is held, and a rigid body has none; remove it"},
+    {"rigid_body", "density", [](const LevelNode& n) { return n.rigid_body->mass > 0.0; },
+     "is not needed where `mass` is given; remove one of them"},
+};
+
+// Every value that the owner has other than a fresh one.
+template <class Owner>
+bool is_set(const Extension& extension, const Key& key, const Owner& owner) {
+  Owner fresh;
+  extension.add(&fresh);
+  return key.get(&owner) != key.get(&fresh);
+}
+
+void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& found) {
+  const LevelNode& node = level.nodes[n];
+  for (const Row& row : kRows) {
+    const Extension& extension = *find_extension(row.extension);
+    if (!extension.present(&node) || !row.unused(node)) continue;
+    if (is_set(extension, *find_key(extension, row.key), node))
+      found.push_back({static_cast<std::int32_t>(n), fmt::format("PLIANT_{}/{}", row.extension, row.key), row.what});
+  }
+}
+
+void find_in_scene(const Level& level, std::vector<UnusedKey>& found) {
+  const bool has_bodies = std::any_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
+    return node.in_scene && (node.soft_body || node.rigid_body || node.handle);
+  });
+  const auto add = [&](const char* extension, const char* key, bool unused, const char* what) {
+    const Extension& in = *find_extension(extension);
+    if (unused && in.present(&level) && is_set(in, *find_key(in, key), level))
+      found.push_back({-1, fmt::format("PLIANT_{}/{}", extension, key), what});
+  };
+  const bool bare = !level.environment || level.environment->panorama.empty();
+  for (const char* key : {"intensity", "rotation"})
+    add("environment", key, bare, "is of the `panorama`, and there is none; name one, or remove the key");
+  for (const char* key : {"soft_step", "gravity"})
+    add("simulation", key, !has_bodies, "is for soft and rigid bodies, and the scene has none; remove it");
+}
+
+}  // namespace
+
+std::vector<UnusedKey> find_unused_keys(const Level& level) {
+  std::set<std::string> moving;  // names of devices that move something
+  for (const LevelNode& node : level.nodes) {
+    if (node.probe) moving.insert(node.probe_device);
+    if (node.handle) moving.insert(node.handle->device);
+  }
+  std::vector<UnusedKey> found;
+  for (std::size_t n = 0; n < level.nodes.size(); ++n) {
+    const LevelNode& node = level.nodes[n];
+    if (!node.in_scene) continue;
+    const bool moves = node.probe || node.handle || moving.count(node.name);
+    if (node.device && !moves)
+      found.push_back({static_cast<std::int32_t>(n), "PLIANT_haptic_device",
+                       "moves nothing: no probe or tool names it; name it as the `device` of one, or remove it"});
+    else
+      find_in_node(level, n, found);
+  }
+  find_in_scene(level, found);
+  return found;
+}
+
+std::vector<std::string> unused_key_notes(const Level& level) {
+  const std::vector<UnusedKey> found = find_unused_keys(level);
+  std::vector<std::string> notes;
+  std::set<std::string> said;
+  for (const UnusedKey& key : found) {
+    if (!said.insert(key.pointer).second) continue;
+    const auto same = [&](const UnusedKey& other) { return other.pointer == key.pointer; };
+    const std::ptrdiff_t more = std::count_if(found.begin(), found.end(), same) - 1;
+    const std::string node = key.node < 0 ? "" : "`" + level.nodes[static_cast<std::size_t>(key.node)].name + "`: ";
+    notes.push_back(node + key.pointer + " " + key.what +
+                    (more > 0 ? fmt::format(" ({} more node{} too)", more, more == 1 ? "" : "s") : ""));
+  }
+  return notes;
+}
+
+}  // namespace pliant

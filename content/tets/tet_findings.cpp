@@ -1,0 +1,99 @@
+#include "content/tets/tet_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/tets/lattice.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kTetsPerCube = 12.0;  // of the lattice
+constexpr double kLeastCells = 1.2;    // [cells] across a wall that stays whole
+
+}  // namespace
+
+std::string length_text(double metres) {
+  if (metres < 0.01) return fmt::format("{:.2g} mm", 1e3 * metres);
+  if (metres < 1.0) return fmt::format("{:.2g} cm", 1e2 * metres);
+  return fmt::format("{:.3g} m", metres);
+}
+
+double least_wall(const Mesh& surface, bool doubled) {
+  double area = 0.0;
+  for (const uvec3& t : surface.triangles) {
+    const dvec3 a(surface.position(t.x));
+    area += 0.5 * length(cross(dvec3(surface.position(t.y)) - a, dvec3(surface.position(t.z)) - a));
+  }
+  if (doubled) area *= 0.5;
+  return kLeastCells * std::sqrt(kTetsPerCube * kLeastCells * area / static_cast<double>(kUsualTets));
+}
+
+void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetReport& report) {
+  if (shape.kind == SurfaceKind::kSheet) {
+    report.findings.push_back(
+        fill == Fill::kWall
+            ? fmt::format("is an open surface; tissue of {} lies behind it", length_text(thickness))
+            : "is an open surface: what it half encloses is filled; close it, or give it a thickness (\"fill\": "
+              "\"wall\", \"thickness\" in metres)");
+    return;
+  }
+  if (shape.kind == SurfaceKind::kWall) {
+    report.wall = shape.thickness;
+    const std::string wall = "is a wall of " + length_text(shape.thickness);
+    if (fill == Fill::kSolid)
+      report.findings.push_back(wall +
+                                ", its inside is filled (\"fill\": \"solid\") and its inner sheet left out; to keep it "
+                                "hollow, give it thickness "
+                                "(\"fill\": \"wall\", \"thickness\" in metres)");
+    else if (thickness > shape.thickness)
+      report.findings.push_back(wall + ", made " + length_text(thickness) + " thick inwards");
+    else
+      report.findings.push_back(wall +
+                                ", filled as it is; fill the inside (\"fill\": \"solid\"), or give it a larger "
+                                "`thickness`, where that is too thin to hold");
+    return;
+  }
+  if (fill == Fill::kWall && !(thickness > 0.0))
+    report.findings.push_back(
+        "is no thin wall, so \"fill\": \"wall\" changes nothing; give it a `thickness`, or leave `fill` out");
+}
+
+void report_thin_places(const SurfaceShape& shape, const FillRegion& region, double volume, bool named,
+                        TetReport& report) {
+  if (shape.samples.empty()) return;
+  std::vector<std::pair<double, const ThicknessSample*>> thin;
+  for (const ThicknessSample& sample : shape.samples)
+    if (const double t = region.thickness_at(sample);
+        t > 0.0 && t < (named ? kThinCellsOfNamed : kThinCells) * report.cell)
+      thin.emplace_back(t, &sample);
+  report.thin = static_cast<double>(thin.size()) / static_cast<double>(shape.samples.size());
+  if (report.thin < kThinShare) return;
+  std::sort(thin.begin(), thin.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  // Not the very thinnest, which is an edge's: half of what is thin is thinner.
+  const auto& [least, at] = thin[thin.size() / 2];
+  report.least_thickness = least;
+  report.thinnest = vec3(at->place);
+  const double cell = least / kHeldCells;
+  report.findings.push_back(fmt::format(
+      "is thin over {:.0f} % of its surface, {} at ({:.3g}, {:.3g}, {:.3g}) m, for a cell of {}: it bends there as "
+      "single elements do, or crumples; a `cell` of {:.2g} m holds it, with some {:.0f} tetrahedra",
+      1e2 * report.thin, length_text(least), at->place.x, at->place.y, at->place.z, length_text(report.cell), cell,
+      kTetsPerCube * volume / (cell * cell * cell)));
+}
+
+void report_parts(std::uint32_t kept, std::uint32_t of_surface, TetReport& report) {
+  if (report.parts_dropped > 0)
+    report.findings.push_back(fmt::format(
+        "lost {} part{} too small to keep ({:.2g} % of its tissue); the surface there rides on what is nearest",
+        report.parts_dropped, report.parts_dropped == 1 ? "" : "s", 1e2 * report.volume_dropped));
+  if (kept > of_surface)
+    report.findings.push_back(
+        fmt::format("its tetrahedra fall into {} parts where its surface has {}: what joins them is thinner than the "
+                    "cell; make `cell` smaller",
+                    kept, of_surface));
+}
+
+}  // namespace pliant

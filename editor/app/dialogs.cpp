@@ -1,0 +1,69 @@
+// The program's questions, and lines over the viewport.
+#include "editor/app/app.h"
+#include "editor/ui/widgets.h"
+#include "runtime/printable.h"
+
+namespace pliant {
+
+void App::ask(Question question) {
+  questions_.push_back(std::move(question));
+}
+
+void App::draw_question() {
+  if (questions_.empty() || after_leaving_) return;
+  const ui::Scope scope("Question");
+  ImGui::OpenPopup("Question");
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.4f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({ui::px(360), 0}, {0.8f * size.x, 0.8f * size.y});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kWide), ui::px(ui::kWide)));
+  const bool open = ImGui::BeginPopupModal(
+      "Question", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove);
+  ImGui::PopStyleVar();
+  if (!open) return;
+  const Question& question = questions_.front();
+  ui::title(printable(question.title).c_str());
+  ui::gap(ui::kGap);
+  for (const std::string& line : question.lines) ImGui::TextUnformatted(printable(line).c_str());
+  ui::gap(ui::kPad);
+  const Answer* taken = nullptr;
+  for (const Answer& answer : question.answers) {
+    if (&answer != &question.answers.front()) ImGui::SameLine();
+    const bool first = &answer == &question.answers.front();
+    if (first ? ui::strong_button(answer.label.c_str(), answer.hint.c_str())
+              : ui::button(answer.label.c_str(), answer.hint.c_str()))
+      taken = &answer;
+  }
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) && question.answers.back().label == "Cancel")
+    taken = &question.answers.back();
+  if (taken) {
+    const auto then = taken->then;
+    questions_.pop_front();
+    ImGui::CloseCurrentPopup();
+    if (then) then();
+  }
+  ImGui::EndPopup();
+}
+
+void App::draw_banners() {
+  float y = viewport_low_.y + ui::px(ui::kPad);
+  for (const auto& each : panels_) {
+    if (each->place() != Panel::Place::kBanner || !each->shown(editor)) continue;
+    ImGui::SetNextWindowPos({0.5f * (viewport_low_.x + viewport_high_.x), y}, ImGuiCond_Always, {0.5f, 0.0f});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ui::palette().raised);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(ui::kSpace)));
+    ImGui::Begin(each->name(), nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+    {
+      const ui::Scope scope(each->name());
+      each->draw(editor);
+    }
+    y += ImGui::GetWindowSize().y + ui::px(ui::kGap);
+    ImGui::End();
+  }
+}
+
+}  // namespace pliant

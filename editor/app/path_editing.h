@@ -1,0 +1,19 @@
+// The paths of a document's probes and tools as keys: which one is edited, and how it is changed.
+#pragma once
+
+#include "editor/app/editor.h"
+#include "editor/document/script_keys.h"
+
+namespace pliant {
+
+// The node whose device's path is edited: the active one or that of the probe or tool that is active; kNoNode: none.
+NodeId path_node(const Editor& editor);
+// Its keys as they stand in the document; empty: it has no path yet.
+ScriptKeys keys_of_node(const Editor& editor, NodeId node);
+// The device follows the script from now on; one that had none gets a file named after the node.
+bool set_keys_of_node(Editor& editor, NodeId node, const ScriptKeys& keys, const std::string& what,
+                      const std::string& gesture = {});
+// [m] How high above a surface a path begins and ends.
+double path_clearance(const Editor& editor, NodeId node);
+
+}  // namespace pliant

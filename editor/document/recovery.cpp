@@ -1,0 +1,160 @@
+#include "editor/document/recovery.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "content/files/file_io.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kEnding = ".recovery.glb";
+
+// Of a copy in the user's folder: what it is of.
+fs::path about_of_copy(const fs::path& copy) {
+  return fs::path(copy).concat(".json");
+}
+
+std::uint64_t fnv1a(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+std::string plain(const std::string& title) {
+  std::string name;
+  for (const char c : title)
+    name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
+  return name.substr(0, 60);
+}
+
+fs::path whole(const fs::path& file) {
+  std::error_code failed;
+  const fs::path from_root = fs::absolute(file, failed);
+  return failed ? file : from_root.lexically_normal();
+}
+
+// Of a document with a file: the same name for the same file. Of another one: of this process.
+fs::path apart(const fs::path& state_folder, const fs::path& file, const std::string& title) {
+  static std::atomic<int> number{0};
+  const std::string name =
+      file.empty() ? fmt::format("{}-{}-{}", plain(title), ::getpid(), ++number)
+                   : fmt::format("{}-{:016x}", plain(file.filename().string()), fnv1a(whole(file).string()));
+  return state_folder / (name + kEnding);
+}
+
+bool runs(int process) {
+  return process > 0 && process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
+}
+
+std::string text_of(const Json& json, const char* key) {
+  return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
+}
+
+}  // namespace
+
+fs::path recovery_beside(const fs::path& file) {
+  return file.parent_path() / ("." + file.filename().string() + kEnding);
+}
+
+std::optional<RecoveryCopy> find_recovery(const fs::path& file, const fs::path& state_folder) {
+  std::optional<RecoveryCopy> newest;
+  std::error_code gone;
+  for (const fs::path& copy : {recovery_beside(file), apart(state_folder, file, "")}) {
+    if (!fs::is_regular_file(copy, gone)) continue;
+    const auto time = fs::last_write_time(copy, gone);
+    if (gone || (newest && newest->time >= time)) continue;
+    newest = RecoveryCopy{copy, file, file.parent_path(), file.filename().string(), time};
+  }
+  return newest;
+}
+
+std::vector<RecoveryCopy> find_recoveries(const fs::path& state_folder) {
+  std::vector<RecoveryCopy> found;
+  std::error_code gone;
+  for (const fs::directory_entry& entry : fs::directory_iterator(state_folder, gone)) {
+    if (!entry.path().filename().string().ends_with(kEnding)) continue;
+    RecoveryCopy copy;
+    copy.copy = entry.path();
+    copy.time = fs::last_write_time(copy.copy, gone);
+    const Result<Bytes> bytes = read_file(about_of_copy(copy.copy));
+    const Json about = bytes ? Json::parse(bytes->begin(), bytes->end(), nullptr, false) : Json();
+    if (about.is_object()) {
+      if (about.contains("process") && about["process"].is_number_integer() && runs(about["process"].get<int>()))
+        continue;
+      copy.file = text_of(about, "file");
+      copy.folder = text_of(about, "folder");
+      copy.title = text_of(about, "title");
+    }
+    if (copy.title.empty()) copy.title = copy.copy.filename().string();
+    found.push_back(std::move(copy));
+  }
+  std::sort(found.begin(), found.end(), [](const RecoveryCopy& a, const RecoveryCopy& b) { return a.time > b.time; });
+  return found;
+}
+
+void remove_recovery(const RecoveryCopy& copy) {
+  std::error_code gone;
+  // What a copy was being written to when the editor ended.
+  const std::string half = copy.copy.filename().string() + ".";
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(copy.copy.parent_path().empty() ? "." : copy.copy.parent_path(), gone)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(half) && name.ends_with(".part") && !runs(std::atoi(name.c_str() + half.size())))
+      fs::remove(entry.path(), gone);
+  }
+  fs::remove(copy.copy, gone);
+  fs::remove(about_of_copy(copy.copy), gone);
+}
+
+RecoveryPlace::RecoveryPlace(fs::path file, fs::path folder, std::string title, fs::path state_folder)
+    : file_(file.empty() ? file : whole(file)),
+      folder_(whole(folder)),
+      beside_(file.empty() ? fs::path() : recovery_beside(file_)),
+      apart_(apart(state_folder, file, title)),
+      state_folder_(std::move(state_folder)),
+      title_(std::move(title)) {}
+
+Status RecoveryPlace::write(const State& state) {
+  Status status = beside_.empty() ? Status(Error{}) : save_state(state, beside_);
+  if (!status) status = write_apart(state);
+  written_ = status.ok();
+  if (!wanted_) remove();
+  return status;
+}
+
+Status RecoveryPlace::write_apart(const State& state) {
+  std::error_code failed;
+  fs::create_directories(state_folder_, failed);
+  if (Status s = save_state(state, apart_); !s) return s;
+  const Json about{{"file", file_.string()},
+                   {"folder", folder_.string()},
+                   {"title", title_},
+                   {"process", static_cast<int>(::getpid())}};
+  const std::string text = about.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return write_file(about_of_copy(apart_), std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+void RecoveryPlace::forget() {
+  wanted_ = false;
+  remove();
+}
+
+void RecoveryPlace::remove() const {
+  std::error_code gone;
+  if (!beside_.empty()) fs::remove(beside_, gone);
+  fs::remove(apart_, gone);
+  fs::remove(about_of_copy(apart_), gone);
+}
+
+}  // namespace pliant

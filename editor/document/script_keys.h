@@ -1,0 +1,42 @@
+// A path that is edited as a curve: a few keys over a surface, and the script that they make.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "components/math.h"
+#include "pliant/parameters.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct PathKey {
+  double time = 0.0;    // [s] ascending
+  dvec3 anchor{0};      // [m] world; of a key on a surface, the place there
+  dvec3 normal{0};      // [1] world, outward; 0: the key is in the air, at `anchor`
+  double height = 0.0;  // [m] along the normal; < 0: pressed in
+  dvec3 position() const { return anchor + height * normal; }
+  bool operator==(const PathKey&) const = default;
+};
+
+struct ScriptKeys {
+  std::vector<PathKey> keys;
+  bool smooth = true;  // once continuously differentiable through the keys, without passing beyond them; else straight
+  bool repeats = false;
+  bool operator==(const ScriptKeys&) const = default;
+};
+
+inline constexpr double kScriptStep = 0.01;  // [s] between rows of the script of a smooth path
+
+// Monotone cubic Hermite through the keys, each coordinate for itself (Fritsch and Carlson 1980): no coordinate leaves
+// the range of the two keys around it, so that a press goes no deeper than its keys say.
+dvec3 position_at(const ScriptKeys& script, double time);
+Path path_of(const ScriptKeys& script);
+// The keys of a path within `tolerance` [m] of it (Ramer, Douglas and Peucker, in space and time).
+ScriptKeys keys_of(const Path& path, double tolerance);
+
+// As a script file that every run reads; the keys stand in its comments, so that they come back as they were.
+Status save_keys(const ScriptKeys& script, const std::filesystem::path& file);
+Result<ScriptKeys> load_keys(const std::filesystem::path& file);
+
+}  // namespace pliant

@@ -1,0 +1,107 @@
+#include "editor/play/play_hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+// A picture may come late, and the place that it shows be far from the last one: a hand that jumped would be taken for
+// a device that has lost its way (systems/safety/safety.h), and feel nothing.
+constexpr double kGlideTime = 0.015;   // [s] time constant of the way after what is pointed at
+constexpr double kFastestFree = 8.0;   // [m/s] clear of every surface
+constexpr double kFastestSlide = 0.5;  // [m/s] pressed in
+constexpr double kArc = 0.6;           // [1] of the way that is left: so high it goes over what lies between
+
+}  // namespace
+
+void PlayHand::take_probe(const World& world, double radius, const Viewpoint& view, std::optional<dvec3> from) {
+  const std::lock_guard lock(mutex_);
+  carrier_.reset();
+  pointer_.emplace(world, radius, view);
+  at_ = from.value_or(pointer_->update(0.0));
+}
+
+void PlayHand::take_tool(const World& world, Entity tool, dvec3 device) {
+  const std::lock_guard lock(mutex_);
+  pointer_.reset();
+  carrier_ = Carrier::holding(world, tool, device);
+}
+
+void PlayHand::let_go() {
+  const std::lock_guard lock(mutex_);
+  pointer_.reset();
+  carrier_.reset();
+}
+
+bool PlayHand::has_any() const {
+  const std::lock_guard lock(mutex_);
+  return pointer_ || carrier_;
+}
+
+std::optional<dvec3> PlayHand::update(double dt) {
+  const std::lock_guard lock(mutex_);
+  if (pointer_) {
+    const dvec3 to = pointer_->update(dt);
+    const bool free = pointer_->free();
+    dvec3 way = to - at_;
+    if (free && seen_) way += kArc * length(way) * seen_->normal;
+    const double left = length(way), most = (free ? kFastestFree : kFastestSlide) * dt;
+    at_ += way * std::min(1.0 - std::exp(-dt / kGlideTime), left > most ? most / left : 1.0);
+    return at_;
+  }
+  if (!carrier_) return {};
+  carrier_->update(dt);
+  return carrier_->position();
+}
+
+void PlayHand::see(const std::optional<Picked>& seen, const ViewRay& ray) {
+  const std::lock_guard lock(mutex_);
+  seen_ = seen;
+  if (pointer_) pointer_->see(seen, ray);
+}
+
+PlayHand::Over PlayHand::over() const {
+  const std::lock_guard lock(mutex_);
+  if (pointer_ && pointer_->over_touchable()) return Over::kTouchable;
+  if (carrier_ && seen_ && seen_->object == carrier_->tool()) return Over::kTool;
+  return Over::kNothing;
+}
+
+void PlayHand::hold(bool held) {
+  const std::lock_guard lock(mutex_);
+  if (pointer_) pointer_->hold(held);
+  if (!carrier_) return;
+  if (!held)
+    carrier_->release();
+  else if (seen_)
+    carrier_->grab(seen_->point, carrier_->position());
+}
+
+void PlayHand::follow(const ViewRay& ray, const Viewpoint& view) {
+  const std::lock_guard lock(mutex_);
+  if (carrier_) carrier_->follow(ray, view);
+}
+
+void PlayHand::wheel(int steps, const Viewpoint& view) {
+  const std::lock_guard lock(mutex_);
+  if (pointer_) pointer_->deepen(steps);
+  if (carrier_) carrier_->push(steps, view);
+}
+
+void PlayHand::stand(int steps) {
+  const std::lock_guard lock(mutex_);
+  if (pointer_) pointer_->stand(steps);
+}
+
+bool PlayHand::pressing() const {
+  const std::lock_guard lock(mutex_);
+  return (pointer_ && pointer_->pressing()) || (carrier_ && carrier_->holds());
+}
+
+double PlayHand::depth_goal() const {
+  const std::lock_guard lock(mutex_);
+  return pointer_ ? pointer_->depth_goal() : 0.0;
+}
+
+}  // namespace pliant

@@ -1,0 +1,67 @@
+// What a run's thread has to itself (play_run.h): the session, what it has been, and what moves it.
+#pragma once
+
+#include <optional>
+
+#include "editor/play/play_run.h"
+#include "engine/journal.h"
+#include "engine/session_inside.h"
+
+namespace pliant {
+
+struct PlayRun::Inside {
+  explicit Inside(PlayRun& of) : run(of) {}
+
+  PlayRun& run;
+  std::optional<Session> session;
+  Session::Parts* parts = nullptr;
+  std::optional<Journal> journal;            // touch clock -> this thread
+  std::unique_ptr<Recorder<PoseRow>> poses;  // the same
+  std::vector<TickRow> rows;
+  std::vector<PoseRow> pose_rows;
+  PlayPast past;  // so far
+  bool past_full = false;
+  std::vector<std::array<std::uint64_t, 4>> limited;
+  std::vector<std::string> notes;
+
+  bool realtime = false, paused = false;
+  double speed = 1.0;
+  std::uint64_t steps = 0;  // that are to be run, one by one
+  double due = 0.0;         // [ticks] that the wall clock has come ahead
+  std::uint64_t turned_ns = 0, paced_ns = 0, paced_tick = 0;
+  double pace = 0.0;
+  std::uint64_t shown_ns = 0, hashed = ~std::uint64_t{0}, flushed = ~std::uint64_t{0};
+  std::string hash;
+  std::vector<std::string> findings;
+
+  // Of a past that is had again.
+  bool again = false;
+  std::uint64_t until = 0;  // [ticks]
+  std::size_t next_edit = 0;
+
+  // Sources.
+  struct Level {  // as the level has it
+    DriverKind driver = DriverKind::kNull;
+    Handle<Path> path;
+    EffectorSource source = EffectorSource::kNone;
+  };
+  std::vector<Level> of_level, before_past;  // of each effector
+  std::vector<PlaySource> sources;           // of each effector
+  std::string moved;                         // by the mouse
+  dquat held{1, 0, 0, 0};                    // as which it is held
+
+  void say(const std::string& note) { notes.push_back(note); }
+  Level remember(const SessionEffector& effector) const;
+  void bring_back(SessionEffector& effector, const Level& level);
+  void apply(const std::string& name, const PlaySource& source);
+  void apply_all();
+  void begin_past(const PlayPast& of, std::uint64_t until);
+  void end_past();
+  Status tick();
+  void take_rows();
+  void move_hand(double dt);
+  void flush();
+  bool still() const { return !realtime && (again ? parts->ticks >= until : paused && steps == 0); }
+};
+
+}  // namespace pliant

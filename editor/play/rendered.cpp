@@ -1,0 +1,63 @@
+#include "editor/play/rendered.h"
+
+#include "content/level_file.h"
+#include "editor/play/scene_view.h"
+#include "systems/soft/prepare_soft.h"
+#include "systems/tool/prepare_tools.h"
+#include "systems/touch/prepare.h"
+
+namespace pliant {
+
+Result<std::shared_ptr<World>> world_of(const Level& level) {
+  auto spawned = spawn(level);
+  if (!spawned) return spawned.error();
+  auto world = std::make_shared<World>(std::move(spawned).value());
+  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
+    if (const Status status = prepare_system(*world); !status) return status.error();
+  return world;
+}
+
+Level level_to_play(const State& state, const std::filesystem::path& folder, const std::filesystem::path& file) {
+  Level level = level_of(state);
+  if (!file.empty())
+    level.path = file;
+  else if (!folder.empty())
+    level.path = folder / "untitled.glb";
+  return level;
+}
+
+void Rendered::update(Editor& editor, Stage& stage, bool shown) {
+  if (!shown) {
+    if (shows_) stage.show(nullptr);
+    if (waits_) editor.jobs.cancel("rendered");
+    shows_ = waits_ = false;
+    made_ = seen_ = ~std::uint64_t{0};
+    return;
+  }
+  const std::uint64_t revision = editor.document.revision();
+  if (revision != seen_) {
+    changed_at_ = seen_ == ~std::uint64_t{0} ? -kPatience : editor.now;  // the first comes at once
+    seen_ = revision;
+    waits_ = true;
+  }
+  if (made_ == revision || editor.now - changed_at_ < kPatience) return;
+  made_ = revision;
+  const State state = editor.state();
+  const auto folder = editor.document.folder(), file = editor.document.file();
+  editor.jobs.start("rendered", "Preparing the picture", [this, &stage, state, folder, file](const Jobs::Stop& stop) {
+    auto world = std::make_shared<Result<std::shared_ptr<World>>>(world_of(level_to_play(state, folder, file)));
+    (void)stop;
+    return [this, &stage, world](Editor& to) {
+      waits_ = false;
+      if (!*world) {
+        to.say("the picture of the level as it is played cannot be made: " + world->error().message(),
+               Severity::kWarning);
+        return;
+      }
+      shows_ = true;
+      stage.show([it = **world] { return std::make_unique<SceneView>(it); });
+    };
+  });
+}
+
+}  // namespace pliant

@@ -1,0 +1,90 @@
+// The arithmetic of gizmos: from the mouse in a picture to metres, angles and factors, and from those to where the
+// nodes that are held stand. No window is needed.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "editor/document/edits.h"
+#include "editor/viewport/view_camera.h"
+
+namespace pliant {
+
+// The picture that a gizmo stands in.
+struct GizmoPicture {
+  Viewpoint view;
+  double orthographic = 0.0;  // [m] height; 0: perspective
+  int width = 1, height = 1;  // [pixel]
+  ViewRay ray(double x, double y) const { return view_ray(view, orthographic, x, y, width, height); }
+  std::optional<dvec3> pixel(dvec3 place) const { return on_picture(view, orthographic, width, height, place); }
+  dvec3 forward() const { return glm::normalize(view.target - view.eye); }
+};
+
+enum class GizmoPart : std::uint8_t { kNone, kX, kY, kZ, kYZ, kZX, kXY, kFree };
+inline bool is_axis(GizmoPart part) {
+  return part >= GizmoPart::kX && part <= GizmoPart::kZ;
+}
+inline bool is_plane(GizmoPart part) {
+  return part >= GizmoPart::kYZ && part <= GizmoPart::kXY;
+}
+// Of an axis its number; of a plane the number of the axis that it leaves out.
+inline int axis_of(GizmoPart part) {
+  return is_plane(part) ? static_cast<int>(part) - static_cast<int>(GizmoPart::kYZ)
+                        : static_cast<int>(part) - static_cast<int>(GizmoPart::kX);
+}
+
+// What is held: the topmost nodes of a selection, and about what they move.
+struct Grip {
+  struct Held {
+    NodeId id;
+    LocalTransform local;
+    dmat4 parent{1};  // parent -> world
+    dvec3 place{0};   // [m] world
+  };
+  std::vector<Held> held;
+  dvec3 pivot{0};  // [m] world
+  dmat3 axes{1};   // world, unit columns; not always orthogonal: a node's own axes under an uneven scale
+  bool local = false;
+};
+enum class Pivot : std::uint8_t {
+  kOrigin,  // the mean of the nodes' origins
+  kMiddle,  // the middle of their bounds
+};
+// `local`: along the axes of `active`, else the world's. Nothing to hold: no `held`.
+Grip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local);
+
+// [m] of a pixel at a place; nothing: it is behind the eye.
+std::optional<double> metres_of_pixel(const GizmoPicture& picture, dvec3 place);
+// [m] along the line through `origin`, where it is nearest to a ray; nothing: they are parallel, or that is behind.
+std::optional<double> along_line(const ViewRay& ray, dvec3 origin, dvec3 along);
+// [m] where a ray meets a plane; nothing: it is seen edge-on, or behind.
+std::optional<dvec3> on_plane(const ViewRay& ray, dvec3 origin, dvec3 normal);
+
+// How far the hand has gone between two pixels, along the grip's axes [m].
+std::optional<dvec3> moved_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to);
+// By what angle about `axis` the hand has turned between two pixels [rad]; of a large turn, add small ones.
+double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 from, dvec2 to, double radius_pixels);
+// By what factor along each of the grip's axes it has scaled.
+std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to);
+
+// Where the nodes stand then.
+std::vector<Placing> moved(const Grip& grip, dvec3 by);                   // `by` [m] world
+std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle);  // `axis` world
+std::vector<Placing> scaled(const Grip& grip, dvec3 factors);             // along the grip's axes
+
+double snapped(double value, double step);  // to a multiple; step 0: as it is
+
+// What is typed while something is held: an axis' letter, a number, a unit: "x 0.05", "-3mm", "1e-7".
+struct TypedValue {
+  GizmoPart axis = GizmoPart::kNone;  // none: as it was
+  std::optional<double> value;        // [m] of a length; nothing: no number yet
+  bool understood = true;
+};
+TypedValue typed_value(const std::string& text, bool length);
+
+// "12 mm", with the unit that suits its size.
+std::string length_text(double metres, int digits = 4);
+
+}  // namespace pliant

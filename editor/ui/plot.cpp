@@ -1,0 +1,182 @@
+#include "editor/ui/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/ui/widgets.h"
+
+namespace pliant::ui {
+namespace {
+
+constexpr float kLeft = 40, kBelow = 18, kAbove = 4, kRight = 6;  // [point] around the axes
+constexpr float kTick = 46, kTickUp = 26;                         // [point] between labels at least
+
+}  // namespace
+
+double round_step(double span, int most) {
+  if (!(span > 0.0) || most < 1) return 1.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(span / most)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (span / (step * decade) <= most) return step * decade;
+  return 10.0 * decade;
+}
+
+double round_above(double value) {
+  if (!(value > 0.0)) return 1.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0})
+    if (step * decade >= value) return step * decade;
+  return 10.0 * decade;
+}
+
+Plot::Plot(const char* name, const char* title, ImVec2 size, PlotAxis x, PlotAxis y, bool x_labels)
+    : x_(x), y_(y), list_(ImGui::GetWindowDrawList()) {
+  const Palette& p = palette();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  size = {std::max(size.x, px(80)), std::max(size.y, px(40))};
+  ImGui::InvisibleButton(name, size);
+  known_as(name);
+  low_ = {corner.x + px(kLeft), corner.y + px(kAbove)};
+  high_ = {corner.x + size.x - px(kRight), corner.y + size.y - px(x_labels ? kBelow : kAbove)};
+  held_ = ImGui::IsItemActive();
+  let_go_ = ImGui::IsItemDeactivated();
+  const double across = std::clamp(
+      static_cast<double>((ImGui::GetIO().MousePos.x - low_.x) / std::max(high_.x - low_.x, 1.0f)), 0.0, 1.0);
+  mouse_x_ = x_.low + across * (x_.high - x_.low);
+  list_->AddRectFilled(low_, high_, color(p.window), px(2));
+  ImGui::PushFont(font(Type::kSmall));
+  const float line = ImGui::GetTextLineHeight();
+  const auto label = [](double value, double step) {
+    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
+    return fmt::format("{:.{}f}", value == 0.0 ? 0.0 : value, digits);
+  };
+  const double step_y =
+      round_step((y_.high - y_.low) * y_.shown, std::max(2, static_cast<int>((high_.y - low_.y) / px(kTickUp))));
+  for (double v = std::ceil(y_.low * y_.shown / step_y) * step_y; v <= y_.high * y_.shown + 1e-9; v += step_y) {
+    const float at = on({x_.low, v / y_.shown}).y;
+    list_->AddLine({low_.x, at}, {high_.x, at}, color(p.text, 0.10f));
+    const std::string text = label(v, step_y);
+    list_->AddText({low_.x - px(5) - ImGui::CalcTextSize(text.c_str()).x,
+                    std::clamp(at - 0.5f * line, corner.y, high_.y - line + px(4))},
+                   color(p.dim), text.c_str());
+  }
+  const double step_x =
+      round_step((x_.high - x_.low) * x_.shown, std::max(1, static_cast<int>((high_.x - low_.x) / px(kTick))));
+  for (double v = std::ceil(x_.low * x_.shown / step_x - 1e-9) * step_x; v <= x_.high * x_.shown + 1e-9; v += step_x) {
+    const float at = on({v / x_.shown, y_.low}).x;
+    list_->AddLine({at, low_.y}, {at, high_.y}, color(p.text, 0.07f));
+    if (!x_labels) continue;
+    std::string text = label(v, step_x);
+    if (v + step_x > x_.high * x_.shown) text += std::string(" ") + x_.unit;
+    const float wide = ImGui::CalcTextSize(text.c_str()).x;
+    list_->AddText({std::clamp(at - 0.5f * wide, low_.x - px(kLeft), high_.x - wide + px(kRight)), high_.y + px(2)},
+                   color(p.dim), text.c_str());
+  }
+  title_ = title;
+  legend_y_ = low_.y + px(3);
+  ImGui::PopFont();
+  list_->PushClipRect(low_, high_, true);
+}
+
+// The title last: curves go behind it.
+Plot::~Plot() {
+  ImGui::PushFont(font(Type::kSmall));
+  text(low_.x + px(6), low_.y + px(3), title_);
+  ImGui::PopFont();
+  list_->PopClipRect();
+}
+
+void Plot::text(float x, float y, const char* words) {
+  const ImVec2 size = ImGui::CalcTextSize(words);
+  list_->AddRectFilled({x - px(2), y}, {x + size.x + px(2), y + size.y}, color(palette().window, 0.75f));
+  list_->AddText({x, y}, color(palette().dim), words);
+}
+
+ImVec2 Plot::on(dvec2 at) const {
+  const double across = (at.x - x_.low) / std::max(x_.high - x_.low, 1e-300),
+               up = (at.y - y_.low) / std::max(y_.high - y_.low, 1e-300);
+  const auto within = [](double share) { return static_cast<float>(std::clamp(share, -4.0, 5.0)); };
+  return {low_.x + within(across) * (high_.x - low_.x), high_.y - within(up) * (high_.y - low_.y)};
+}
+
+void Plot::curve(std::size_t count, const std::function<dvec2(std::size_t)>& point, const ImVec4& of, float width,
+                 bool dashed) {
+  std::vector<ImVec2> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ImVec2 at = on(point(i));
+    if (points.size() > 1 && i + 1 < count) {
+      // Of what falls into one column, the ends of its range are kept.
+      const ImVec2& last = points.back();
+      if (std::abs(at.x - last.x) < 0.5f && std::abs(at.y - last.y) < 0.5f) continue;
+    }
+    points.push_back(at);
+  }
+  if (points.size() < 2) return;
+  if (!dashed) {
+    list_->AddPolyline(points.data(), static_cast<int>(points.size()), color(of), 0, px(width));
+    return;
+  }
+  const float dash = px(6);
+  float along = 0.0f;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const ImVec2 a = points[i - 1], b = points[i];
+    const float far = std::hypot(b.x - a.x, b.y - a.y);
+    for (float from = 0.0f; from < far;) {
+      const float phase = std::fmod(along + from, 2 * dash), left = phase < dash ? dash - phase : 2 * dash - phase;
+      const float to = std::min(far, from + std::max(left, 0.5f));
+      if (phase < dash)
+        list_->AddLine({a.x + (b.x - a.x) * from / far, a.y + (b.y - a.y) * from / far},
+                       {a.x + (b.x - a.x) * to / far, a.y + (b.y - a.y) * to / far}, color(of), px(width));
+      from = to;
+    }
+    along += far;
+  }
+}
+
+void Plot::marks(std::size_t count, const std::function<double(std::size_t)>& x,
+                 const std::function<bool(std::size_t)>& at, const ImVec4& of) {
+  float last = -1e9f;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!at(i)) continue;
+    const float place = on({x(i), y_.high}).x;
+    if (place - last < 1.0f) continue;
+    last = place;
+    list_->AddLine({place, low_.y}, {place, low_.y + px(5)}, color(of), px(1));
+  }
+}
+
+void Plot::upright(double x, const ImVec4& of, const char* text) {
+  const float at = on({x, y_.low}).x;
+  list_->AddLine({at, low_.y}, {at, high_.y}, color(of), px(1.5f));
+  if (*text) list_->AddText({at + px(4), high_.y - ImGui::GetTextLineHeight() - px(2)}, color(of), text);
+}
+
+void Plot::dot(dvec2 at, const ImVec4& of) {
+  list_->AddCircleFilled(on(at), px(3.5f), color(of));
+}
+
+void Plot::legend(const char* text, const ImVec4& of, bool dashed) {
+  ImGui::PushFont(font(Type::kSmall));
+  const float wide = ImGui::CalcTextSize(text).x, line = ImGui::GetTextLineHeight();
+  const float at = high_.x - px(6) - wide, middle = legend_y_ + 0.5f * line;
+  this->text(at, legend_y_, text);
+  if (dashed) {
+    list_->AddLine({at - px(22), middle}, {at - px(15), middle}, color(of), px(1.5f));
+    list_->AddLine({at - px(11), middle}, {at - px(5), middle}, color(of), px(1.5f));
+  } else {
+    list_->AddLine({at - px(22), middle}, {at - px(5), middle}, color(of), px(1.5f));
+  }
+  legend_y_ += line;
+  ImGui::PopFont();
+}
+
+void Plot::note(const char* text) {
+  const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, high_.x - low_.x - px(24));
+  list_->AddText(ImGui::GetFont(), ImGui::GetFontSize(),
+                 {0.5f * (low_.x + high_.x - size.x), 0.5f * (low_.y + high_.y - size.y)}, color(palette().faint), text,
+                 nullptr, high_.x - low_.x - px(24));
+}
+
+}  // namespace pliant::ui

@@ -1,0 +1,25 @@
+// What lies over the picture: the tool's options at the upper left, overlays, standard views and the cross of axes at
+// the upper right, the grid's unit and the legend below, names of nodes.
+#pragma once
+
+#include <imgui.h>
+
+#include "editor/app/panel.h"
+#include "editor/viewport/stage.h"
+
+namespace pliant {
+
+class ViewBar {
+ public:
+  // Windows over the viewport from `low` to `high` [pixel].
+  void draw(Editor& editor, ViewTool* tool, ImVec2 low, ImVec2 high);
+  // What is only looked at, into the viewport's own list.
+  static void draw_over(const Editor& editor, const ViewportInput& in, ImDrawList& list);
+
+ private:
+  void draw_overlays(Editor& editor);
+  static void draw_clip(Editor& editor);
+  static void draw_cross(Editor& editor);
+};
+
+}  // namespace pliant

@@ -1,0 +1,138 @@
+// Settings that nobody reads are told of, and those that somebody reads are not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "content/keys/unused_keys.h"
+#include "content/level/device_use.h"
+#include "content/level_file.h"
+
+namespace pliant {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+Level level_with(const std::function<void(LevelNode&)>& write) {
+  Level level;
+  LevelNode node;
+  node.name = "it";
+  write(node);
+  level.nodes.push_back(node);
+  return level;
+}
+
+std::vector<std::string> unused(const Level& level) {
+  std::vector<std::string> pointers;
+  for (const UnusedKey& key : find_unused_keys(level)) {
+    pointers.push_back(key.pointer);
+    EXPECT_NE(key.what.find("; "), std::string::npos) << key.what;
+  }
+  return pointers;
+}
+
+TEST(UnusedKeys, AScaleIsOfADeviceThatIsNoPath) {
+  const auto with = [](DriverKind driver) {
+    return level_with([&](LevelNode& n) {
+      n.probe.emplace();
+      n.device.emplace();
+      n.device->driver = driver;
+      n.device->scale = 2.0;
+    });
+  };
+  EXPECT_THAT(unused(with(DriverKind::kOrbit)), ElementsAre("PLIANT_haptic_device/scale"));
+  EXPECT_THAT(unused(with(DriverKind::kMouse)), ElementsAre("PLIANT_haptic_device/scale"));
+  EXPECT_THAT(unused(with(DriverKind::kExternal)), IsEmpty());
+}
+
+TEST(UnusedKeys, ALawReadsItsOwnConstantsOnly) {
+  const auto with = [](SpringLaw law) {
+    return level_with([&](LevelNode& n) {
+      n.deformable.emplace();
+      n.deformable->spring = law;
+      n.deformable->cubic += 1.0;
+      n.deformable->stiffening += 1.0;
+      n.deformable->relaxation_time += 1.0;
+    });
+  };
+  const std::string cubic = "PLIANT_deformable/cubic", stiffening = "PLIANT_deformable/stiffening",
+                    time = "PLIANT_deformable/relaxation.time";
+  EXPECT_THAT(unused(with(SpringLaw::kLinear)), ElementsAre(cubic, stiffening, time));
+  EXPECT_THAT(unused(with(SpringLaw::kCubic)), ElementsAre(stiffening, time));
+  EXPECT_THAT(unused(with(SpringLaw::kExponential)), ElementsAre(cubic, time));
+  EXPECT_THAT(unused(with(SpringLaw::kStandardLinearSolid)), ElementsAre(cubic, stiffening));
+}
+
+TEST(UnusedKeys, PoissonAndThicknessNeedYoung) {
+  const auto with = [](double young) {
+    return level_with([&](LevelNode& n) {
+      n.deformable.emplace();
+      n.deformable->poisson = 0.3;
+      n.deformable->thickness = 0.01;
+      n.deformable->young = young;
+    });
+  };
+  EXPECT_THAT(unused(with(0.0)), ElementsAre("PLIANT_deformable/poisson", "PLIANT_deformable/thickness"));
+  EXPECT_THAT(unused(with(5e3)), IsEmpty());
+}
+
+TEST(UnusedKeys, ADeviceThatNoProbeNamesMovesNothing) {
+  Level level = level_with([](LevelNode& n) { n.device.emplace(); });
+  EXPECT_THAT(unused(level), ElementsAre("PLIANT_haptic_device"));
+  level.nodes.push_back({.name = "tip", .probe = Probe{}, .probe_device = "it"});
+  EXPECT_THAT(unused(level), IsEmpty());
+}
+
+TEST(UnusedKeys, ClocksAndGravityOfBodiesNeedBodies) {
+  Level level = level_with([](LevelNode& n) { n.deformable.emplace(); });
+  level.simulation.gravity = dvec3(0, -1, 0);
+  EXPECT_THAT(unused(level), ElementsAre("PLIANT_simulation/gravity"));
+  level.nodes[0].deformable.reset();
+  level.nodes[0].rigid_body.emplace();
+  EXPECT_THAT(unused(level), IsEmpty());
+}
+
+TEST(UnusedKeys, ANoteSaysEachKeyOnce) {
+  Level level;
+  for (int i = 0; i < 3; ++i) {
+    LevelNode node;
+    node.name = "body_" + std::to_string(i);
+    node.deformable.emplace();
+    node.deformable->poisson = 0.3;
+    level.nodes.push_back(node);
+  }
+  const std::vector<std::string> notes = unused_key_notes(level);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].rfind("`body_0`: PLIANT_deformable/poisson is read with `young`", 0), 0u) << notes[0];
+  EXPECT_NE(notes[0].find("(2 more nodes too)"), std::string::npos) << notes[0];
+}
+
+TEST(UnusedKeys, WhatShipsHasNone) {
+  int levels = 0;
+  for (const auto& file : std::filesystem::directory_iterator(PLIANT_SOURCE_DIR "/content/levels")) {
+    if (file.path().extension() != ".glb" && file.path().extension() != ".gltf") continue;
+    const Result<Level> level = load_level(file.path());
+    ASSERT_TRUE(level) << file.path();
+    EXPECT_THAT(unused_key_notes(*level), IsEmpty()) << file.path();
+    EXPECT_THAT(find_unmoved_probes(*level), IsEmpty()) << file.path();
+    ++levels;
+  }
+  EXPECT_GT(levels, 5);
+}
+
+TEST(UnmovedProbes, AreThoseWithoutADeviceOrWithTheDriverNull) {
+  Level level;
+  level.nodes.push_back({.name = "alone", .probe = Probe{}});
+  level.nodes.push_back({.name = "null", .probe = Probe{}, .device = HapticDevice{}});
+  level.nodes.push_back({.name = "moved", .probe = Probe{}, .device = HapticDevice{}});
+  level.nodes.back().device->driver = DriverKind::kMouse;
+  level.nodes.push_back({.name = "elsewhere", .probe = Probe{}, .probe_device = "moved"});
+  std::vector<std::size_t> nodes;
+  for (const DeviceFault& fault : find_unmoved_probes(level)) nodes.push_back(fault.node);
+  EXPECT_THAT(nodes, ElementsAre(0, 1));
+}
+
+}  // namespace
+}  // namespace pliant

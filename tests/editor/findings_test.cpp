@@ -1,0 +1,126 @@
+// What is found in a document while one works, and what the quick fixes do about it.
+#include "editor/app/findings.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/editor/small_level.h"
+
+namespace pliant {
+namespace {
+
+using testing::id_of;
+using testing::OwnFolder;
+
+std::vector<EditorFinding> found_in(const Editor& editor) {
+  return editor_findings(editor.state(),
+                         find_in_state(editor.state(), editor.document.file(), editor.document.folder()));
+}
+
+void take(Editor& editor, const Level& level, const std::filesystem::path& folder) {
+  ASSERT_TRUE(save_level(level, folder / "small.glb").ok());
+  Result<Document> document = Document::open(folder / "small.glb");
+  ASSERT_TRUE(document.ok()) << document.error().message();
+  editor.take(*std::move(document));
+}
+
+// The finding that speaks of `text`; its fix, applied, makes it go away.
+void expect_mended(Editor& editor, const std::string& text, const std::string& node) {
+  bool there = false;
+  for (const EditorFinding& each : found_in(editor)) {
+    if (each.finding.message.find(text) == std::string::npos) continue;
+    there = true;
+    EXPECT_EQ(each.node, id_of(editor.document, node));
+    ASSERT_TRUE(each.fix) << each.finding.message;
+    ASSERT_TRUE(editor.apply(each.fix->label, each.fix->fix(editor.state(), editor.document.next_id())));
+    break;
+  }
+  ASSERT_TRUE(there) << "nothing is said of " << text;
+  for (const EditorFinding& each : found_in(editor))
+    EXPECT_EQ(each.finding.message.find(text), std::string::npos) << each.finding.message;
+}
+
+TEST(EditorFindings, AProbeThatNothingMovesGetsADevice) {
+  const OwnFolder folder("findings_probe");
+  Level level = testing::sheet_and_finger();
+  level.nodes[1].device.reset();
+  level.nodes[1].probe_device.clear();
+  Editor editor;
+  take(editor, level, folder.path);
+  expect_mended(editor, "nothing moves it", "finger");
+  EXPECT_TRUE(editor.state().find("finger")->node.device);
+  EXPECT_EQ(editor.state().find("finger")->node.probe_device, "finger");
+  editor.undo();
+  EXPECT_FALSE(editor.state().find("finger")->node.device);
+}
+
+TEST(EditorFindings, ANodeThatIsSoftAndDeformableBecomesOneOfThem) {
+  const OwnFolder folder("findings_both");
+  Level level = testing::sheet_and_finger();
+  level.nodes[0].soft_body.emplace();
+  Editor editor;
+  take(editor, level, folder.path);
+  expect_mended(editor, "PLIANT_soft_body and PLIANT_deformable", "sheet");
+  EXPECT_TRUE(editor.state().find("sheet")->node.soft_body);
+  EXPECT_FALSE(editor.state().find("sheet")->node.deformable);
+}
+
+TEST(EditorFindings, AScriptThatIsNotThereCanBeCleared) {
+  const OwnFolder folder("findings_script");
+  Level level = testing::sheet_and_finger();
+  level.nodes[1].device->driver = DriverKind::kScript;
+  level.nodes[1].device->file = "nowhere.csv";
+  Editor editor;
+  take(editor, level, folder.path);
+  expect_mended(editor, "nowhere.csv", "finger");
+  EXPECT_EQ(editor.state().find("finger")->node.device->file, "");
+}
+
+TEST(EditorFindings, ADeviceThatNoNodeHasCanBeCleared) {
+  const OwnFolder folder("findings_device");
+  Editor editor;
+  take(editor, testing::sheet_and_finger(), folder.path);
+  const NodeId finger = id_of(editor.document, "finger");
+  ASSERT_TRUE(editor.apply("Add", with_node(editor.state(), editor.document.new_id(), kNoNode, [] {
+                             LevelNode n;
+                             n.name = "hand";
+                             n.device.emplace();
+                             return n;
+                           }())));
+  ASSERT_TRUE(editor.apply("Set", with_value(editor.state(), std::span(&finger, 1), "probe", "device", "hand")));
+  const NodeId hand = id_of(editor.document, "hand");
+  ASSERT_TRUE(editor.apply("Delete", without(editor.state(), std::span(&hand, 1))));
+  if (editor.state().find("finger")->node.probe_device.empty()) GTEST_SKIP() << "deleting clears the reference itself";
+  expect_mended(editor, "hand", "finger");
+}
+
+TEST(EditorFindings, ADocumentIsCheckedOnceItRestsAndAgainAfterAChange) {
+  const OwnFolder folder("findings_watch");
+  Editor editor;
+  take(editor, testing::sheet_and_finger(), folder.path);
+  FindingsWatch watch;
+  watch.update(editor);
+  EXPECT_FALSE(editor.jobs.running("findings")) << "it has not come to rest yet";
+  const auto check = [&] {
+    editor.now += 2 * FindingsWatch::kRest;
+    watch.update(editor);
+    EXPECT_TRUE(editor.jobs.running("findings"));
+    while (!watch.up_to_date(editor)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      editor.jobs.deliver(editor);
+      watch.update(editor);
+    }
+  };
+  check();
+  const std::size_t before = editor.findings.size();
+  const NodeId finger = id_of(editor.document, "finger");
+  ASSERT_TRUE(editor.apply("Remove", without_component(editor.state(), std::span(&finger, 1), "haptic_device")));
+  EXPECT_FALSE(watch.up_to_date(editor));
+  watch.update(editor);
+  check();
+  EXPECT_GT(editor.findings.size(), before);
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,91 @@
+#include "window/pointer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/visual/viewpoint.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kStep = 0.05;  // [1] of the reach: one click of the wheel
+constexpr int kFirstSteps = 4, kMostSteps = 12;
+constexpr double kHover = 0.03;       // [1] of the scene's size: how high it hovers
+constexpr double kPressTime = 0.12;   // [s] time constant of the way in
+constexpr double kLiftTime = 0.05;    // [s] and out
+constexpr double kRejoinTime = 0.08;  // [s] of the cursor to the hand
+constexpr double kFromBehind = 0.5;   // [1] cosine between sight and normal beyond which a sheet's back is looked at
+constexpr double kFirstAway = 0.55;   // [1] of the scene's size, from its middle: outside of everything
+
+}  // namespace
+
+void HeavyCursor::move_to(double x, double y) {
+  if (!placed_) {
+    x_ = x;
+    y_ = y;
+  } else {
+    moved_x_ += x - hand_x_;
+    moved_y_ += y - hand_y_;
+  }
+  placed_ = true;
+  hand_x_ = x;
+  hand_y_ = y;
+}
+
+void HeavyCursor::update(bool pressing, double force, double dt) {
+  const double share = pressing ? gain(force) : 1.0;
+  x_ += share * moved_x_;
+  y_ += share * moved_y_;
+  moved_x_ = moved_y_ = 0;
+  if (pressing) return;
+  const double rejoin = 1 - std::exp(-dt / kRejoinTime);
+  x_ += rejoin * (hand_x_ - x_);
+  y_ += rejoin * (hand_y_ - y_);
+}
+
+Pointer::Pointer(const World& world, double radius, const Viewpoint& view) : radius_(radius), deep_(kFirstSteps) {
+  for (auto [entity, deformable] : world.registry.view<Deformable>()) targets_.push_back({entity, deformable.reach});
+  const Box scene = drawn_box(world, true);
+  if (!scene.empty()) size_ = static_cast<double>(scene.diagonal());
+  hover_ = kHover * size_;
+  height_ = hover_;
+  reach_ = targets_.empty() ? 0.1 * size_ : targets_.front().reach;
+  // On the side of the eye.
+  const dvec3 center = scene.empty() ? view.target : dvec3(scene.center()), back = view.eye - center;
+  aside_ = center + (kFirstAway * size_ + radius_) * (length(back) > 0 ? normalize(back) : dvec3(0, 0, 1));
+  away_ = length(view.eye - aside_);
+}
+
+void Pointer::deepen(int steps) {
+  deep_ = std::clamp(deep_ + steps, 1, kMostSteps);
+}
+void Pointer::stand(int steps) {
+  standing_ = std::clamp(standing_ + steps, 0, kMostSteps);
+}
+
+double Pointer::depth_goal() const {
+  return kStep * reach_ * (held_ ? std::max(deep_, standing_) : standing_);
+}
+
+void Pointer::see(const std::optional<Picked>& seen, const ViewRay& ray) {
+  if (!seen) {
+    hit_.reset();
+    aside_ = ray.from + away_ * ray.along;  // this ray passes everything, so all of it is outside
+    return;
+  }
+  const bool behind = dot(seen->normal, ray.along) > kFromBehind;
+  hit_ = Hit{seen->rest, behind ? -seen->normal : seen->normal, 0.0};
+  for (const Target& target : targets_)
+    if (target.object == seen->object && !behind) hit_->reach = target.reach;
+  if (hit_->reach > 0) reach_ = hit_->reach;
+  away_ = std::max(0.0, length(seen->rest - ray.from) - radius_ - hover_);
+}
+
+dvec3 Pointer::update(double dt) {
+  const double goal = over_touchable() && pressing() ? -depth_goal() : hover_;
+  const double time = goal < height_ ? kPressTime : kLiftTime;
+  height_ += (1 - std::exp(-dt / time)) * (goal - height_);
+  return hit_ ? hit_->point + (radius_ + height_) * hit_->normal : aside_;
+}
+
+}  // namespace pliant
