@@ -2,6 +2,7 @@
 // one takes, the interface goes on answering. The newest order counts; the newest finished picture is shown.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -90,6 +91,7 @@ class Stage {
   int showing_ = -1, finished_ = -1;  // which target the window shows, and which was finished last
   bool stop_ = false;
   bool coarse_ = false;  // the newest picture is, and will be drawn in full when nothing else is wanted
+  std::chrono::steady_clock::time_point drawn_at_{};  // the stage's thread's
   // The stage's thread's own.
   struct Target {
     GLuint texture = 0, frame = 0;
