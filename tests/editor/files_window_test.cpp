@@ -56,9 +56,10 @@ TEST_F(FilesWindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFi
 TEST_F(FilesWindowTest, TheEditorNeverWritesOverABareMesh) {
   write_text(folder / "plate.obj", plate_obj());
   const std::string before = read_text(folder / "plate.obj");
-  const Said said = edit("plate.obj",
-                         "click Menu/Add\nclick Probe with a device\nexpect Scene/probe/row\nkey Ctrl+S\n"
-                         "await Files/Save\nscreenshot save.png\nclick Files/Save\nsay Saved as plate.level.glb\nclose\n");
+  const Said said =
+      edit("plate.obj",
+           "click Menu/Add\nclick Probe with a device\nexpect Scene/probe/row\nkey Ctrl+S\n"
+           "await Files/Save\nscreenshot save.png\nclick Files/Save\nsay Saved as plate.level.glb\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_EQ(read_text(folder / "plate.obj"), before);
   const Document saved = document("plate.level.glb");
@@ -69,12 +70,12 @@ TEST_F(FilesWindowTest, TheEditorNeverWritesOverABareMesh) {
 }
 
 TEST_F(FilesWindowTest, TheEditorOpensAFileThatWasTypedAndRevertsToIt) {
-  const Said said = edit("",
-                         "expect Start/Open organ…\nscreenshot start.png\nkey Ctrl+O\nawait Files/Path\nset Files/Path " +
-                             (folder / "small.glb").string() +
-                             "\nsay Opened small.glb\nclick Scene/finger/row\nkey Delete\nexpect-no Scene/finger/row\n"
-                             "click Menu/File\nclick Revert\nsay Back to the file\nexpect Scene/finger/row\n"
-                             "key Ctrl+Z\nexpect-no Scene/finger/row\nkey Ctrl+Shift+Z\nclose\n");
+  const Said said =
+      edit("", "expect Start/Open organ…\nscreenshot start.png\nkey Ctrl+O\nawait Files/Path\nset Files/Path " +
+                   (folder / "small.glb").string() +
+                   "\nsay Opened small.glb\nclick Scene/finger/row\nkey Delete\nexpect-no Scene/finger/row\n"
+                   "click Menu/File\nclick Revert\nsay Back to the file\nexpect Scene/finger/row\n"
+                   "key Ctrl+Z\nexpect-no Scene/finger/row\nkey Ctrl+Shift+Z\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
 }
 
@@ -127,8 +128,9 @@ TEST_F(FilesWindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) 
   Level other = sheet_and_finger();
   other.nodes[1].name = "stylus";
   ASSERT_TRUE(save_level(other, folder / "other.glb").ok());
-  const std::string writer = "sh -c '(while [ ! -e shots/ready.png ]; do sleep 0.1; done; cp other.glb small.tmp; mv small.tmp small.glb) & "
-                             "exec \"$@\"' --";
+  const std::string writer =
+      "sh -c '(while [ ! -e shots/ready.png ]; do sleep 0.1; done; cp other.glb small.tmp; mv small.tmp small.glb) & "
+      "exec \"$@\"' --";
   write_text(folder / "script.txt",
              "expect Scene/finger/row\nscreenshot ready.png\nawait Scene/stylus/row\nsay was read again\nclose\n");
   const Said said = pliant({"edit", "small.glb", "--config", "config", "--out", "shots", "--input", "script.txt"},
@@ -147,21 +149,23 @@ TEST_F(FilesWindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) 
 }
 
 TEST_F(FilesWindowTest, TheEditorsKeysAreShownAndRebound) {
-  const Said said = edit("small.glb",
-                         "key F1\nawait Keys/view.grid/keys\nscreenshot keys.png\n"
-                         "set Keys/Search Duplicate\nclick Keys/edit.duplicate/keys\nkey Ctrl+Z\n"
-                         "expect Keys/Conflict\nscreenshot conflict.png\nclick Keys/Leave it\n"
-                         "click Keys/edit.duplicate/keys\nkey Ctrl+B\nexpect Keys/edit.duplicate/Reset\nclick Keys/Close\n"
-                         "click Scene/finger/row\nkey Ctrl+B\nexpect Scene/finger 2/row\nkey Ctrl+S\nclose\n");
+  const Said said =
+      edit("small.glb",
+           "key F1\nawait Keys/view.grid/keys\nscreenshot keys.png\n"
+           "set Keys/Search Duplicate\nclick Keys/edit.duplicate/keys\nkey Ctrl+Z\n"
+           "expect Keys/Conflict\nscreenshot conflict.png\nclick Keys/Leave it\n"
+           "click Keys/edit.duplicate/keys\nkey Ctrl+B\nexpect Keys/edit.duplicate/Reset\nclick Keys/Close\n"
+           "click Scene/finger/row\nkey Ctrl+B\nexpect Scene/finger 2/row\nkey Ctrl+S\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_NE(document("small.glb").state().find("finger 2"), nullptr);
   EXPECT_EQ(Json::parse(read_text(folder / "config" / "editor.json"))["keys"]["edit.duplicate"], "Ctrl+B");
 }
 
 TEST_F(FilesWindowTest, TheEditorsLookIsChosenAndKept) {
-  const Said said = edit("small.glb",
-                         "key Ctrl+,\nawait Settings/Light\nclick Settings/Light\nscreenshot light.png\n"
-                         "click Settings/150 %\nscreenshot large.png\nset Settings/every 12\nclick Settings/Close\nclose\n");
+  const Said said =
+      edit("small.glb",
+           "key Ctrl+,\nawait Settings/Light\nclick Settings/Light\nscreenshot light.png\n"
+           "click Settings/150 %\nscreenshot large.png\nset Settings/every 12\nclick Settings/Close\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   const Json kept = Json::parse(read_text(folder / "config" / "editor.json"));
   EXPECT_EQ(kept["light"], true);
@@ -202,9 +206,10 @@ TEST_F(FilesWindowTest, TheEditorAsksForTheUnitOfAMeshThatIsTooLarge) {
 }
 
 TEST_F(FilesWindowTest, TheEditorsConsoleIsFilteredAndCleared) {
-  const Said said = edit("small.glb",
-                         "click Scene/finger/row\nkey Delete\nkey Ctrl+Z\nclick Tab/Console\nsay Undone: Delete\n"
-                         "click Console/Notes\nscreenshot console.png\nclick Console/Copy\nclick Console/Clear\nclose\n");
+  const Said said =
+      edit("small.glb",
+           "click Scene/finger/row\nkey Delete\nkey Ctrl+Z\nclick Tab/Console\nsay Undone: Delete\n"
+           "click Console/Notes\nscreenshot console.png\nclick Console/Copy\nclick Console/Clear\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
 }
 
