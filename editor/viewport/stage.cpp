@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
-constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // of rest, a coarse picture is drawn in full
+constexpr auto kRefineAfter = std::chrono::milliseconds(160);             // of rest, a coarse picture is drawn in full
 constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
 
 }  // namespace
@@ -94,14 +94,16 @@ void Stage::run() {
     {
       std::unique_lock lock(mutex_);
       const auto ready = [this] { return stop_ || next_ || !tasks_.empty(); };
-      if (scenery_ && scenery_->moves())
+      if (scenery_ && scenery_->moves()) {
         changed_.wait_for(lock, std::chrono::milliseconds(8), ready);
-      else if (coarse_)
+        refine = coarse_ && !ready() && !scenery_->wants_picture() &&
+                 std::chrono::steady_clock::now() - drawn_at_ > kRefineAfter;
+      } else if (coarse_)
         refine = !changed_.wait_for(lock, kRefineAfter, ready);
       else
         changed_.wait(lock, ready);
       if (stop_) break;
-      if (!next_ && tasks_.empty() && !(scenery_ && scenery_->wants_picture())) continue;
+      if (!next_ && tasks_.empty() && !refine && !(scenery_ && scenery_->wants_picture())) continue;
       tasks.swap(tasks_);
       if (next_) last_ = *next_;
       order = last_;
@@ -180,7 +182,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
   try {
     bool drawn = false;
     if (scenery_) {
-      scenery_->ask(order.question && order.question_number != 0 ? std::optional(*order.question * share_)
+      scenery_->ask(order.question && order.question_number != 0 ? std::optional(*order.question * share)
                                                                  : std::nullopt);
       const Status status = scenery_->draw(order.solid, target.frame, width, height);
       drawn = status.ok();
@@ -219,7 +221,8 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     done_ = std::move(done);
     finished_ = at;
     answered_ = number;
-    coarse_ = share < 1.0 && !(scenery_ && scenery_->moves());
+    coarse_ = share < 1.0;
+    drawn_at_ = std::chrono::steady_clock::now();
     if (last_.question && last_.question_number == done_.question) last_.question.reset();
   }
   if (!same && !refine) choose_share(took);
