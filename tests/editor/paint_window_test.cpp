@@ -9,7 +9,7 @@ namespace {
 // Under the leak sanitizer: display drivers keep what they allocate, from libraries that are gone when it asks.
 constexpr const char* kDriversLeak = "ASAN_OPTIONS=detect_leaks=0 ";
 
-class WindowTest : public CommandTest {
+class PaintWindowTest : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
@@ -47,7 +47,7 @@ class WindowTest : public CommandTest {
   }
 };
 
-TEST_F(WindowTest, ALumpIsPaintedUndoneDoneAgainAndSaved) {
+TEST_F(PaintWindowTest, ALumpIsPaintedUndoneDoneAgainAndSaved) {
   write_level();
   const Said said = edited(R"(
 click Scene/organ/row
@@ -92,7 +92,7 @@ close
   EXPECT_NE(read_text(folder / "shots" / "painted.png"), read_text(folder / "shots" / "undone.png"));
 }
 
-TEST_F(WindowTest, EveryButtonOfThePaintPanelDoesWhatItSays) {
+TEST_F(PaintWindowTest, EveryButtonOfThePaintPanelDoesWhatItSays) {
   write_level();
   const Said said = edited(R"(
 click Scene/organ/row
