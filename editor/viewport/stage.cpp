@@ -102,7 +102,7 @@ void Stage::run() {
       else
         changed_.wait(lock, ready);
       if (stop_) break;
-      if (!next_ && tasks_.empty() && !(scenery_ && scenery_->wants_picture())) continue;
+      if (!refine && !next_ && tasks_.empty() && !(scenery_ && scenery_->wants_picture())) continue;
       tasks.swap(tasks_);
       if (next_) last_ = *next_;
       order = last_;
