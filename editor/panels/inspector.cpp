@@ -116,9 +116,8 @@ class InspectorPanel : public Panel {
     LocalTransform local = node.node.local;
     // Floats know no more than five digits of an angle.
     const dvec3 euler = glm::round(glm::degrees(glm::eulerAngles(dquat(local.rotation))) * 1e4) * 1e-4;
-    dvec3 position(local.translation), turn = shown_turn_.first == node.id && same_turn(local.rotation)
-                                                  ? shown_turn_.second
-                                                  : euler,
+    dvec3 position(local.translation),
+        turn = shown_turn_.first == node.id && same_turn(local.rotation) ? shown_turn_.second : euler,
         scale(local.scale);
     bool changed = false;
     changed |= triple("Position", "m", position, "Of the node's origin, in its parent's frame");
@@ -246,8 +245,7 @@ class InspectorPanel : public Panel {
     ImGui::SetNextItemWidth(-1);
     changed |= ImGui::ColorEdit3("##light colour", &light.color.x, ImGuiColorEditFlags_Float);
     ui::known_as("colour");
-    if (changed)
-      editor.apply("Light", with_light(editor.state(), node.id, light), "light " + std::to_string(node.id));
+    if (changed) editor.apply("Light", with_light(editor.state(), node.id, light), "light " + std::to_string(node.id));
     if (ui::button("Remove light")) editor.apply("Remove light", with_light(editor.state(), node.id, {}));
   }
 
@@ -272,9 +270,8 @@ class InspectorPanel : public Panel {
     if (!ImGui::BeginPopup("add component")) return;
     for (const Extension& each : extension_table()) {
       if (each.on_scene) continue;
-      const bool everywhere = std::all_of(editor.selected.begin(), editor.selected.end(), [&](NodeId id) {
-        return has_component(editor.state(), id, each.name);
-      });
+      const bool everywhere = std::all_of(editor.selected.begin(), editor.selected.end(),
+                                          [&](NodeId id) { return has_component(editor.state(), id, each.name); });
       if (ui::menu_item(words(each.name).c_str(), nullptr, false, !everywhere))
         editor.apply("Add " + words(each.name), with_component(editor.state(), editor.selected, each.name));
       ui::hint(each.doc.c_str());

@@ -117,6 +117,8 @@ class PlayPanel : public Panel {
     for (const std::string& name : names) {
       PlaySource source = play.sources.contains(name) ? play.sources.at(name) : PlaySource{};
       std::string word = word_of(source);
+      for (const PlayEffector& each : play.status().effectors)  // the probe that was added for it
+        if (play.on() && each.name == name && each.source == kMouse) word = kMouse;
       const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
       ui::label(printable(name).c_str());
       ImGui::SameLine(left + 0.42f * wide);

@@ -229,7 +229,7 @@ class PlotsPanel : public Panel {
         if (!curve->empty()) force = std::max(force, std::min(curve->back().y, 1.6 * force));
     }
     const PlayTrace* const before = before_of(play, trace);
-    ui::Plot plot("Law plot", "Force [N] over depth", size, {0.0, kLawBeyond * depth, "mm", 1e3},
+    ui::Plot plot("Law plot", "Force [N]", size, {0.0, kLawBeyond * depth, "mm deep", 1e3},
                   {0.0, ui::round_above(1.05 * force), "", 1.0});
     const auto loop = [&](const PlayTrace& of, std::size_t from, std::size_t to, const ImVec4& color, float width) {
       // Only where it touches: from touch to touch is no line.
@@ -261,7 +261,7 @@ class PlotsPanel : public Panel {
       plot.note("The level has no deformable surface: a law of force over depth is theirs.");
       return;
     }
-    plot.legend(("authored law of " + printable(surface->first)).c_str(), p.text, true);
+    plot.legend(("law of " + printable(surface->first)).c_str(), p.text, true);
     if (!law.fast.empty()) plot.legend("pressed at once", p.good, true);
     plot.legend("felt", p.force);
     if (before) plot.legend("last run", p.faint);

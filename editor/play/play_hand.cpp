@@ -1,11 +1,25 @@
 #include "editor/play/play_hand.h"
 
-namespace pliant {
+#include <algorithm>
+#include <cmath>
 
-void PlayHand::take_probe(const World& world, double radius, const Viewpoint& view) {
+namespace pliant {
+namespace {
+
+// A picture may come late, and the place that it shows be far from the last one: a hand that jumped would be taken for
+// a device that has lost its way (systems/safety/safety.h), and feel nothing.
+constexpr double kGlideTime = 0.015;   // [s] time constant of the way after what is pointed at
+constexpr double kFastestFree = 8.0;   // [m/s] clear of every surface
+constexpr double kFastestSlide = 0.5;  // [m/s] pressed in
+constexpr double kArc = 0.6;           // [1] of the way that is left: so high it goes over what lies between
+
+}  // namespace
+
+void PlayHand::take_probe(const World& world, double radius, const Viewpoint& view, std::optional<dvec3> from) {
   const std::lock_guard lock(mutex_);
   carrier_.reset();
   pointer_.emplace(world, radius, view);
+  at_ = from.value_or(pointer_->update(0.0));
 }
 
 void PlayHand::take_tool(const World& world, Entity tool, dvec3 device) {
@@ -27,7 +41,15 @@ bool PlayHand::has_any() const {
 
 std::optional<dvec3> PlayHand::update(double dt) {
   const std::lock_guard lock(mutex_);
-  if (pointer_) return pointer_->update(dt);
+  if (pointer_) {
+    const dvec3 to = pointer_->update(dt);
+    const bool free = pointer_->free();
+    dvec3 way = to - at_;
+    if (free && seen_) way += kArc * length(way) * seen_->normal;
+    const double left = length(way), most = (free ? kFastestFree : kFastestSlide) * dt;
+    at_ += way * std::min(1.0 - std::exp(-dt / kGlideTime), left > most ? most / left : 1.0);
+    return at_;
+  }
   if (!carrier_) return {};
   carrier_->update(dt);
   return carrier_->position();

@@ -17,7 +17,8 @@ class PlayHand {
   enum class Over : std::uint8_t { kNothing, kTouchable, kTool };
 
   // --- The run's thread
-  void take_probe(const World& world, double radius, const Viewpoint& view);
+  // `from` [m] world: where the probe is; nothing: where it is best out of the way.
+  void take_probe(const World& world, double radius, const Viewpoint& view, std::optional<dvec3> from = {});
   void take_tool(const World& world, Entity tool, dvec3 device);
   void let_go();  // moves nothing from now on
   bool has_any() const;
@@ -41,6 +42,7 @@ class PlayHand {
   std::optional<Pointer> pointer_;
   std::optional<Carrier> carrier_;
   std::optional<Picked> seen_;
+  dvec3 at_{0};  // [m] world, of a probe: it glides after what is pointed at
 };
 
 }  // namespace pliant

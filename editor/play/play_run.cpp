@@ -239,8 +239,11 @@ Status PlayRun::open(Inside& in) {
     in.say("nothing of this level gives way yet, so every mesh does while it is played; add a Deformable to keep it");
   }
   for (std::string& sentence : cap_safety(*level, {})) in.say(sentence);
-  if (wants_mouse(*level, options_))
-    if (Status s = add_probes(*level, {{free_name(*level, "mouse"), DriverKind::kMouse, {}}}); !s) return s;
+  if (wants_mouse(*level, options_)) {
+    const std::string name = free_name(*level, "mouse");
+    if (Status s = add_probes(*level, {{name, DriverKind::kMouse, {}}}); !s) return s;
+    options_.sources.emplace_back(name, PlaySource{PlaySource::Kind::kMouse, {}});
+  }
   auto session = Session::open(Scene(*level));
   if (!session) return session.error();
   in.session = std::move(session).value();

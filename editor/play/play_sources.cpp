@@ -71,7 +71,8 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
       }
       dvec3 at = device.position;
       if (const Probe* probe = parts->world.registry.find<Probe>(effector->entity)) {
-        run.hand.take_probe(parts->world, probe->radius, run.options_.view);
+        run.hand.take_probe(parts->world, probe->radius, run.options_.view,
+                            parts->ticks > 0 ? std::optional(device.position) : std::nullopt);
         at = run.hand.update(0.0).value_or(at);
       } else {
         if (parts->ticks == 0)

@@ -53,7 +53,7 @@ Plot::Plot(const char* name, const char* title, ImVec2 size, PlotAxis x, PlotAxi
     return fmt::format("{:.{}f}", value == 0.0 ? 0.0 : value, digits);
   };
   const double step_y =
-      round_step((y_.high - y_.low) * y_.shown, std::max(1, static_cast<int>((high_.y - low_.y) / px(kTickUp))));
+      round_step((y_.high - y_.low) * y_.shown, std::max(2, static_cast<int>((high_.y - low_.y) / px(kTickUp))));
   for (double v = std::ceil(y_.low * y_.shown / step_y) * step_y; v <= y_.high * y_.shown + 1e-9; v += step_y) {
     const float at = on({x_.low, v / y_.shown}).y;
     list_->AddLine({low_.x, at}, {high_.x, at}, color(p.text, 0.10f));
@@ -74,14 +74,24 @@ Plot::Plot(const char* name, const char* title, ImVec2 size, PlotAxis x, PlotAxi
     list_->AddText({std::clamp(at - 0.5f * wide, low_.x - px(kLeft), high_.x - wide + px(kRight)), high_.y + px(2)},
                    color(p.dim), text.c_str());
   }
-  list_->AddText({low_.x + px(6), low_.y + px(3)}, color(p.dim), title);
+  title_ = title;
   legend_y_ = low_.y + px(3);
   ImGui::PopFont();
   list_->PushClipRect(low_, high_, true);
 }
 
+// The title last: curves go behind it.
 Plot::~Plot() {
+  ImGui::PushFont(font(Type::kSmall));
+  text(low_.x + px(6), low_.y + px(3), title_);
+  ImGui::PopFont();
   list_->PopClipRect();
+}
+
+void Plot::text(float x, float y, const char* words) {
+  const ImVec2 size = ImGui::CalcTextSize(words);
+  list_->AddRectFilled({x - px(2), y}, {x + size.x + px(2), y + size.y}, color(palette().window, 0.75f));
+  list_->AddText({x, y}, color(palette().dim), words);
 }
 
 ImVec2 Plot::on(dvec2 at) const {
@@ -151,7 +161,7 @@ void Plot::legend(const char* text, const ImVec4& of, bool dashed) {
   ImGui::PushFont(font(Type::kSmall));
   const float wide = ImGui::CalcTextSize(text).x, line = ImGui::GetTextLineHeight();
   const float at = high_.x - px(6) - wide, middle = legend_y_ + 0.5f * line;
-  list_->AddText({at, legend_y_}, color(palette().dim), text);
+  this->text(at, legend_y_, text);
   if (dashed) {
     list_->AddLine({at - px(22), middle}, {at - px(15), middle}, color(of), px(1.5f));
     list_->AddLine({at - px(11), middle}, {at - px(5), middle}, color(of), px(1.5f));

@@ -47,6 +47,8 @@ class Plot {
 
  private:
   ImVec2 on(dvec2 at) const;
+  void text(float x, float y, const char* words);
+  const char* title_ = "";
   PlotAxis x_, y_;
   ImVec2 low_, high_;  // [pixel] of what is within the axes
   ImDrawList* list_;

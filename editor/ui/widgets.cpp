@@ -111,17 +111,18 @@ bool icon_button(const char* label, Icon icon, bool down, const char* hint_text,
     ImGui::PushStyleColor(ImGuiCol_Button, p.accent);
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, p.accent);
   }
-  if (!enabled) ImGui::BeginDisabled();
+  const bool dimmed = !enabled && !down;
+  if (dimmed) ImGui::BeginDisabled();
   const float side = ImGui::GetFrameHeight();
   const bool pressed = ImGui::Button(fmt::format("##{}", label).c_str(), {side + px(6), side});
-  if (!enabled) ImGui::EndDisabled();
+  if (dimmed) ImGui::EndDisabled();
   if (down) ImGui::PopStyleColor(2);
   known_as(label);
   g_now.back().enabled = enabled;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   const ImVec2 c(std::round(0.5f * (low.x + high.x)), std::round(0.5f * (low.y + high.y)));
   const float r = std::round(0.25f * side);
-  const ImU32 ink = color(down ? p.accent_text : enabled ? p.text : p.faint, enabled ? 1.0f : 0.7f);
+  const ImU32 ink = color(down ? p.accent_text : enabled ? p.text : p.faint);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   switch (icon) {
     case Icon::kPlay:

@@ -140,10 +140,9 @@ void draw_device(Pen& pen, dvec3 at, const dmat3& turn, double small) {
 void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const std::vector<bool>& shown,
                const std::vector<bool>& selected, const SignColors& colors, std::vector<ViewLine>& lines,
                std::vector<std::pair<NodeId, dvec3>>& places) {
-  const double seen = order.orthographic > 0.0
-                          ? order.orthographic
-                          : 2.0 * length(order.view.target - order.view.eye) *
-                                std::tan(0.5 * static_cast<double>(order.view.yfov));
+  const double seen = order.orthographic > 0.0 ? order.orthographic
+                                               : 2.0 * length(order.view.target - order.view.eye) *
+                                                     std::tan(0.5 * static_cast<double>(order.view.yfov));
   const double small = 0.018 * seen;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!shown[i]) continue;
@@ -168,7 +167,8 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
     if (order.settings.regions) {
       dmat4 rigid(turn);
       rigid[3] = glm::dvec4(at, 1.0);
-      if (node.soft_body && !node.soft_body->pinned.empty()) Pen(lines, colors.pinned).box(rigid, node.soft_body->pinned);
+      if (node.soft_body && !node.soft_body->pinned.empty())
+        Pen(lines, colors.pinned).box(rigid, node.soft_body->pinned);
       if (node.handle && !node.handle->box.empty()) Pen(lines, colors.handle).box(rigid, node.handle->box);
     }
   }

@@ -43,9 +43,9 @@ vec3 encoded(vec3 linear) {
 }  // namespace
 
 double grid_step(const Viewpoint& view, double orthographic) {
-  const double seen = orthographic > 0.0 ? orthographic
-                                         : 2.0 * length(view.target - view.eye) *
-                                               std::tan(0.5 * static_cast<double>(view.yfov));
+  const double seen = orthographic > 0.0
+                          ? orthographic
+                          : 2.0 * length(view.target - view.eye) * std::tan(0.5 * static_cast<double>(view.yfov));
   return std::pow(10.0, std::floor(std::log10(std::max(seen, 1e-12) / 4.0)));
 }
 
@@ -258,7 +258,8 @@ void SolidView::add_grid(const SolidOrder& order, std::vector<LineEnd>& ends) {
         tint.a *= 0.45f;
       for (int k = 0; k < pieces; ++k)
         for (const int end : {k, k + 1}) {
-          const double on = middle + far * (2.0 * end / pieces - 1.0), x = along_x ? on : place, z = along_x ? place : on;
+          const double on = middle + far * (2.0 * end / pieces - 1.0), x = along_x ? on : place,
+                       z = along_x ? place : on;
           ends.push_back({vec3(dvec3(x, 0, z)), faded(tint, x, z)});
         }
     }
@@ -369,8 +370,8 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
     glUniformMatrix3fv(2, 1, GL_FALSE, &normal_frame[0][0]);
     glUniform1ui(8, here);
     const Box& own_box = mesh.of->box;
-    const dvec3 middle = own_box.empty() ? dvec3(frames[i][3])
-                                         : dvec3(frames[i] * glm::dvec4(dvec3(own_box.center()), 1.0));
+    const dvec3 middle =
+        own_box.empty() ? dvec3(frames[i][3]) : dvec3(frames[i] * glm::dvec4(dvec3(own_box.center()), 1.0));
     glFrontFace(glm::determinant(dmat3(frames[i])) < 0.0 ? GL_CW : GL_CCW);
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const PrimitiveOnGpu& primitive = mesh.primitives[p];

@@ -59,9 +59,9 @@ class SolidView {
     gpu::VertexArray layout, edge_layout;
     GLsizei index_count = 0, edge_count = 0;  // of edges: ends; 0: not made yet
     double mean_edge = 0.0;                   // [m] mesh frame
-    PaintLayer shown;  // what `values` holds
-    PaintLayer regions[2];                // pinned, handle: that `region_points` show
-    std::vector<vec3> region_points[2];   // [m] mesh frame
+    PaintLayer shown;                         // what `values` holds
+    PaintLayer regions[2];                    // pinned, handle: that `region_points` show
+    std::vector<vec3> region_points[2];       // [m] mesh frame
     gpu::Buffer values;
     bool has_values = false;
   };

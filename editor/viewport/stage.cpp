@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
-constexpr double kTooLong = 1000.0;                                   // [ms] what is drawn in full must not bar the hand
+constexpr double kTooLong = 1000.0;                            // [ms] what is drawn in full must not bar the hand
 constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // of rest, a coarse picture is drawn in full
 constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
 
@@ -95,9 +95,11 @@ void Stage::run() {
     {
       std::unique_lock lock(mutex_);
       const auto ready = [this] { return stop_ || next_ || !tasks_.empty(); };
-      if (scenery_ && scenery_->moves())
+      if (scenery_ && scenery_->moves()) {
         changed_.wait_for(lock, std::chrono::milliseconds(8), ready);
-      else if (coarse_)
+        refine = coarse_ && !ready() && !scenery_->wants_picture() &&
+                 std::chrono::steady_clock::now() - drawn_at_ > kRefineAfter;
+      } else if (coarse_)
         refine = !changed_.wait_for(lock, kRefineAfter, ready);
       else
         changed_.wait(lock, ready);
@@ -181,7 +183,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
   try {
     bool drawn = false;
     if (scenery_) {
-      scenery_->ask(order.question && order.question_number != 0 ? std::optional(*order.question * share_)
+      scenery_->ask(order.question && order.question_number != 0 ? std::optional(*order.question * share)
                                                                  : std::nullopt);
       const Status status = scenery_->draw(order.solid, target.frame, width, height);
       drawn = status.ok();
@@ -220,7 +222,8 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     done_ = std::move(done);
     finished_ = at;
     answered_ = number;
-    coarse_ = share < 1.0 && took < kTooLong && !(scenery_ && scenery_->moves());
+    coarse_ = share < 1.0 && took < kTooLong;
+    drawn_at_ = std::chrono::steady_clock::now();
     if (last_.question && last_.question_number == done_.question) last_.question.reset();
   }
   if (!same && !refine) choose_share(took);

@@ -2,6 +2,7 @@
 // one takes, the interface goes on answering. The newest order counts; the newest finished picture is shown.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -90,6 +91,7 @@ class Stage {
   int showing_ = -1, finished_ = -1;  // which target the window shows, and which was finished last
   bool stop_ = false;
   bool coarse_ = false;  // the newest picture is, and will be drawn in full when nothing else is wanted
+  std::chrono::steady_clock::time_point drawn_at_{};  // the stage's thread's
   // The stage's thread's own.
   struct Target {
     GLuint texture = 0, frame = 0;
@@ -98,9 +100,9 @@ class Stage {
   Target targets_[3];
   std::unique_ptr<SolidView> solid_;
   std::unique_ptr<Scenery> scenery_;
-  std::optional<StageOrder> drawn_;  // of the document, that the newest picture shows
-  double share_ = 1.0;               // [1] of the resolution, of the next picture
-  double fixed_ms_ = 0.0;            // of a picture, whatever its resolution
+  std::optional<StageOrder> drawn_;               // of the document, that the newest picture shows
+  double share_ = 1.0;                            // [1] of the resolution, of the next picture
+  double fixed_ms_ = 0.0;                         // of a picture, whatever its resolution
   double sample_pixels_ = 0.0, sample_ms_ = 0.0;  // [1] of all, [ms]: an earlier picture of another resolution
   bool software_ = false;
   std::string failure_;

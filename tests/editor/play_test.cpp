@@ -1,6 +1,7 @@
 // Playing a level that is edited, without a window: the same bits as `pliant run`, edits that reach it, going back.
 #include "editor/play/play.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -188,6 +189,22 @@ TEST_F(PlayTest, GoingBackAndOnAgainHasTheSameBits) {
   EXPECT_EQ(back->past()->ticks.size(), 1500u);
 }
 
+TEST_F(PlayTest, TheMouseGetsAProbeOfItsOwnWhereNothingElseIsMovedByIt) {
+  for (const bool level_has_one : {false, true}) {
+    State state = pressed_sheet({});
+    if (level_has_one) {
+      DocumentNode tip = *state.find("tip");
+      tip.node.device->driver = DriverKind::kMouse;
+      state.nodes.back() = std::make_shared<const DocumentNode>(tip);
+    }
+    PlayOptions options;
+    options.mouse_probe = true;
+    const PlayStatus status = run_of(state, folder / "level.glb", options)->status();
+    ASSERT_EQ(status.effectors.size(), level_has_one ? 1u : 2u);
+    EXPECT_EQ(status.effectors.back().source, "mouse");
+  }
+}
+
 TEST_F(PlayTest, WhatTheMouseDidIsHadAgainToo) {
   Deformable law;
   law.reach = 0.02;
@@ -209,6 +226,14 @@ TEST_F(PlayTest, WhatTheMouseDidIsHadAgainToo) {
   EXPECT_EQ(run->hand.over(), PlayHand::Over::kTouchable);
   after(*run, 400);
   EXPECT_FALSE(run->status().effectors[0].reading.touching) << "it hovers until it is pressed";
+  Picked far = seen;  // a late picture: the mouse is 8 cm away meanwhile
+  far.rest = far.point = {-0.045, 0, -0.045};
+  run->hand.see(far, {{-0.045, 1, -0.045}, {0, -1, 0}});
+  after(*run, 300);
+  run->hand.see(seen, down);
+  const PlayStatus back = after(*run, 300);
+  EXPECT_THAT(back.findings, ::testing::IsEmpty()) << back.findings.front();
+  EXPECT_NEAR(back.effectors[0].reading.position.x, 0.01, 1e-4);
   run->hand.hold(true);
   const PlayStatus pressed = after(*run, 1500);
   EXPECT_NEAR(pressed.effectors[0].reading.depth, run->hand.depth_goal(), 0.02 * run->hand.depth_goal());

@@ -1,0 +1,73 @@
+// Playing in the window as a hand does it: buttons, keys, the mouse on the surface, going back.
+#include <cmath>
+
+#include "content/files/image.h"
+#include "tests/player/command.h"
+
+namespace pliant::testing {
+namespace {
+
+// Standard deviation of what the pixels of a part of a picture say, 0 to 255.
+double contrast(const Image& image, double left, double top, double right, double bottom) {
+  double sum = 0, squares = 0, count = 0;
+  for (auto y = static_cast<std::size_t>(top * image.height); y < static_cast<std::size_t>(bottom * image.height); ++y)
+    for (auto x = static_cast<std::size_t>(left * image.width); x < static_cast<std::size_t>(right * image.width); ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double v = image.rgba[4 * (y * image.width + x) + c];
+        sum += v;
+        squares += v * v;
+        ++count;
+      }
+  return std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count)));
+}
+
+class PlayWindowTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
+      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+    for (const char* name : {"minimal.gltf", "minimal.bin", "minimal.csv"})
+      fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels" / name, folder / name);
+    fs::create_directories(folder / "state");
+  }
+  Said edited(const std::string& script) const {
+    write_text(folder / "script.txt", script);
+    return pliant({"edit", "minimal.gltf", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out",
+                   "shots"},
+                  "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
+                      " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+  }
+  Image shot(const std::string& name) const {
+    auto image = load_image(folder / "shots" / name);
+    EXPECT_TRUE(image) << name;
+    return image ? *std::move(image) : Image();
+  }
+};
+
+TEST_F(PlayWindowTest, ALevelIsPlayedPressedPausedSteppedTakenBackAndStoppedByHand) {
+  const Said said = edited(
+      "click View mode/Rendered\nscreenshot rendered.png\n"
+      "click Play/Play\nawait Play/Pause\nwait 1\n"
+      "press Viewport@0.5,0.45\nwait 2\nscreenshot pressed.png\nwait 0.3\nrelease\nwait 1\n"
+      "key Space\nawait Play/Step\nkey .\nclick Play/Step\n"
+      "click Plots/mouse\n"
+      "click Plots/Time line@0.5,0.5\nawait Plots/Go on from here\nwait 0.5\nscreenshot back.png\n"
+      "click Plots/Go on from here\nawait Play/Pause\nwait 0.5\n"
+      "click Tab/Play\nscreenshot panel.png\nwait 0.3\n"
+      "click Play/1//2\nwait 0.3\n"
+      "key Shift+Space\nwait 0.3\nscreenshot stopped.png\nexpect View mode/Rendered\nclose\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  // The picture is in the upper middle, the plots below it.
+  for (const char* name : {"rendered.png", "pressed.png", "back.png", "stopped.png"})
+    EXPECT_GT(contrast(shot(name), 0.22, 0.08, 0.72, 0.65), 5.0) << name << ": no picture";
+  EXPECT_GT(contrast(shot("pressed.png"), 0.22, 0.74, 0.72, 0.95), 8.0) << "nothing is plotted";
+}
+
+TEST_F(PlayWindowTest, ClosingWhileItPlaysEndsItWithoutAWord) {
+  const Said said = edited("key Space\nawait Play/Pause\nwait 0.5\nclose\n");
+  EXPECT_EQ(said.status, 0) << said.err;
+}
+
+}  // namespace
+}  // namespace pliant::testing
