@@ -39,8 +39,9 @@ void main() {
                                : (shown_value - value_range.x) / (value_range.y - value_range.x);
     surface = ramp(clamp(t, 0.0, 1.0));
     // Contour lines, so that steps are seen without the hue.
-    float lines = t * 10.0, near_line = abs(fract(lines - 0.5) - 0.5) / max(fwidth(lines), 1e-6);
-    if (fwidth(lines) < 0.35) surface *= mix(0.72, 1.0, clamp(near_line, 0.0, 1.0));
+    // Set apart from 0, 1 and the powers of two, which large level places have.
+    float lines = t * 10.0, slope = fwidth(lines), near_line = abs(fract(lines + 0.25) - 0.5) / max(slope, 1e-6);
+    if (slope > 1e-4 && slope < 0.35) surface *= mix(0.72, 1.0, clamp(near_line, 0.0, 1.0));
   }
   if (!gl_FrontFacing) surface = mix(surface, vec3(0.45, 0.32, 0.42), 0.6);  // an inside that shows is seen as one
   float key = max(dot(n, normalize(vec3(-0.4, 0.65, 0.65))), 0.0), fill = max(dot(n, normalize(vec3(0.7, -0.1, 0.4))), 0.0);

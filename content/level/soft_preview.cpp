@@ -25,7 +25,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const std::vector<Tet>& tets)
 
 Result<SoftPreview> preview_soft_body(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
                                       const std::stop_token& stop) {
-  Result<Tissue> tissue = make_tissue(surface, body, handle, stop);
+  Result<FilledBody> tissue = make_tissue(surface, body, handle, stop);
   if (!tissue) return tissue.error();
   TetMesh& tets = tissue->tets;
   SoftPreview preview;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "content/level/inner_sheet.h"
 #include "content/mesh/mesh_refine.h"
 #include "content/tets/lattice.h"
 #include "content/tets/tet_boundary.h"
@@ -81,13 +82,13 @@ Primitive boundary_primitive(const TetMesh& mesh) {
 
 }  // namespace
 
-Result<Tissue> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
-                           const std::stop_token& stop) {
+Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                               const std::stop_token& stop) {
   Result<TetMesh> tets = fill_surface(surface.mesh, {body.cell, body.fill, body.thickness, stop});
   if (!tets) return tets.error();
   Result<std::vector<NodeGroup>> group = group_nodes(tets->nodes, surface, body, handle);
   if (!group) return group.error();
-  Tissue tissue{std::move(*tets), std::move(*group)};
+  FilledBody tissue{std::move(*tets), std::move(*group)};
   const std::uint32_t kept = drop_small_parts(tissue.tets, tissue.group);
   if (tissue.tets.report.volume_dropped > kMostLost) return in_crumbs(tissue.tets, body, surface.mesh);
   report_parts(kept, count_parts(surface.mesh), tissue.tets.report);
@@ -142,7 +143,7 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
   const Handle6* const handle = node.handle ? &*node.handle : nullptr;
   std::vector<NodeGroup> group;
   if (body.mesh.empty()) {
-    Result<Tissue> tissue = make_tissue(parts.surface, body, handle);
+    Result<FilledBody> tissue = make_tissue(parts.surface, body, handle);
     if (!tissue) return tissue.error();
     parts.tets = std::move(tissue->tets);
     group = std::move(tissue->group);
@@ -160,9 +161,12 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     report_parts(count_parts(parts.tets), count_parts(parts.surface.mesh), parts.tets.report);
   }
   if (mesh) {
-    std::vector<Primitive> finer = mesh->primitives;
-    if (refine(finer, to_object, kLongestEdge * mean_edge(parts.tets)))
-      if (Status s = build(finer, to_object); !s) return s.error();
+    std::vector<Primitive> touched = mesh->primitives;
+    const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
+    const bool outer = filled && leave_out_covered(parts.surface, parts.tets, touched);
+    const bool finer = refine(touched, to_object, kLongestEdge * mean_edge(parts.tets));
+    if (outer || finer)
+      if (Status s = build(touched, to_object); !s) return s.error();
   }
   parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
   put_in_order(parts.tets, group);

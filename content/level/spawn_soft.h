@@ -30,12 +30,12 @@ std::string soft_fault(const LevelNode& node);
 // Tetrahedra that fill a surface as the body's author wants it, without embedding: which of their nodes are held, what
 // was too small to keep (tet_parts.h) dropped, TetReport as a whole. Errors: those of fill_surface and group_nodes, and
 // that most of the tissue is in crumbs because it is thinner than the cell.
-struct Tissue {
+struct FilledBody {
   TetMesh tets;  // all nodes in Hilbert order
   std::vector<NodeGroup> group;
 };
-Result<Tissue> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
-                           const std::stop_token& stop = {});
+Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                               const std::stop_token& stop = {});
 
 // `mesh`: the node's surface, or null: the boundary of the tetrahedra file is taken. `to_object` takes the node's frame
 // to the object frame. Errors: no surface, no inside, a file that cannot be read, boxes and paint that hold no node.

@@ -94,6 +94,7 @@ class Embedder {
     ASSERT(found.tet != kNoTet);
     return found;
   }
+  bool holds(dvec3 p) const { return best_near(p, 0.0, nullptr).tet != kNoTet; }
 
  private:
   // Weights by Cramer's rule; the first is what the others leave, so that they sum to 1. False: the element is flat.
@@ -165,6 +166,16 @@ std::vector<Embedding> embed(const Mesh& surface, const std::vector<dvec3>& node
     }
   });
   return collision_mesh;
+}
+
+std::vector<std::uint8_t> are_inside(const std::vector<dvec3>& points, const std::vector<dvec3>& nodes,
+                                     const std::vector<Tet>& tets) {
+  const Embedder embedder(nodes, tets);
+  std::vector<std::uint8_t> inside(points.size());
+  parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) inside[i] = embedder.holds(points[i]);
+  });
+  return inside;
 }
 
 }  // namespace pliant

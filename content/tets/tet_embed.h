@@ -13,4 +13,8 @@ namespace pliant {
 // rounding. At least one tetrahedron must have a volume.
 std::vector<Embedding> embed(const Mesh& surface, const std::vector<dvec3>& nodes, const std::vector<Tet>& tets);
 
+// Of each point: whether a tetrahedron holds it. Tetrahedra as above.
+std::vector<std::uint8_t> are_inside(const std::vector<dvec3>& points, const std::vector<dvec3>& nodes,
+                                     const std::vector<Tet>& tets);
+
 }  // namespace pliant

@@ -45,7 +45,8 @@ void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetRepo
     const std::string wall = "is a wall of " + length_text(shape.thickness);
     if (fill == Fill::kSolid)
       report.findings.push_back(wall +
-                                ", its inside is filled (\"fill\": \"solid\"); to keep it hollow, give it thickness "
+                                ", its inside is filled (\"fill\": \"solid\") and its inner sheet left out; to keep it "
+                                "hollow, give it thickness "
                                 "(\"fill\": \"wall\", \"thickness\" in metres)");
     else if (thickness > shape.thickness)
       report.findings.push_back(wall + ", made " + length_text(thickness) + " thick inwards");

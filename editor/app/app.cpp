@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "content/files/image.h"
 #include "editor/app/files.h"
@@ -20,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kTop = 44, kBar = 26;                                                      // [point]
+constexpr float kTop = 40, kBar = 26;  // [point]
+constexpr float kTopPad = 9;           // [point] above the buttons of the top bar
 constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
@@ -33,6 +35,13 @@ vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+// [ms] that this thread has computed, without what it waited for other threads, programs and the display.
+double computed_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
 
 bool begin_fixed(const char* name, ImVec2 low, ImVec2 high, ImGuiWindowFlags flags = 0) {
   ImGui::SetNextWindowPos(low);
@@ -106,7 +115,7 @@ Status App::run() {
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
       ui::Script::Surroundings at;
-      at.settled = settled();
+      at.under_way = under_way();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
@@ -132,10 +141,16 @@ Status App::run() {
   return settings.save();
 }
 
-bool App::settled() const {
-  if (!editor.jobs.idle() || editor.painting->working() || editor.camera.moving()) return false;
-  if (play_.on()) return play_.ready();  // its pictures go on for ever
-  return !stage_->busy() && picture_.order == order_ && !dirty_picture_ && !rendered_.waits();
+std::string App::under_way() const {
+  if (!editor.jobs.idle()) {
+    const std::vector<std::string> jobs = editor.jobs.under_way();
+    return jobs.empty() ? "a job" : jobs.front();
+  }
+  if (editor.painting->working()) return "a stroke";
+  if (editor.camera.moving()) return "the camera's way";
+  if (play_.on()) return play_.ready() ? "" : "opening the level to play";  // its pictures go on for ever
+  if (rendered_.waits()) return "the rendered picture";
+  return stage_->busy() || picture_.order != order_ || dirty_picture_ ? "a picture" : "";
 }
 
 ViewTool* App::tool() {
@@ -226,6 +241,7 @@ void App::keys(std::span<const InputEvent> events) {
 
 void App::frame(std::span<const InputEvent> events, double dt) {
   const std::uint64_t began = now_ns();
+  const double computed_before = computed_ms();
   host_->begin(events, dt);
   ui::begin_widgets();
   editor.jobs.deliver(editor);
@@ -241,8 +257,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     shown_view_ = editor.view;
     dirty_picture_ = true;
   }
-  if (ViewTool* t = tool(); !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) &&
-                            !editor.painting->stroking())
+  if (ViewTool* t = tool();
+      !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive() && !(t && t->wants_keys()) && !editor.painting->stroking())
     editor.document.end_gesture();
   const bool was_moving = editor.camera.moving();
   editor.camera.update(std::min(dt, 0.1));
@@ -288,7 +304,9 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   extra_lines.clear();
   if (!shot_.empty()) take_screenshot(std::exchange(shot_, {}));
   frame_ms_ = static_cast<double>(now_ns() - began) * 1e-6;
-  if (script_) frames_ms_.push_back(frame_ms_);
+  if (!script_) return;
+  frames_ms_.push_back(frame_ms_);
+  most_computed_ms_ = std::max(most_computed_ms_, computed_ms() - computed_before);
 }
 
 void App::say_figures(const std::string& name) {
@@ -297,16 +315,18 @@ void App::say_figures(const std::string& name) {
   std::sort(all.begin(), all.end());
   const auto slow = std::count_if(all.begin(), all.end(), [](double ms) { return ms > 50.0; });
   const std::string line = fmt::format(
-      "{}: {} frames of the interface, median {:.1f} ms, 99 % within {:.1f} ms, slowest {:.1f} ms, {} above 50 ms; "
-      "picture {:.0f} ms",
-      name, all.size(), all[all.size() / 2], all[all.size() * 99 / 100], all.back(), slow, picture_.draw_ms);
+      "{}: {} frames of the interface, median {:.1f} ms, 99 % within {:.1f} ms, slowest {:.1f} ms, {} above 50 ms; at "
+      "most {:.1f} ms of it computing; picture {:.0f} ms",
+      name, all.size(), all[all.size() / 2], all[all.size() * 99 / 100], all.back(), slow,
+      std::exchange(most_computed_ms_, 0.0), picture_.draw_ms);
   editor.say(line);
   fmt::print("{}\n", line);
+  std::fflush(stdout);
 }
 
 void App::draw_top() {
   const ui::Palette& p = ui::palette();
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(7)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(kTopPad)));
   begin_fixed("top", {0, 0}, {ImGui::GetIO().DisplaySize.x, ui::px(kTop)}, ImGuiWindowFlags_NoScrollbar);
   ImGui::PopStyleVar();
   {
@@ -352,7 +372,7 @@ void App::draw_top() {
   {
     const ui::Scope scope("View mode");
     const bool rendered = editor.view.shading == Shading::kRendered;
-    const float buttons = ui::px(160);
+    const float buttons = ImGui::CalcTextSize("SolidRendered").x + 4 * ImGui::GetStyle().FramePadding.x + ui::px(2);
     ImGui::SameLine(all - buttons - ui::px(ui::kPad));
     if (ui::choice_button("Solid", !rendered, "The level as it is edited, with painted values as colour")) {
       editor.view.shading = Shading::kSolid;
@@ -364,7 +384,7 @@ void App::draw_top() {
       dirty_picture_ = true;
     }
     const float room = all - buttons - ui::px(3 * ui::kWide) - wide;
-    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(7)});
+    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(kTopPad)});
     if (room > ui::px(620)) {
       ImGui::AlignTextToFramePadding();
       ImGui::PushStyleColor(ImGuiCol_Text, editor.document.dirty() ? p.text : p.dim);
@@ -520,7 +540,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
     dirty_picture_ = true;
   }
   if (in.over) editor.hovered = !dragging_view_ && !taken ? picture_.picked.node : kNoNode;
-  if (taken) dirty_picture_ = true;
+  if (taken && (in.dx != 0 || in.dy != 0 || in.pressed || in.released)) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
   if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
@@ -567,8 +587,8 @@ void App::order_picture() {
   solid.hovered_color = as_vec(p.text, 0.55f);
   for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
   solid.sign = as_vec(p.dim, 0.9f);
-  const bool another = !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered ||
-                       ordered_size_ != viewport_size_now();
+  const bool another =
+      !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered || ordered_size_ != viewport_size_now();
   if (!dirty_picture_ && !another && order_ > 0) return;
   dirty_picture_ = false;
   ordered_ = solid;

@@ -51,7 +51,7 @@ class App {
 
   Files& files() { return *files_; }
   const std::vector<std::filesystem::path>& shipped() const { return options_.levels; }
-  void ask(Question question);  // questions are asked one after the other
+  void ask(Question question);                   // questions are asked one after the other
   void look_changed() { look_changed_ = true; }  // of the settings; holds from the next frame on
   // The keys page waits for new keys of this action, and gets them as text in `rebound`.
   std::string rebinding, rebound;
@@ -89,7 +89,8 @@ class App {
   void draw_question();
   void draw_banners();
   void set_look();
-  bool settled() const;
+  bool settled() const { return under_way().empty(); }
+  std::string under_way() const;  // what keeps the editor from being at rest; "": nothing
   void say_figures(const std::string& name);
   void take_screenshot(const std::filesystem::path& file);
 
@@ -112,7 +113,7 @@ class App {
   CreaseLines creases_;
   std::pair<int, int> viewport_size_now() const;  // [pixel] of a picture
   std::pair<int, int> ordered_size_{0, 0};
-  SolidOrder ordered_;  // of the last picture that was ordered; its state is not kept
+  SolidOrder ordered_;           // of the last picture that was ordered; its state is not kept
   bool wants_question_ = false;  // the mouse has moved since the last question
   ImVec2 viewport_low_{0, 0}, viewport_high_{1, 1};
   bool dragging_view_ = false, pressed_in_view_ = false, moved_since_press_ = false;
@@ -132,7 +133,8 @@ class App {
   std::filesystem::path shot_;
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
   ViewSettings shown_view_;
-  double frame_ms_ = 0.0;          // of the interface
+  double frame_ms_ = 0.0;  // of the interface
+  double most_computed_ms_ = 0.0;
   std::vector<double> frames_ms_;  // while a script runs
 };
 

@@ -28,19 +28,20 @@ void Autosave::update(Editor& editor) {
   began_ = editor.now;
   written_ = revision;
   *writes_ = true;
-  editor.jobs.start("autosave", "", [place = place_, writes = writes_, state = editor.state(), this](const Jobs::Stop&) {
-    struct AtTheEnd {
-      std::atomic<bool>& flag;
-      ~AtTheEnd() { flag = false; }
-    } at_the_end{*writes};
-    const Status status = place->write(state);
-    const std::string fault = status ? "" : status.error().message();
-    return [fault, this](Editor& to) {
-      if (fault.empty() || said_) return;
-      said_ = true;
-      to.say("No copy for recovery could be written: " + fault, Severity::kWarning);
-    };
-  });
+  editor.jobs.start("autosave", "",
+                    [place = place_, writes = writes_, state = editor.state(), this](const Jobs::Stop&) {
+                      struct AtTheEnd {
+                        std::atomic<bool>& flag;
+                        ~AtTheEnd() { flag = false; }
+                      } at_the_end{*writes};
+                      const Status status = place->write(state);
+                      const std::string fault = status ? "" : status.error().message();
+                      return [fault, this](Editor& to) {
+                        if (fault.empty() || said_) return;
+                        said_ = true;
+                        to.say("No copy for recovery could be written: " + fault, Severity::kWarning);
+                      };
+                    });
 }
 
 void Autosave::write_now(Editor& editor) {

@@ -53,10 +53,10 @@ class Editor {
   bool apply(const std::string& what, Result<State> next, const std::string& gesture = {});
   // Replaces the document; asks nothing.
   void take(Document next);
-  std::uint64_t documents = 0;  // taken so far
+  std::uint64_t documents = 0;                                                              // taken so far
   void revert_to(Level level, const FileStamp& stamp, const std::string& what = "Revert");  // as Document; keeps what
-                                                                                           // is selected, by name
-  void go_to_step(std::size_t step);  // of the document's history
+                                                                                            // is selected, by name
+  void go_to_step(std::size_t step);                                                        // of the document's history
   void undo();
   void redo();
   void drop_gesture(const std::string& gesture);  // what is being dragged goes back to where it was

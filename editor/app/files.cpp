@@ -109,14 +109,15 @@ void Files::open(const fs::path& file, double unit) {
     std::optional<RecoveryCopy> copy = find_recovery(file, state_folder());
     if (!copy) return load(file, unit);
     const FileStamp saved = stamp_of(file);
-    app_.ask({"Changes were not saved when the editor ended",
-              {file.filename().string() + " has changes in a copy for recovery:",
-               "the copy is of " + time_text(copy->time) +
-                   (saved.there ? ", the file of " + time_text(saved.time) + "." : "; the file itself is gone.")},
-              {{"Recover the changes", "Opens the copy; nothing is written to the file until you save.",
-                [this, c = *copy] { recover(c); }},
-               {"Open the file", "The copy is kept until you change something.", [this, file, unit] { load(file, unit); }},
-               {"Cancel", "", {}}}});
+    app_.ask(
+        {"Changes were not saved when the editor ended",
+         {file.filename().string() + " has changes in a copy for recovery:",
+          "the copy is of " + time_text(copy->time) +
+              (saved.there ? ", the file of " + time_text(saved.time) + "." : "; the file itself is gone.")},
+         {{"Recover the changes", "Opens the copy; nothing is written to the file until you save.",
+           [this, c = *copy] { recover(c); }},
+          {"Open the file", "The copy is kept until you change something.", [this, file, unit] { load(file, unit); }},
+          {"Cancel", "", {}}}});
   });
 }
 
@@ -186,7 +187,8 @@ void Files::ask_name(const char* title, bool copy, std::function<void()> then) {
               {"There is a file of this name already, of " + time_text(there.time) + ".",
                "In " + file.parent_path().string()},
               {{"Replace", "What is in it now is lost.", [this, file, copy, then] { write(file, copy, then); }},
-               {"Another name", "", [this, copy, then] { ask_name(copy ? "Save a copy as" : "Save the level as", copy, then); }},
+               {"Another name", "",
+                [this, copy, then] { ask_name(copy ? "Save a copy as" : "Save the level as", copy, then); }},
                {"Cancel", "", {}}}});
   });
 }
@@ -254,12 +256,12 @@ void Files::watch() {
     if (const Result<fs::path> path = confined_path(folder, name); path) paths.push_back(*path);
   if (!file.empty()) paths.push_back(file);
   if (paths.empty()) return;
-  editor.jobs.start("watch", "", [this, paths, known = editor.document.file_stamp(), document = editor.documents](
-                                     const Jobs::Stop&) {
-    std::map<fs::path, FileStamp> now;
-    for (const fs::path& path : paths) now[path] = stamp_of(path);
-    return [this, now, known, document](Editor&) { compare(now, known, document); };
-  });
+  editor.jobs.start(
+      "watch", "", [this, paths, known = editor.document.file_stamp(), document = editor.documents](const Jobs::Stop&) {
+        std::map<fs::path, FileStamp> now;
+        for (const fs::path& path : paths) now[path] = stamp_of(path);
+        return [this, now, known, document](Editor&) { compare(now, known, document); };
+      });
 }
 
 void Files::compare(const std::map<fs::path, FileStamp>& now, const FileStamp& known, std::uint64_t document) {

@@ -30,7 +30,7 @@ class Files {
   void save_as(std::function<void()> then = {});
   void save_copy();
   void revert();
-  void close_in_order();  // the program ends as the user wants it
+  void close_in_order();    // the program ends as the user wants it
   void save_what_can_be();  // the program has to end
 
   Autosave autosave;
@@ -39,7 +39,7 @@ class Files {
   // Of the built-in browser: what it is to ask for now.
   const FileWish& wish() const { return wish_; }
   std::uint64_t wishes() const { return wishes_; }  // so far
-  void chosen(const std::filesystem::path& file);  // by the built-in browser
+  void chosen(const std::filesystem::path& file);   // by the built-in browser
   void given_up() { then_ = nullptr; }
 
  private:

@@ -54,15 +54,13 @@ bool is_known(const std::string& extension, const std::string& key) {
 }
 
 QuickFix without(const char* label, NodeId id, const char* extension) {
-  return {label, [id, extension](const State& s, NodeId&) {
-            return without_component(s, std::span(&id, 1), extension);
-          }};
+  return {label,
+          [id, extension](const State& s, NodeId&) { return without_component(s, std::span(&id, 1), extension); }};
 }
 
 QuickFix with(std::string label, NodeId id, std::string extension, std::string key, Json value) {
-  return {std::move(label), [=](const State& s, NodeId&) {
-            return with_value(s, std::span(&id, 1), extension, key, value);
-          }};
+  return {std::move(label),
+          [=](const State& s, NodeId&) { return with_value(s, std::span(&id, 1), extension, key, value); }};
 }
 
 Result<State> with_device(const State& state, NodeId id) {
@@ -80,9 +78,8 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
   if (!node) {
     // Of the scene: a panorama that is not there, a key that nothing reads.
     if (has_key && extension == "environment" && key == "panorama" && finding.severity == Severity::kError)
-      return QuickFix{"Without the panorama", [](const State& s, NodeId&) {
-                        return with_default(s, {}, "environment", "panorama");
-                      }};
+      return QuickFix{"Without the panorama",
+                      [](const State& s, NodeId&) { return with_default(s, {}, "environment", "panorama"); }};
     return {};
   }
   const LevelNode& it = node->node;
@@ -99,13 +96,17 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
   if (it.handle && it.rigid_body && it.rigid_body->fixed && says("`fixed`"))
     return with("Let it move", id, "rigid_body", "fixed", false);
   if (it.probe && says("nothing moves it"))
-    return QuickFix{"Add a device, moved by the mouse",
-                    [id](const State& s, NodeId&) { return with_device(s, id); }};
+    return QuickFix{"Add a device, moved by the mouse", [id](const State& s, NodeId&) { return with_device(s, id); }};
   if (it.probe && !it.probe_device.empty() && !state.find(it.probe_device))
     return with("Clear the device", id, "probe", "device", "");
   if (has_key && finding.severity == Severity::kNote && !value_of_key(state, id, extension, key).is_null())
     return QuickFix{"Reset " + key, [id, extension, key](const State& s, NodeId&) {
                       return with_default(s, std::span(&id, 1), extension, key);
+                    }};
+  if (has_key && extension == "haptic_device" && key == "file" && it.device)  // its driver cannot do without
+    return QuickFix{"Without the script", [id](const State& s, NodeId&) {
+                      Result<State> next = with_value(s, std::span(&id, 1), "haptic_device", "driver", "null");
+                      return next ? with_default(*next, std::span(&id, 1), "haptic_device", "file") : next;
                     }};
   if (has_key && finding.severity == Severity::kError && value_of_key(state, id, extension, key).is_string())
     return QuickFix{"Clear " + key, [id, extension, key](const State& s, NodeId&) {
@@ -136,8 +137,9 @@ Findings find_in_state(const State& state, const std::filesystem::path& file, co
   Level level = level_of(state);
   level.path = file.empty() ? folder / "untitled" : file;
   if (!level.has_pliant())
-    return {{Severity::kNote, "", "nothing can be touched yet: select a mesh and add a deformable surface or a soft "
-                                  "body in the inspector"}};
+    return {{Severity::kNote, "",
+             "nothing can be touched yet: select a mesh and add a deformable surface or a soft "
+             "body in the inspector"}};
   return validate_level(std::move(level), [](World& world) -> Status {
     for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
       if (const Status status = prepare_system(world); !status) return status;
@@ -159,18 +161,19 @@ void FindingsWatch::update(Editor& editor) {
     editor.found_at = revision;
     return;
   }
-  editor.jobs.start("findings", "", [state = editor.state(), revision, document = editor.documents,
-                                     read = editor.files_read, file = editor.document.file(),
-                                     folder = editor.document.folder()](const Jobs::Stop& stop) -> std::function<void(Editor&)> {
-    if (stop) return {};
-    auto found = std::make_shared<std::vector<EditorFinding>>(
-        editor_findings(state, find_in_state(state, file, folder)));
-    return [found, revision, document, read](Editor& to) {
-      if (to.documents != document || to.files_read != read) return;
-      to.findings = std::move(*found);
-      to.found_at = revision;
-    };
-  });
+  editor.jobs.start("findings", "",
+                    [state = editor.state(), revision, document = editor.documents, read = editor.files_read,
+                     file = editor.document.file(),
+                     folder = editor.document.folder()](const Jobs::Stop& stop) -> std::function<void(Editor&)> {
+                      if (stop) return {};
+                      auto found = std::make_shared<std::vector<EditorFinding>>(
+                          editor_findings(state, find_in_state(state, file, folder)));
+                      return [found, revision, document, read](Editor& to) {
+                        if (to.documents != document || to.files_read != read) return;
+                        to.findings = std::move(*found);
+                        to.found_at = revision;
+                      };
+                    });
 }
 
 }  // namespace pliant

@@ -43,7 +43,8 @@ bool Jobs::running(const std::string& key) const {
 }
 
 bool Jobs::idle() const {
-  return std::none_of(jobs_.begin(), jobs_.end(), [](const auto& job) { return !job->stop.load() && !job->what.empty(); });
+  return std::none_of(jobs_.begin(), jobs_.end(),
+                      [](const auto& job) { return !job->stop.load() && !job->what.empty(); });
 }
 
 std::vector<std::string> Jobs::under_way() const {

@@ -39,11 +39,11 @@ struct ViewportInput {
   bool shift = false, control = false, alt = false;
   double pressure = 1.0;  // [1] of a tablet's pen; 1 of a mouse
   Viewpoint view;
-  double orthographic = 0.0;  // [m] height; 0: perspective
-  NodeId under = kNoNode;     // what the picture shows under the mouse, as known last
-  dvec3 under_at{0};          // [m] world
-  double dt = 0.0;            // [s]
-  std::string typed;          // what was typed while no field had the keys
+  double orthographic = 0.0;                          // [m] height; 0: perspective
+  NodeId under = kNoNode;                             // what the picture shows under the mouse, as known last
+  dvec3 under_at{0};                                  // [m] world
+  double dt = 0.0;                                    // [s]
+  std::string typed;                                  // what was typed while no field had the keys
   bool enter = false, escape = false, erase = false;  // keys of the same
   ViewRay ray() const { return view_ray(view, orthographic, x, y, width, height); }
 };

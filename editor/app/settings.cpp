@@ -74,11 +74,20 @@ Settings Settings::load(const fs::path& folder, std::string& note) {
 Status Settings::save() const {
   std::error_code failed;
   fs::create_directories(file_.parent_path(), failed);
-  const Json json{{"light", light},           {"scale", scale},         {"left", left},
-                  {"right", right},           {"bottom", bottom},       {"recent", recent},
-                  {"keys", keys},             {"presets", presets},     {"snap", snap},
-                  {"snap_move", snap_move},   {"snap_turn", snap_turn}, {"snap_scale", snap_scale},
-                  {"local_axes", local_axes}, {"autosave", autosave}};
+  const Json json{{"light", light},
+                  {"scale", scale},
+                  {"left", left},
+                  {"right", right},
+                  {"bottom", bottom},
+                  {"recent", recent},
+                  {"keys", keys},
+                  {"presets", presets},
+                  {"snap", snap},
+                  {"snap_move", snap_move},
+                  {"snap_turn", snap_turn},
+                  {"snap_scale", snap_scale},
+                  {"local_axes", local_axes},
+                  {"autosave", autosave}};
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return write_file(file_, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }

@@ -13,8 +13,8 @@ namespace pliant {
 
 struct Settings {
   static constexpr std::size_t kMostRecent = 12;
-  bool light = false;     // theme
-  double scale = 0.0;     // [1] of the interface; 0: the display's
+  bool light = false;                            // theme
+  double scale = 0.0;                            // [1] of the interface; 0: the display's
   double left = 260, right = 330, bottom = 210;  // [point] sizes of the panels
   std::vector<std::string> recent;               // files, newest first
   std::map<std::string, std::string> keys;       // action id -> keys, where they differ from the default
@@ -26,7 +26,7 @@ struct Settings {
 
   // `folder` empty: the user's. `note` gets a sentence where something was not as it should be.
   static Settings load(const std::filesystem::path& folder, std::string& note);
-  Status save() const;  // atomically
+  Status save() const;                           // atomically
   void used(const std::filesystem::path& file);  // is the newest of `recent`
 
  private:

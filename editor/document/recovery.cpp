@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "content/files/file_io.h"
@@ -45,9 +47,9 @@ fs::path whole(const fs::path& file) {
 // Of a document with a file: the same name for the same file. Of another one: of this process.
 fs::path apart(const fs::path& state_folder, const fs::path& file, const std::string& title) {
   static std::atomic<int> number{0};
-  const std::string name = file.empty() ? fmt::format("{}-{}-{}", plain(title), ::getpid(), ++number)
-                                        : fmt::format("{}-{:016x}", plain(file.filename().string()),
-                                                      fnv1a(whole(file).string()));
+  const std::string name =
+      file.empty() ? fmt::format("{}-{}-{}", plain(title), ::getpid(), ++number)
+                   : fmt::format("{}-{:016x}", plain(file.filename().string()), fnv1a(whole(file).string()));
   return state_folder / (name + kEnding);
 }
 
@@ -103,6 +105,14 @@ std::vector<RecoveryCopy> find_recoveries(const fs::path& state_folder) {
 
 void remove_recovery(const RecoveryCopy& copy) {
   std::error_code gone;
+  // What a copy was being written to when the editor ended.
+  const std::string half = copy.copy.filename().string() + ".";
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(copy.copy.parent_path().empty() ? "." : copy.copy.parent_path(), gone)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(half) && name.ends_with(".part") && !runs(std::atoi(name.c_str() + half.size())))
+      fs::remove(entry.path(), gone);
+  }
   fs::remove(copy.copy, gone);
   fs::remove(about_of_copy(copy.copy), gone);
 }

@@ -63,8 +63,8 @@ class ConsolePanel : public Panel {
       std::string all;
       for (const Said& said : editor.said)
         if (is_shown(said))
-          all += fmt::format("{:.1f} s  {}{}{}\n", said.time, word_of(said.severity), *word_of(said.severity) ? ": " : "",
-                             text_of(said));
+          all += fmt::format("{:.1f} s  {}{}{}\n", said.time, word_of(said.severity),
+                             *word_of(said.severity) ? ": " : "", text_of(said));
       app_.window().set_clipboard(all);
     }
     ImGui::SameLine();

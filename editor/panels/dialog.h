@@ -12,8 +12,8 @@ class Dialog {
   Dialog(App& app, const char* name, const char* title, ImVec2 size, bool esc_closes = true) {
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * all.x, 0.5f * all.y}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({std::min(ui::px(size.x), all.x - ui::px(ui::kWide)),
-                              std::min(ui::px(size.y), all.y - ui::px(ui::kWide))});
+    ImGui::SetNextWindowSize(
+        {std::min(ui::px(size.x), all.x - ui::px(ui::kWide)), std::min(ui::px(size.y), all.y - ui::px(ui::kWide))});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ui::palette().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kWide), ui::px(ui::kPad)));
     ImGui::Begin(name, nullptr,
@@ -24,7 +24,8 @@ class Dialog {
     ui::title(title);
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ui::px(70));
     closed_ = ui::button("Close", "Esc", true, 70);
-    closed_ |= esc_closes && !ImGui::IsAnyItemActive() && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
+    closed_ |= esc_closes && !ImGui::IsAnyItemActive() &&
+               ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
                ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
     if (closed_) app.close_panel(name);
     ui::gap(ui::kGap);

@@ -34,7 +34,8 @@ std::string lower(std::string text) {
 }
 
 bool opens(const fs::path& name) {
-  constexpr const char* kEndings[] = {".glb", ".gltf", ".obj", ".stl", ".ply", ".off", ".msh", ".vtk", ".mesh", ".fbx", ".dae"};
+  constexpr const char* kEndings[] = {".glb", ".gltf", ".obj",  ".stl", ".ply", ".off",
+                                      ".msh", ".vtk",  ".mesh", ".fbx", ".dae"};
   const std::string ending = lower(name.extension().string());
   return std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
 }
@@ -79,8 +80,9 @@ Listing read_folder(const fs::path& folder, const Filter& filter, const Jobs::St
 
 std::string size_text(std::uintmax_t bytes) {
   const auto b = static_cast<double>(bytes);
-  return bytes < 1000 ? fmt::format("{} B", bytes) : bytes < 1000000 ? fmt::format("{:.0f} kB", b / 1e3)
-                                                                    : fmt::format("{:.1f} MB", b / 1e6);
+  return bytes < 1000      ? fmt::format("{} B", bytes)
+         : bytes < 1000000 ? fmt::format("{:.0f} kB", b / 1e3)
+                           : fmt::format("{:.1f} MB", b / 1e6);
 }
 
 class FileBrowser : public Panel {
@@ -116,7 +118,8 @@ class FileBrowser : public Panel {
  private:
   void go(Editor& editor, const fs::path& folder) {
     folder_ = folder.lexically_normal();
-    if (!folder_.has_filename() && folder_.has_parent_path() && folder_ != folder_.root_path()) folder_ = folder_.parent_path();
+    if (!folder_.has_filename() && folder_.has_parent_path() && folder_ != folder_.root_path())
+      folder_ = folder_.parent_path();
     typed_ = folder_.string();
     filter_.part.clear();
     selected_.clear();
@@ -126,10 +129,11 @@ class FileBrowser : public Panel {
   void read(Editor& editor) {
     read_ = filter_;
     listing_.reset();
-    editor.jobs.start("folder", "Reading the folder", [this, folder = folder_, filter = filter_](const Jobs::Stop& stop) {
-      auto listing = std::make_shared<Listing>(read_folder(folder, filter, stop));
-      return [this, listing](Editor&) { listing_ = listing; };
-    });
+    editor.jobs.start("folder", "Reading the folder",
+                      [this, folder = folder_, filter = filter_](const Jobs::Stop& stop) {
+                        auto listing = std::make_shared<Listing>(read_folder(folder, filter, stop));
+                        return [this, listing](Editor&) { listing_ = listing; };
+                      });
   }
 
   void path_row(Editor& editor) {
@@ -186,8 +190,9 @@ class FileBrowser : public Panel {
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
         const Entry& entry = listing_->entries[static_cast<std::size_t>(i)];
         ImGui::PushID(i);
-        const bool pressed = ImGui::Selectable("##entry", selected_ == entry.name,
-                                               ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_AllowItemOverlap);
+        const bool pressed =
+            ImGui::Selectable("##entry", selected_ == entry.name,
+                              ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_AllowItemOverlap);
         ui::known_as(entry.name);
         ImGui::SameLine(ui::px(ui::kGap));
         if (entry.folder) {

@@ -1,7 +1,8 @@
 // What is wrong with the level as it stands, and what can be done about it.
+#include "editor/app/findings.h"
+
 #include <fmt/format.h>
 
-#include "editor/app/findings.h"
 #include "editor/panels/panels.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
@@ -56,7 +57,9 @@ class FindingsPanel : public Panel {
     const EditorFinding& found = editor.findings[i];
     const ui::Palette& p = ui::palette();
     const Severity severity = found.finding.severity;
-    const char* const word = severity == Severity::kError ? "Error" : severity == Severity::kWarning ? "Warning" : "Note";
+    const char* const word = severity == Severity::kError     ? "Error"
+                             : severity == Severity::kWarning ? "Warning"
+                                                              : "Note";
     const ImVec4& tint = severity == Severity::kError ? p.bad : severity == Severity::kWarning ? p.warning : p.dim;
     const DocumentNode* const node = editor.state().find(found.node);
     const ui::Scope scope(fmt::format("{}", i + 1));
@@ -64,7 +67,8 @@ class FindingsPanel : public Panel {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float wide = ImGui::GetContentRegionAvail().x, column = ui::px(84);
     const float fix_wide = found.fix ? ImGui::CalcTextSize(found.fix->label.c_str()).x + ui::px(2 * ui::kPad) : 0.0f;
-    const std::string text = (node ? printable(node->node.name) + " " : std::string()) + printable(found.finding.message);
+    const std::string text =
+        (node ? printable(node->node.name) + " " : std::string()) + printable(found.finding.message);
     const float wrap = std::max(wide - column - fix_wide - ui::px(ui::kWide), ui::px(120));
     const float high = std::max(ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y, ImGui::GetFrameHeight());
     if (ImGui::Selectable("##row", node && editor.is_selected(node->id), ImGuiSelectableFlags_AllowItemOverlap,
@@ -80,13 +84,13 @@ class FindingsPanel : public Panel {
     const float line = ImGui::GetTextLineHeight(), middle = at.y + 0.5f * line + ui::px(2);
     sign(list, {at.x + ui::px(10), middle}, severity, ui::color(tint));
     list.AddText({at.x + ui::px(22), at.y + ui::px(2)}, ui::color(tint), word);
-    list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + column, at.y + ui::px(2)}, ui::color(p.text), text.c_str(),
-                 nullptr, wrap);
+    list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + column, at.y + ui::px(2)}, ui::color(p.text),
+                 text.c_str(), nullptr, wrap);
     bool fix = false;
     if (found.fix) {
       ImGui::SetCursorScreenPos({at.x + wide - fix_wide, at.y});
       fix = ui::button(fmt::format("{}##fix", found.fix->label).c_str(), "Mends it; undo takes it back");
-      ui::known_as("fix");
+      ui::known_as(found.fix->label);
     }
     ImGui::SetCursorScreenPos(after);
     ImGui::PopID();

@@ -9,13 +9,15 @@
 #include "content/keys/extension_table.h"
 #include "editor/panels/key_fields.h"
 #include "editor/panels/panels.h"
+#include "editor/tools/gizmo_math.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
 namespace pliant {
 namespace {
 
-constexpr float kLabelShare = 0.42f;  // [1] of the panel's width
+constexpr float kLabelShare = 0.42f;   // [1] of the panel's width
+constexpr float kTripleShare = 0.30f;  // [1] the same, before three numbers
 
 std::string words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -74,14 +76,15 @@ class InspectorPanel : public Panel {
         vertices += p.position.size();
       }
       const vec3 size = mesh.box.empty() ? vec3(0) : mesh.box.size() * node.node.local.scale;
-      ui::dim(fmt::format("{} triangles, {} vertices, {:.3g} x {:.3g} x {:.3g} m", triangles, vertices, size.x, size.y,
-                          size.z)
+      ui::dim(fmt::format("{} triangles, {} vertices\n{} \u00d7 {} \u00d7 {}", triangles, vertices,
+                          length_text(static_cast<double>(size.x), 3), length_text(static_cast<double>(size.y), 3),
+                          length_text(static_cast<double>(size.z), 3))
                   .c_str());
     }
   }
 
   // A row: what at the left, its field at the right. True while the label's mark for "back to the default" is pressed.
-  bool begin_row(const char* label, const char* hint_text, bool differs) {
+  bool begin_row(const char* label, const char* hint_text, bool differs, float share = kLabelShare) {
     const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
     ImGui::AlignTextToFramePadding();
     if (differs) {
@@ -104,17 +107,17 @@ class InspectorPanel : public Panel {
       ui::known_as(std::string(label) + " reset");
       ui::hint("Differs from the default. Press to go back to it.");
     }
-    ImGui::SameLine(left + kLabelShare * wide);
+    ImGui::SameLine(left + share * wide);
     return reset;
   }
 
   void draw_transform(Editor& editor, const DocumentNode& node) {
     if (!ui::section("Place")) return;
     LocalTransform local = node.node.local;
-    const dvec3 euler = glm::degrees(glm::eulerAngles(dquat(local.rotation)));
-    dvec3 position(local.translation), turn = shown_turn_.first == node.id && same_turn(local.rotation)
-                                                  ? shown_turn_.second
-                                                  : euler,
+    // Floats know no more than five digits of an angle.
+    const dvec3 euler = glm::round(glm::degrees(glm::eulerAngles(dquat(local.rotation))) * 1e4) * 1e-4;
+    dvec3 position(local.translation),
+        turn = shown_turn_.first == node.id && same_turn(local.rotation) ? shown_turn_.second : euler,
         scale(local.scale);
     bool changed = false;
     changed |= triple("Position", "m", position, "Of the node's origin, in its parent's frame");
@@ -133,14 +136,15 @@ class InspectorPanel : public Panel {
   bool same_turn(quat q) const { return std::abs(glm::dot(q, shown_quat_)) > 0.999999f; }
 
   bool triple(const char* label, const char* unit, dvec3& value, const char* hint_text) {
-    begin_row(label, hint_text, false);
+    // Three numbers need the room: the unit stands with the label.
+    begin_row((*unit ? fmt::format("{} ({})", label, unit) : label).c_str(), hint_text, false, kTripleShare);
     const float wide = (ImGui::GetContentRegionAvail().x - ui::px(8)) / 3.0f / ui::scale();
     bool changed = false;
     const char* const axes[] = {"x", "y", "z"};
     for (int i = 0; i < 3; ++i) {
       if (i) ImGui::SameLine(0, ui::px(4));
       const ImVec2 at = ImGui::GetCursorScreenPos();
-      changed |= ui::number(fmt::format("{} {}", label, axes[i]).c_str(), value[i], -1e6, 1e6, unit, false, wide);
+      changed |= ui::number(fmt::format("{} {}", label, axes[i]).c_str(), value[i], -1e6, 1e6, "", false, wide);
       ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + ui::px(3), at.y + ImGui::GetFrameHeight()},
                                                 ui::color(ui::palette().axis[i]), ui::px(2));
     }
@@ -241,8 +245,7 @@ class InspectorPanel : public Panel {
     ImGui::SetNextItemWidth(-1);
     changed |= ImGui::ColorEdit3("##light colour", &light.color.x, ImGuiColorEditFlags_Float);
     ui::known_as("colour");
-    if (changed)
-      editor.apply("Light", with_light(editor.state(), node.id, light), "light " + std::to_string(node.id));
+    if (changed) editor.apply("Light", with_light(editor.state(), node.id, light), "light " + std::to_string(node.id));
     if (ui::button("Remove light")) editor.apply("Remove light", with_light(editor.state(), node.id, {}));
   }
 
@@ -267,9 +270,8 @@ class InspectorPanel : public Panel {
     if (!ImGui::BeginPopup("add component")) return;
     for (const Extension& each : extension_table()) {
       if (each.on_scene) continue;
-      const bool everywhere = std::all_of(editor.selected.begin(), editor.selected.end(), [&](NodeId id) {
-        return has_component(editor.state(), id, each.name);
-      });
+      const bool everywhere = std::all_of(editor.selected.begin(), editor.selected.end(),
+                                          [&](NodeId id) { return has_component(editor.state(), id, each.name); });
       if (ui::menu_item(words(each.name).c_str(), nullptr, false, !everywhere))
         editor.apply("Add " + words(each.name), with_component(editor.state(), editor.selected, each.name));
       ui::hint(each.doc.c_str());

@@ -21,7 +21,8 @@ double most_of(const Key& key) {
 
 bool number_field(const Key& key, const char* label, Json& value, float width = 0) {
   double number = value.is_number() ? value.get<double>() : 0.0;
-  if (!ui::number(label, number, least_of(key), most_of(key), key.unit.c_str(), most_of(key) > 1e3, width)) return false;
+  if (!ui::number(label, number, least_of(key), most_of(key), key.unit.c_str(), most_of(key) > 1e3, width))
+    return false;
   value = number;
   return true;
 }

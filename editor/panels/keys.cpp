@@ -56,7 +56,8 @@ class KeysPanel : public Panel {
       for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
       return text;
     };
-    return search_.empty() || lower(action.label + " " + app_.keys_of(action)).find(lower(search_)) != std::string::npos;
+    return search_.empty() ||
+           lower(action.label + " " + app_.keys_of(action)).find(lower(search_)) != std::string::npos;
   }
 
   const Action* action(const std::string& id) const {

@@ -31,9 +31,9 @@ constexpr float kShape = 0.6f;  // height over width of what is shown
 Status draw_picture(const fs::path& level, const fs::path& folder, const Jobs::Stop& stop) {
   std::error_code failed;
   const fs::path self = fs::read_symlink("/proc/self/exe", failed);
-  std::vector<std::string> words{self.string(), "run",   level.string(), "--headless", "--seconds", "0.3",
-                                 "--frames",    "1",     "--size",       "400x240",    "--threads", "1",
-                                 "--out",       folder.string(), "--force"};
+  std::vector<std::string> words{
+      self.string(), "run",     level.string(), "--headless", "--seconds", "0.3",           "--frames", "1",
+      "--size",      "400x240", "--threads",    "1",          "--out",     folder.string(), "--force"};
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);

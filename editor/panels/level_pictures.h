@@ -14,8 +14,8 @@ class Editor;
 
 struct LevelPicture {
   std::string about;
-  unsigned texture = 0;            // 0: none (yet)
-  ImVec2 low{0, 0}, high{1, 1};    // of the texture that is shown
+  unsigned texture = 0;          // 0: none (yet)
+  ImVec2 low{0, 0}, high{1, 1};  // of the texture that is shown
 };
 
 class LevelPictures {

@@ -152,7 +152,7 @@ class PaintPanel : public Panel {
     if (ui::number("radius", mm, 1.0 * size, 1e3 * size, "mm")) brush.radius = 1e-3 * mm;
     double percent = 100 * brush.strength;
     row("Strength", "Share of the whole effect: Shift+[ and Shift+]");
-    if (ui::number("strength", percent, 1, 100, "%")) brush.strength = 0.01 * percent;
+    if (ui::number("strength", percent, 1, 100, "%%")) brush.strength = 0.01 * percent;
     row("Falloff", "How the effect falls off from the middle to the rim");
     choices(kFalloffs, brush.falloff);
     row("", nullptr);

@@ -33,7 +33,8 @@ class SettingsPanel : public Panel {
       ImGui::SameLine(0, ui::px(2));
     }
     ImGui::NewLine();
-    ui::label("Copy for recovery", "Of what is not saved, beside the file. It is there after a crash or a loss of power.");
+    ui::label("Copy for recovery",
+              "Of what is not saved, beside the file. It is there after a crash or a loss of power.");
     column();
     bool finished = false;
     ui::number("every", s.autosave, 0.1, 3600, "s", false, 110, &finished);

@@ -107,10 +107,11 @@ class SoftPanel : public Panel {
     const ui::Scope scope("Material");
     for (const TissuePreset& preset : tissue_presets()) {
       const bool soft = node.node.soft_body.has_value();
-      const std::string label = fmt::format("{}  ({:.3g} kPa)###{}", preset.name, preset.young * 1e-3, preset.word);
       const bool now =
           soft ? node.node.soft_body->young == preset.young && node.node.soft_body->density == preset.density
                : node.node.deformable->stiffness == surface_stiffness(preset);
+      const std::string label = fmt::format("{} {}  ({:.3g} kPa)###{}", now ? "\u2713" : "   ", preset.name,
+                                            preset.young * 1e-3, preset.word);
       const bool pressed = ImGui::Selectable(label.c_str(), now);
       ui::known_as(preset.word);
       ui::hint(fmt::format("Young's modulus {:.3g} kPa ({:.3g} to {:.3g}); a fingertip feels {:.3g} N/m.\n{}",
@@ -311,7 +312,8 @@ class SoftPanel : public Panel {
     for (const Instrument& instrument : instruments()) {
       if (column++ % 2) ImGui::SameLine(0, ui::px(4));
       std::string label = instrument.word;
-      std::replace(label.begin(), label.end(), '-', ' ');
+      std::replace_if(
+          label.begin(), label.end(), [](char c) { return c == '-' || c == '_'; }, ' ');
       label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
       add(label.c_str(), instrument.about, [&](Level& level, std::int32_t at) {
         const Result<std::int32_t> added = add_instrument(level, instrument.kind, at);

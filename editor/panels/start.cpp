@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "editor/app/files.h"
 #include "editor/app/app.h"
+#include "editor/app/files.h"
 #include "editor/panels/level_pictures.h"
 #include "editor/panels/panels.h"
 #include "editor/ui/widgets.h"
@@ -73,7 +73,8 @@ class StartPage : public Panel {
     for (const Recent& each : recent_) {
       const fs::path file = each.file;
       const ui::Scope scope("Recent");
-      const std::string shown = printable(file.filename().string()) + (each.there ? "" : "  (missing)") + "##" + each.file;
+      const std::string shown =
+          printable(file.filename().string()) + (each.there ? "" : "  (missing)") + "##" + each.file;
       if (!each.there) ImGui::PushStyleColor(ImGuiCol_Text, ui::palette().faint);
       const bool pressed = ui::selectable(shown.c_str(), false);
       ui::known_as(file.filename().string());
@@ -157,8 +158,8 @@ class StartPage : public Panel {
     if (hot) list.AddRect(at, end, ui::color(p.accent), round, 0, ui::px(1.5f));
     list.PushClipRect({at.x + ui::px(8), at.y}, {end.x - ui::px(8), end.y - ui::px(4)}, true);
     const float y = at.y + picture + ui::px(6);
-    list.AddText(ui::font(ui::Type::kStrong), ui::font(ui::Type::kStrong)->FontSize, {at.x + ui::px(8), y}, ui::color(p.text),
-                 level.stem().c_str());
+    list.AddText(ui::font(ui::Type::kStrong), ui::font(ui::Type::kStrong)->FontSize, {at.x + ui::px(8), y},
+                 ui::color(p.text), level.stem().c_str());
     list.AddText(ui::font(ui::Type::kSmall), ui::font(ui::Type::kSmall)->FontSize, {at.x + ui::px(8), y + ui::px(20)},
                  ui::color(p.dim), shown.about.c_str(), nullptr, w - ui::px(16));
     list.PopClipRect();

@@ -1,12 +1,11 @@
 // The scene tree: every node, what it is, and how they hang together.
-#include "editor/panels/panels.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 
 #include "content/keys/extension_table.h"
+#include "editor/panels/panels.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
@@ -27,6 +26,7 @@ class TreePanel : public Panel {
 
   void draw(Editor& editor) override {
     ui::gap(2);
+    ImGui::AlignTextToFramePadding();
     ImGui::PushFont(ui::font(ui::Type::kStrong));
     ImGui::TextUnformatted("Scene");
     ImGui::PopFont();
@@ -94,8 +94,7 @@ class TreePanel : public Panel {
       const bool done = ui::text_field("Name", new_name_, "", 0,
                                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
       if (done || ImGui::IsItemDeactivated()) {
-        if (done && new_name_ != node.node.name)
-          editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
+        if (done && new_name_ != node.node.name) editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
         renaming_ = kNoNode;
       }
       ImGui::PopID();

@@ -143,9 +143,10 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
       dvec2 way(b->x - a->x, b->y - a->y);
       if (length(way) < 1.0) continue;
       way = 4000.0 * glm::normalize(way);
-      list.AddLine({in.corner.x + static_cast<float>(middle->x - way.x), in.corner.y + static_cast<float>(middle->y - way.y)},
-                   {in.corner.x + static_cast<float>(middle->x + way.x), in.corner.y + static_cast<float>(middle->y + way.y)},
-                   ui::color(p.axis[i], 0.45f), ui::px(1));
+      list.AddLine(
+          {in.corner.x + static_cast<float>(middle->x - way.x), in.corner.y + static_cast<float>(middle->y - way.y)},
+          {in.corner.x + static_cast<float>(middle->x + way.x), in.corner.y + static_cast<float>(middle->y + way.y)},
+          ui::color(p.axis[i], 0.45f), ui::px(1));
     }
   }
   draw(picture, shown, in.corner, list, busy ? part_ : hovered_);
@@ -153,10 +154,11 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
   const float reach = ui::px(gizmo::kReach);
   if (!busy)
     for (int i = 0; i < 3; ++i) {
-      const auto end = picture.pixel(shown.pivot + 0.75 * static_cast<double>(gizmo::kLength) * *gizmo::unit(picture, shown) * shown.axes[i]);
+      const auto end = picture.pixel(shown.pivot + 0.75 * static_cast<double>(gizmo::kLength) *
+                                                       *gizmo::unit(picture, shown) * shown.axes[i]);
       if (!end) continue;
       const ImVec2 at(in.corner.x + static_cast<float>(end->x), in.corner.y + static_cast<float>(end->y));
-      ui::known_at(scope + "xyz"[i], {at.x - reach, at.y - reach}, {at.x + reach, at.y + reach});
+      ui::known_at(scope + "xyz" [i], { at.x - reach, at.y - reach }, {at.x + reach, at.y + reach});
     }
   const ImVec2 at(in.corner.x + static_cast<float>(middle->x), in.corner.y + static_cast<float>(middle->y));
   ui::known_at(scope + "middle", {at.x - reach, at.y - reach}, {at.x + reach, at.y + reach});
@@ -174,8 +176,10 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const float pad = ui::px(ui::kSpace);
   ImVec2 low(at.x + ui::px(24), at.y + ui::px(24));
-  low.x = std::clamp(low.x, in.corner.x + pad, std::max(in.corner.x + pad, in.corner.x + static_cast<float>(in.width) - size.x - 3 * pad));
-  low.y = std::clamp(low.y, in.corner.y + pad, std::max(in.corner.y + pad, in.corner.y + static_cast<float>(in.height) - size.y - 3 * pad));
+  low.x = std::clamp(low.x, in.corner.x + pad,
+                     std::max(in.corner.x + pad, in.corner.x + static_cast<float>(in.width) - size.x - 3 * pad));
+  low.y = std::clamp(low.y, in.corner.y + pad,
+                     std::max(in.corner.y + pad, in.corner.y + static_cast<float>(in.height) - size.y - 3 * pad));
   list.AddRectFilled(low, {low.x + size.x + 2 * pad, low.y + size.y + pad}, ui::color(p.raised, 0.94f), ui::px(4));
   list.AddText({low.x + pad, low.y + 0.5f * pad}, ui::color(understood_ ? p.text : p.bad), text.c_str());
   ImGui::PopFont();

@@ -39,9 +39,9 @@ class GizmoTool : public ViewTool {
   virtual void more_options(Editor&) {}
 
   Settings& settings_;
-  Grip grip_;                         // while something is held: as it was before
+  Grip grip_;                          // while something is held: as it was before
   GizmoPart part_ = GizmoPart::kNone;  // that is held
-  dvec2 from_{0}, last_{0};           // [pixel] where the drag began, and the mouse in the frame before
+  dvec2 from_{0}, last_{0};            // [pixel] where the drag began, and the mouse in the frame before
 
  private:
   void begin(Editor& editor, GizmoPart part, const ViewportInput& in);

@@ -64,8 +64,7 @@ ImU32 color_of(GizmoPart part, bool bright, float alpha) {
 
 float clarity(const GizmoPicture& picture, const Grip& grip, GizmoPart part) {
   if (part == GizmoPart::kFree) return 1.0f;
-  const dvec3 sight =
-      picture.orthographic > 0.0 ? picture.forward() : glm::normalize(grip.pivot - picture.view.eye);
+  const dvec3 sight = picture.orthographic > 0.0 ? picture.forward() : glm::normalize(grip.pivot - picture.view.eye);
   const int i = axis_of(part);
   double seen = 0;
   if (is_axis(part))
@@ -108,7 +107,8 @@ void letter(ImDrawList& list, ImVec2 where, int axis, ImU32 color) {
   const char text[2] = {"xyz"[axis], 0};
   ImFont* const of = ui::font(ui::Type::kStrong);
   const ImVec2 size = of->CalcTextSizeA(of->FontSize, 1e6f, 0, text);
-  list.AddText(of, of->FontSize, {where.x - 0.5f * size.x, where.y - 0.5f * size.y}, color, text);
+  list.AddCircleFilled(where, 0.62f * of->FontSize, ui::color(ui::palette().window, 0.72f), 20);
+  list.AddText(of, of->FontSize, {where.x - 0.5f * size.x, where.y - 0.54f * size.y}, color, text);
 }
 
 void draw_arrows(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,
@@ -144,7 +144,8 @@ void draw_arrows(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, I
     const float wide = std::max(std::hypot(way.x, way.y), 1e-3f);
     way = {way.x / wide, way.y / wide};
     const ImVec2 side(-way.y, way.x);
-    list.AddLine({from.x + ui::px(kCenter) * way.x, from.y + ui::px(kCenter) * way.y}, to, color, ui::px(on ? 3.5f : 2.2f));
+    list.AddLine({from.x + ui::px(kCenter) * way.x, from.y + ui::px(kCenter) * way.y}, to, color,
+                 ui::px(on ? 3.5f : 2.2f));
     const float long_ = ui::px(kArrow), half = ui::px(on ? 6.5f : 5.5f);
     if (boxes) {
       const float b = ui::px(on ? kBox + 1 : kBox);

@@ -152,8 +152,7 @@ double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 fro
 
 std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to) {
   dvec3 factors(1);
-  if (part == GizmoPart::kFree)
-    return dvec3(std::exp(((to.x - from.x) - (to.y - from.y)) / kFreeScale));
+  if (part == GizmoPart::kFree) return dvec3(std::exp(((to.x - from.x) - (to.y - from.y)) / kFreeScale));
   const ViewRay first = picture.ray(from.x, from.y), now = picture.ray(to.x, to.y);
   const auto ratio = [](double a, double b) { return std::abs(a) > 1e-30 ? std::max(b / a, kLeastFactor) : 1.0; };
   const int i = axis_of(part);
@@ -247,23 +246,24 @@ TypedValue typed_value(const std::string& text, bool length) {
   const char* const begin = number.data() + (number[0] == '+' ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, number.data() + number.size(), value);
   const std::string unit = number.substr(static_cast<std::size_t>(end - number.data()));
-  constexpr std::pair<const char*, double> kUnits[] = {{"", 1},     {"m", 1},     {"cm", 1e-2},
+  constexpr std::pair<const char*, double> kUnits[] = {{"", 1},      {"m", 1},     {"cm", 1e-2},
                                                        {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
   const auto known = std::find_if(std::begin(kUnits), std::end(kUnits), [&](const auto& u) { return unit == u.first; });
-  out.understood = error == std::errc() && std::isfinite(value) && known != std::end(kUnits) && (length || unit.empty());
+  out.understood =
+      error == std::errc() && std::isfinite(value) && known != std::end(kUnits) && (length || unit.empty());
   if (out.understood) out.value = value * known->second;
   return out;
 }
 
 std::string length_text(double metres, int digits) {
   const double size = std::abs(metres);
-  const auto [unit, name] = size == 0.0    ? std::pair{1.0, "m"}
-                            : size < 1e-6  ? std::pair{1e-9, "nm"}
-                            : size < 1e-3  ? std::pair{1e-6, "\u00b5m"}
-                            : size < 0.01  ? std::pair{1e-3, "mm"}
-                            : size < 1.0   ? std::pair{1e-2, "cm"}
-                            : size < 1e3   ? std::pair{1.0, "m"}
-                                           : std::pair{1e3, "km"};
+  const auto [unit, name] = size == 0.0   ? std::pair{1.0, "m"}
+                            : size < 1e-6 ? std::pair{1e-9, "nm"}
+                            : size < 1e-3 ? std::pair{1e-6, "\u00b5m"}
+                            : size < 0.01 ? std::pair{1e-3, "mm"}
+                            : size < 1.0  ? std::pair{1e-2, "cm"}
+                            : size < 1e3  ? std::pair{1.0, "m"}
+                                          : std::pair{1e3, "km"};
   return fmt::format("{:.{}g} {}", metres / unit, digits, name);
 }
 

@@ -15,8 +15,8 @@ namespace pliant {
 // The picture that a gizmo stands in.
 struct GizmoPicture {
   Viewpoint view;
-  double orthographic = 0.0;   // [m] height; 0: perspective
-  int width = 1, height = 1;   // [pixel]
+  double orthographic = 0.0;  // [m] height; 0: perspective
+  int width = 1, height = 1;  // [pixel]
   ViewRay ray(double x, double y) const { return view_ray(view, orthographic, x, y, width, height); }
   std::optional<dvec3> pixel(dvec3 place) const { return on_picture(view, orthographic, width, height, place); }
   dvec3 forward() const { return glm::normalize(view.target - view.eye); }
@@ -70,9 +70,9 @@ double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 fro
 std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to);
 
 // Where the nodes stand then.
-std::vector<Placing> moved(const Grip& grip, dvec3 by);                        // `by` [m] world
-std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle);       // `axis` world
-std::vector<Placing> scaled(const Grip& grip, dvec3 factors);                  // along the grip's axes
+std::vector<Placing> moved(const Grip& grip, dvec3 by);                   // `by` [m] world
+std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle);  // `axis` world
+std::vector<Placing> scaled(const Grip& grip, dvec3 factors);             // along the grip's axes
 
 double snapped(double value, double step);  // to a multiple; step 0: as it is
 

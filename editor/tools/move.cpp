@@ -19,7 +19,8 @@ class MoveTool : public GizmoTool {
   const char* name() const override { return "Move"; }
   const char* sign() const override { return "M"; }
   const char* hint() const override {
-    return "Drag an arrow, a square or the middle; Shift follows the surface under the mouse, Ctrl turns snapping round. "
+    return "Drag an arrow, a square or the middle; Shift follows the surface under the mouse, Ctrl turns snapping "
+           "round. "
            "Or type: x 5mm Enter.";
   }
 

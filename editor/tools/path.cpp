@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "editor/app/path_editing.h"
 #include "editor/tools/tools.h"
@@ -30,6 +31,12 @@ class PathTool : public ViewTool {
   bool use(Editor& editor, const ViewportInput& in) override {
     const NodeId node = path_node(editor);
     const ScriptKeys keys = keys_of_node(editor, node);
+    const bool ready = prepared(editor);
+    if (waiting_ && ready) {
+      const ViewportInput click = *std::exchange(waiting_, std::nullopt);
+      if (const auto place = place_under(editor, click)) add_key(editor, node, keys, *place);
+      return true;
+    }
     near_ = in.over || dragging_ ? key_near(keys, in) : std::nullopt;
     if (in.over && near_ && ImGui::GetIO().MouseWheel != 0) {
       ScriptKeys next = keys;
@@ -61,6 +68,11 @@ class PathTool : public ViewTool {
       const bool had = grabbed_.has_value();
       dragging_ = false;
       grabbed_.reset();
+      if (clicked && !had && !ready) {
+        waiting_ = in;
+        editor.say("The surfaces are being prepared; the key is set when they are.");
+        return true;
+      }
       if (clicked && !had)
         if (const auto place = place_under(editor, in)) {
           add_key(editor, node, keys, *place);
@@ -69,6 +81,12 @@ class PathTool : public ViewTool {
       return had;
     }
     return false;
+  }
+
+  void leave(Editor&) override {
+    waiting_.reset();
+    grabbed_.reset();
+    dragging_ = false;
   }
 
   void overlay(Editor& editor, const ViewportInput& in, ImDrawList& list) override {
@@ -125,6 +143,16 @@ class PathTool : public ViewTool {
     return found;
   }
 
+  // Begins to prepare what is not: every surface that a click may meet.
+  static bool prepared(Editor& editor) {
+    bool ready = true;
+    for (const auto& each : editor.state().nodes) {
+      if (each->node.mesh < 0 || !each->node.in_scene || each->node.handle || editor.surface_of(each->id)) continue;
+      ready = ready && !editor.jobs.running("surface " + std::to_string(each->id));
+    }
+    return ready;
+  }
+
   static std::optional<std::size_t> key_near(const ScriptKeys& keys, const ViewportInput& in) {
     std::optional<std::size_t> found;
     double nearest = static_cast<double>(ui::px(static_cast<float>(kReach)));
@@ -158,6 +186,7 @@ class PathTool : public ViewTool {
   std::optional<std::size_t> near_, grabbed_;
   bool dragging_ = false;
   double pressed_x_ = 0, pressed_y_ = 0;  // [pixel]
+  std::optional<ViewportInput> waiting_;  // a click that came before the surfaces were prepared
 };
 
 }  // namespace

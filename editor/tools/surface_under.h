@@ -12,7 +12,7 @@ struct SurfaceUnder {
   std::optional<dvec3> point;  // [m] world
   dvec3 normal{0, 1, 0};       // [1] world
   NodeId node = kNoNode;
-  bool waits = false;          // a surface that the ray may meet is being prepared
+  bool waits = false;  // a surface that the ray may meet is being prepared
 };
 // What is shown, less `without` and what is below them.
 SurfaceUnder surface_under(Editor& editor, const ViewRay& ray, std::span<const NodeId> without);

@@ -32,7 +32,8 @@ class TurnTool : public GizmoTool {
   std::optional<dvec3> dragged(Editor&, const ViewportInput& in, bool snap) override {
     const GizmoPicture picture = picture_of(in);
     if (axis_ == dvec3(0)) axis_ = axis(picture, grip_, part_);
-    const double radius = static_cast<double>(ui::px(gizmo::kRing)) * (part_ == GizmoPart::kFree ? double(kOuter) : 1.0);
+    const double radius =
+        static_cast<double>(ui::px(gizmo::kRing)) * (part_ == GizmoPart::kFree ? double(kOuter) : 1.0);
     turned_ += turned_by(picture, grip_.pivot, axis_, last_, {in.x, in.y}, radius);
     return dvec3(snap ? glm::radians(snapped(glm::degrees(turned_), settings_.snap_turn)) : turned_, 0, 0);
   }
@@ -79,9 +80,9 @@ class TurnTool : public GizmoTool {
     for (int i = 0; i < 3; ++i) {
       // Each letter where its ring comes nearest to the eye between the other two axes.
       const dvec3 u = grip.axes[(i + 1) % 3], v = grip.axes[(i + 2) % 3], back = -picture.forward();
-      const dvec3 place = grip.pivot + static_cast<double>(gizmo::kRing) * *size *
-                                           glm::normalize((dot(u, back) < 0 ? -1.0 : 1.0) * u +
-                                                          (dot(v, back) < 0 ? -1.0 : 1.0) * v);
+      const dvec3 place =
+          grip.pivot + static_cast<double>(gizmo::kRing) * *size *
+                           glm::normalize((dot(u, back) < 0 ? -1.0 : 1.0) * u + (dot(v, back) < 0 ? -1.0 : 1.0) * v);
       const auto at = picture.pixel(place), middle = picture.pixel(grip.pivot);
       if (!at || !middle) continue;
       dvec2 way = dvec2(*at) - dvec2(*middle);
@@ -124,7 +125,7 @@ class TurnTool : public GizmoTool {
     }
   }
 
-  double turned_ = 0.0;       // [rad] so far, without snapping
+  double turned_ = 0.0;  // [rad] so far, without snapping
   dvec3 axis_{0};        // [1] world, of the turn under way; 0: not known yet
 };
 

@@ -20,7 +20,7 @@ class Host {
   void set_theme(Theme theme, float scale);
   // Feeds what happened and begins a frame. `dt` [s] since the last one.
   void begin(std::span<const InputEvent> events, double dt);
-  void end();  // draws into framebuffer 0
+  void end();                              // draws into framebuffer 0
   ImVec2 mouse() const { return mouse_; }  // [pixel]
 
  private:

@@ -345,10 +345,11 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
   const std::string& verb = steps_.front().verb;
   const bool in_parts = verb == "move" || verb == "release";  // of a press: the hand does not wait
   if (++rest_ < kRestFrames) return Done{};
-  if (!now.settled && !in_parts && verb != "wait" && verb != "await") {
+  if (!now.under_way.empty() && !in_parts && verb != "wait" && verb != "await") {
     if (until_ == 0.0) until_ = now.now + kPatience;
     if (now.now < until_) return Done{};
-    return Error{fmt::format("{}:{}", file_, steps_.front().line), "the editor did not come to rest within 60 s"};
+    return Error{fmt::format("{}:{}", file_, steps_.front().line),
+                 "the editor did not come to rest within 60 s: " + now.under_way + " is under way"};
   }
   until_ = 0.0;
   bool waits = false;

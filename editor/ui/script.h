@@ -37,7 +37,7 @@ class Script {
   static Result<Script> load(const std::filesystem::path& file);
 
   struct Surroundings {
-    bool settled = true;                                 // nothing is under way
+    std::string under_way;                               // "": the editor is at rest
     double now = 0.0;                                    // [s]
     std::function<void(const std::string&)> screenshot;  // of the next frame
     std::function<bool(const std::string&)> has_said;

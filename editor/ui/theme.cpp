@@ -140,11 +140,13 @@ const char* set_theme(Theme theme, float scale) {
   set(ImGuiCol_PopupBg, p.raised);
   set(ImGuiCol_MenuBarBg, p.panel);
   set(ImGuiCol_Border, p.line);
-  set(ImGuiCol_FrameBg, p.field);
-  set(ImGuiCol_FrameBgHovered, p.field_hot);
-  set(ImGuiCol_FrameBgActive, p.field_hot);
-  set(ImGuiCol_Button, p.field);
-  set(ImGuiCol_ButtonHovered, p.field_hot);
+  // Lighter or darker than what they lie on, be it a panel, a popup or a strip.
+  const float shade = theme == Theme::kDark ? 0.075f : 0.07f;
+  set(ImGuiCol_FrameBg, faded(p.text, shade));
+  set(ImGuiCol_FrameBgHovered, faded(p.text, 1.7f * shade));
+  set(ImGuiCol_FrameBgActive, faded(p.text, 1.7f * shade));
+  set(ImGuiCol_Button, faded(p.text, shade));
+  set(ImGuiCol_ButtonHovered, faded(p.text, 1.8f * shade));
   set(ImGuiCol_ButtonActive, p.accent);
   set(ImGuiCol_Header, faded(p.accent, 0.32f));
   set(ImGuiCol_HeaderHovered, faded(p.text, 0.08f));

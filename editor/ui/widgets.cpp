@@ -151,7 +151,12 @@ bool icon_button(const char* label, Icon icon, bool down, const char* hint_text,
 }
 
 bool checkbox(const char* label, bool& value, const char* hint_text) {
+  // An empty box is seen as one.
+  ImVec4 back = palette().text;
+  back.w = 0.16f;
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, back);
   const bool changed = ImGui::Checkbox(label, &value);
+  ImGui::PopStyleColor();
   known_as(label);
   hint(hint_text);
   return changed;
@@ -176,7 +181,7 @@ bool number(const char* label, double& value, double least, double most, const c
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp |
                                  (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
                                  ImGuiSliderFlags_NoRoundToFormat;
-  double next = value;
+  double next = value + 0.0;  // -0 reads as 0
   const bool changed = ImGui::DragScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &next, speed, &least,
                                          &most, format.c_str(), flags & ~ImGuiSliderFlags_Logarithmic);
   known_as(label);
@@ -188,7 +193,7 @@ bool number(const char* label, double& value, double least, double most, const c
 bool slider(const char* label, double& value, double least, double most, const char* hint_text, float width) {
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
   const bool changed = ImGui::SliderScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &value, &least,
-                                           &most, "%.3g", ImGuiSliderFlags_AlwaysClamp);
+                                           &most, "", ImGuiSliderFlags_AlwaysClamp);
   known_as(label);
   hint(hint_text);
   return changed;

@@ -22,8 +22,7 @@ class CreaseLines {
     std::shared_ptr<const DocumentMesh> mesh;  // kept, so that its address stays its own
     Ends ends;                                 // null: under way
   };
-  std::shared_ptr<std::map<const DocumentMesh*, One>> all_ =
-      std::make_shared<std::map<const DocumentMesh*, One>>();
+  std::shared_ptr<std::map<const DocumentMesh*, One>> all_ = std::make_shared<std::map<const DocumentMesh*, One>>();
 };
 
 // Of a mesh; empty where it has none or cannot be read.

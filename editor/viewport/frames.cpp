@@ -44,8 +44,8 @@ std::vector<bool> at_or_below(const State& state, std::span<const NodeId> ids) {
 }
 
 std::vector<bool> shown_nodes(const State& state, std::span<const NodeId> isolated) {
-  std::vector<bool> shown = isolated.empty() ? std::vector<bool>(state.nodes.size(), true)
-                                             : at_or_below(state, isolated);
+  std::vector<bool> shown =
+      isolated.empty() ? std::vector<bool>(state.nodes.size(), true) : at_or_below(state, isolated);
   for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = shown[i] && state.nodes[i]->node.in_scene;
   return shown;
 }
@@ -72,8 +72,7 @@ Box bounds_of(const State& state, std::size_t node, const dmat4& frame) {
   const Box& of = state.meshes[static_cast<std::size_t>(mesh)]->box;
   if (of.empty()) return box;
   for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 p(corner & 1 ? of.max.x : of.min.x, corner & 2 ? of.max.y : of.min.y,
-                  corner & 4 ? of.max.z : of.min.z);
+    const dvec3 p(corner & 1 ? of.max.x : of.min.x, corner & 2 ? of.max.y : of.min.y, corner & 4 ? of.max.z : of.min.z);
     box.add(vec3(dvec3(frame * glm::dvec4(p, 1.0))));
   }
   return box;

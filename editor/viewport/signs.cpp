@@ -140,10 +140,9 @@ void draw_device(Pen& pen, dvec3 at, const dmat3& turn, double small) {
 void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const std::vector<bool>& shown,
                const std::vector<bool>& selected, const SignColors& colors, std::vector<ViewLine>& lines,
                std::vector<std::pair<NodeId, dvec3>>& places) {
-  const double seen = order.orthographic > 0.0
-                          ? order.orthographic
-                          : 2.0 * length(order.view.target - order.view.eye) *
-                                std::tan(0.5 * static_cast<double>(order.view.yfov));
+  const double seen = order.orthographic > 0.0 ? order.orthographic
+                                               : 2.0 * length(order.view.target - order.view.eye) *
+                                                     std::tan(0.5 * static_cast<double>(order.view.yfov));
   const double small = 0.018 * seen;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!shown[i]) continue;
@@ -153,7 +152,11 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
     if (order.settings.nodes) {
       Pen pen(lines, selected[i] ? colors.selected : colors.plain);
       const std::size_t before = lines.size();
-      if (node.probe) draw_probe(pen, *node.probe, at, turn, small);
+      if (node.probe) {
+        const vec3 own = glm::pow(glm::clamp(node.probe->color, vec3(0), vec3(1)), vec3(1.0f / 2.2f));
+        Pen of_probe(lines, selected[i] ? colors.selected : vec4(glm::max(own, vec3(0.3f)), 1.0f));
+        draw_probe(of_probe, *node.probe, at, turn, small);
+      }
       if (node.light) draw_light(pen, *node.light, at, turn, small);
       if (node.camera) draw_camera(pen, *node.camera, at, turn, small);
       if (node.device && !node.probe) draw_device(pen, at, turn, small);
@@ -164,7 +167,8 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
     if (order.settings.regions) {
       dmat4 rigid(turn);
       rigid[3] = glm::dvec4(at, 1.0);
-      if (node.soft_body && !node.soft_body->pinned.empty()) Pen(lines, colors.pinned).box(rigid, node.soft_body->pinned);
+      if (node.soft_body && !node.soft_body->pinned.empty())
+        Pen(lines, colors.pinned).box(rigid, node.soft_body->pinned);
       if (node.handle && !node.handle->box.empty()) Pen(lines, colors.handle).box(rigid, node.handle->box);
     }
   }

@@ -43,9 +43,9 @@ vec3 encoded(vec3 linear) {
 }  // namespace
 
 double grid_step(const Viewpoint& view, double orthographic) {
-  const double seen = orthographic > 0.0 ? orthographic
-                                         : 2.0 * length(view.target - view.eye) *
-                                               std::tan(0.5 * static_cast<double>(view.yfov));
+  const double seen = orthographic > 0.0
+                          ? orthographic
+                          : 2.0 * length(view.target - view.eye) * std::tan(0.5 * static_cast<double>(view.yfov));
   return std::pow(10.0, std::floor(std::log10(std::max(seen, 1e-12) / 4.0)));
 }
 
@@ -114,6 +114,35 @@ SolidView::MeshOnGpu& SolidView::on_gpu(const std::shared_ptr<const DocumentMesh
     out.primitives.push_back(std::move(p));
   }
   return out;
+}
+
+void SolidView::add_edges(PrimitiveOnGpu& to, const Primitive& primitive) {
+  if (to.edge_count != 0 || primitive.index.empty()) return;
+  std::vector<std::uint64_t> edges;
+  edges.reserve(primitive.index.size());
+  for (std::size_t t = 0; t + 2 < primitive.index.size(); t += 3)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = primitive.index[t + i], b = primitive.index[t + (i + 1) % 3];
+      edges.push_back(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b));
+    }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<std::uint32_t> ends;
+  ends.reserve(2 * edges.size());
+  double sum = 0;
+  for (const std::uint64_t edge : edges) {
+    ends.push_back(static_cast<std::uint32_t>(edge >> 32));
+    ends.push_back(static_cast<std::uint32_t>(edge));
+    sum += static_cast<double>(length(primitive.position[ends.back()] - primitive.position[ends[ends.size() - 2]]));
+  }
+  to.mean_edge = sum / static_cast<double>(edges.size());
+  to.edge_count = static_cast<GLsizei>(ends.size());
+  to.edges = gpu::Buffer::fixed<std::uint32_t>(ends);
+  to.edge_layout = gpu::VertexArray::make();
+  to.edge_layout.source(0, to.vertices, sizeof(SolidVertex));
+  to.edge_layout.floats(0, 0, 3, 0);
+  to.edge_layout.floats(1, 0, 3, sizeof(vec3));
+  to.edge_layout.indices(to.edges);
 }
 
 void SolidView::add_normals(MeshOnGpu& mesh) {
@@ -229,7 +258,8 @@ void SolidView::add_grid(const SolidOrder& order, std::vector<LineEnd>& ends) {
         tint.a *= 0.45f;
       for (int k = 0; k < pieces; ++k)
         for (const int end : {k, k + 1}) {
-          const double on = middle + far * (2.0 * end / pieces - 1.0), x = along_x ? on : place, z = along_x ? place : on;
+          const double on = middle + far * (2.0 * end / pieces - 1.0), x = along_x ? on : place,
+                       z = along_x ? place : on;
           ends.push_back({vec3(dvec3(x, 0, z)), faded(tint, x, z)});
         }
     }
@@ -297,6 +327,8 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
   first_selected_ = 0xffffffffu;
   const dmat4 eye = glm::lookAt(order.view.eye, order.view.target, order.view.up);
   const mat3 eye_frame{dmat3(eye)};
+  const double away = length(order.view.target - order.view.eye);
+  const dvec3 forward = (order.view.target - order.view.eye) / away;
   vec4 clip(0);
   if (const ClipPlane& plane = order.settings.clip; plane.on && !box.empty()) {
     const float at = glm::mix(box.min[plane.axis], box.max[plane.axis], static_cast<float>(plane.place));
@@ -337,6 +369,9 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
     glUniformMatrix4fv(1, 1, GL_FALSE, &world[0][0]);
     glUniformMatrix3fv(2, 1, GL_FALSE, &normal_frame[0][0]);
     glUniform1ui(8, here);
+    const Box& own_box = mesh.of->box;
+    const dvec3 middle =
+        own_box.empty() ? dvec3(frames[i][3]) : dvec3(frames[i] * glm::dvec4(dvec3(own_box.center()), 1.0));
     glFrontFace(glm::determinant(dmat3(frames[i])) < 0.0 ? GL_CW : GL_CCW);
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const PrimitiveOnGpu& primitive = mesh.primitives[p];
@@ -355,12 +390,21 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
       triangles_ += static_cast<std::size_t>(primitive.index_count) / 3;
       if (order.settings.wireframe) {
         glDisable(GL_POLYGON_OFFSET_FILL);
-        glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+        add_edges(mesh.primitives[p], mesh.of->primitives[p]);
+        // Edges as dense as pixels would hide the surface.
+        const double depth = std::max(dot(middle - order.view.eye, forward), 1e-3 * away),
+                     pixel = order.orthographic > 0.0
+                                 ? order.orthographic / height
+                                 : 2.0 * depth * std::tan(0.5 * static_cast<double>(order.view.yfov)) / height;
+        const double apart = primitive.mean_edge * std::cbrt(std::abs(glm::determinant(linear))) / pixel;
         glUniform1f(9, 1.0f);
-        glUniform4f(10, 0.05f, 0.07f, 0.1f, 1.0f);
-        glDrawElements(GL_TRIANGLES, primitive.index_count, GL_UNSIGNED_INT, nullptr);
+        glUniform4f(10, 0.04f, 0.06f, 0.09f, static_cast<float>(std::clamp(apart / 10.0, 0.06, 0.8)));
+        glEnablei(GL_BLEND, 0);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        glBindVertexArray(primitive.edge_layout.id());
+        glDrawElements(GL_LINES, primitive.edge_count, GL_UNSIGNED_INT, nullptr);
+        glDisablei(GL_BLEND, 0);
         glUniform1f(9, 0.0f);
-        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
       }
     }
     if (order.settings.normals) {

@@ -55,12 +55,13 @@ class SolidView {
 
  private:
   struct PrimitiveOnGpu {
-    gpu::Buffer vertices, indices;
-    gpu::VertexArray layout;
-    GLsizei index_count = 0;
-    PaintLayer shown;  // what `values` holds
-    PaintLayer regions[2];                // pinned, handle: that `region_points` show
-    std::vector<vec3> region_points[2];   // [m] mesh frame
+    gpu::Buffer vertices, indices, edges;
+    gpu::VertexArray layout, edge_layout;
+    GLsizei index_count = 0, edge_count = 0;  // of edges: ends; 0: not made yet
+    double mean_edge = 0.0;                   // [m] mesh frame
+    PaintLayer shown;                         // what `values` holds
+    PaintLayer regions[2];                    // pinned, handle: that `region_points` show
+    std::vector<vec3> region_points[2];       // [m] mesh frame
     gpu::Buffer values;
     bool has_values = false;
   };
@@ -80,6 +81,7 @@ class SolidView {
   void draw_scene(const SolidOrder& order, int width, int height);
   void draw_ends(const std::vector<LineEnd>& ends, const mat4& clip_from_world, bool over, bool points = false);
   static void add_grid(const SolidOrder& order, std::vector<LineEnd>& ends);
+  static void add_edges(PrimitiveOnGpu& to, const Primitive& primitive);
   static void add_normals(MeshOnGpu& mesh);
   static void add_regions(MeshOnGpu& mesh, std::size_t number, const SolidOrder& order, const mat4& world,
                           std::vector<LineEnd>& points);

@@ -11,7 +11,8 @@ namespace pliant {
 namespace {
 
 constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
-constexpr auto kRefineAfter = std::chrono::milliseconds(160);             // of rest, a coarse picture is drawn in full
+constexpr double kTooLong = 1000.0;                            // [ms] what is drawn in full must not bar the hand
+constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // of rest, a coarse picture is drawn in full
 constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
 
 }  // namespace
@@ -103,7 +104,7 @@ void Stage::run() {
       else
         changed_.wait(lock, ready);
       if (stop_) break;
-      if (!next_ && tasks_.empty() && !refine && !(scenery_ && scenery_->wants_picture())) continue;
+      if (!refine && !next_ && tasks_.empty() && !(scenery_ && scenery_->wants_picture())) continue;
       tasks.swap(tasks_);
       if (next_) last_ = *next_;
       order = last_;
@@ -221,7 +222,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     done_ = std::move(done);
     finished_ = at;
     answered_ = number;
-    coarse_ = share < 1.0;
+    coarse_ = share < 1.0 && took < kTooLong;
     drawn_at_ = std::chrono::steady_clock::now();
     if (last_.question && last_.question_number == done_.question) last_.question.reset();
   }

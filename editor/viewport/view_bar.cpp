@@ -15,9 +15,9 @@
 namespace pliant {
 namespace {
 
-constexpr float kCross = 34, kEnd = 9.5f;      // [point] half its size; of an end
+constexpr float kCross = 34, kEnd = 9.5f;  // [point] half its size; of an end
 constexpr std::size_t kMostNames = 300;
-constexpr const char* kPaintTool = "Paint";    // it has a legend of its own
+constexpr const char* kPaintTool = "Paint";  // it has a legend of its own
 
 bool begin_over(const char* name, ImVec2 at, ImVec2 pivot, bool plain = false) {
   ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
@@ -27,10 +27,10 @@ bool begin_over(const char* name, ImVec2 at, ImVec2 pivot, bool plain = false) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui::px(6));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, plain ? ImVec2(0, 0) : ImVec2(ui::px(6), ui::px(5)));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
-  const bool open = ImGui::Begin(name, nullptr,
-                                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  const bool open =
+      ImGui::Begin(name, nullptr,
+                   ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar(3);
   ImGui::PopStyleColor();
   return open;
@@ -187,10 +187,12 @@ void ViewBar::draw_overlays(Editor& editor) {
   ui::checkbox("Wireframe", view.wireframe, "The edges of all triangles (W)");
   pair();
   ui::checkbox("Normals", view.normals, "A short line along the normal of every vertex, or of every few (N)");
-  ui::checkbox("Creases", view.creases, "Edges over which the surface turns sharply: paint may stop there, and touch feels them");
+  ui::checkbox("Creases", view.creases,
+               "Edges over which the surface turns sharply: paint may stop there, and touch feels them");
   pair();
   ui::checkbox("Zones", view.zones, "Rendered only: the patches of vertices that are computed together");
-  ui::checkbox("Tetrahedra", view.tetrahedra, "The inside of a soft body, by quality, where one has been built or previewed");
+  ui::checkbox("Tetrahedra", view.tetrahedra,
+               "The inside of a soft body, by quality, where one has been built or previewed");
   ui::gap();
   ui::label("Painted values", "What is painted on the meshes, as colour. Solid view only.");
   pair();
@@ -221,7 +223,8 @@ void ViewBar::draw_overlays(Editor& editor) {
   ui::checkbox("Names", view.names, "The names of the nodes, beside them");
   ui::checkbox("Signs", view.nodes, "Probes, lights, cameras and haptic devices as lines; press one to select it");
   pair();
-  ui::checkbox("Pins, handles", view.regions, "What holds a body fast (blue) or is its handle (yellow): boxes and painted dots");
+  ui::checkbox("Pins, handles", view.regions,
+               "What holds a body fast (blue) or is its handle (yellow): boxes and painted dots");
   ui::gap();
   ui::label("While playing");
   ui::checkbox("Contacts", view.contacts, "Where probes and bodies touch");
@@ -232,9 +235,9 @@ void ViewBar::draw_overlays(Editor& editor) {
   ui::gap();
   const bool isolates = !view.isolated.empty();
   if (ui::button(isolates ? "Show all" : "Isolate selected",
-                 isolates ? "Shows every node again (I)"
-                          : editor.selected.empty() ? "Select what is to be seen alone first."
-                                                    : "Only what is selected is shown (I)",
+                 isolates                  ? "Shows every node again (I)"
+                 : editor.selected.empty() ? "Select what is to be seen alone first."
+                                           : "Only what is selected is shown (I)",
                  isolates || !editor.selected.empty()))
     view.isolated = isolates ? std::vector<NodeId>{} : editor.selected;
 }
@@ -253,7 +256,8 @@ void ViewBar::draw_clip(Editor& editor) {
   }
   ImGui::SameLine(0, ui::px(ui::kSpace));
   if (ui::choice_button("Flip", clip.flipped, "Cuts away the other side")) clip.flipped = !clip.flipped;
-  if (ui::slider("Clip place", clip.place, 0.0, 1.0, "Where it cuts, from one end of the level to the other")) clip.on = true;
+  if (ui::slider("Clip place", clip.place, 0.0, 1.0, "Where it cuts, from one end of the level to the other"))
+    clip.on = true;
 }
 
 void ViewBar::draw_cross(Editor& editor) {
@@ -279,8 +283,8 @@ void ViewBar::draw_cross(Editor& editor) {
   const float half = ui::px(kCross + kEnd + 2), end = ui::px(kEnd);
   const ImVec2 low = ImGui::GetCursorScreenPos(), middle(low.x + half, low.y + half);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const bool over = ImGui::IsWindowHovered() && std::hypot(ImGui::GetIO().MousePos.x - middle.x,
-                                                           ImGui::GetIO().MousePos.y - middle.y) < half;
+  const bool over = ImGui::IsWindowHovered() &&
+                    std::hypot(ImGui::GetIO().MousePos.x - middle.x, ImGui::GetIO().MousePos.y - middle.y) < half;
   list.AddCircleFilled(middle, half, ui::color(over ? p.raised : p.panel, over ? 0.85f : 0.35f), 48);
   std::vector<const End*> order;
   for (const End& each : ends) order.push_back(&each);

@@ -12,8 +12,8 @@ namespace pliant {
 class ViewCamera {
  public:
   ViewCamera() { home({}); }
-  void home(const Box& scene);   // sees all of it, from the front, slightly above, at once
-  void frame(const Box& box);    // goes there, from where it looks now
+  void home(const Box& scene);  // sees all of it, from the front, slightly above, at once
+  void frame(const Box& box);   // goes there, from where it looks now
   // `dx`, `dy` [pixel] of a picture `height` pixels high.
   void orbit(double dx, double dy, int height) { control_->orbit(dx, dy, height); }
   void pan(double dx, double dy, int height) { control_->pan(dx, dy, height); }

@@ -84,6 +84,19 @@ TEST(Wall, OfADoubleWallTheInsideIsFilledWhetherItIsClosedOrOpen) {
   }
 }
 
+TEST(Wall, OfAFilledOneOnlyTheOuterSheetIsTouched) {
+  Level level = test::level_of(capsule(0.01f)[0], {});
+  level.meshes[0].primitives = capsule(0.01f);
+  level.nodes[0].deformable.reset();
+  level.nodes[0].soft_body = SoftBody{};
+  const Result<SoftParts> parts = make_soft_parts(level.nodes[0], &level.meshes[0], mat4(1.0f), {});
+  ASSERT_TRUE(parts) << parts.error().message();
+  const Mesh& touched = parts->surface.mesh;
+  EXPECT_EQ(touched.triangles.size(), icosphere(4).index.size() / 3);
+  for (const uvec3& t : touched.triangles) ASSERT_NEAR(length(touched.position(t.x)), 1.0f, 1e-4f);
+  EXPECT_EQ(parts->tets.embedding.size(), touched.vertex_count);
+}
+
 TEST(Wall, ThickWallsStayHollowAndSolidsAreNoWalls) {
   for (const double cell : {0.0, 0.12}) {
     EXPECT_NEAR(total_volume(filled(built(capsule(0.5f)), {cell})), kBall * 0.875, 0.04 * kBall);
@@ -126,7 +139,7 @@ TEST(Wall, AnOpenSheetGetsItsThicknessInwardsAndIsRefusedWithoutOne) {
 TEST(Wall, ThinnerThanItsCellItIsRefusedWithWhatToDo) {
   SoftBody body;
   body.fill = Fill::kWall;
-  const Result<Tissue> tissue = make_tissue(built(capsule(0.004f)), body, nullptr);
+  const Result<FilledBody> tissue = make_tissue(built(capsule(0.004f)), body, nullptr);
   ASSERT_FALSE(tissue);
   EXPECT_THAT(tissue.error().message(),
               testing::AllOf(HasSubstr("fill the inside (\"fill\": \"solid\")"), HasSubstr("`thickness` of at least")));
@@ -148,7 +161,7 @@ TEST(Wall, HoweverThinTheUsualCellKeepsToItsBudget) {
   const BuiltMesh surface = built(needles);
   const Result<TetMesh> mesh = fill_surface(surface.mesh, {});
   if (mesh) EXPECT_LE(mesh->tets.size(), kMostUsualTets);
-  const Result<Tissue> tissue = make_tissue(surface, SoftBody{}, nullptr);
+  const Result<FilledBody> tissue = make_tissue(surface, SoftBody{}, nullptr);
   ASSERT_FALSE(tissue);
   EXPECT_THAT(tissue.error().message(), HasSubstr("make `cell` smaller"));
 }
@@ -157,7 +170,7 @@ TEST(Parts, CrumbsAreDroppedUnlessTheyAreHeldAndThatIsSaid) {
   const BuiltMesh surface = built({icosphere(4), moved(icosphere(3), 0.15f, vec3(1.6f, 0, 0))});
   SoftBody body;
   body.cell = 0.1;
-  const Result<Tissue> free = make_tissue(surface, body, nullptr);
+  const Result<FilledBody> free = make_tissue(surface, body, nullptr);
   ASSERT_TRUE(free) << free.error().message();
   EXPECT_EQ(free->tets.report.parts_dropped, 1u);
   EXPECT_NEAR(free->tets.report.volume_dropped, 0.15 * 0.15 * 0.15, 2e-3);
@@ -166,7 +179,7 @@ TEST(Parts, CrumbsAreDroppedUnlessTheyAreHeldAndThatIsSaid) {
   for (const dvec3& node : free->tets.nodes) EXPECT_LT(node.x, 1.1);
   EXPECT_THAT(free->tets.report.findings, Contains(HasSubstr("lost 1 part too small to keep")));
   body.pinned = Box{vec3(1.5f, -1, -1), vec3(2, 1, 1)};
-  const Result<Tissue> held = make_tissue(surface, body, nullptr);
+  const Result<FilledBody> held = make_tissue(surface, body, nullptr);
   ASSERT_TRUE(held) << held.error().message();
   EXPECT_EQ(count_parts(held->tets), 2u);
 }
@@ -187,7 +200,7 @@ TEST(Preview, SaysWhatARunWouldMakeAndEndsWhenAsked) {
   const BuiltMesh surface = built(capsule(0.01f));
   const Result<SoftPreview> preview = preview_soft_body(surface, body);
   ASSERT_TRUE(preview) << preview.error().message();
-  const Result<Tissue> tissue = make_tissue(surface, body, nullptr);
+  const Result<FilledBody> tissue = make_tissue(surface, body, nullptr);
   ASSERT_TRUE(tissue);
   EXPECT_EQ(preview->tetrahedra, tissue->tets.tets.size());
   EXPECT_EQ(preview->nodes.size(), tissue->tets.nodes.size());

@@ -14,7 +14,8 @@ using testing::id_of;
 using testing::OwnFolder;
 
 std::vector<EditorFinding> found_in(const Editor& editor) {
-  return editor_findings(editor.state(), find_in_state(editor.state(), editor.document.file(), editor.document.folder()));
+  return editor_findings(editor.state(),
+                         find_in_state(editor.state(), editor.document.file(), editor.document.folder()));
 }
 
 void take(Editor& editor, const Level& level, const std::filesystem::path& folder) {
@@ -81,8 +82,12 @@ TEST(EditorFindings, ADeviceThatNoNodeHasCanBeCleared) {
   Editor editor;
   take(editor, testing::sheet_and_finger(), folder.path);
   const NodeId finger = id_of(editor.document, "finger");
-  ASSERT_TRUE(editor.apply("Add", with_node(editor.state(), editor.document.new_id(), kNoNode,
-                                            [] { LevelNode n; n.name = "hand"; n.device.emplace(); return n; }())));
+  ASSERT_TRUE(editor.apply("Add", with_node(editor.state(), editor.document.new_id(), kNoNode, [] {
+                             LevelNode n;
+                             n.name = "hand";
+                             n.device.emplace();
+                             return n;
+                           }())));
   ASSERT_TRUE(editor.apply("Set", with_value(editor.state(), std::span(&finger, 1), "probe", "device", "hand")));
   const NodeId hand = id_of(editor.document, "hand");
   ASSERT_TRUE(editor.apply("Delete", without(editor.state(), std::span(&hand, 1))));

@@ -53,7 +53,8 @@ TEST_P(BothProjections, ADragFromOnePlaceOfAnAxisToAnotherMovesByTheWayBetweenTh
   Grip grip;
   grip.pivot = {0.02, -0.03, 0.05};
   for (int i = 0; i < 3; ++i) {
-    const dvec2 from = pixel(picture, grip.pivot + 0.03 * grip.axes[i]), to = pixel(picture, grip.pivot + 0.08 * grip.axes[i]);
+    const dvec2 from = pixel(picture, grip.pivot + 0.03 * grip.axes[i]),
+                to = pixel(picture, grip.pivot + 0.08 * grip.axes[i]);
     const auto by = moved_by(picture, grip, static_cast<GizmoPart>(static_cast<int>(GizmoPart::kX) + i), from, to);
     ASSERT_TRUE(by);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR((*by)[k], k == i ? 0.05 : 0.0, 1e-9);
@@ -133,8 +134,8 @@ TEST_P(BothProjections, PictureAndRayAndProjectionAreInversesOfEachOther) {
       Box box;
       box.add(vec3(target - size));
       box.add(vec3(target + size));
-      const glm::dvec4 clip = dmat4(clip_from_world(picture.view, picture.orthographic, 1280.0 / 720.0, box)) *
-                              glm::dvec4(place, 1.0);
+      const glm::dvec4 clip =
+          dmat4(clip_from_world(picture.view, picture.orthographic, 1280.0 / 720.0, box)) * glm::dvec4(place, 1.0);
       EXPECT_NEAR(640.0 * (1.0 + clip.x / clip.w), at->x, 0.02);
       EXPECT_NEAR(360.0 * (1.0 - clip.y / clip.w), at->y, 0.02);
       EXPECT_LE(std::abs(clip.z), clip.w) << "between near and far";
@@ -162,7 +163,8 @@ TEST(Gizmo, AMoveUnderATurnedAndUnevenlyScaledParentIsTheSameMoveInTheWorld) {
 
 TEST(Gizmo, LocalAxesAreTheNodesOwnInTheWorld) {
   Tree tree;
-  const NodeId parent = tree.add("parent", {.rotation = glm::angleAxis(glm::half_pi<float>(), vec3(0, 0, 1)), .scale = vec3(4)});
+  const NodeId parent =
+      tree.add("parent", {.rotation = glm::angleAxis(glm::half_pi<float>(), vec3(0, 0, 1)), .scale = vec3(4)});
   const NodeId child = tree.add("child", {.rotation = glm::angleAxis(glm::half_pi<float>(), vec3(0, 1, 0))}, parent);
   const NodeId ids[] = {child};
   const Grip local = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, true);
@@ -178,7 +180,8 @@ TEST(Gizmo, ATurnAboutAWorldAxisIsThatTurnUnderAnyEvenlyScaledParent) {
   const NodeId parent = tree.add("parent", {.translation = {1, 0, 0},
                                             .rotation = glm::angleAxis(0.9f, glm::normalize(vec3(1, -1, 2))),
                                             .scale = vec3(2.5f)});
-  const NodeId child = tree.add("child", {.translation = {0.1f, 0, 0}, .rotation = glm::angleAxis(0.4f, vec3(1, 0, 0))}, parent);
+  const NodeId child =
+      tree.add("child", {.translation = {0.1f, 0, 0}, .rotation = glm::angleAxis(0.4f, vec3(1, 0, 0))}, parent);
   const NodeId ids[] = {child};
   const dmat4 before = tree.editor.state().to_world(child);
   Grip grip = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, false);
@@ -227,8 +230,6 @@ TEST(Gizmo, ScalingAlongWorldAxesStretchesATurnedNodeThatWay) {
 
 TEST(Gizmo, AFlatNodeMayBeMovedTurnedAndScaledAndStaysFinite) {
   Tree tree;
-  LevelNode flat;
-  flat.name = "flat";
   const NodeId parent = tree.add("parent", {}), child = tree.add("child", {.translation = {0.1f, 0, 0}}, parent);
   State state = tree.editor.state();
   auto node = std::make_shared<DocumentNode>(*state.nodes[0]);
@@ -331,7 +332,7 @@ TEST(Gizmo, ADragIsShownAtOnceAndIsOneStepToUndo) {
   ASSERT_TRUE(hand.press(grab));
   for (int i = 1; i <= 10; ++i) {
     ASSERT_TRUE(hand.to(grab + dvec2(10.0 * i, 3.0)));
-    EXPECT_NEAR(hand.tree.place(id).x, 10.0 * i * size, 1e-6);
+    EXPECT_NEAR(hand.tree.place(id).x, 10.0 * i * size, 1e-4 * i * size) << "the mouse is beside the axis";
     EXPECT_NEAR(hand.tree.place(id).y, 0.0, 1e-9) << "it keeps to its axis";
   }
   hand.let_go();

@@ -73,7 +73,7 @@ TEST_F(PaintingTest, AStrokeIsOneStepOfUndoHoweverManyFramesItTook) {
   stroke(editor);
   EXPECT_EQ(editor.document.step_count(), steps + 1);
   EXPECT_EQ(editor.document.undo_what(), "Paint stiffness");
-  EXPECT_EQ(most(editor), 2.0f);
+  EXPECT_NEAR(most(editor), 2.0f, 0.02f);
   const State after = editor.state();
   stroke(editor, BrushMode::kErase);
   EXPECT_EQ(editor.document.step_count(), steps + 2) << "the next stroke is a step of its own";
@@ -103,7 +103,7 @@ TEST_F(PaintingTest, AStrokeThatTheHandGivesUpLeavesTheLevelAsItWas) {
   const State before = editor.state();
   editor.painting->press(at(0, 0), 1.0, BrushMode::kSet);
   settle(editor);
-  ASSERT_EQ(most(editor), 2.0f) << "it is seen while it is painted";
+  ASSERT_NEAR(most(editor), 2.0f, 0.1f) << "it is seen while it is painted";
   editor.painting->give_up();
   EXPECT_FALSE(editor.painting->stroking());
   EXPECT_TRUE(same(editor.state(), before));
@@ -231,12 +231,12 @@ TEST_F(PaintingTest, AMeshThatNodesShareIsPaintedOnAllUntilItIsMadeSingle) {
   stroke(editor);
   painting.make_single();
   EXPECT_EQ(painting.sharing().size(), 1u);
-  EXPECT_EQ(most(editor, 1), 2.0f) << "the copy keeps what is painted";
+  EXPECT_NEAR(most(editor, 1), 2.0f, 0.02f) << "the copy keeps what is painted";
   wait_for_surface(editor);
   painting.values[0] = 9.0;
   stroke(editor);
-  EXPECT_EQ(most(editor, 1), 9.0f);
-  EXPECT_EQ(most(editor, 0), 2.0f) << "the other node's is not touched";
+  EXPECT_NEAR(most(editor, 1), 9.0f, 0.1f);
+  EXPECT_NEAR(most(editor, 0), 2.0f, 0.02f) << "the other node's is not touched";
 }
 
 TEST_F(PaintingTest, ValuesAreSaidWithWhatBecomesOfThem) {

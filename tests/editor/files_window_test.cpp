@@ -10,7 +10,7 @@
 namespace pliant::testing {
 namespace {
 
-class WindowTest : public CommandTest {
+class FilesWindowTest : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
@@ -39,7 +39,7 @@ class WindowTest : public CommandTest {
   }
 };
 
-TEST_F(WindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFile) {
+TEST_F(FilesWindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFile) {
   write_text(folder / "taken.glb", "what somebody else wrote");
   const Said said = edit("small.glb",
                          "click Scene/finger/row\nkey Delete\n"
@@ -53,12 +53,13 @@ TEST_F(WindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFile) {
   EXPECT_FALSE(fs::exists(recovery_beside(folder / "small.glb")));
 }
 
-TEST_F(WindowTest, TheEditorNeverWritesOverABareMesh) {
+TEST_F(FilesWindowTest, TheEditorNeverWritesOverABareMesh) {
   write_text(folder / "plate.obj", plate_obj());
   const std::string before = read_text(folder / "plate.obj");
-  const Said said = edit("plate.obj",
-                         "click Menu/Add\nclick Probe with a device\nexpect Scene/probe/row\nkey Ctrl+S\n"
-                         "await Files/Save\nscreenshot save.png\nclick Files/Save\nsay Saved as plate.level.glb\nclose\n");
+  const Said said =
+      edit("plate.obj",
+           "click Menu/Add\nclick Probe with a device\nexpect Scene/probe/row\nkey Ctrl+S\n"
+           "await Files/Save\nscreenshot save.png\nclick Files/Save\nsay Saved as plate.level.glb\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_EQ(read_text(folder / "plate.obj"), before);
   const Document saved = document("plate.level.glb");
@@ -68,17 +69,17 @@ TEST_F(WindowTest, TheEditorNeverWritesOverABareMesh) {
   EXPECT_EQ(probe->node.probe_device, "probe");
 }
 
-TEST_F(WindowTest, TheEditorOpensAFileThatWasTypedAndRevertsToIt) {
-  const Said said = edit("",
-                         "expect Start/Open organ…\nscreenshot start.png\nkey Ctrl+O\nawait Files/Path\nset Files/Path " +
-                             (folder / "small.glb").string() +
-                             "\nsay Opened small.glb\nclick Scene/finger/row\nkey Delete\nexpect-no Scene/finger/row\n"
-                             "click Menu/File\nclick Revert\nsay Back to the file\nexpect Scene/finger/row\n"
-                             "key Ctrl+Z\nexpect-no Scene/finger/row\nkey Ctrl+Shift+Z\nclose\n");
+TEST_F(FilesWindowTest, TheEditorOpensAFileThatWasTypedAndRevertsToIt) {
+  const Said said =
+      edit("", "expect Start/Open organ…\nscreenshot start.png\nkey Ctrl+O\nawait Files/Path\nset Files/Path " +
+                   (folder / "small.glb").string() +
+                   "\nsay Opened small.glb\nclick Scene/finger/row\nkey Delete\nexpect-no Scene/finger/row\n"
+                   "click Menu/File\nclick Revert\nsay Back to the file\nexpect Scene/finger/row\n"
+                   "key Ctrl+Z\nexpect-no Scene/finger/row\nkey Ctrl+Shift+Z\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
 }
 
-TEST_F(WindowTest, TheEditorKilledInTheMidstOffersWhatWasNotSaved) {
+TEST_F(FilesWindowTest, TheEditorKilledInTheMidstOffersWhatWasNotSaved) {
   write_text(folder / "killed.txt", "click Scene/finger/row\nkey Delete\nwait 1000\n");
   const std::string line = "cd " + quoted(folder.string()) + " && env -u DISPLAY -u WAYLAND_DISPLAY " + around() +
                            " sh -c 'echo $$ > pid; exec \"$0\" edit small.glb --config config --input killed.txt' " +
@@ -105,38 +106,41 @@ TEST_F(WindowTest, TheEditorKilledInTheMidstOffersWhatWasNotSaved) {
   EXPECT_FALSE(fs::exists(copy));
 }
 
-TEST_F(WindowTest, TheEditorListsWhatIsFoundAndMendsIt) {
+TEST_F(FilesWindowTest, TheEditorListsWhatIsFoundAndMendsIt) {
   Level level = sheet_and_finger();
   level.nodes[1].device.reset();
   level.nodes[1].probe_device.clear();
-  level.nodes[0].soft_body.emplace();
+  level.nodes[0].handle.emplace();
   ASSERT_TRUE(save_level(level, folder / "ill.glb").ok());
   const Said said = edit("ill.glb",
                          "click Tab/Findings\nawait Findings/Checked\nscreenshot findings.png\n"
-                         "click Findings/1/row@0.3,0.5\nclick Findings/1/fix\nwait 1\nawait Findings/Checked\n"
-                         "click Findings/1/fix\nwait 1\nawait Findings/Checked\nscreenshot mended.png\n"
+                         "click Findings/1/row@0.3,0.5\nclick Remove the handle\nawait Findings/Checked\n"
+                         "click Add a device, moved by the mouse\nawait Findings/Checked\nscreenshot mended.png\n"
                          "key Ctrl+S\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   const Document saved = document("ill.glb");
-  EXPECT_FALSE(saved.state().find("sheet")->node.deformable && saved.state().find("sheet")->node.soft_body);
+  EXPECT_FALSE(saved.state().find("sheet")->node.handle);
   EXPECT_TRUE(saved.state().find("finger")->node.device);
 }
 
-TEST_F(WindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
-  // Another program, by hand of the shell: it waits for the editor's own copy of the change, which is made last.
+TEST_F(FilesWindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
+  // Another program, by hand of the shell: it waits for the screenshot.
   Level other = sheet_and_finger();
   other.nodes[1].name = "stylus";
   ASSERT_TRUE(save_level(other, folder / "other.glb").ok());
-  const std::string writer = "sh -c '(sleep 6; cp other.glb small.tmp && mv small.tmp small.glb) & exec \"$@\"' -- ";
+  const std::string writer =
+      "sh -c '(while [ ! -e shots/ready.png ]; do sleep 0.1; done; cp other.glb small.tmp; mv small.tmp small.glb) & "
+      "exec \"$@\"' --";
   write_text(folder / "script.txt",
-             "expect Scene/finger/row\nawait Scene/stylus/row\nsay was read again\nclose\n");
+             "expect Scene/finger/row\nscreenshot ready.png\nawait Scene/stylus/row\nsay was read again\nclose\n");
   const Said said = pliant({"edit", "small.glb", "--config", "config", "--out", "shots", "--input", "script.txt"},
                            around() + " " + writer);
   ASSERT_EQ(said.status, 0) << said.err;
 
   ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
+  fs::remove(folder / "shots" / "ready.png");
   write_text(folder / "script.txt",
-             "click Scene/sheet/row\nkey Delete\nawait Question/Keep mine\nscreenshot both.png\n"
+             "click Scene/sheet/row\nkey Delete\nscreenshot ready.png\nawait Question/Keep mine\nscreenshot both.png\n"
              "click Question/Load theirs\nawait Scene/stylus/row\nexpect Scene/sheet/row\nkey Ctrl+Z\n"
              "expect-no Scene/sheet/row\nkey Ctrl+Shift+Z\nclose\n");
   const Said both = pliant({"edit", "small.glb", "--config", "config", "--out", "shots", "--input", "script.txt"},
@@ -144,22 +148,24 @@ TEST_F(WindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
   ASSERT_EQ(both.status, 0) << both.err;
 }
 
-TEST_F(WindowTest, TheEditorsKeysAreShownAndRebound) {
-  const Said said = edit("small.glb",
-                         "key F1\nawait Keys/view.grid/keys\nscreenshot keys.png\n"
-                         "set Keys/Search Duplicate\nclick Keys/edit.duplicate/keys\nkey Ctrl+Z\n"
-                         "expect Keys/Conflict\nscreenshot conflict.png\nclick Keys/Leave it\n"
-                         "click Keys/edit.duplicate/keys\nkey Ctrl+B\nexpect Keys/edit.duplicate/Reset\nclick Keys/Close\n"
-                         "click Scene/finger/row\nkey Ctrl+B\nexpect Scene/finger 2/row\nkey Ctrl+S\nclose\n");
+TEST_F(FilesWindowTest, TheEditorsKeysAreShownAndRebound) {
+  const Said said =
+      edit("small.glb",
+           "key F1\nawait Keys/view.grid/keys\nscreenshot keys.png\n"
+           "set Keys/Search Duplicate\nclick Keys/edit.duplicate/keys\nkey Ctrl+Z\n"
+           "expect Keys/Conflict\nscreenshot conflict.png\nclick Keys/Leave it\n"
+           "click Keys/edit.duplicate/keys\nkey Ctrl+B\nexpect Keys/edit.duplicate/Reset\nclick Keys/Close\n"
+           "click Scene/finger/row\nkey Ctrl+B\nexpect Scene/finger 2/row\nkey Ctrl+S\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_NE(document("small.glb").state().find("finger 2"), nullptr);
   EXPECT_EQ(Json::parse(read_text(folder / "config" / "editor.json"))["keys"]["edit.duplicate"], "Ctrl+B");
 }
 
-TEST_F(WindowTest, TheEditorsLookIsChosenAndKept) {
-  const Said said = edit("small.glb",
-                         "key Ctrl+,\nawait Settings/Light\nclick Settings/Light\nscreenshot light.png\n"
-                         "click Settings/150 %\nscreenshot large.png\nset Settings/every 12\nclick Settings/Close\nclose\n");
+TEST_F(FilesWindowTest, TheEditorsLookIsChosenAndKept) {
+  const Said said =
+      edit("small.glb",
+           "key Ctrl+,\nawait Settings/Light\nclick Settings/Light\nscreenshot light.png\n"
+           "click Settings/150 %\nscreenshot large.png\nset Settings/every 12\nclick Settings/Close\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   const Json kept = Json::parse(read_text(folder / "config" / "editor.json"));
   EXPECT_EQ(kept["light"], true);
@@ -167,7 +173,7 @@ TEST_F(WindowTest, TheEditorsLookIsChosenAndKept) {
   EXPECT_EQ(kept["autosave"], 12.0);
 }
 
-TEST_F(WindowTest, TheEditorsHistoryGoesToAnyStep) {
+TEST_F(FilesWindowTest, TheEditorsHistoryGoesToAnyStep) {
   const Said said = edit("small.glb",
                          "click Menu/Add\nclick Light\nclick Menu/Add\nclick Empty node\nclick Menu/Add\n"
                          "click Camera, from here\nclick Tab/History\nexpect History/step 3\nclick History/step 1\n"
@@ -179,7 +185,7 @@ TEST_F(WindowTest, TheEditorsHistoryGoesToAnyStep) {
   EXPECT_TRUE(saved.state().find("camera")->node.camera);
 }
 
-TEST_F(WindowTest, TheEditorAsksForTheUnitOfAMeshThatIsTooLarge) {
+TEST_F(FilesWindowTest, TheEditorAsksForTheUnitOfAMeshThatIsTooLarge) {
   std::string text = plate_obj(4), large;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -199,10 +205,11 @@ TEST_F(WindowTest, TheEditorAsksForTheUnitOfAMeshThatIsTooLarge) {
   EXPECT_NEAR(saved.state().nodes.front()->node.local.scale.x, 1e-3, 1e-9);
 }
 
-TEST_F(WindowTest, TheEditorsConsoleIsFilteredAndCleared) {
-  const Said said = edit("small.glb",
-                         "click Scene/finger/row\nkey Delete\nkey Ctrl+Z\nclick Tab/Console\nsay Undone: Delete\n"
-                         "click Console/Notes\nscreenshot console.png\nclick Console/Copy\nclick Console/Clear\nclose\n");
+TEST_F(FilesWindowTest, TheEditorsConsoleIsFilteredAndCleared) {
+  const Said said =
+      edit("small.glb",
+           "click Scene/finger/row\nkey Delete\nkey Ctrl+Z\nclick Tab/Console\nsay Undone: Delete\n"
+           "click Console/Notes\nscreenshot console.png\nclick Console/Copy\nclick Console/Clear\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
 }
 
