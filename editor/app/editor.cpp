@@ -125,7 +125,13 @@ Box Editor::scene_box() const {
 }
 
 void Editor::frame_selected() {
-  camera.frame(bounds_of(state(), selected));
+  Box box = bounds_of(state(), selected);
+  if (!box.empty() && !(box.diagonal() > 0.0f)) {  // a place without a size: as much around it as tells where it is
+    const float whole = scene_box().diagonal(), half = whole > 0.0f ? 0.1f * whole : 0.05f;
+    box.min -= half;
+    box.max += half;
+  }
+  camera.frame(box);
 }
 
 std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {

@@ -16,7 +16,8 @@
 namespace pliant {
 namespace {
 
-constexpr float kLabelShare = 0.42f;  // [1] of the panel's width
+constexpr float kLabelShare = 0.42f;   // [1] of the panel's width
+constexpr float kTripleShare = 0.30f;  // [1] the same, before three numbers
 
 std::string words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -83,7 +84,7 @@ class InspectorPanel : public Panel {
   }
 
   // A row: what at the left, its field at the right. True while the label's mark for "back to the default" is pressed.
-  bool begin_row(const char* label, const char* hint_text, bool differs) {
+  bool begin_row(const char* label, const char* hint_text, bool differs, float share = kLabelShare) {
     const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
     ImGui::AlignTextToFramePadding();
     if (differs) {
@@ -106,7 +107,7 @@ class InspectorPanel : public Panel {
       ui::known_as(std::string(label) + " reset");
       ui::hint("Differs from the default. Press to go back to it.");
     }
-    ImGui::SameLine(left + kLabelShare * wide);
+    ImGui::SameLine(left + share * wide);
     return reset;
   }
 
@@ -135,14 +136,15 @@ class InspectorPanel : public Panel {
   bool same_turn(quat q) const { return std::abs(glm::dot(q, shown_quat_)) > 0.999999f; }
 
   bool triple(const char* label, const char* unit, dvec3& value, const char* hint_text) {
-    begin_row(label, hint_text, false);
+    // Three numbers need the room: the unit stands with the label.
+    begin_row((*unit ? fmt::format("{} ({})", label, unit) : label).c_str(), hint_text, false, kTripleShare);
     const float wide = (ImGui::GetContentRegionAvail().x - ui::px(8)) / 3.0f / ui::scale();
     bool changed = false;
     const char* const axes[] = {"x", "y", "z"};
     for (int i = 0; i < 3; ++i) {
       if (i) ImGui::SameLine(0, ui::px(4));
       const ImVec2 at = ImGui::GetCursorScreenPos();
-      changed |= ui::number(fmt::format("{} {}", label, axes[i]).c_str(), value[i], -1e6, 1e6, unit, false, wide);
+      changed |= ui::number(fmt::format("{} {}", label, axes[i]).c_str(), value[i], -1e6, 1e6, "", false, wide);
       ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + ui::px(3), at.y + ImGui::GetFrameHeight()},
                                                 ui::color(ui::palette().axis[i]), ui::px(2));
     }
