@@ -114,6 +114,14 @@ void Document::read_scripts(State& state) {
   scripts_on_disk_ = state.scripts;
 }
 
+std::map<std::string, std::shared_ptr<const ScriptKeys>> Document::unsaved_scripts() const {
+  std::map<std::string, std::shared_ptr<const ScriptKeys>> all;
+  for (const auto& [name, keys] : state().scripts)
+    if (const auto saved = scripts_on_disk_.find(name); saved == scripts_on_disk_.end() || saved->second != keys)
+      all[name] = keys;
+  return all;
+}
+
 Status Document::save() {
   if (file_.empty()) return Error{"save", "the level has no file yet; use Save as"};
   return save_as(file_);

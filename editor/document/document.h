@@ -52,6 +52,8 @@ class Document {
   const std::string& step_what(std::size_t i) const { return steps_[i].what; }
   void go_to_step(std::size_t i);
 
+  // Scripts of the state that no file holds as they are now, by the name that devices give.
+  std::map<std::string, std::shared_ptr<const ScriptKeys>> unsaved_scripts() const;
   bool dirty() const { return revision() != saved_; }
   // Something was done that is in no file: more than a bare mesh was opened.
   bool worth_keeping() const { return dirty() && (revision() != 0 || recovered_); }

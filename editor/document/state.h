@@ -83,6 +83,9 @@ Level outline_of(const State& state);
 // Whether both are the same document to the bit: nodes, components, painted values, scene.
 bool same(const State& a, const State& b);
 
+// Devices whose script the state holds follow nothing: no file is looked for that is not written yet.
+void leave_out_scripts(Level& level, const State& state);
+
 // Writes a document's level where it is, or elsewhere; the file appears whole.
 Status save_state(const State& state, const std::filesystem::path& file);
 
