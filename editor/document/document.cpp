@@ -114,8 +114,8 @@ void Document::read_scripts(State& state) {
   scripts_on_disk_ = state.scripts;
 }
 
-std::map<std::string, std::shared_ptr<const ScriptKeys>> Document::unsaved_scripts() const {
-  std::map<std::string, std::shared_ptr<const ScriptKeys>> all;
+Scripts Document::unsaved_scripts() const {
+  Scripts all;
   for (const auto& [name, keys] : state().scripts)
     if (const auto saved = scripts_on_disk_.find(name); saved == scripts_on_disk_.end() || saved->second != keys)
       all[name] = keys;

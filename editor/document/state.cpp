@@ -180,10 +180,10 @@ bool same(const State& a, const State& b) {
   return a.paint == b.paint && scene_extensions(outline_of(a), Json()) == scene_extensions(outline_of(b), Json());
 }
 
-void leave_out_scripts(Level& level, const State& state) {
+void leave_out_scripts(Level& level, const Scripts& scripts, DriverKind instead) {
   for (LevelNode& node : level.nodes)
-    if (node.device && node.device->driver == DriverKind::kScript && state.scripts.contains(node.device->file)) {
-      node.device->driver = DriverKind::kMouse;
+    if (node.device && node.device->driver == DriverKind::kScript && scripts.contains(node.device->file)) {
+      node.device->driver = instead;
       node.device->file.clear();
     }
 }

@@ -43,8 +43,10 @@ bool Play::ready() const {
 
 PlayOptions Play::options() {
   PlayOptions made;
-  made.level = [state = editor_.state(), folder = editor_.document.folder(),
-                file = editor_.document.file()]() -> Result<Level> { return level_to_play(state, folder, file); };
+  made.level = [state = editor_.state(), folder = editor_.document.folder(), file = editor_.document.file(),
+                unsaved = editor_.document.unsaved_scripts()]() -> Result<Level> {
+    return level_to_play(state, folder, file, unsaved);
+  };
   for (const auto& [name, source] : sources) made.sources.emplace_back(name, source);
   // A path that stands in the document alone is followed as it stands there.
   const auto unsaved = editor_.document.unsaved_scripts();
@@ -55,7 +57,8 @@ PlayOptions Play::options() {
     if (!device || !device->node.device || device->node.device->driver != DriverKind::kScript) continue;
     const auto script = unsaved.find(device->node.device->file);
     const auto chosen = sources.find(node.name);
-    if (script == unsaved.end() || (chosen != sources.end() && chosen->second.kind != PlaySource::Kind::kLevel)) continue;
+    if (script == unsaved.end() || (chosen != sources.end() && chosen->second.kind != PlaySource::Kind::kLevel))
+      continue;
     std::erase_if(made.sources, [&](const auto& other) { return other.first == node.name; });
     made.sources.emplace_back(node.name, PlaySource{PlaySource::Kind::kScript, script->first,
                                                     std::make_shared<const Path>(path_of(*script->second)), 0.0});
