@@ -11,7 +11,7 @@ namespace {
 class HistoryPanel : public Panel {
  public:
   const char* name() const override { return "History"; }
-  Place place() const override { return Place::kRight; }
+  Place place() const override { return Place::kBottom; }
 
   void draw(Editor& editor) override {
     const Document& document = editor.document;

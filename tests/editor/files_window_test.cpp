@@ -126,7 +126,7 @@ TEST_F(FilesWindowTest, TheEditorListsWhatIsFoundAndMendsIt) {
 TEST_F(FilesWindowTest, TheEditorReadsAFileAgainThatChangedAndAsksWhereBothDid) {
   // Another program, by hand of the shell: it waits for the screenshot.
   Level other = sheet_and_finger();
-  other.nodes[1].name = "stylus";
+  other.nodes[1].name = other.nodes[1].probe_device = "stylus";
   ASSERT_TRUE(save_level(other, folder / "other.glb").ok());
   const std::string writer =
       "sh -c '(while [ ! -e shots/ready.png ]; do sleep 0.1; done; cp other.glb small.tmp; mv small.tmp small.glb) & "
