@@ -332,7 +332,7 @@ TEST(Gizmo, ADragIsShownAtOnceAndIsOneStepToUndo) {
   ASSERT_TRUE(hand.press(grab));
   for (int i = 1; i <= 10; ++i) {
     ASSERT_TRUE(hand.to(grab + dvec2(10.0 * i, 3.0)));
-    EXPECT_NEAR(hand.tree.place(id).x, 10.0 * i * size, 1e-4 * i * size) << "the mouse is beside the axis";
+    EXPECT_NEAR(hand.tree.place(id).x, 10.0 * i * size, 1e-3 * i * size) << "the mouse is beside the axis";
     EXPECT_NEAR(hand.tree.place(id).y, 0.0, 1e-9) << "it keeps to its axis";
   }
   hand.let_go();
@@ -428,6 +428,18 @@ TEST(Gizmo, WithShiftTheLowestPointFollowsTheSurfaceUnderTheMouse) {
   }
   EXPECT_LT(length(hand.tree.place(ball) - wanted), 1e-4);
   hand.let_go();
+}
+
+TEST(ViewCamera, ItArrivesAndThenEveryPictureIsTheSame) {
+  ViewCamera camera;
+  camera.look_from(glm::half_pi<double>(), 0);
+  int frames = 0;
+  for (; frames < 1000 && camera.moving(); ++frames) camera.update(0.016);
+  EXPECT_LT(frames, 1000);
+  camera.update(0.016);
+  const dvec3 eye = camera.viewpoint().eye;
+  for (int i = 0; i < 10; ++i) camera.update(0.016);
+  EXPECT_EQ(camera.viewpoint().eye, eye) << "it creeps on for ever";
 }
 
 TEST(Frames, BelowAndBoundsOfManyNodesAgreeWithTheWalkUpwards) {
