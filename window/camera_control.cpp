@@ -78,6 +78,10 @@ void CameraControl::home() {
 }
 
 void CameraControl::update(double dt) {
+  if (!moving()) {  // it arrives, lest every picture be another one for ever
+    shown_ = goal_;
+    return;
+  }
   const double share = 1 - std::exp(-std::max(dt, 0.0) / kFollowTime);
   shown_.target += share * (goal_.target - shown_.target);
   shown_.distance *= std::pow(goal_.distance / shown_.distance, share);

@@ -319,6 +319,9 @@ void ViewBar::draw_cross(Editor& editor) {
               ui::color(each->positive ? p.window : p.text), text);
     }
   }
+  // Pressed once more, the end that is looked from leads to the one behind it.
+  if (pressed && dot(pressed->along, forward) < -0.999)
+    pressed = std::find_if(std::begin(ends), std::end(ends), [&](const End& e) { return e.along == -pressed->along; });
   if (pressed) editor.camera.look_from(pressed->azimuth, pressed->elevation);
   const char* const name = editor.view.orthographic ? "Orthographic" : "Perspective";
   ImGui::PushFont(ui::font(ui::Type::kSmall));

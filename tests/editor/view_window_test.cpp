@@ -89,7 +89,7 @@ TEST_F(ViewWindowTest, EveryOverlayAndStandardViewChangesThePicture) {
   ASSERT_EQ(said.status, 0) << said.err;
   for (int i = 0; i < shots; ++i)
     EXPECT_GT(differing(std::to_string(i) + ".png", std::to_string(i + 1) + ".png"), 1e-4) << boxes[i];
-  EXPECT_GT(differing("Right.png", "Back.png"), 0.01);
+  EXPECT_GT(differing("Right.png", "Back.png"), 1e-3);
   EXPECT_GT(differing("Bottom.png", "Top.png"), 1e-3);
   EXPECT_GT(differing("Top.png", "Projection.png"), 1e-3);
 }
