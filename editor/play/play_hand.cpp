@@ -18,6 +18,7 @@ constexpr double kArc = 0.6;           // [1] of the way that is left: so high i
 void PlayHand::take_probe(const World& world, double radius, const Viewpoint& view, std::optional<dvec3> from) {
   const std::lock_guard lock(mutex_);
   carrier_.reset();
+  watches_ = takes_ = false;
   pointer_.emplace(world, radius, view);
   at_ = from.value_or(pointer_->update(0.0));
 }
@@ -26,17 +27,33 @@ void PlayHand::take_tool(const World& world, Entity tool, dvec3 device) {
   const std::lock_guard lock(mutex_);
   pointer_.reset();
   carrier_ = Carrier::holding(world, tool, device);
+  if (takes_ && seen_) carrier_->grab(seen_->point, device);
+  watches_ = takes_ = false;
+}
+
+void PlayHand::watch_tool(const World& world, Entity tool) {
+  const std::lock_guard lock(mutex_);
+  pointer_.reset();
+  carrier_ = Carrier::holding(world, tool, dvec3(0));
+  watches_ = true;
+  takes_ = false;
+}
+
+bool PlayHand::takes() const {
+  const std::lock_guard lock(mutex_);
+  return takes_;
 }
 
 void PlayHand::let_go() {
   const std::lock_guard lock(mutex_);
   pointer_.reset();
   carrier_.reset();
+  watches_ = takes_ = false;
 }
 
 bool PlayHand::has_any() const {
   const std::lock_guard lock(mutex_);
-  return pointer_ || carrier_;
+  return pointer_ || (carrier_ && !watches_);
 }
 
 std::optional<dvec3> PlayHand::update(double dt) {
@@ -50,7 +67,7 @@ std::optional<dvec3> PlayHand::update(double dt) {
     at_ += way * std::min(1.0 - std::exp(-dt / kGlideTime), left > most ? most / left : 1.0);
     return at_;
   }
-  if (!carrier_) return {};
+  if (!carrier_ || watches_) return {};
   carrier_->update(dt);
   return carrier_->position();
 }
@@ -72,6 +89,10 @@ void PlayHand::hold(bool held) {
   const std::lock_guard lock(mutex_);
   if (pointer_) pointer_->hold(held);
   if (!carrier_) return;
+  if (watches_) {
+    takes_ = held && seen_ && seen_->object == carrier_->tool();
+    return;
+  }
   if (!held)
     carrier_->release();
   else if (seen_)

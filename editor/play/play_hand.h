@@ -20,7 +20,9 @@ class PlayHand {
   // `from` [m] world: where the probe is; nothing: where it is best out of the way.
   void take_probe(const World& world, double radius, const Viewpoint& view, std::optional<dvec3> from = {});
   void take_tool(const World& world, Entity tool, dvec3 device);
-  void let_go();  // moves nothing from now on
+  void watch_tool(const World& world, Entity tool);  // moves nothing, until it is taken hold of
+  bool takes() const;                                // what it watches has been taken hold of: call take_tool()
+  void let_go();                                     // moves nothing from now on
   bool has_any() const;
   // Where the device should be, `dt` [s] after the last call; nothing: it moves nothing.
   std::optional<dvec3> update(double dt);
@@ -42,6 +44,7 @@ class PlayHand {
   std::optional<Pointer> pointer_;
   std::optional<Carrier> carrier_;
   std::optional<Picked> seen_;
+  bool watches_ = false, takes_ = false;
   dvec3 at_{0};  // [m] world, of a probe: it glides after what is pointed at
 };
 

@@ -48,6 +48,7 @@ struct PlayRun::Inside {
   std::vector<Level> of_level, before_past;  // of each effector
   std::vector<PlaySource> sources;           // of each effector
   std::string moved;                         // by the mouse
+  std::string watched;                       // a tool that the mouse may take hold of
   dquat held{1, 0, 0, 0};                    // as which it is held
 
   void say(const std::string& note) { notes.push_back(note); }
@@ -59,6 +60,7 @@ struct PlayRun::Inside {
   void end_past();
   Status tick();
   void take_rows();
+  void watch();
   void move_hand(double dt);
   void flush();
   bool still() const { return !realtime && (again ? parts->ticks >= until : paused && steps == 0); }

@@ -58,8 +58,9 @@ bool wants_mouse(const Level& level, const PlayOptions& options) {
   if (!options.mouse_probe) return false;
   for (const auto& [name, source] : options.sources)
     if (source.kind == PlaySource::Kind::kMouse) return false;
-  return std::none_of(level.nodes.begin(), level.nodes.end(),
-                      [](const LevelNode& node) { return node.device && node.device->driver == DriverKind::kMouse; });
+  return std::none_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
+    return node.handle || (node.device && node.device->driver == DriverKind::kMouse);  // a tool it takes hold of
+  });
 }
 
 }  // namespace
@@ -320,7 +321,9 @@ Status PlayRun::Inside::tick() {
 }
 
 void PlayRun::Inside::move_hand(double dt) {
-  if (moved.empty() || again) return;
+  if (again) return;
+  if (!watched.empty() && run.hand.takes()) apply(std::exchange(watched, {}), {PlaySource::Kind::kMouse, {}});
+  if (moved.empty()) return;
   const std::optional<dvec3> to = run.hand.update(dt);
   if (!to) return;
   static_cast<void>(session->move(moved, *to, held));

@@ -102,6 +102,19 @@ void PlayRun::Inside::apply_all() {
     wanted.emplace_back(effector.name, source);
   }
   for (const auto& [name, source] : wanted) apply(name, source);
+  watch();
+}
+
+// Where the mouse moves nothing, it takes hold of the first tool that it is pressed on.
+void PlayRun::Inside::watch() {
+  watched.clear();
+  if (!moved.empty() || realtime) return;
+  for (const SessionEffector& effector : parts->effectors)
+    if (!parts->world.registry.has<Probe>(effector.entity)) {
+      watched = effector.name;
+      run.hand.watch_tool(parts->world, effector.entity);
+      return;
+    }
 }
 
 void PlayRun::Inside::begin_past(const PlayPast& of, std::uint64_t to) {
@@ -133,6 +146,7 @@ void PlayRun::Inside::end_past() {
       bring_back(effector, before_past[i]);
     }
   }
+  watch();
   run.options_.past.reset();
 }
 

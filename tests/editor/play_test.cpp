@@ -250,6 +250,32 @@ TEST_F(PlayTest, WhatTheMouseDidIsHadAgainToo) {
   EXPECT_EQ(run_of(state, folder / "level.glb", again)->status().hash, deeper.hash);
 }
 
+TEST_F(PlayTest, AToolIsLedByItsScriptUntilTheMouseTakesHoldOfIt) {
+  const fs::path file = bring("instrument.glb");
+  auto document = Document::open(file);
+  ASSERT_TRUE(document) << document.error().message();
+  PlayOptions options;
+  options.mouse_probe = true;
+  const auto run = run_of(document->state(), file, options);
+  const PlayStatus led = after(*run, 20);
+  std::size_t tool = 0;
+  while (tool < led.effectors.size() && !led.effectors[tool].tool) ++tool;
+  ASSERT_LT(tool, led.effectors.size());
+  for (const PlayEffector& each : led.effectors) EXPECT_NE(each.source, "mouse") << each.name;
+  const auto spawned = spawn(level_of(document->state()));
+  ASSERT_TRUE(spawned);
+  Picked seen;
+  seen.object = find_by_name(*spawned, led.effectors[tool].name);
+  seen.point = seen.rest = led.effectors[tool].reading.position;
+  const Viewpoint view{seen.point + dvec3(0, 0, 1), seen.point};
+  run->hand.see(seen, {view.eye, {0, 0, -1}});
+  ASSERT_EQ(run->hand.over(), PlayHand::Over::kTool);
+  run->hand.hold(true);
+  EXPECT_EQ(after(*run, 5).effectors[tool].source, "mouse");
+  run->hand.follow({view.eye, normalize(dvec3(0.01, 0, -1))}, view);
+  EXPECT_NEAR(after(*run, 100).effectors[tool].reading.position.x, seen.point.x + 0.01, 1e-3);
+}
+
 // A device that counts what it is written.
 struct Log {
   std::atomic<int> writes{0}, closed{0};
