@@ -48,13 +48,11 @@ bool Window::display_is_there() {
   return set("DISPLAY") || set("WAYLAND_DISPLAY");
 }
 
-Result<std::unique_ptr<Window>> Window::create(int width, int height) {
+Result<std::unique_ptr<Window>> Window::create(int width, int height, const std::string& otherwise) {
   if (!display_is_there())
-    return Error{"--window",
-                 "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set; set one, or use --headless"};
+    return Error{"--window", "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set; set one" + otherwise};
   watch_display();
-  if (!glfwInit())
-    return Error{"--window", "the display cannot be reached" + reason() + "; check DISPLAY, or use --headless"};
+  if (!glfwInit()) return Error{"--window", "the display cannot be reached" + reason() + "; check DISPLAY" + otherwise};
   std::unique_ptr<Window> window(new Window());
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
@@ -67,7 +65,7 @@ Result<std::unique_ptr<Window>> Window::create(int width, int height) {
   window->handle_ = glfwCreateWindow(width, height, "Pliant", nullptr, nullptr);
   if (!window->handle_)
     return Error{"--window", "the display gives no OpenGL 4.5 core context" + reason() +
-                                 "; install libgl1-mesa-dri or the GPU's driver, or use --headless"};
+                                 "; install libgl1-mesa-dri or the GPU's driver" + otherwise};
   watch_display();  // with its connection; GLFW has put back what it found
   glfwMakeContextCurrent(window->handle_);
   glfwSwapInterval(1);

@@ -34,7 +34,8 @@ class Window {
   static bool display_is_there();
   // Hidden at first; its context is current on the calling thread, which must be the first one of the process and make
   // every call but those that say otherwise. Sizes in pixels. One window at a time.
-  static Result<std::unique_ptr<Window>> create(int width, int height);
+  // `otherwise`: what else a user may do where there is none, after "set one"; say ", or use --headless".
+  static Result<std::unique_ptr<Window>> create(int width, int height, const std::string& otherwise = {});
   ~Window();
   // The display is gone, or has refused something, whichever thread asked it: no more may be asked, and `loss` says
   // why. What the process has of it is left to the end of the process.

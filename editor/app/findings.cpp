@@ -136,6 +136,7 @@ std::vector<EditorFinding> editor_findings(const State& state, const Findings& f
 Findings find_in_state(const State& state, const std::filesystem::path& file, const std::filesystem::path& folder) {
   Level level = level_of(state);
   level.path = file.empty() ? folder / "untitled" : file;
+  leave_out_scripts(level, state.scripts, DriverKind::kMouse);  // something moves it
   if (!level.has_pliant())
     return {{Severity::kNote, "",
              "nothing can be touched yet: select a mesh and add a deformable surface or a soft "

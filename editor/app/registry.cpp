@@ -14,6 +14,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   std::vector<std::unique_ptr<Panel>> panels;
   panels.push_back(make_tree_panel());
   panels.push_back(make_inspector_panel(app));
+  panels.push_back(make_play_panel(app));
   panels.push_back(make_soft_panel(app));
   panels.push_back(make_path_panel(app));
   panels.push_back(make_paint_panel(app));
@@ -25,7 +26,6 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_keys_page(app));
   panels.push_back(make_settings_panel(app));
   panels.push_back(make_start_page(app));
-  panels.push_back(make_play_panel(app));
   panels.push_back(make_plots_panel(app));
   return panels;
 }

@@ -114,6 +114,14 @@ void Document::read_scripts(State& state) {
   scripts_on_disk_ = state.scripts;
 }
 
+Scripts Document::unsaved_scripts() const {
+  Scripts all;
+  for (const auto& [name, keys] : state().scripts)
+    if (const auto saved = scripts_on_disk_.find(name); saved == scripts_on_disk_.end() || saved->second != keys)
+      all[name] = keys;
+  return all;
+}
+
 Status Document::save() {
   if (file_.empty()) return Error{"save", "the level has no file yet; use Save as"};
   return save_as(file_);

@@ -52,6 +52,8 @@ class Document {
   const std::string& step_what(std::size_t i) const { return steps_[i].what; }
   void go_to_step(std::size_t i);
 
+  // Scripts of the state that no file holds as they are now, by the name that devices give.
+  Scripts unsaved_scripts() const;
   bool dirty() const { return revision() != saved_; }
   // Something was done that is in no file: more than a bare mesh was opened.
   bool worth_keeping() const { return dirty() && (revision() != 0 || recovered_); }
@@ -89,7 +91,7 @@ class Document {
   std::uint64_t next_revision_ = 1, saved_ = 0;
   std::filesystem::path file_, folder_;
   std::vector<std::string> notes_;
-  std::map<std::string, std::shared_ptr<const ScriptKeys>> scripts_on_disk_;
+  Scripts scripts_on_disk_;
   FileStamp stamp_;  // of the file as read or written last
   bool recovered_ = false;
 };

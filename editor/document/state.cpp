@@ -180,6 +180,14 @@ bool same(const State& a, const State& b) {
   return a.paint == b.paint && scene_extensions(outline_of(a), Json()) == scene_extensions(outline_of(b), Json());
 }
 
+void leave_out_scripts(Level& level, const Scripts& scripts, DriverKind instead) {
+  for (LevelNode& node : level.nodes)
+    if (node.device && node.device->driver == DriverKind::kScript && scripts.contains(node.device->file)) {
+      node.device->driver = instead;
+      node.device->file.clear();
+    }
+}
+
 Status save_state(const State& state, const std::filesystem::path& file) {
   return save_level(level_of(state), file);
 }

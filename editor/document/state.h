@@ -53,6 +53,9 @@ struct LayerKey {
   auto operator<=>(const LayerKey&) const = default;
 };
 
+// By the file that a device names.
+using Scripts = std::map<std::string, std::shared_ptr<const ScriptKeys>>;
+
 struct State {
   std::vector<std::shared_ptr<const DocumentNode>> nodes;  // parents before children
   // Only ever added to, so that a number stands for the same mesh in every state.
@@ -63,7 +66,7 @@ struct State {
   std::optional<LevelEnvironment> environment;
   Simulation simulation;
   // Paths that devices follow, by the file that they name, relative to the level; files that cannot be read are absent.
-  std::map<std::string, std::shared_ptr<const ScriptKeys>> scripts;
+  Scripts scripts;
 
   const DocumentNode* find(NodeId id) const;
   const DocumentNode* find(const std::string& name) const;  // the first of that name
@@ -82,6 +85,9 @@ Level outline_of(const State& state);
 
 // Whether both are the same document to the bit: nodes, components, painted values, scene.
 bool same(const State& a, const State& b);
+
+// Devices that follow one of these scripts have another driver: no file is looked for that is not written yet.
+void leave_out_scripts(Level& level, const Scripts& scripts, DriverKind instead);
 
 // Writes a document's level where it is, or elsewhere; the file appears whole.
 Status save_state(const State& state, const std::filesystem::path& file);

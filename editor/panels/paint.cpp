@@ -206,6 +206,9 @@ class PaintPanel : public Panel {
                    ready))
       take(Painting::Hand::kFillPart, painting);
     ImGui::SameLine(0, ui::px(ui::kGap));
+    if (ui::button("Gradient\u2026", wait ? wait : "Then click where it begins and where it ends", ready))
+      take(Painting::Hand::kGradientFrom, painting);
+    ImGui::SameLine(0, ui::px(ui::kGap));
     if (ui::button("Clear", "Nothing is painted of this any more")) painting.clear();
     const Range range = paint_range(attribute_of(painting.channel));
     const bool share = is_share(painting.channel);
@@ -217,9 +220,6 @@ class PaintPanel : public Panel {
     ui::label("to");
     ImGui::SameLine(0, ui::px(4));
     ui::number("gradient to", painting.gradient_to, range.min, range.max, share ? "" : "\u00d7", !share);
-    row("", nullptr);
-    if (ui::button("Gradient\u2026", wait ? wait : "Then click where it begins and where it ends", ready))
-      take(Painting::Hand::kGradientFrom, painting);
   }
 
   void take(Painting::Hand hand, Painting& painting) {

@@ -261,6 +261,7 @@ class PlotsPanel : public Panel {
       plot.note("The level has no deformable surface: a law of force over depth is theirs.");
       return;
     }
+    plot.legends_below(2 + !law.fast.empty() + (before != nullptr));
     plot.legend(("law of " + printable(surface->first)).c_str(), p.text, true);
     if (!law.fast.empty()) plot.legend("pressed at once", p.good, true);
     plot.legend("felt", p.force);

@@ -43,9 +43,26 @@ bool Play::ready() const {
 
 PlayOptions Play::options() {
   PlayOptions made;
-  made.level = [state = editor_.state(), folder = editor_.document.folder(),
-                file = editor_.document.file()]() -> Result<Level> { return level_to_play(state, folder, file); };
+  made.level = [state = editor_.state(), folder = editor_.document.folder(), file = editor_.document.file(),
+                unsaved = editor_.document.unsaved_scripts()]() -> Result<Level> {
+    return level_to_play(state, folder, file, unsaved);
+  };
   for (const auto& [name, source] : sources) made.sources.emplace_back(name, source);
+  // A path that stands in the document alone is followed as it stands there.
+  const auto unsaved = editor_.document.unsaved_scripts();
+  for (const auto& each : editor_.state().nodes) {
+    const LevelNode& node = each->node;
+    if (!node.probe && !node.handle) continue;
+    const DocumentNode* const device = editor_.state().find(node.probe ? node.probe_device : node.handle->device);
+    if (!device || !device->node.device || device->node.device->driver != DriverKind::kScript) continue;
+    const auto script = unsaved.find(device->node.device->file);
+    const auto chosen = sources.find(node.name);
+    if (script == unsaved.end() || (chosen != sources.end() && chosen->second.kind != PlaySource::Kind::kLevel))
+      continue;
+    std::erase_if(made.sources, [&](const auto& other) { return other.first == node.name; });
+    made.sources.emplace_back(node.name, PlaySource{PlaySource::Kind::kScript, script->first,
+                                                    std::make_shared<const Path>(path_of(*script->second)), 0.0});
+  }
   made.mouse_probe = mouse_probe;
   made.realtime = realtime;
   made.speed = speed;

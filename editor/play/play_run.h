@@ -29,6 +29,7 @@ struct PlaySource {
   enum class Kind : std::uint8_t { kLevel, kMouse, kScript, kOrbit, kNone, kDriver };
   Kind kind = Kind::kLevel;
   std::string what;   // file of a script, name of a driver
+  std::shared_ptr<const Path> path;  // of a script that is in no file yet
   double from = 0.0;  // [s] of the run: where a script begins
   bool operator==(const PlaySource&) const = default;
 };

@@ -53,7 +53,7 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
       done = session->connect(name, source.what);
       break;
     case PlaySource::Kind::kScript: {
-      auto path = load_script(source.what);
+      Result<Path> path = source.path ? Result<Path>(*source.path) : load_script(source.what);
       if (!path) {
         done = path.error();
         break;

@@ -17,8 +17,10 @@ Result<std::shared_ptr<World>> world_of(const Level& level) {
   return world;
 }
 
-Level level_to_play(const State& state, const std::filesystem::path& folder, const std::filesystem::path& file) {
+Level level_to_play(const State& state, const std::filesystem::path& folder, const std::filesystem::path& file,
+                    const Scripts& unsaved) {
   Level level = level_of(state);
+  leave_out_scripts(level, unsaved, DriverKind::kNull);
   if (!file.empty())
     level.path = file;
   else if (!folder.empty())
@@ -45,7 +47,8 @@ void Rendered::update(Editor& editor, Stage& stage, bool shown) {
   const State state = editor.state();
   const auto folder = editor.document.folder(), file = editor.document.file();
   editor.jobs.start("rendered", "Preparing the picture", [this, &stage, state, folder, file](const Jobs::Stop& stop) {
-    auto world = std::make_shared<Result<std::shared_ptr<World>>>(world_of(level_to_play(state, folder, file)));
+    auto world =
+        std::make_shared<Result<std::shared_ptr<World>>>(world_of(level_to_play(state, folder, file, state.scripts)));
     (void)stop;
     return [this, &stage, world](Editor& to) {
       waits_ = false;

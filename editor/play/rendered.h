@@ -25,6 +25,7 @@ class Rendered {
 // A world to look at, prepared as for playing.
 Result<std::shared_ptr<World>> world_of(const Level& level);
 // The level with the place of its file, from which it names others.
-Level level_to_play(const State& state, const std::filesystem::path& folder, const std::filesystem::path& file);
+Level level_to_play(const State& state, const std::filesystem::path& folder, const std::filesystem::path& file,
+                    const Scripts& unsaved);
 
 }  // namespace pliant

@@ -64,7 +64,7 @@ class PaintTool : public ViewTool {
       painting.gradient_start.reset();
     }
     draw_legend(editor, painting.channel,
-                {in.corner.x + ui::px(ui::kPad), in.corner.y + static_cast<float>(in.height) - ui::px(ui::kPad)}, list);
+                {in.corner.x + ui::px(ui::kPad), in.corner.y + static_cast<float>(in.height) - ui::px(36)}, list);
     if (!usable(editor)) {
       hint_ = "Paint: select a node with a mesh.";
       return;

@@ -64,16 +64,17 @@ Plot::Plot(const char* name, const char* title, ImVec2 size, PlotAxis x, PlotAxi
   }
   const double step_x =
       round_step((x_.high - x_.low) * x_.shown, std::max(1, static_cast<int>((high_.x - low_.x) / px(kTick))));
+  const float unit_x = high_.x - ImGui::CalcTextSize(x_.unit).x;
   for (double v = std::ceil(x_.low * x_.shown / step_x - 1e-9) * step_x; v <= x_.high * x_.shown + 1e-9; v += step_x) {
     const float at = on({v / x_.shown, y_.low}).x;
     list_->AddLine({at, low_.y}, {at, high_.y}, color(p.text, 0.07f));
     if (!x_labels) continue;
-    std::string text = label(v, step_x);
-    if (v + step_x > x_.high * x_.shown) text += std::string(" ") + x_.unit;
+    const std::string text = label(v, step_x);
     const float wide = ImGui::CalcTextSize(text.c_str()).x;
-    list_->AddText({std::clamp(at - 0.5f * wide, low_.x - px(kLeft), high_.x - wide + px(kRight)), high_.y + px(2)},
-                   color(p.dim), text.c_str());
+    if (at + 0.5f * wide > unit_x - px(6)) continue;
+    list_->AddText({std::max(at - 0.5f * wide, low_.x - px(kLeft)), high_.y + px(2)}, color(p.dim), text.c_str());
   }
+  if (x_labels) list_->AddText({unit_x, high_.y + px(2)}, color(p.dim), x_.unit);
   title_ = title;
   legend_y_ = low_.y + px(3);
   ImGui::PopFont();
@@ -155,6 +156,12 @@ void Plot::upright(double x, const ImVec4& of, const char* text) {
 
 void Plot::dot(dvec2 at, const ImVec4& of) {
   list_->AddCircleFilled(on(at), px(3.5f), color(of));
+}
+
+void Plot::legends_below(int lines) {
+  ImGui::PushFont(font(Type::kSmall));
+  legend_y_ = high_.y - px(4) - static_cast<float>(lines) * ImGui::GetTextLineHeight();
+  ImGui::PopFont();
 }
 
 void Plot::legend(const char* text, const ImVec4& of, bool dashed) {

@@ -37,7 +37,8 @@ class Plot {
              const ImVec4& color);
   void upright(double x, const ImVec4& color, const char* text = "");
   void dot(dvec2 at, const ImVec4& color);
-  // In the upper right corner, below each other.
+  // In the upper right corner, below each other; or so many in the lower one.
+  void legends_below(int lines);
   void legend(const char* text, const ImVec4& color, bool dashed = false);
   void note(const char* text);  // in the middle, where there is nothing to draw
 

@@ -176,8 +176,8 @@ bool number(const char* label, double& value, double least, double most, const c
   const double size = std::max(std::abs(value), 1e-6 * std::max(std::abs(least), std::abs(most)));
   const double decade = std::pow(10.0, std::floor(std::log10(std::max(size, 1e-9))));
   const float speed = static_cast<float>(std::max(decade, 1e-9) * 0.02);
-  const std::string format = fmt::format("%.6g{}{}", *unit && std::string_view(unit) != "1" ? " " : "",
-                                         std::string_view(unit) == "1" ? "" : unit);
+  const std::string_view shown = std::string_view(unit) == "1" ? "" : std::string_view(unit) == "%" ? "%%" : unit;
+  const std::string format = fmt::format("%.6g{}{}", shown.empty() ? "" : " ", shown);
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp |
                                  (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
                                  ImGuiSliderFlags_NoRoundToFormat;

@@ -98,8 +98,8 @@ Outcome open_window(const RunOptions& options, Shown& shown) {
     if (!script) return failed(script.error());
     shown.script = std::move(script).value();
   }
-  auto window =
-      Window::create(options.sized ? options.width : kWindowWidth, options.sized ? options.height : kWindowHeight);
+  auto window = Window::create(options.sized ? options.width : kWindowWidth,
+                               options.sized ? options.height : kWindowHeight, ", or use --headless");
   if (!window) {
     if (options.window) return failed(window.error());
     note("running without a window: " + window.error().what);

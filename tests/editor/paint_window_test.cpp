@@ -24,7 +24,9 @@ class PaintWindowTest : public CommandTest {
       auto loaded = load_level(organ);
       ASSERT_TRUE(loaded.ok()) << loaded.error().message();
       level.meshes = loaded->meshes;
-      for (LevelMesh& mesh : level.meshes) mesh.source = -1;
+      level.meshes.resize(1);  // the capsule
+      level.meshes[0].source = -1;
+      for (Primitive& primitive : level.meshes[0].primitives) primitive.material = primitive.source = -1;
     } else {
       level.meshes.push_back({"organ", {pliant::test::icosphere(5)}});
     }

@@ -33,10 +33,10 @@ class PlayWindowTest : public CommandTest {
   }
   Said edited(const std::string& script) const {
     write_text(folder / "script.txt", script);
-    return pliant({"edit", "minimal.gltf", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out",
-                   "shots"},
-                  "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
-                      " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+    return pliant(
+        {"edit", "minimal.gltf", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
+        "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
+            " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
   }
   Image shot(const std::string& name) const {
     auto image = load_image(folder / "shots" / name);
@@ -55,7 +55,7 @@ TEST_F(PlayWindowTest, ALevelIsPlayedPressedPausedSteppedTakenBackAndStoppedByHa
       "click Plots/Time line@0.5,0.5\nawait Plots/Go on from here\nwait 0.5\nscreenshot back.png\n"
       "click Plots/Go on from here\nawait Play/Pause\nwait 0.5\n"
       "click Tab/Play\nscreenshot panel.png\nwait 0.3\n"
-      "click Play/1//2\nwait 0.3\n"
+      "click Play/1/2\nwait 0.3\n"
       "key Shift+Space\nwait 0.3\nscreenshot stopped.png\nexpect View mode/Rendered\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   // The picture is in the upper middle, the plots below it.

@@ -110,10 +110,18 @@ TEST_F(Arguments, ListHasALineOnEveryLevelThatShips) {
   expect_refused({"run", "hand", "--list"}, 2, "--list");
 }
 
-TEST_F(Arguments, VerbsThatAreNotThereYetSaySo) {
+TEST_F(Arguments, AStudyThatIsNotThereIsRefused) {
   expect_refused({"study", "colours"}, 2, "--list");
   expect_refused({"study"}, 2, "--list");
-  expect_refused({"edit", "level.gltf"}, 2, "not yet built");
+}
+
+TEST_F(Arguments, AnEditorWithoutADisplayOrWithAWrongUnitSaysSo) {
+  expect_refused({"edit", "--unit", "furlong"}, 2, "furlong");
+  expect_refused({"edit", "--size", "8"}, 2, "--size");
+  const Said said = pliant({"edit", "level.gltf"}, "env -u DISPLAY -u WAYLAND_DISPLAY");
+  EXPECT_EQ(said.status, 1);
+  EXPECT_NE(said.err.find("display"), std::string::npos) << said.err;
+  EXPECT_EQ(said.err.find("--headless"), std::string::npos) << said.err;
 }
 
 TEST_F(Arguments, FilesThatAreNotThereExitWithOne) {
