@@ -97,7 +97,7 @@ TEST_F(ViewWindowTest, EveryOverlayAndStandardViewChangesThePicture) {
 TEST_F(ViewWindowTest, ASignIsSelectedByPressingIt) {
   // The finger has no mesh; it stands over the middle of the sheet.
   const Said said = edited(
-      "click Scene/finger/row\nkey F\nclick Viewport@0.3,0.1\nexpect Inspector/about\n"
+      "click Scene/finger/row\nkey F\nclick Scene/sheet/row\nexpect-no Inspector/probe/radius\n"
       "click Viewport@0.5,0.5\nexpect Inspector/probe/radius\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
 }
