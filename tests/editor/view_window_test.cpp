@@ -94,13 +94,5 @@ TEST_F(ViewWindowTest, EveryOverlayAndStandardViewChangesThePicture) {
   EXPECT_GT(differing("Top.png", "Projection.png"), 1e-3);
 }
 
-TEST_F(ViewWindowTest, ASignIsSelectedByPressingIt) {
-  // The finger has no mesh; it stands over the middle of the sheet.
-  const Said said = edited(
-      "click Scene/finger/row\nkey F\nclick Scene/sheet/row\nexpect-no Inspector/probe/radius\n"
-      "click Viewport@0.5,0.5\nexpect Inspector/probe/radius\nclose\n");
-  ASSERT_EQ(said.status, 0) << said.err;
-}
-
 }  // namespace
 }  // namespace pliant::testing
