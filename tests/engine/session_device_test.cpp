@@ -142,8 +142,8 @@ Cycle cycle(const DeviceCapabilities& can, double scale) {
   scene.add_surface("tissue", sheet(), {.stiffness = 800.0});
   scene.add_rigid_body("stylus", box(0.01f), {.mass = 0.05}, {.position = {0, 0.03, 0}});
   EXPECT_TRUE(scene.add_handle("stylus", {.translation = {3000.0, 5.0}, .rotation = {5.0, 0.01}}, {.scale = scale}));
-  Session session = opened(scene);
   Held held{.can = can, .position = {0, 0.03 / scale, 0}};
+  Session session = opened(scene);
   connect(session, held, "stylus");
   Cycle out;
   double last_angle = 0.0;
