@@ -114,6 +114,8 @@ Status App::run() {
     const std::uint64_t now = now_ns();
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
+      // The script's hand alone is on mouse and keys: a pointer that rests where the window opens would take its place.
+      std::erase_if(events, [](const InputEvent& event) { return event.kind != InputKind::kClose; });
       ui::Script::Surroundings at;
       at.under_way = under_way();
       at.now = editor.now;
@@ -243,7 +245,6 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   const std::uint64_t began = now_ns();
   const double computed_before = computed_ms();
   host_->begin(events, dt);
-  ui::begin_widgets();
   editor.jobs.deliver(editor);
   editor.painting->update();
   files_->update();
@@ -299,6 +300,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   ask_to_leave();
   draw_question();
   wanted_tabs_.clear();
+  ui::end_widgets();
   host_->end();
   order_picture();
   extra_lines.clear();

@@ -16,6 +16,7 @@ namespace pliant::ui {
 namespace {
 
 constexpr double kPatience = 60.0;  // [s] for what `await` waits for, and for the editor to come to rest
+constexpr int kLateFrames = 10;     // for what a click is to hit
 constexpr int kRestFrames = 3;      // a window that opens is drawn, laid out, and answered
 
 struct NamedKey {
@@ -211,6 +212,8 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   bool there = true;
   if (step.verb == "click" || step.verb == "press" || step.verb == "move" || step.verb == "drag") {
     const auto from = place(address_of(step.words, i), there);
+    waits = !from && !there && rest_ < kLateFrames;
+    if (waits) return Done{};
     if (!from) return wrong(from.error().what);
     std::pair<double, double> to = *from;
     if (step.verb == "drag") {

@@ -27,9 +27,11 @@ Scope::~Scope() {
   g_scopes.pop_back();
 }
 
-void begin_widgets() {
+void end_widgets() {
   g_before.swap(g_now);
   g_now.clear();
+  // A tab has no place in the first frame of its bar.
+  std::erase_if(g_before, [](const Place& each) { return each.low.x == each.high.x && each.low.y == each.high.y; });
 }
 
 void known_at(std::string_view label, ImVec2 low, ImVec2 high) {

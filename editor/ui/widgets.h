@@ -30,7 +30,7 @@ class Scope {  // names what is drawn while it lives
   Scope(const Scope&) = delete;
   Scope& operator=(const Scope&) = delete;
 };
-void begin_widgets();                                            // of a frame
+void end_widgets();                                              // of a frame
 void known_as(std::string_view label);                           // the item that was drawn last
 void known_at(std::string_view label, ImVec2 low, ImVec2 high);  // something that is drawn by hand
 // By its address, or by its label where only one has it.
