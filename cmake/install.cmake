@@ -1,5 +1,5 @@
 # `cmake --install` puts libraries, public headers, the command and what ships. find_package(pliant COMPONENTS engine
-# content visual) then finds them: `engine` needs neither OpenGL nor a reader of files, `content` reads and writes level
+# content visual devices) then finds them: `engine` needs neither OpenGL nor a reader of files, `content` reads and writes level
 # files, `visual` draws.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -9,7 +9,8 @@ function(pliant_component name)
   install(TARGETS ${ARGN} EXPORT pliant-${name}-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT pliant-${name}-targets NAMESPACE pliant:: DESTINATION ${package})
 endfunction()
-pliant_component(engine pliant_options pliant_runtime pliant_components pliant_systems pliant_level pliant_engine)
+pliant_component(engine pliant_options pliant_runtime pliant_components pliant_systems pliant_level pliant_devices pliant_engine)
+pliant_component(devices pliant_drivers)
 pliant_component(content pliant_content)
 pliant_component(visual pliant_visual pliant_picture)
 

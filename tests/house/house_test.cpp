@@ -26,14 +26,15 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"components", {"runtime"}},
     {"systems", {"runtime", "components", "shaders"}},
     {"content", {"runtime", "components"}},
-    {"engine", {"runtime", "components", "systems", "content"}},
+    {"devices", {"runtime", "components"}},
+    {"engine", {"runtime", "components", "systems", "content", "devices"}},
     {"window", {"runtime", "components", "systems", "content"}},
-    {"editor", {"runtime", "components", "systems", "content", "engine", "window"}},
-    {"player", {"runtime", "components", "systems", "content", "engine", "window", "editor"}},
-    {"bench", {"runtime", "components", "systems", "content", "engine", "player", "editor", "tests", "shaders"}},
-    {"tests", {"runtime", "components", "systems", "content", "engine", "window", "player", "editor", "shaders"}},
+    {"editor", {"runtime", "components", "systems", "content", "engine", "devices", "window"}},
+    {"player", {"runtime", "components", "systems", "content", "engine", "devices", "window", "editor"}},
+    {"bench", {"runtime", "components", "systems", "content", "engine", "devices", "player", "editor", "tests", "shaders"}},
+    {"tests", {"runtime", "components", "systems", "content", "engine", "devices", "window", "player", "editor", "shaders"}},
     {"examples", {}},
-    {"fuzz", {"runtime", "components", "systems", "content", "engine"}},
+    {"fuzz", {"runtime", "components", "systems", "content", "engine", "devices"}},
 };
 
 // Rooms within systems/ and content/, by the second part of a path. What is not named is put together of all of them.
@@ -48,6 +49,11 @@ const std::map<std::string, std::set<std::string>> kRooms{
     {"content/tets", {"content/level", "content/mesh", "content/files"}},
     {"content/level", {"content/mesh", "content/tets", "content/files"}},
     {"editor/paint", {}},
+    {"devices/ports", {}},
+    {"devices/guard", {}},
+    {"devices/simulated", {}},
+    {"devices/wrappers", {}},
+    {"devices/servo", {"devices/guard"}},
 };
 
 // "systems/touch" of "systems/touch/foot.h".

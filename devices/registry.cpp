@@ -10,7 +10,11 @@ namespace {
 
 struct Registered {
   std::mutex mutex;
-  std::map<std::string, DriverFactory> factories;
+  struct Entry {
+    DriverFactory factory;
+    DeviceLister lister;
+  };
+  std::map<std::string, Entry> drivers;
 };
 
 Registered& registered() {
@@ -20,14 +24,28 @@ Registered& registered() {
 
 }  // namespace
 
-Status register_driver(const std::string& name, DriverFactory factory) {
+void Driver::wait(double) {}
+Status Driver::run(std::function<void()>) {
+  return Error{"driver", "has no loop of its own; derive run(), or say another DeviceLoop"};
+}
+bool Driver::write_model(const DeviceModel&, const DeviceWrench&) {
+  return false;
+}
+void Driver::make_safe() noexcept {
+  try {
+    write({});
+  } catch (...) {  // its device's own watchdog ends the force
+  }
+}
+
+Status register_driver(const std::string& name, DriverFactory factory, DeviceLister lister) {
   const std::string where = "driver `" + name + "`";
   if (name.empty() || name.find(':') != std::string::npos)
     return Error{where, "has no usable name; give it one without ':'"};
   if (!factory) return Error{where, "has no factory; give a function that makes one"};
   Registered& all = registered();
   const std::lock_guard lock(all.mutex);
-  if (!all.factories.emplace(name, std::move(factory)).second)
+  if (!all.drivers.emplace(name, Registered::Entry{std::move(factory), std::move(lister)}).second)
     return Error{where, "is registered twice; give each driver a name of its own"};
   return Done{};
 }
@@ -36,7 +54,7 @@ std::vector<std::string> driver_names() {
   Registered& all = registered();
   const std::lock_guard lock(all.mutex);
   std::vector<std::string> names;
-  for (const auto& [name, factory] : all.factories) names.push_back(name);
+  for (const auto& [name, entry] : all.drivers) names.push_back(name);
   return names;
 }
 
@@ -46,7 +64,7 @@ Result<std::unique_ptr<Driver>> make_driver(const std::string& name) {
   {
     Registered& all = registered();
     const std::lock_guard lock(all.mutex);
-    if (const auto found = all.factories.find(name); found != all.factories.end()) factory = found->second;
+    if (const auto found = all.drivers.find(name); found != all.drivers.end()) factory = found->second.factory;
   }
   if (factory) {
     try {
@@ -62,6 +80,20 @@ Result<std::unique_ptr<Driver>> make_driver(const std::string& name) {
   for (const std::string& known : driver_names()) names += (names.empty() ? "" : ", ") + known;
   return Error{
       where, names.empty() ? "no driver is registered; call register_driver first" : "unknown; drivers are: " + names};
+}
+
+std::vector<DeviceInfo> list_devices() {
+  std::vector<DeviceLister> listers;
+  {
+    Registered& all = registered();
+    const std::lock_guard lock(all.mutex);
+    for (const auto& [name, entry] : all.drivers)
+      if (entry.lister) listers.push_back(entry.lister);
+  }
+  std::vector<DeviceInfo> found;
+  for (const DeviceLister& lister : listers)
+    for (DeviceInfo& info : lister()) found.push_back(std::move(info));
+  return found;
 }
 
 }  // namespace pliant
