@@ -30,7 +30,8 @@ class Jobs {
   void start(const std::string& key, const std::string& what, Work work);
   void cancel(const std::string& key);
   bool running(const std::string& key) const;
-  bool idle() const;
+  bool idle() const;                 // nothing that a user would wait for
+  bool none() const { return jobs_.empty(); }
   std::vector<std::string> under_way() const;  // what each does, for the status line
   // On the interface's thread, once a frame.
   void deliver(Editor& editor);
