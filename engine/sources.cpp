@@ -55,9 +55,13 @@ Result<ProbeSource> parse_source(const std::string& argument) {
     source.driver = DriverKind::kMouse;
     return source;
   }
-  if (what.starts_with("device:"))
-    return Error{where, "drivers for devices are not yet built; `pliant devices` lists what is found"};
-  return Error{where, "unknown source '" + what + "'; sources are: script:FILE.csv, orbit, mouse, device:ID"};
+  if (what.starts_with("device:") && what.size() > 7) {
+    source.driver = DriverKind::kExternal;
+    source.device = what.substr(7);
+    return source;
+  }
+  return Error{where, "unknown source '" + what +
+                          "'; sources are: script:FILE.csv, orbit, mouse, device:ID (`pliant devices` lists them)"};
 }
 
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
@@ -100,6 +104,7 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
     HapticDevice& device = world.registry.get<HapticDevice>(own_device(world, hand));
     device.driver = source.driver;
     device.file = source.file;
+    device.id = source.device;
     device.path = path;
   }
   return Done{};

@@ -13,10 +13,11 @@ namespace pliant {
 struct ProbeSource {
   std::string name;  // of the probe or tool
   DriverKind driver = DriverKind::kOrbit;
-  std::string file;  // of a script, relative to the working directory
+  std::string file;    // of a script, relative to the working directory
+  std::string device;  // which one (devices/choose.h)
 };
 
-// NAME=script:FILE.csv, NAME=orbit or NAME=mouse. `device:ID` gets a sentence that says what it needs.
+// NAME=script:FILE.csv, NAME=orbit, NAME=mouse or NAME=device:WISH.
 Result<ProbeSource> parse_source(const std::string& argument);
 
 // Adds a node for each source that names no node of the level: a point probe with a device of its own. Before --set, so
