@@ -139,7 +139,7 @@ void draw_device(Pen& pen, dvec3 at, const dmat3& turn, double small) {
 
 void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const std::vector<bool>& shown,
                const std::vector<bool>& selected, const SignColors& colors, std::vector<ViewLine>& lines,
-               std::vector<std::pair<NodeId, dvec3>>& places) {
+               std::vector<ViewSign>& signs) {
   const double seen = order.orthographic > 0.0 ? order.orthographic
                                                : 2.0 * length(order.view.target - order.view.eye) *
                                                      std::tan(0.5 * static_cast<double>(order.view.yfov));
@@ -162,7 +162,10 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
       if (node.device && !node.probe) draw_device(pen, at, turn, small);
       const bool bare = node.mesh < 0 && lines.size() == before;
       if (bare && selected[i]) pen.cross(at, turn, small);
-      if (lines.size() != before) places.emplace_back(order.state.nodes[i]->id, at);
+      if (lines.size() != before) {
+        ViewSign& sign = signs.emplace_back(ViewSign{order.state.nodes[i]->id, at, {}});
+        for (std::size_t k = before; k < lines.size(); ++k) sign.lines.emplace_back(lines[k].from, lines[k].to);
+      }
     }
     if (order.settings.regions) {
       dmat4 rigid(turn);

@@ -12,9 +12,9 @@ namespace pliant {
 namespace {
 
 constexpr float kEncode = 1.0f / 2.2f;
-constexpr std::size_t kMostNormals = 20'000;  // more lines than that hide the mesh
-constexpr std::size_t kMostDots = 30'000;     // of what is pinned
-constexpr double kSignReach = 9.0;            // [pixel] about a sign that picks its node
+constexpr std::size_t kMostNormals = 20'000;          // more lines than that hide the mesh
+constexpr std::size_t kMostDots = 30'000;             // of what is pinned
+constexpr double kSignReach = 9.0, kLineReach = 5.0;  // [pixel] about a sign's place and its lines that picks its node
 
 struct SolidVertex {
   vec3 position, normal;
@@ -459,18 +459,30 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
   glEnable(GL_DEPTH_TEST);
 }
 
-SolidPicked SolidView::pick(double x, double y) const {
+SolidPicked SolidView::pick(double x, double y, double pixel) const {
   const int px = static_cast<int>(x), py = height_ - 1 - static_cast<int>(y);
   if (px < 0 || py < 0 || px >= width_ || py >= height_) return {};
   // Signs lie over everything, and are thin: the nearest one counts that is close by.
-  double nearest = kSignReach * std::max(1.0, height_ / 1080.0);
+  const double scale = pixel * std::max(1.0, height_ / (1080.0 * pixel));
+  double nearest = 1.0;  // [1] of the reach
   SolidPicked sign;
-  for (const auto& [id, place] : signs_)
-    if (const auto at = on_picture(last_.view, last_.orthographic, width_, height_, place))
-      if (const double away = std::hypot(at->x - x, at->y - y); away < nearest) {
-        nearest = away;
-        sign = {id, place};
-      }
+  const auto on = [&](dvec3 place) { return on_picture(last_.view, last_.orthographic, width_, height_, place); };
+  const auto consider = [&](const ViewSign& of, double away, double reach) {
+    if (away >= nearest * reach * scale) return;
+    nearest = away / (reach * scale);
+    sign = {of.node, of.place};
+  };
+  for (const ViewSign& each : signs_) {
+    if (const auto at = on(each.place)) consider(each, std::hypot(at->x - x, at->y - y), kSignReach);
+    for (const auto& [from, to] : each.lines) {
+      const auto a = on(dvec3(from)), b = on(dvec3(to));
+      if (!a || !b) continue;
+      const dvec2 along = dvec2(*b) - dvec2(*a), off = dvec2(x, y) - dvec2(*a);
+      const double square = dot(along, along);
+      consider(each, length(off - (square > 0.0 ? std::clamp(dot(off, along) / square, 0.0, 1.0) : 0.0) * along),
+               kLineReach);
+    }
+  }
   if (sign.node != kNoNode) return sign;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());
   GLuint number = 0;

@@ -37,6 +37,13 @@ struct SolidOrder {
   vec4 axis[3]{}, sign{0};                   // of the grid's axes; of signs of nodes, encoded
 };
 
+// Where a node without a surface is drawn, and the lines that it is drawn with.
+struct ViewSign {
+  NodeId node = kNoNode;
+  dvec3 place{0};                            // [m] world
+  std::vector<std::pair<vec3, vec3>> lines;  // [m] world
+};
+
 // What stands at a pixel.
 struct SolidPicked {
   NodeId node = kNoNode;  // none: nothing
@@ -49,8 +56,9 @@ class SolidView {
 
   // Into `framebuffer`, which has width x height pixels. What has been drawn before is not drawn again.
   void draw(const SolidOrder& order, GLuint framebuffer, int width, int height);
-  // Of the picture drawn last; pixels count from the upper left corner.
-  SolidPicked pick(double x, double y) const;
+  // Of the picture drawn last; pixels count from the upper left corner. `pixel`: how many of the picture's make one of
+  // what is shown.
+  SolidPicked pick(double x, double y, double pixel = 1.0) const;
   std::size_t triangles() const { return triangles_; }  // drawn last
 
  private:
@@ -104,7 +112,7 @@ class SolidView {
   std::vector<NodeId> numbered_;  // node of number - 1, in the picture drawn last
   std::uint32_t first_selected_ = 0xffffffffu;
   mat4 world_from_clip_{1};
-  std::vector<std::pair<NodeId, dvec3>> signs_;  // [m] world, of the picture drawn last: they are picked, too
+  std::vector<ViewSign> signs_;  // of the picture drawn last: they are picked, too
   SolidOrder last_;
   bool drawn_ = false;
 };

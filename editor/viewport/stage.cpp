@@ -138,7 +138,7 @@ void Stage::answer(const StageOrder& order, std::uint64_t number) {
   if (order.question && order.question_number != 0) {
     const dvec2 pixel = *order.question * done.share;
     done.question = order.question_number;
-    done.picked = solid_->pick(pixel.x, pixel.y);
+    done.picked = solid_->pick(pixel.x, pixel.y, done.share);
   }
   const std::lock_guard lock(mutex_);
   done_ = std::move(done);
@@ -196,7 +196,9 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     if (order.question && order.question_number != 0) {
       const dvec2 pixel = *order.question * share;
       done.question = order.question_number;
-      done.picked = drawn ? scenery_->pick(pixel.x, pixel.y) : solid_ ? solid_->pick(pixel.x, pixel.y) : SolidPicked{};
+      done.picked = drawn    ? scenery_->pick(pixel.x, pixel.y)
+                    : solid_ ? solid_->pick(pixel.x, pixel.y, share)
+                             : SolidPicked{};
     }
   } catch (const std::exception& error) {
     done.trouble = std::string("the picture failed: ") + error.what();

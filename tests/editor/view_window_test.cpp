@@ -94,5 +94,25 @@ TEST_F(ViewWindowTest, EveryOverlayAndStandardViewChangesThePicture) {
   EXPECT_GT(differing("Top.png", "Projection.png"), 1e-3);
 }
 
+TEST_F(ViewWindowTest, ASignIsSelectedByPressingIt) {
+  // The finger has no mesh; it stands over the middle of the sheet.
+  const Said said = edited(
+      "click Scene/finger/row\nkey F\nclick Scene/sheet/row\nexpect-no Inspector/probe/radius\n"
+      "click Viewport@0.5,0.5\nexpect Inspector/probe/radius\nclose\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+}
+
+TEST_F(ViewWindowTest, ASignIsSelectedByPressingAnyOfItsLinesAndNotWhatIsInsideThem) {
+  Level level = sheet_and_finger();
+  level.nodes[1].probe->radius = 0.01;
+  ASSERT_TRUE(save_level(level, folder / "small.glb").ok());
+  // Framed, the picture is 52 mm high: the sphere's outline is 0.192 of it from the middle.
+  const Said said = edited(
+      "click Scene/finger/row\nkey F\nclick Scene/sheet/row\nclick View/Front\nscreenshot sign.png\n"
+      "click Viewport@0.564,0.4\nexpect-no Inspector/probe/radius\n"
+      "click Viewport@0.5875,0.364\nexpect Inspector/probe/radius\nclose\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+}
+
 }  // namespace
 }  // namespace pliant::testing
