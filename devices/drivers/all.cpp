@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include "devices/drivers/haply.h"
 #include "devices/drivers/network_device.h"
 #include "pliant/driver.h"
 
@@ -11,7 +12,10 @@ void register_all_drivers() {
   static std::once_flag once;
   std::call_once(once, [] {
     // One line a driver:
-    (void)register_driver("network", [] { return std::make_unique<NetworkDevice>(); }, list_network_devices);
+    (void)register_driver(
+        "haply", [] { return std::make_unique<Haply>(); }, list_haply);
+    (void)register_driver(
+        "network", [] { return std::make_unique<NetworkDevice>(); }, list_network_devices);
   });
 }
 
