@@ -3,6 +3,8 @@
 #include <mutex>
 
 #include "devices/drivers/gamepad.h"
+#include "devices/drivers/haply.h"
+#include "devices/drivers/network_device.h"
 #include "devices/drivers/polhem.h"
 #include "devices/drivers/sony_pad.h"
 #include "devices/drivers/spacemouse.h"
@@ -19,6 +21,10 @@ void register_all_drivers() {
     (void)register_dualshock4();
     (void)register_gamepad();
     (void)register_polhem();
+    (void)register_driver(
+        "haply", [] { return std::make_unique<Haply>(); }, list_haply);
+    (void)register_driver(
+        "network", [] { return std::make_unique<NetworkDevice>(); }, list_network_devices);
   });
 }
 
