@@ -30,13 +30,13 @@ struct Alternative {
 std::vector<Alternative> alternatives_of(std::string_view wish) {
   std::vector<Alternative> all;
   while (true) {
-    const std::size_t comma = wish.find(',');
-    const std::string_view one = trimmed(wish.substr(0, comma));
+    const std::size_t end = wish.find(';');
+    const std::string_view one = trimmed(wish.substr(0, end));
     const std::size_t bar = one.find('|');
     all.push_back({std::string(trimmed(one.substr(0, bar))),
                    bar == std::string_view::npos ? std::string() : std::string(one.substr(bar))});
-    if (comma == std::string_view::npos) return all;
-    wish.remove_prefix(comma + 1);
+    if (end == std::string_view::npos) return all;
+    wish.remove_prefix(end + 1);
   }
 }
 

@@ -1,6 +1,6 @@
 // Which device a wish means, of those that are there: what a level's `id` and `--probe NAME=device:WISH` say.
 //
-// A wish is one or more alternatives, separated by ",": the first that can be opened holds. Each is
+// A wish is one or more alternatives, separated by ";": the first that can be opened holds. Each is
 //   DRIVER or DRIVER:ID     a driver's first device, or the one of that id (as `pliant devices` prints it)
 //   any-force               whatever pushes in three axes, the strongest first
 //   any-pose                whatever senses position and rotation

@@ -30,7 +30,7 @@ DeviceCapabilities what_it_can(const GamepadTraits& traits) {
 
 class Gamepad final : public Driver {
  public:
-  Gamepad(GamepadOpener opener, DeviceClock clock) : opener_(std::move(opener)), clock_(std::move(clock)) {}
+  Gamepad(GamepadOpener opener, SecondsClock clock) : opener_(std::move(opener)), clock_(std::move(clock)) {}
   ~Gamepad() override { Gamepad::close(); }
 
   Status open(const std::string& id) override {
@@ -126,7 +126,7 @@ class Gamepad final : public Driver {
 
  private:
   GamepadOpener opener_;
-  DeviceClock clock_;
+  SecondsClock clock_;
   std::unique_ptr<GamepadLine> line_;
   GamepadParser parser_;
   StickControl control_;
@@ -185,7 +185,7 @@ GamepadOutput constant_effect(const dvec3& share) {
   return output;
 }
 
-std::unique_ptr<Driver> make_gamepad(GamepadOpener opener, DeviceClock clock) {
+std::unique_ptr<Driver> make_gamepad(GamepadOpener opener, SecondsClock clock) {
   return std::make_unique<Gamepad>(std::move(opener), std::move(clock));
 }
 

@@ -87,7 +87,7 @@ class GamepadLine {
 using GamepadOpener = std::function<Result<std::unique_ptr<GamepadLine>>(const std::string& id)>;
 
 // `id`: what `pliant devices` prints (its unique id, or /dev/input/eventN), then stick_control.h's words.
-std::unique_ptr<Driver> make_gamepad(GamepadOpener opener, DeviceClock clock = monotonic_seconds);
+std::unique_ptr<Driver> make_gamepad(GamepadOpener opener, SecondsClock clock = monotonic_seconds);
 Status register_gamepad();
 
 }  // namespace pliant

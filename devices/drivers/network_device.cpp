@@ -36,10 +36,6 @@ std::string shown(const std::string& id) {
 
 }  // namespace
 
-double monotonic_seconds() {
-  return static_cast<double>(now_ns()) * 1e-9;
-}
-
 NetworkDevice::NetworkDevice() : NetworkDevice(open_udp) {}
 NetworkDevice::NetworkDevice(PortOpener opener, SecondsClock clock)
     : opener_(std::move(opener)), clock_(std::move(clock)) {}

@@ -11,11 +11,9 @@
 
 #include "devices/drivers/network_frame.h"
 #include "devices/ports/packet_port.h"
+#include "devices/ports/seconds.h"
 
 namespace pliant {
-
-using SecondsClock = std::function<double()>;  // [s] monotonic
-double monotonic_seconds();
 
 inline constexpr const char* kNetworkPort = "17716";
 

@@ -43,7 +43,7 @@ void put16(std::span<std::uint8_t> bytes, std::size_t at, int value) {
 
 class Polhem final : public Driver {
  public:
-  Polhem(PortOpener opener, DeviceClock clock) : opener_(std::move(opener)), clock_(std::move(clock)) {}
+  Polhem(PortOpener opener, SecondsClock clock) : opener_(std::move(opener)), clock_(std::move(clock)) {}
   ~Polhem() override { Polhem::close(); }
 
   Status open(const std::string& id) override {
@@ -173,7 +173,7 @@ class Polhem final : public Driver {
   }
 
   PortOpener opener_;
-  DeviceClock clock_;
+  SecondsClock clock_;
   std::unique_ptr<PacketPort> port_;
   const PolhemConfig* config_ = nullptr;
   std::size_t length_ = kPolhemOutput;
@@ -227,7 +227,7 @@ void polhem_set_encoders(const std::array<int, 6>& counts, std::span<std::uint8_
   put16(into, 7, 1);
 }
 
-std::unique_ptr<Driver> make_polhem(PortOpener opener, DeviceClock clock) {
+std::unique_ptr<Driver> make_polhem(PortOpener opener, SecondsClock clock) {
   return std::make_unique<Polhem>(std::move(opener), std::move(clock));
 }
 

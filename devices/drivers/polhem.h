@@ -36,7 +36,7 @@ void polhem_drive(const dvec3& currents, std::span<std::uint8_t, kPolhemOutput> 
 // Sets the encoders; the motors are off in it.
 void polhem_set_encoders(const std::array<int, 6>& counts, std::span<std::uint8_t, kPolhemOutput> into);
 
-std::unique_ptr<Driver> make_polhem(PortOpener opener, DeviceClock clock = monotonic_seconds);
+std::unique_ptr<Driver> make_polhem(PortOpener opener, SecondsClock clock = monotonic_seconds);
 Status register_polhem();
 
 }  // namespace pliant

@@ -34,7 +34,7 @@ DeviceCapabilities what_it_can(SonyModel model) {
 
 class SonyPad final : public Driver {
  public:
-  SonyPad(SonyModel model, PortOpener opener, DeviceClock clock)
+  SonyPad(SonyModel model, PortOpener opener, SecondsClock clock)
       : model_(model), opener_(std::move(opener)), clock_(std::move(clock)) {}
   ~SonyPad() override { SonyPad::close(); }
 
@@ -168,7 +168,7 @@ class SonyPad final : public Driver {
 
   SonyModel model_;
   PortOpener opener_;
-  DeviceClock clock_;
+  SecondsClock clock_;
   std::unique_ptr<PacketPort> port_;
   SonyCalibration calibration_;
   MotionFilter motion_;
@@ -203,7 +203,7 @@ Status register_pad(const char* name, SonyModel model, std::span<const HidMatch>
 
 }  // namespace
 
-std::unique_ptr<Driver> make_sony_pad(SonyModel model, PortOpener opener, DeviceClock clock) {
+std::unique_ptr<Driver> make_sony_pad(SonyModel model, PortOpener opener, SecondsClock clock) {
   return std::make_unique<SonyPad>(model, std::move(opener), std::move(clock));
 }
 

@@ -16,7 +16,7 @@
 namespace pliant {
 
 // `id`: serial number or path, then stick_control.h's words.
-std::unique_ptr<Driver> make_sony_pad(SonyModel model, PortOpener opener, DeviceClock clock = monotonic_seconds);
+std::unique_ptr<Driver> make_sony_pad(SonyModel model, PortOpener opener, SecondsClock clock = monotonic_seconds);
 Status register_dualsense();
 Status register_dualshock4();
 

@@ -51,7 +51,7 @@ DeviceCapabilities what_it_can() {
 
 class SpaceMouse final : public Driver {
  public:
-  SpaceMouse(PortOpener opener, DeviceClock clock) : opener_(std::move(opener)), clock_(std::move(clock)) {}
+  SpaceMouse(PortOpener opener, SecondsClock clock) : opener_(std::move(opener)), clock_(std::move(clock)) {}
 
   Status open(const std::string& id) override {
     close();
@@ -107,7 +107,7 @@ class SpaceMouse final : public Driver {
 
  private:
   PortOpener opener_;
-  DeviceClock clock_;
+  SecondsClock clock_;
   std::unique_ptr<PacketPort> port_;
   SpaceMouseLayout layout_;
   SpaceMouseState state_;
@@ -176,7 +176,7 @@ SpaceMousePart parse_spacemouse(const SpaceMouseLayout& layout, std::span<const 
   return part == SpaceMousePart::kNothing ? SpaceMousePart::kButtons : part;
 }
 
-std::unique_ptr<Driver> make_spacemouse(PortOpener opener, DeviceClock clock) {
+std::unique_ptr<Driver> make_spacemouse(PortOpener opener, SecondsClock clock) {
   return std::make_unique<SpaceMouse>(std::move(opener), std::move(clock));
 }
 

@@ -41,7 +41,7 @@ SpaceMousePart parse_spacemouse(const SpaceMouseLayout& layout, std::span<const 
                                 SpaceMouseState& state);
 
 // Registered as `spacemouse`. `id`: serial number or path, then stick_control.h's words.
-std::unique_ptr<Driver> make_spacemouse(PortOpener opener, DeviceClock clock = monotonic_seconds);
+std::unique_ptr<Driver> make_spacemouse(PortOpener opener, SecondsClock clock = monotonic_seconds);
 Status register_spacemouse();
 
 }  // namespace pliant

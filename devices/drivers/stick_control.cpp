@@ -15,10 +15,6 @@ dvec3 clipped(const dvec3& v, double dead_zone) {
 
 }  // namespace
 
-double monotonic_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 Result<StickSettings> stick_settings(const std::string& driver, const DeviceWords& words, StickSettings defaults) {
   StickSettings set = defaults;
   static constexpr const char* kRateFirst[] = {"rate", "position"};

@@ -2,16 +2,11 @@
 // displacement. World axes: right-handed, Y up; lengths in metres of the device's workspace.
 #pragma once
 
-#include <functional>
-
 #include "devices/drivers/device_words.h"
+#include "devices/ports/seconds.h"
 #include "pliant/math.h"
 
 namespace pliant {
-
-// Seconds of the monotonic clock; tests put their own.
-using DeviceClock = std::function<double()>;
-double monotonic_seconds();
 
 struct StickSettings {
   bool rate = true;         // false: by position

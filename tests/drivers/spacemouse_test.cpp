@@ -134,8 +134,14 @@ TEST(SpaceMouse, ACapThatFallsSilentWhileDeflectedStops) {
   Rig rig;
   rig.hold({350, 0, 0, 0, 0, 0}, 100);
   DeviceSample sample, later;
-  for (int i = 0; i < 500; ++i) rig.clock.now += 0.001, ASSERT_TRUE(rig.driver->read(sample));
-  for (int i = 0; i < 500; ++i) rig.clock.now += 0.001, ASSERT_TRUE(rig.driver->read(later));
+  for (int i = 0; i < 500; ++i) {
+    rig.clock.now += 0.001;
+    ASSERT_TRUE(rig.driver->read(sample));
+  }
+  for (int i = 0; i < 500; ++i) {
+    rig.clock.now += 0.001;
+    ASSERT_TRUE(rig.driver->read(later));
+  }
   EXPECT_LT(length(later.position - sample.position), 1e-9);
   EXPECT_LT(sample.position.x, 0.10 * 0.5);  // long before the border
 }

@@ -43,7 +43,7 @@ TEST_F(Choose, WhatCannotBeOpenedIsPassedOverAndSaid) {
   there[1].missing = "no permission; install the rule";
   EXPECT_EQ(choose_device("strong", there)->id, "strong:8");
   there[2].missing = "no permission; install the rule";
-  const auto chosen = choose_device("strong, any-pose, mouse", there);
+  const auto chosen = choose_device("strong; any-pose; mouse", there);
   ASSERT_TRUE(chosen) << chosen.error().message();
   EXPECT_EQ(chosen->id, "");
   ASSERT_THAT(chosen->notes, SizeIs(2));
@@ -52,12 +52,12 @@ TEST_F(Choose, WhatCannotBeOpenedIsPassedOverAndSaid) {
 }
 
 TEST_F(Choose, AnErrorSaysWhyOfEveryAlternative) {
-  const auto none = choose_device("falkon, any-pose", there);
+  const auto none = choose_device("falkon; any-pose", there);
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message(), HasSubstr("drivers are: knob, strong, weak"));
   EXPECT_THAT(none.error().message(), HasSubstr("no device that senses position and rotation"));
   EXPECT_THAT(none.error().message(), HasSubstr("pliant devices"));
-  EXPECT_THAT(choose_device("strong,", {}).value().notes, IsEmpty());
+  EXPECT_THAT(choose_device("strong;", {}).value().notes, IsEmpty());
   EXPECT_FALSE(choose_device("", there));
   EXPECT_FALSE(choose_device("any", {}));
 }
