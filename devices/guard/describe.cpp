@@ -46,6 +46,8 @@ const char* sentence(DeviceCause cause) {
       return "it was faster than its largest velocity; hold it firmly, then arm it again";
     case DeviceCause::kRunaway:
       return "it gathered speed against the force; check the sign of its axes and motors, then arm it again";
+    case DeviceCause::kGaveEnergy:
+      return "the hand got more energy than it gave; report it with the level, then arm it again";
     case DeviceCause::kBadForce:
       return "the wanted force is no number; report it with the level";
     case DeviceCause::kModelStale:

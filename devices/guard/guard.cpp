@@ -338,6 +338,10 @@ DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders
     return {};
   }
   const DeviceWrench wrench = limited(wish, dt_);
+  if (energy_.work > kMostGiven + kGuardShare * energy_.stored) {
+    trip(DeviceCause::kGaveEnergy, now);
+    return {};
+  }
   if (!finite(wrench)) {  // cannot be, and must not leave
     trip(DeviceCause::kBadForce, now);
     return {};

@@ -25,32 +25,21 @@ inline constexpr double kModelHolds = 0.010;     // [s] the same of a model
 inline constexpr double kLatchAfter = 0.100;     // [s] of either: the device trips
 inline constexpr double kGateForce = 0.2;        // [N] the gate opens below this
 inline constexpr double kGateTorque = 0.01;      // [N m] and this
-inline constexpr double kRampTime = 0.2;         // [s] in which the force comes in, once the gate is open
 inline constexpr double kSettleTime = 0.05;      // [s] of fresh samples before a device arms itself
 inline constexpr double kFrozenAfter = 1.0;      // [s] of the very same pose under force
 inline constexpr double kFarOut = 2.0;           // [1] times the workspace's half diagonal: not a pose of this device
 inline constexpr double kFastestSample = 20.0;   // [m/s] what is faster is a jump
-inline constexpr double kRunawayGain = 0.06;     // [m/s] of speed against the force, gathered in about kRunawayTime
-inline constexpr double kRunawayTime = 0.006;    // [s]
+inline constexpr double kRunawayGain = 0.05;     // [m/s] of speed against the force, gathered in about kRunawayTime
+inline constexpr double kRunawayTime = 0.010;    // [s]
 inline constexpr double kRunawayShare = 0.25;    // [1] of the largest force, above which that is looked at
+inline constexpr double kMostGiven = 5e-3;         // [J] that the hand got beyond what it gave, in spite of the damping
 inline constexpr double kThermalTime = 20.0;     // [s] of a motor's winding; longer: peaks are allowed for longer
 inline constexpr double kWarmShare = 0.5;        // [1] of the largest force, where a warm device says no continuous one
 inline constexpr double kFadeTime = 0.5;         // [s] in which a low battery takes the force away
-inline constexpr double kGuardSlew = 2000.0;     // [N/s] of what comes in; what is let go falls at once
 inline constexpr double kDefaultVelocity = 2.0;  // [m/s] where a device says no largest one
 inline constexpr double kVelocityTime = 1.6e-3;  // [s] of the filter of velocities: 100 Hz
 inline constexpr double kGuardLever = 0.05;      // [m] a torque's slew is a force's at this lever
 inline constexpr unsigned kMostLosses = 5;       // in one second, then it trips
-
-struct GuardParameters {
-  Arming arming = Arming::kAutomatic;
-  std::uint32_t dead_man = 0;  // buttons: force only while one of them is down; 0: none is needed
-  double max_force = 0.0;      // [N] 0: the device's; more than the device's is not taken
-  double max_torque = 0.0;     // [N m] the same
-  double max_velocity = 0.0;   // [m/s] the same; kDefaultVelocity where neither says one
-  double slew = kGuardSlew;    // [N/s]
-  double ramp = kRampTime;     // [s]
-};
 
 // What a person or the servo wants of it at this step. `stop` wins over all.
 struct GuardOrders {
@@ -66,7 +55,7 @@ struct GuardWish {
   double age = 0.0;     // [s] of it
   DeviceWrench wrench;  // not limited
   dvec3 weight{0};      // [N] DeviceModel::weight
-  dvec3 velocity{0};    // [m/s] DeviceModel::velocity
+  dvec3 velocity{0};    // [m/s] DeviceModel::carried
   double max_force = 0.0, max_torque = 0.0;
 };
 

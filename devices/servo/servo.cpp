@@ -44,15 +44,19 @@ Servo::~Servo() {
 Status Servo::open(const std::string& id) {
   if (open_) return Error{"servo", "is open already; close it first"};
   if (Status opened = inner_->open(id); !opened) return opened;
-  open_ = true;
-  note_.clear();
+  adopt();
+  return Done{};
+}
+
+void Servo::adopt() {
   try {
-    inner_can_ = can_ = inner_->capabilities();
+    can_ = inner_->capabilities();
   } catch (...) {
     inner_->close();
-    open_ = false;
     throw;
   }
+  open_ = true;
+  note_.clear();
   can_.max_stiffness = stable_stiffness(can_, can_.rate);
   guard_ = Guard(can_, parameters_);
   figures_ = {};
@@ -64,7 +68,6 @@ Status Servo::open(const std::string& id) {
   if (inner_->safe_line(line))
     if (Status started = watchman_.start(line); !started) note_ = started.error().message();
   tell();
-  return Done{};
 }
 
 // [s] Real time while a thread runs, else where advance() has come to.
@@ -170,7 +173,7 @@ GuardWish Servo::wish(double now) {
   wish.wrench = local_force(model, guard_.position(), can_.senses_rotation ? guard_.rotation() : model.rotation,
                             guard_.velocity(), guard_.spin(), wish.age);
   wish.weight = model.weight;
-  wish.velocity = model.velocity;
+  wish.velocity = model.carried;
   wish.max_force = model.max_force;
   wish.max_torque = model.max_torque;
   figures_.oldest_model = std::max(figures_.oldest_model, 1e6 * wish.age);
@@ -197,6 +200,7 @@ void Servo::put(const DeviceWrench& wrench, bool make_safe) {
 }
 
 void Servo::period(double now) {
+  if (!running_) virtual_now_ = now;
   if (models_.acquire()) ++figures_.models;
   DeviceSample sample;
   bool sampled = false;

@@ -32,6 +32,7 @@ class Servo final : public Driver {
 
   // --- Driver: before start() its owner's, then the touch clock's
   Status open(const std::string& id) override;
+  void adopt();  // in place of open(): the driver is open already
   // The driver's, its stiffness limited by its rate.
   DeviceCapabilities capabilities() const override { return can_; }
   bool read(DeviceSample& sample) override;
@@ -81,7 +82,7 @@ class Servo final : public Driver {
 
   std::unique_ptr<Driver> inner_;
   GuardParameters parameters_;
-  DeviceCapabilities can_, inner_can_;
+  DeviceCapabilities can_;
   bool open_ = false, looped_ = false;  // looped_: the library has been handed its tick
   std::string note_;
   Watchman watchman_;

@@ -40,6 +40,7 @@ enum class DeviceCause : std::uint8_t {
   kTimeBack,         // a sample is older than the one before, or from the future
   kTooFast,          // faster than its largest velocity
   kRunaway,          // it gathers speed against the force
+  kGaveEnergy,       // the hand got more than it gave, in spite of damping
   kBadForce,         // the wanted force is no number
   kModelStale,       // no force model for 10 ms
   kModelLost,        // none for 100 ms
@@ -67,6 +68,17 @@ std::string describe(const DeviceTransition& transition);
 enum class Arming : std::uint8_t {
   kAutomatic,  // it arms itself once samples and models are fresh; never after a trip
   kByHand      // Session::arm alone
+};
+
+// How a device is guarded. Whatever is said here, the device's own limits hold.
+struct GuardParameters {
+  Arming arming = Arming::kAutomatic;
+  std::uint32_t dead_man = 0;  // buttons: force only while one of them is down; 0: none is needed
+  double max_force = 0.0;      // [N] 0: the device's
+  double max_torque = 0.0;     // [N m] the same
+  double max_velocity = 0.0;   // [m/s] the same; 2 where neither says one
+  double slew = 2000.0;        // [N/s] of force that comes in; what is let go falls at once
+  double ramp = 0.2;           // [s] in which force comes in, once the gate is open
 };
 
 // How a device's servo runs, since its start.

@@ -55,7 +55,8 @@ struct DeviceModel {
   dmat3 force_by_velocity{0.0};   // [N s/m]
   dmat3 torque_by_spin{0.0};      // [N m s/rad]
   double time = 0.0;              // [s] when it was made, of the monotonic clock
-  dvec3 velocity{0};              // [m/s] of `position` along with what is touched; dx and v are against it
+  dvec3 velocity{0};              // [m/s] of what is touched: dx and v are against it
+  dvec3 carried{0};               // [m/s] the part of it that may do work: of a surface with a prescribed motion
   dvec3 weight{0};                // [N] part of the force that may do work: of a tool that nothing carries
   double max_force = 0.0;         // [N] the level's limit, which holds of what the model gives as well; 0: none
   double max_torque = 0.0;        // [N m] the same
@@ -86,6 +87,7 @@ struct DeviceCapabilities {
   double rate = 0.0;     // [Hz] of samples, and of its servo; 0: the touch clock's, without a thread of its own
   double latency = 0.0;  // [s] from a write to the sample that knows of it; 0: not said
   DeviceLoop loop = DeviceLoop::kOurs;
+  bool simulated = false;  // it has no motors: any number may open the same one
   double max_grip = 0.0;  // [N] of DeviceWrench::grip; 0: not said
   double damping = 0.0;   // [N s/m] of its mechanics in a light hand: bounds its stiffness by its rate; 0: not said
 };
