@@ -20,6 +20,8 @@ pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
 pkg_check_modules(hidapi REQUIRED IMPORTED_TARGET hidapi-hidraw)
 if(PLIANT_TESTS)
   find_package(GTest REQUIRED)
+  pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # without it, tests of plugging devices in are skipped
+  find_program(UMOCKDEV_WRAPPER umockdev-wrapper)
 endif()
 if(PLIANT_BENCH)
   find_package(benchmark REQUIRED)

@@ -62,10 +62,10 @@ void fuzz_sony(SonyModel model, bool bluetooth, Bytes rest) {
     if (parse_sony(model, bluetooth, sealed, input) == SonyParse::kSample) {
       for (const double stick : input.sticks) check(std::abs(stick) <= 1.0);
       check(input.left >= 0.0 && input.left <= 1.0 && input.battery >= 0.0 && input.battery <= 1.0);
-      motion.step(dvec3(input.gyro[0], input.gyro[1], input.gyro[2]) * nominal.gyro_scale,
-                  dvec3(input.acceleration[0], input.acceleration[1], input.acceleration[2]) *
-                      nominal.acceleration_scale,
-                  input.time * 1e-6);
+      motion.step(
+          dvec3(input.gyro[0], input.gyro[1], input.gyro[2]) * nominal.gyro_scale,
+          dvec3(input.acceleration[0], input.acceleration[1], input.acceleration[2]) * nominal.acceleration_scale,
+          input.time * 1e-6);
       check(std::abs(length(motion.rotation()) - 1.0) < 1e-6);
     }
     if (bluetooth && sealed.size() >= 41) seal_sony(0xa3, std::span(sealed).first(41));
@@ -105,14 +105,30 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const Bytes rest(data + 1, size - 1);
   switch (data[0] % 8) {
-    case 0: fuzz_descriptor(rest); break;
-    case 1: fuzz_spacemouse(*spacemouse_layout({}), rest); break;
-    case 2: fuzz_sony(SonyModel::kDualSense, false, rest); break;
-    case 3: fuzz_sony(SonyModel::kDualSense, true, rest); break;
-    case 4: fuzz_sony(SonyModel::kDualShock, false, rest); break;
-    case 5: fuzz_sony(SonyModel::kDualShock, true, rest); break;
-    case 6: fuzz_polhem(rest); break;
-    default: fuzz_gamepad(rest); break;
+    case 0:
+      fuzz_descriptor(rest);
+      break;
+    case 1:
+      fuzz_spacemouse(*spacemouse_layout({}), rest);
+      break;
+    case 2:
+      fuzz_sony(SonyModel::kDualSense, false, rest);
+      break;
+    case 3:
+      fuzz_sony(SonyModel::kDualSense, true, rest);
+      break;
+    case 4:
+      fuzz_sony(SonyModel::kDualShock, false, rest);
+      break;
+    case 5:
+      fuzz_sony(SonyModel::kDualShock, true, rest);
+      break;
+    case 6:
+      fuzz_polhem(rest);
+      break;
+    default:
+      fuzz_gamepad(rest);
+      break;
   }
   return 0;
 }
