@@ -22,6 +22,8 @@ pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(libwebsockets REQUIRED IMPORTED_TARGET libwebsockets)
 if(PLIANT_TESTS)
   find_package(GTest REQUIRED)
+  pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # without it, tests of plugging devices in are skipped
+  find_program(UMOCKDEV_WRAPPER umockdev-wrapper)
 endif()
 if(PLIANT_BENCH)
   find_package(benchmark REQUIRED)

@@ -91,7 +91,7 @@ class Polhem final : public Driver {
     sample.rotation = pose.rotation;
     sample.ready = calibrated_;
     sample.buttons = input_.button ? 1u : 0u;
-    sample.time = heard_at_;
+    sample.time = sensed_at_;
     return true;
   }
 
@@ -139,7 +139,7 @@ class Polhem final : public Driver {
     jumps_ = 0;
     input_ = input;
     placed_ = fresh_ = true;
-    heard_at_ = now;
+    sensed_at_ = asked_at_;
     return true;
   }
 
@@ -151,7 +151,7 @@ class Polhem final : public Driver {
 
   // A leap is a broken report. If it stays, the encoders have been set by someone else, and the pose is unknown.
   bool plausible(const PolhemInput& input, double now) {
-    const double most = kMostCounts * std::max(1.0, 1000.0 * (now - heard_at_));
+    const double most = kMostCounts * std::max(1.0, 1000.0 * (now - sensed_at_));
     bool leaps = false;
     for (std::size_t i = 0; i < 3; ++i) leaps = leaps || std::abs(input.counts[i] - input_.counts[i]) > most;
     if (leaps && ++jumps_ < 5) return false;
@@ -162,6 +162,7 @@ class Polhem final : public Driver {
   void set_encoders() {
     std::array<std::uint8_t, kPolhemOutput> report;
     polhem_set_encoders(config_->home, report);
+    asked_at_ = clock_();
     gone_ = !port_->send(std::span(report).first(length_));
     set_ = true;
     asked_ = 0;
@@ -169,6 +170,7 @@ class Polhem final : public Driver {
   void drive(const dvec3& currents) {
     std::array<std::uint8_t, kPolhemOutput> report;
     polhem_drive(currents, report);
+    asked_at_ = clock_();
     gone_ = !port_->send(std::span(report).first(length_));
   }
 
@@ -178,7 +180,8 @@ class Polhem final : public Driver {
   const PolhemConfig* config_ = nullptr;
   std::size_t length_ = kPolhemOutput;
   PolhemInput input_;
-  double heard_at_ = 0.0;
+  double asked_at_ = 0.0;   // when the last report was sent
+  double sensed_at_ = 0.0;  // when the arm answered with `input_`: on the report before
   int jumps_ = 0, asked_ = 0;
   bool here_ = false;  // the arm was parked when it was opened
   bool gone_ = false, fresh_ = false, placed_ = false, set_ = false, calibrated_ = false;

@@ -98,8 +98,8 @@ class HidPort final : public PacketPort {
 std::string cure_for_open(const std::string& path, int error) {
   if (error == EACCES || error == EPERM)
     return fmt::format(
-        "you may not open {}; install the rules ({}), run `udevadm control --reload`, and plug the device in "
-        "again",
+        "you may not open {}; put Pliant's rules at {} (`cmake --install` does), run `udevadm control "
+        "--reload`, and plug the device in again",
         path, kUdevRules);
   if (error == ENOENT || error == ENODEV || error == ENXIO)
     return fmt::format("{} is gone; plug the device in again", path);

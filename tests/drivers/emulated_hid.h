@@ -38,7 +38,8 @@ struct EmulatedHid {
     EmulatedPacket packet;
     packet.length = std::min(bytes.size(), packet.bytes.size());
     std::copy_n(bytes.begin(), packet.length, packet.bytes.begin());
-    if (waiting.size() == kMost) waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(next)), next = 0;
+    if (waiting.size() == kMost)
+      waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(next)), next = 0;
     waiting.push_back(packet);
   }
 

@@ -61,9 +61,9 @@ TEST(SpaceMouse, EveryAxisMovesAlongItsWorldAxisByRateOnEveryLayout) {
 TEST(SpaceMouse, AnOppositePushUndoesAPush) {
   Rig rig;
   rig.hold({200, -300, 100, 50, 150, -250}, 300);
-  rig.hold({0, 0, 0, 0, 0, 0}, 200);
+  rig.hold({0, 0, 0, 0, 0, 0}, 600);
   rig.hold({-200, 300, -100, 0, 0, 0}, 300);
-  EXPECT_LT(length(rig.hold({0, 0, 0, 0, 0, 0}, 200).position), 1e-9);
+  EXPECT_LT(length(rig.hold({0, 0, 0, 0, 0, 0}, 600).position), 1e-9);
 }
 
 TEST(SpaceMouse, ByPositionTheCapIsADisplacementAndComesBack) {
@@ -115,11 +115,11 @@ TEST(SpaceMouse, BrokenReportsChangeNothing) {
   const DeviceSample expected = clean.hold(counts, 500);
   const DeviceSample found = disturbed.hold(counts, 500, [&](int i) {
     EmulatedHid& hid = disturbed.cap.hid;
-    if (i % 3 == 0) hid.say(std::array<std::uint8_t, 4>{1, 0xff, 0x7f, 0xff});             // short
-    if (i % 4 == 0) hid.say(std::array<std::uint8_t, 7>{9, 1, 1, 1, 1, 1, 1});             // another's number
-    if (i % 5 == 0) hid.say(std::array<std::uint8_t, 2>{0x17, 42});                        // battery
-    if (i % 7 == 0) hid.say({});                                                           // none
-    if (i % 8 == 0 && hid.waiting.size() > hid.next) hid.say(hid.waiting.back().view());   // twice
+    if (i % 3 == 0) hid.say(std::array<std::uint8_t, 4>{1, 0xff, 0x7f, 0xff});            // short
+    if (i % 4 == 0) hid.say(std::array<std::uint8_t, 7>{9, 1, 1, 1, 1, 1, 1});            // another's number
+    if (i % 5 == 0) hid.say(std::array<std::uint8_t, 2>{0x17, 42});                       // battery
+    if (i % 7 == 0) hid.say({});                                                          // none
+    if (i % 8 == 0 && hid.waiting.size() > hid.next) hid.say(hid.waiting.back().view());  // twice
   });
   EXPECT_EQ(found.position, expected.position);
   EXPECT_EQ(found.rotation, expected.rotation);
@@ -134,7 +134,7 @@ TEST(SpaceMouse, ACapThatFallsSilentWhileDeflectedStops) {
   Rig rig;
   rig.hold({350, 0, 0, 0, 0, 0}, 100);
   DeviceSample sample, later;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 700; ++i) {
     rig.clock.now += 0.001;
     ASSERT_TRUE(rig.driver->read(sample));
   }
@@ -210,7 +210,7 @@ TEST(HidDescriptor, CutAnywhereItIsRefused) {
   const std::vector<std::uint8_t> whole = spacemouse_descriptor(false);
   for (std::size_t length = 1; length < whole.size(); ++length) {
     const Result<HidLayout> cut = parse_hid_descriptor(std::span(whole).first(length));
-    EXPECT_EQ(cut.ok(), length < 6) << length;  // before the first collection nothing tells
+    EXPECT_EQ(cut.ok(), length == 2 || length == 4) << length;  // between items, before the first collection
   }
 }
 
