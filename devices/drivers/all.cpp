@@ -2,8 +2,10 @@
 
 #include <mutex>
 
+#include "devices/drivers/force_dimension.h"
 #include "devices/drivers/haply.h"
 #include "devices/drivers/network_device.h"
+#include "devices/drivers/touch_x.h"
 #include "pliant/driver.h"
 
 namespace pliant {
