@@ -2,12 +2,14 @@
 
 #include <mutex>
 
+#include "devices/drivers/force_dimension.h"
 #include "devices/drivers/gamepad.h"
 #include "devices/drivers/haply.h"
 #include "devices/drivers/network_device.h"
 #include "devices/drivers/polhem.h"
 #include "devices/drivers/sony_pad.h"
 #include "devices/drivers/spacemouse.h"
+#include "devices/drivers/touch_x.h"
 #include "pliant/driver.h"
 
 namespace pliant {

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "devices/ports/web_socket_port.h"
-#include "runtime/clock.h"
 
 namespace pliant {
 namespace {
@@ -17,14 +15,9 @@ using nlohmann::json;
 constexpr int kPort = 10001;
 constexpr std::size_t kLongest = 256 * 1024;  // bytes of a message; an inventory of ten devices has 20 KiB
 constexpr double kPeriod = 1e-3;              // [s] between two messages
-constexpr double kDeadline = 0.020;           // [s] a force that nobody renews is over
 constexpr double kAnswer = 0.5;               // [s] without an answer: the service hangs
 constexpr double kRetry = 0.25;               // [s] between two tries to find the service again
 constexpr double kMostMetres = 2.0;           // [m] of an arm of 30 cm
-
-double seconds_now() {
-  return static_cast<double>(now_ns()) * 1e-9;
-}
 
 const json* find(const json& object, const char* key) {
   if (!object.is_object()) return nullptr;
@@ -159,48 +152,39 @@ Status Haply::open(const std::string& id) {
   has_grip_ = state->has_grip;
   port_ = std::move(*port);
   refused_ = restarts_ = 0;
-  samples_.acquire();  // of an earlier time
-  stop_ = false;
-  thread_ = std::thread([this] { run(); });
+  thread_.start([this] { run(); });
   return Done{};
 }
 
 // Asks and answers until close(), or until the line is lost: then false.
 bool Haply::talk(PacketPort& port) {
   std::vector<std::uint8_t> bytes(kLongest);
-  Wanted wanted;
   bool first = true;
-  double due = seconds_now();
+  double due = DeviceThread::seconds();
   for (;;) {
-    const bool last = stop_;
-    if (forces_.acquire()) wanted = forces_.read();
-    // The last message and one that nobody has renewed are of zero force.
-    const bool stale = last || seconds_now() - wanted.time > kDeadline;
-    const std::string command = haply_command(wanted_, stale ? dvec3(0) : wanted.force, first);
+    const bool last = thread_.stopping();  // the last message is of zero force
+    const std::string command = haply_command(wanted_, thread_.wanted().force, first);
     first = false;
     if (!port.send({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()})) return false;
-    if (last) return true;
     const auto got = port.receive(bytes, kAnswer);
+    if (last) return true;  // its answer has come, so it has not been lost with the line
     if (!got || *got == 0) return false;
     const auto state = parse_haply({reinterpret_cast<const char*>(bytes.data()), *got}, wanted_);
     if (!state) {
       ++refused_;
     } else if (!state->device.empty()) {
-      samples_.write() = state->sample;
-      samples_.write().time = seconds_now();
-      samples_.publish();
+      thread_.publish(state->sample);
     }
-    due = std::max(due + kPeriod, seconds_now());
-    std::this_thread::sleep_for(std::chrono::duration<double>(due - seconds_now()));
+    due = std::max(due + kPeriod, DeviceThread::seconds());
+    DeviceThread::sleep(due - DeviceThread::seconds());
   }
 }
 
 void Haply::run() {
-  request_realtime_priority();
   while (!talk(*port_)) {
     port_.reset();
-    while (!port_ && !stop_) {
-      std::this_thread::sleep_for(std::chrono::duration<double>(kRetry));
+    while (!port_ && !thread_.stopping()) {
+      DeviceThread::sleep(kRetry);
       auto port = opener_(wanted_);
       if (!port) continue;
       std::uint8_t inventory[64];  // is not needed again, and cut off
@@ -213,19 +197,14 @@ void Haply::run() {
 }
 
 bool Haply::read(DeviceSample& sample) {
-  if (!samples_.acquire()) return false;
-  sample = samples_.read();
-  return true;
+  return thread_.read(sample);
 }
-
 void Haply::write(const DeviceWrench& wrench) {
-  forces_.write() = {wrench.force, seconds_now()};
-  forces_.publish();
+  thread_.write(wrench);
 }
 
 void Haply::close() {
-  stop_ = true;
-  if (thread_.joinable()) thread_.join();
+  thread_.stop();
   port_.reset();
 }
 

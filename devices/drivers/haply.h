@@ -8,11 +8,9 @@
 #include <atomic>
 #include <string>
 #include <string_view>
-#include <thread>
 
+#include "devices/drivers/device_thread.h"
 #include "devices/ports/packet_port.h"
-#include "pliant/driver.h"
-#include "runtime/exchange.h"
 
 namespace pliant {
 
@@ -45,10 +43,6 @@ class Haply final : public Driver {
   std::uint64_t restarts() const { return restarts_; }  // times that the service was lost and found again
 
  private:
-  struct Wanted {
-    dvec3 force{0};     // [N]
-    double time = 0.0;  // [s] monotonic, when it was written
-  };
   void run();
   bool talk(PacketPort& port);
 
@@ -56,11 +50,8 @@ class Haply final : public Driver {
   std::string wanted_;  // the device's identifier
   std::unique_ptr<PacketPort> port_;
   bool has_grip_ = false;
-  std::thread thread_;
-  std::atomic<bool> stop_{false};
   std::atomic<std::uint64_t> refused_{0}, restarts_{0};
-  TripleBuffer<DeviceSample> samples_;
-  TripleBuffer<Wanted> forces_;
+  DeviceThread thread_;
 };
 
 std::vector<DeviceInfo> list_haply();

@@ -8,6 +8,7 @@
 
 #include "devices/ports/web_socket_port.h"
 #include "tests/drivers/fake_haply_service.h"
+#include "tests/drivers/until.h"
 
 namespace pliant {
 namespace {
@@ -20,19 +21,6 @@ PortOpener to_port(int port) {
     if (!made) return made.error();
     return std::unique_ptr<PacketPort>(std::move(*made));
   };
-}
-
-// Reads and writes until `enough`, or for so long that only a fault can take it.
-template <class F>
-bool runs_until(Haply& haply, DeviceSample& sample, dvec3 force, F&& enough) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (std::chrono::steady_clock::now() < end) {
-    const bool came = haply.read(sample);
-    haply.write({.force = force});
-    if (enough(came)) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
 }
 
 dvec3 commanded(FakeHaplyService& service) {
@@ -100,20 +88,18 @@ TEST(Haply, PosesComeForcesGoAndThereIsOneStateForEachMessage) {
   ASSERT_TRUE(opened) << opened.error().message();
   EXPECT_TRUE(haply.capabilities().senses_rotation);
   DeviceSample sample;
-  EXPECT_TRUE(
-      runs_until(haply, sample, {0, 1.5, 0.25}, [&](bool) { return commanded(service) == dvec3(0, -0.25, 1.5); }));
+  EXPECT_TRUE(runs_until(haply, sample, {.force = {0, 1.5, 0.25}},
+                         [&](bool) { return commanded(service) == dvec3(0, -0.25, 1.5); }));
   EXPECT_NEAR(length(sample.position - dvec3(0, 0.15, 0.12)), 0.0, 1e-12);
   EXPECT_EQ(sample.buttons, 1u);
   EXPECT_TRUE(sample.ready);
   EXPECT_EQ(service.sessions, 1);
   // A force that nobody renews is over.
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (commanded(service) != dvec3(0) && std::chrono::steady_clock::now() < end) std::this_thread::yield();
-  EXPECT_EQ(commanded(service), dvec3(0));
-  EXPECT_TRUE(runs_until(haply, sample, {1, 0, 0}, [&](bool) { return commanded(service) == dvec3(1, 0, 0); }));
+  EXPECT_TRUE(soon([&] { return commanded(service) == dvec3(0); }));
+  EXPECT_TRUE(
+      runs_until(haply, sample, {.force = {1, 0, 0}}, [&](bool) { return commanded(service) == dvec3(1, 0, 0); }));
   haply.close();
-  while (service.asked != service.answered && std::chrono::steady_clock::now() < end) std::this_thread::yield();
-  EXPECT_EQ(commanded(service), dvec3(0)) << "the last message";
+  EXPECT_TRUE(soon([&] { return commanded(service) == dvec3(0); })) << "the last message";
   EXPECT_LE(service.asked - service.answered, 1) << "the last one may have found its line closed";
   EXPECT_GE(service.answered, 3);
 }
@@ -162,16 +148,17 @@ TEST(Haply, AServiceThatIsRestartedIsFoundAgainAndStartsFromZeroForce) {
   Haply haply(to_port(port));
   ASSERT_TRUE(haply.open(""));
   DeviceSample sample;
-  ASSERT_TRUE(runs_until(haply, sample, {1, 0, 0}, [&](bool) { return commanded(*service) == dvec3(1, 0, 0); }));
+  ASSERT_TRUE(
+      runs_until(haply, sample, {.force = {1, 0, 0}}, [&](bool) { return commanded(*service) == dvec3(1, 0, 0); }));
   service.reset();
   int quiet = 0;
-  EXPECT_TRUE(runs_until(haply, sample, {0, 0, 0}, [&](bool came) {
+  EXPECT_TRUE(runs_until(haply, sample, {.force = {0, 0, 0}}, [&](bool came) {
     quiet = came ? 0 : quiet + 1;
     return quiet > 100;
   }));
   service.emplace(port);
   ASSERT_EQ(service->port, port);
-  EXPECT_TRUE(runs_until(haply, sample, {0, 0, 0}, [](bool came) { return came; }));
+  EXPECT_TRUE(runs_until(haply, sample, {.force = {0, 0, 0}}, [](bool came) { return came; }));
   EXPECT_EQ(haply.restarts(), 1u);
   EXPECT_EQ(commanded(*service), dvec3(0));
   EXPECT_EQ(service->sessions, 1);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "devices/drivers/network_device.h"
+#include "tests/drivers/until.h"
 
 namespace pliant {
 namespace {
@@ -40,19 +41,6 @@ struct OtherProcess {
   ~OtherProcess() { end(); }
 };
 
-// Runs the driver until `enough`, or for long enough that nothing but a fault can take so long.
-template <class F>
-bool runs_until(NetworkDevice& driver, DeviceSample& sample, dvec3 force, F&& enough) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (std::chrono::steady_clock::now() < end) {
-    const bool came = driver.read(sample);
-    driver.write({.force = force});
-    if (enough(came)) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
-
 TEST(NetworkProcesses, AHandleInAnotherProcessIsPushedStoppedAndFoundAgain) {
   OtherProcess device("0");
   ASSERT_GT(device.port, 0);
@@ -67,7 +55,7 @@ TEST(NetworkProcesses, AHandleInAnotherProcessIsPushedStoppedAndFoundAgain) {
   DeviceSample sample;
   // Its spring pulls it to y = -10 mm; 0.4 N lift it by 10 mm.
   EXPECT_TRUE(runs_until(driver, sample, {}, [&](bool) { return sample.position.y < -0.009; })) << sample.position.y;
-  EXPECT_TRUE(runs_until(driver, sample, {0, 0.4, 0}, [&](bool) { return sample.position.y > -0.001; }));
+  EXPECT_TRUE(runs_until(driver, sample, {.force = {0, 0.4, 0}}, [&](bool) { return sample.position.y > -0.001; }));
   EXPECT_EQ(driver.counts().damaged, 0u);
   EXPECT_EQ(driver.counts().foreign, 0u);
   // A model is rendered there: a spring of 360 N/m to y = 10 mm beside its own 40 N/m to -10 mm holds it at 8 mm.
@@ -94,7 +82,7 @@ TEST(NetworkProcesses, AHandleInAnotherProcessIsPushedStoppedAndFoundAgain) {
   // Killed, nothing comes; started again on its port, it is found.
   device.end();
   int quiet = 0;
-  EXPECT_TRUE(runs_until(driver, sample, {0, 0.4, 0}, [&](bool came) {
+  EXPECT_TRUE(runs_until(driver, sample, {.force = {0, 0.4, 0}}, [&](bool came) {
     quiet = came ? 0 : quiet + 1;
     return quiet > 50;
   }));
