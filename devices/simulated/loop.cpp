@@ -82,7 +82,10 @@ class Loop {
 }  // namespace
 
 const char* name_of(Verdict verdict) {
-  return verdict == Verdict::kStable ? "stable" : verdict == Verdict::kCycle ? "limit cycle" : "divergent";
+  return verdict == Verdict::kStable  ? "stable"
+         : verdict == Verdict::kCycle ? "limit cycle"
+         : verdict == Verdict::kOff   ? "off"
+                                      : "divergent";
 }
 
 WallResult run_wall(const WallLoop& loop, const WallStart& start, double seconds, const ForceGuard& guard,
@@ -105,7 +108,8 @@ WallResult run_wall(const WallLoop& loop, const WallStart& start, double seconds
       result.most_work = std::max(result.most_work, run.work());
       if (trace) trace->push_back({run.time(), x, run.axis().motor()});
       if (!(std::abs(x) < far)) {
-        result = {Verdict::kDivergent, std::abs(x), now.speed, run.work(), result.most_work};
+        const bool off = guard && x < 0.0 && run.axis().motor() == 0.0;
+        result = {off ? Verdict::kOff : Verdict::kDivergent, std::abs(x), now.speed, run.work(), result.most_work};
         return result;
       }
     }

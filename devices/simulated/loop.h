@@ -32,7 +32,7 @@ struct WallStart {
   double speed = 0.0;  // [m/s] into the wall
 };
 
-enum class Verdict { kStable, kCycle, kDivergent };
+enum class Verdict { kStable, kCycle, kOff, kDivergent };  // from good to bad
 const char* name_of(Verdict verdict);
 inline Verdict worse(Verdict a, Verdict b) {
   return a > b ? a : b;
@@ -53,6 +53,7 @@ struct WallSample {
 // Runs `seconds`, and up to four times as long while it grows or falls slowly. `trace`: every period, if asked for.
 //   stable: the last quarter's amplitude is below 0.98 of that of the quarter before, or nothing moves
 //   limit cycle: it keeps within 2 % between quarters
+//   off: it fell through the wall without force, because a guard took it away
 //   divergent: it still grows at the end, or has left 1000 times the start, or 0.25 m
 WallResult run_wall(const WallLoop& loop, const WallStart& start, double seconds, const ForceGuard& guard = {},
                     std::vector<WallSample>* trace = nullptr);

@@ -171,6 +171,7 @@ DeviceCapabilities capabilities_of(const DeviceProfile& profile) {
   can.continuous_force = profile.continuous;
   can.max_velocity = profile.max_velocity;
   can.workspace = profile.workspace;
+  can.damping = profile.damping + kLightHandDamping;
   can.rate = profile.rate;
   can.latency = profile.delay + profile.lag + 1.0 / profile.rate;
   return can;

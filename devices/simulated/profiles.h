@@ -29,6 +29,9 @@ struct DeviceProfile {
   const char* sources;  // which numbers are published, and which are assumed
 };
 
+// [N s/m] What the lightest touch of a fingertip adds to a device's own damping (Hajian and Howe 1997: 2 to 5).
+inline constexpr double kLightHandDamping = 2.0;
+
 inline constexpr std::size_t kDeviceProfiles = 8;
 const std::array<DeviceProfile, kDeviceProfiles>& device_profiles();
 const DeviceProfile* find_device_profile(std::string_view name);

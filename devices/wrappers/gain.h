@@ -5,11 +5,9 @@
 
 namespace pliant {
 
-// World position = motion * the device's; the device's force = force * the world's. Power is kept where both are the
-// same: then the device takes from the hand what the world takes from the probe. Else the world that is felt is
-// force/motion times as strong, and a passive world may be felt as an active one where that is above 1 and more than
-// the hand stores. Turning is not scaled, torque is by `force`, times 1/motion per newton metre of lever left to the
-// world.
+// World position = motion * the device's; the device's force = force * the world's. The hand does force/motion times the
+// work that the world takes: power is kept where both are the same. A passive world stays passive by any gain, since
+// the share is constant, but is felt motion * force times as stiff. Turning is not scaled; torque is, by `force`.
 class Gain : public Wrapper {
  public:
   Gain(std::unique_ptr<Driver> inner, double motion, double force)

@@ -28,6 +28,7 @@ class Wrapper : public Driver {
   void wait(double seconds) override { inner_->wait(seconds); }
   Status run(std::function<void()> tick) override { return inner_->run(std::move(tick)); }
   void make_safe() noexcept override { inner_->make_safe(); }
+  bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
 
  protected:
   // The device inside is open: its capabilities are known.

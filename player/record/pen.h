@@ -20,7 +20,8 @@ inline constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContac
 // Lengths in pixels.
 class Pen {
  public:
-  Pen(double width, double height);
+  Pen(double width, double height);                                    // pixels, for a PNG
+  Pen(double width, double height, const std::filesystem::path& svg);  // lines, into this file
   ~Pen();
   Pen(const Pen&) = delete;
   Pen& operator=(const Pen&) = delete;
@@ -31,9 +32,10 @@ class Pen {
   // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width.
   double text(double x, double y, double size, double align, const std::string& words, bool bold = false);
   void upright_text(double x, double y, double size, const std::string& words);
-  bool save(const std::filesystem::path& file);  // whole, or not at all
+  bool save(const std::filesystem::path& file);  // whole, or not at all; of an SVG, its own file
 
  private:
+  bool lines_ = false;  // an SVG
   cairo_surface_t* surface_;
   cairo_t* cairo_;
 };

@@ -9,6 +9,7 @@
 #include "player/print.h"
 #include "player/record/output_folder.h"
 #include "player/study/study_linearisation.h"
+#include "player/study/study_walls.h"
 
 namespace pliant {
 namespace {
@@ -21,6 +22,8 @@ struct Study {
 constexpr Study kStudies[] = {
     {"linearisation", "1 kHz force of a tool: held, linear, contacts solved again, against the full solve",
      study_linearisation},
+    {"walls", "where a virtual wall is stable: stiffness, damping, delay; closed forms, with and without the guard",
+     study_walls},
 };
 
 int list() {
