@@ -8,6 +8,10 @@ namespace pliant {
 
 // The node whose device's path is edited: the active one or that of the probe or tool that is active; kNoNode: none.
 NodeId path_node(const Editor& editor);
+// The node whose device moves a probe or tool, or the node itself where it is a device; kNoNode: none.
+NodeId device_of(const State& state, NodeId node);
+// The file that a device's path goes to: the one that it follows, else one named after the node that is not there yet.
+std::string script_file_of(const State& state, const std::filesystem::path& folder, NodeId device);
 // Its keys as they stand in the document; empty: it has no path yet.
 ScriptKeys keys_of_node(const Editor& editor, NodeId node);
 // The device follows the script from now on; one that had none gets a file named after the node.

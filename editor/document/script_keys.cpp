@@ -96,6 +96,57 @@ ScriptKeys keys_of(const Path& path, double tolerance) {
   return script;
 }
 
+ScriptKeys smooth_keys_of(const Path& path, double tolerance) {
+  ScriptKeys script;
+  script.repeats = path.repeats;
+  const std::vector<PathRow>& rows = path.rows;
+  if (rows.empty()) return script;
+  const auto key_at = [&](std::size_t row) { return PathKey{rows[row].time, rows[row].position, dvec3(0), 0.0}; };
+  const auto off = [&](const ScriptKeys& keys, std::size_t row) {
+    return length(position_at(keys, rows[row].time) - rows[row].position);
+  };
+  std::vector<std::size_t> kept{0};
+  if (rows.size() > 1) kept.push_back(rows.size() - 1);
+  for (bool more = true; more;) {  // a key where each piece is farthest off
+    more = false;
+    script.keys.clear();
+    for (const std::size_t row : kept) script.keys.push_back(key_at(row));
+    std::vector<std::size_t> next;
+    for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
+      next.push_back(kept[k]);
+      double worst = tolerance;
+      std::size_t at = kept[k];
+      for (std::size_t i = kept[k] + 1; i < kept[k + 1]; ++i)
+        if (const double away = off(script, i); away > worst) {
+          worst = away;
+          at = i;
+        }
+      if (at == kept[k]) continue;
+      next.push_back(at);
+      more = true;
+    }
+    next.push_back(kept.back());
+    kept = std::move(next);
+  }
+  // Each that its neighbours can do without. A key has a say in the two pieces on either side of it.
+  for (std::size_t k = 1; k + 1 < kept.size();) {
+    const std::size_t first = k < 3 ? 0 : k - 3, last = std::min(k + 3, kept.size() - 1);
+    ScriptKeys near;
+    for (std::size_t i = first; i <= last; ++i)
+      if (i != k) near.keys.push_back(key_at(kept[i]));
+    bool needed = false;
+    const std::size_t from = kept[std::max(first, k < 2 ? 0 : k - 2)], to = kept[std::min(last, k + 2)];
+    for (std::size_t i = from; i < to && !needed; ++i) needed = off(near, i) > tolerance;
+    if (needed)
+      ++k;
+    else
+      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  script.keys.clear();
+  for (const std::size_t row : kept) script.keys.push_back(key_at(row));
+  return script;
+}
+
 Status save_keys(const ScriptKeys& script, const std::filesystem::path& file) {
   std::string text;
   if (!script.smooth) text += std::string(kStraight) + "\n";

@@ -34,6 +34,8 @@ dvec3 position_at(const ScriptKeys& script, double time);
 Path path_of(const ScriptKeys& script);
 // The keys of a path within `tolerance` [m] of it (Ramer, Douglas and Peucker, in space and time).
 ScriptKeys keys_of(const Path& path, double tolerance);
+// As few keys as a smooth path needs that is nowhere farther than `tolerance` [m] from the rows.
+ScriptKeys smooth_keys_of(const Path& path, double tolerance);
 
 // As a script file that every run reads; the keys stand in its comments, so that they come back as they were.
 Status save_keys(const ScriptKeys& script, const std::filesystem::path& file);

@@ -6,11 +6,14 @@
 #include "editor/app/app.h"
 #include "editor/app/path_editing.h"
 #include "editor/panels/panels.h"
+#include "editor/play/record_path.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
 namespace pliant {
 namespace {
+
+constexpr double kWithin = 2e-4;  // [m] of a path that is recorded; the tab Play asks for another
 
 class PathPanel : public Panel {
  public:
@@ -32,6 +35,7 @@ class PathPanel : public Panel {
       ui::dim(("Script " + printable(node.node.device->file) + ", written when the level is saved").c_str());
     if (ui::strong_button("Set keys", "Takes the tool Path: click on the organ, one press after another"))
       app_.take_tool("Path");
+    draw_record(editor, node);
     draw_pace(editor);
     if (keys.keys.empty()) {
       ui::dim("No path yet. Take the tool Path and click on the organ.");
@@ -42,6 +46,19 @@ class PathPanel : public Panel {
   }
 
  private:
+  // What a run has done with the probes and tools of this device.
+  void draw_record(Editor& editor, const DocumentNode& device) {
+    if (!app_.play().has_past()) return;
+    for (const PlayEffector& each : app_.play().status().effectors) {
+      const DocumentNode* const node = editor.state().find(each.name);
+      if (!node || device_of(editor.state(), node->id) != device.id) continue;
+      ImGui::SameLine();
+      if (ui::button("Record from the run", "What it did in the run that was played becomes its path"))
+        record_path(editor, app_.play(), each.name, kWithin);
+      return;
+    }
+  }
+
   void draw_pace(Editor& editor) {
     double depth = editor.path_depth * 1e3, speed = editor.path_speed * 1e3;
     ui::label("Depth", "How deep the next key presses");
@@ -84,13 +101,13 @@ class PathPanel : public Panel {
     }
     list.AddPolyline(points.data(), static_cast<int>(points.size()), ui::color(p.depth), 0, ui::px(1.5f));
     for (const PathKey& key : keys.keys)
-      list.AddCircleFilled(place(key.time, key.height), ui::px(3), ui::color(p.accent));
-    ImGui::PushFont(ui::font(ui::Type::kSmall));
-    list.AddText(
-        {at.x + ui::px(6), at.y + ui::px(3)}, ui::color(p.dim),
-        fmt::format("{:.1f} mm over, {:.1f} mm into the surface; {:.1f} s", high * 1e3, -low * 1e3, length_s).c_str());
-    ImGui::PopFont();
+      list.AddCircleFilled(place(key.time, key.height), ui::px(keys.keys.size() > 30 ? 2 : 3), ui::color(p.accent));
     ImGui::Dummy(size);
+    ImGui::PushFont(ui::font(ui::Type::kSmall));
+    ui::dim(fmt::format("{:.1f} mm over, {:.1f} mm into the surface; {:.1f} s, {} keys", high * 1e3, -low * 1e3,
+                        length_s, keys.keys.size())
+                .c_str());
+    ImGui::PopFont();
   }
 
   void draw_keys(Editor& editor, NodeId id, const ScriptKeys& keys) {

@@ -7,6 +7,7 @@
 
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
+#include "editor/play/record_path.h"
 #include "editor/ui/widgets.h"
 #include "engine/limits.h"
 #include "pliant/driver.h"
@@ -64,6 +65,7 @@ class PlayPanel : public Panel {
     Play& play = app_.play();
     draw_clock(play);
     draw_sources(editor, play);
+    draw_record(editor, play);
     draw_budget(play);
     draw_limits(play);
   }
@@ -147,6 +149,27 @@ class PlayPanel : public Panel {
     ui::gap(4);
   }
 
+  void draw_record(Editor& editor, Play& play) {
+    if (!play.has_past() || play.status().effectors.empty() || !ui::section("Record a path")) return;
+    const ui::Scope scope("Record");
+    ui::dim("What a probe did in this run, as keys of its script that can be changed afterwards.");
+    ui::label("Within", "How far the curve may be from what was done: less makes more keys");
+    ImGui::SameLine(ui::px(70));
+    double within = 1e3 * within_;
+    if (ui::number("within", within, 0.01, 20, "mm", true, 110)) within_ = 1e-3 * within;
+    for (const PlayEffector& each : play.status().effectors)
+      if (ui::button(("Record path of " + printable(each.name)).c_str(),
+                     each.source == kMouse && !editor.state().find(each.name)
+                         ? "The mouse's own probe becomes one of the level, with this path"
+                         : "Becomes the script of its device; one step to undo")) {
+        record_path(editor, play, each.name, within_);
+        app_.show_panel("Path");
+        app_.take_tool("Path");
+        break;
+      }
+    ui::gap(4);
+  }
+
   // A bar from nothing to what there is, with marks.
   static void bar(const char* label, double value, double most, double mark, const std::string& text) {
     const ui::Palette& p = ui::palette();
@@ -215,6 +238,7 @@ class PlayPanel : public Panel {
   }
 
   App& app_;
+  double within_ = 2e-4;                      // [m] of a path that is recorded
   std::map<std::string, std::string> files_;  // of scripts, as they are typed
 };
 

@@ -98,6 +98,7 @@ void Play::start() {
 void Play::stop() {
   if (!on()) return;
   run_->end();
+  kept_ = run_->kept;
   if (next_) next_->end();
   if (show && on_stage_) show(nullptr);
   run_.reset();  // the stage has the last of it, and lets it go once its picture has gone
@@ -270,15 +271,25 @@ void Play::update() {
   stop();
 }
 
+std::shared_ptr<const PlayPast> Play::past() {
+  if (on()) return ready() ? run_->past() : nullptr;
+  if (!kept_) return nullptr;
+  const std::lock_guard lock(kept_->mutex);
+  return kept_->past;
+}
+
 void Play::changed(const State& before, const State& after) {
-  if (!on()) return;
+  if (!on() && !kept_) return;
   if (unrelated(before, after)) {
     stop();
+    kept_.reset();
+    status_ = {};
     sources.clear();
     traces_.clear();
     before_.clear();
     return;
   }
+  if (!on()) return;
   const LiveEdits edits = live_edits(before, after);
   for (const LiveEdit& edit : edits.now) run_->set(edit.object, edit.key, edit.value);
   if (!edits.later || said_later_) return;

@@ -61,6 +61,11 @@ class Play {
   double going_to() const { return going_to_; }  // [s]
   double progress() const;                       // [1] of what is had again
 
+  // What the run that is on has been so far, or what the last one was; null: there was none. `status().effectors` are
+  // its probes and tools.
+  std::shared_ptr<const PlayPast> past();
+  bool has_past() const { return ready() || (!on() && kept_ != nullptr); }
+
   // Once a frame.
   void update();
   // The document is another one.
@@ -82,6 +87,7 @@ class Play {
   Editor& editor_;
   std::shared_ptr<PlayRun> run_, next_;
   std::shared_ptr<const PlayPast> past_;  // while it is gone back in
+  std::shared_ptr<PlayKept> kept_;        // of the last run
   PlayStatus status_;
   std::vector<PlayTrace> traces_, before_;
   std::vector<std::vector<PlaySample>> taken_;

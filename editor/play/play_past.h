@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct PlayPast {
   std::vector<std::uint64_t> ticks;                     // indices, ascending
   std::vector<RecordedPose> poses;                      // [tick][effector]
   std::vector<PlayEdit> edits;                          // by tick, ascending
+};
+
+// Where a run leaves its past when it has ended.
+struct PlayKept {
+  std::mutex mutex;
+  std::shared_ptr<const PlayPast> past;  // null: it runs
 };
 
 // What one probe or tool felt in one tick.

@@ -488,6 +488,10 @@ void PlayRun::close(Inside& in) {
     const Status stopped = in.session->stop();
     for (SessionEffector& effector : in.parts->effectors) in.parts->take_away(effector, EffectorSource::kReleased);
     in.parts->noted = nullptr;
+    if (in.journal && in.poses) in.take_rows();
+    auto past = std::make_shared<const PlayPast>(std::move(in.past));
+    const std::lock_guard kept_lock(kept->mutex);
+    kept->past = std::move(past);
     if (!stopped) {
       const std::lock_guard lock(mutex_);
       if (status_.error.empty()) status_.error = stopped.error().message();

@@ -103,6 +103,7 @@ class PlayRun {
   void wait();
 
   PlayHand hand;
+  const std::shared_ptr<PlayKept> kept = std::make_shared<PlayKept>();
 
   // --- The stage's
   bool opened() const;     // a picture may be made

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kReach = 10.0;          // [point] from a key within which the mouse has it
 constexpr double kWheel = 0.0005;        // [m] of depth a click
+constexpr std::size_t kMostLabels = 20;  // with more keys their times hide each other
 constexpr std::size_t kMostLines = 400;  // of the curve that is drawn
 
 class PathTool : public ViewTool {
@@ -96,10 +97,12 @@ class PathTool : public ViewTool {
       if (!at) continue;
       const ImVec2 p(in.corner.x + static_cast<float>(at->x), in.corner.y + static_cast<float>(at->y));
       const bool active = near_ == i || editor.path_key == i;
-      list.AddCircleFilled(p, ui::px(active ? 6.0f : 4.5f), ui::color(ui::palette().accent));
-      list.AddCircle(p, ui::px(active ? 7.0f : 5.5f), ui::color(ui::palette().window), 0, ui::px(1.5f));
-      const std::string text = fmt::format("{:.1f} s", keys.keys[i].time);
-      list.AddText({p.x + ui::px(10), p.y - ui::px(8)}, ui::color(ui::palette().text), text.c_str());
+      const float size = active ? 6.0f : keys.keys.size() <= kMostLabels ? 4.5f : 3.0f;
+      list.AddCircleFilled(p, ui::px(size), ui::color(ui::palette().accent));
+      list.AddCircle(p, ui::px(size + 1.0f), ui::color(ui::palette().window), 0, ui::px(1.5f));
+      if (const std::string text = fmt::format("{:.1f} s", keys.keys[i].time);
+          near_ == i || keys.keys.size() <= kMostLabels)
+        list.AddText({p.x + ui::px(10), p.y - ui::px(8)}, ui::color(ui::palette().text), text.c_str());
       ui::known_at("Key " + std::to_string(i + 1), {p.x - ui::px(4), p.y - ui::px(4)},
                    {p.x + ui::px(4), p.y + ui::px(4)});
     }

@@ -64,6 +64,21 @@ TEST_F(PlayWindowTest, ALevelIsPlayedPressedPausedSteppedTakenBackAndStoppedByHa
   EXPECT_GT(contrast(shot("pressed.png"), 0.22, 0.74, 0.72, 0.95), 8.0) << "nothing is plotted";
 }
 
+TEST_F(PlayWindowTest, WhatTheMouseDidIsRecordedAsAPathThatIsSavedWithTheLevel) {
+  const Said said = edited(
+      "click Tab/Play\nclick Play/Play\nawait Play/Pause\nwait 0.5\n"
+      "press Viewport@0.5,0.45\nwait 1\nmove Viewport@0.55,0.45\nwait 0.5\nrelease\nwait 0.5\n"
+      "key Shift+Space\nawait Play/Record/Record path of mouse\nscreenshot record.png\n"
+      "click Record/Record path of mouse\nsay mm from the run\nawait Path/Row 1/time\nscreenshot recorded.png\n"
+      "click Viewport@0.9,0.9\nkey Ctrl+S\nsay Saved\nclose\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  bool there = false;
+  for (const auto& each : fs::directory_iterator(folder))
+    if (each.path().extension() == ".csv" && each.path().filename() != "minimal.csv")
+      there = read_text(each.path()).find("# key ") != std::string::npos;
+  EXPECT_TRUE(there) << "no script with its keys was saved";
+}
+
 TEST_F(PlayWindowTest, ClosingWhileItPlaysEndsItWithoutAWord) {
   const Said said = edited("key Space\nawait Play/Pause\nwait 0.5\nclose\n");
   EXPECT_EQ(said.status, 0) << said.err;
