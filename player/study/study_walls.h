@@ -49,6 +49,5 @@ Result<WallFigures> measure_walls(std::size_t stiffnesses, std::size_t dampings,
 Status plot_walls(const std::filesystem::path& png, const std::filesystem::path& svg, const WallFigures& figures);
 
 // walls.csv, walls.json, walls.png, walls.svg.
-Status study_walls(OutputFolder& out, bool quick, const Interrupt& interrupt);
 
 }  // namespace pliant

@@ -151,12 +151,7 @@ void draw(Pen& pen, const WallFigures& figures) {
 }  // namespace
 
 Status plot_walls(const std::filesystem::path& png, const std::filesystem::path& svg, const WallFigures& figures) {
-  Pen pixels(kWidth, kHeight), lines(kWidth, kHeight, svg);
-  for (const auto& [pen, file] : {std::pair(&pixels, &png), {&lines, &svg}}) {
-    draw(*pen, figures);
-    if (!pen->save(*file)) return Error{file->string(), "the plot cannot be written; check the space left"};
-  }
-  return Done{};
+  return draw_png_and_svg(png, svg, kWidth, kHeight, [&](Pen& pen) { draw(pen, figures); });
 }
 
 }  // namespace pliant
