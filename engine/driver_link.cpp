@@ -77,9 +77,10 @@ void DriverLink::close() noexcept {
   claim_.release();
 }
 
-void DriverLink::begin(HapticDevice& device, dquat placed) {
+void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 origin) {
   device.can = driver_ ? can_ : kNoDriver;
   device.workspace = driver_ ? device.scale : 1.0;
+  device.origin = driver_ ? origin : dvec3(0);
   device.force_sent = device.torque_sent = dvec3(0);
   placed_rotation_ = placed;
   ready_ = false;
@@ -90,7 +91,7 @@ void DriverLink::read(HapticDevice& device, Tick tick) {
   DeviceSample sample;
   if (servo_ && !servo_->runs()) servo_->advance(tick.time);
   if (driver_->read(sample)) {
-    device.position = device.workspace * sample.position;
+    device.position = device.origin + device.workspace * sample.position;
     if (!can_.senses_rotation)
       device.rotation = placed_rotation_;
     else if (plausible_rotation(sample.rotation))

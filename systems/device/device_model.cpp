@@ -91,7 +91,7 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
   const SafetyLimits limits = force_limits(device);
   DeviceModel model;
   model.time = tick.time;
-  model.position = device.position / scale;
+  model.position = (device.position - device.origin) / scale;
   model.rotation = device.rotation;
   model.wrench = {device.force_sent, device.torque_sent};
   model.max_force = limits.force;
