@@ -41,7 +41,9 @@ Status run_lockstep(TouchLoop& loop) {
   for (std::uint64_t n = 0; n < loop.ticks && !loop.interrupt.requested(); ++n) {
     const Tick tick = loop.replay ? replayed_tick(loop, n) : clock.next();
     if (loop.soft) loop.soft->reach(tick.time);
+    if (loop.hands) loop.hands->read(loop.world, tick);
     loop.schedule.run(loop.world, tick);
+    if (loop.hands) loop.hands->write(loop.world);
     loop.journal.note(loop.world, tick);
     loop.keeper.keep(loop.journal);
     for (; loop.frames && frame != loop.frame_ticks.end() && *frame == n; ++frame) {
@@ -79,7 +81,11 @@ Status run_beside(TouchLoop& loop, TouchClock& touch) {
 
 Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
   TouchHooks hooks;
-  hooks.after = [&](Tick tick) { loop.journal.note(loop.world, tick); };
+  hooks.after = [&](Tick tick) {
+    if (loop.hands) loop.hands->write(loop.world);
+    loop.journal.note(loop.world, tick);
+  };
+  if (loop.hands) hooks.before = [&](Tick tick) { loop.hands->read(loop.world, tick); };
   TouchClock touch(loop.world, loop.schedule, loop.soft, loop.rate, loop.ticks, hooks);
   Status status = Done{};
   try {

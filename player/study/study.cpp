@@ -8,6 +8,7 @@
 #include "player/exit.h"
 #include "player/print.h"
 #include "player/record/output_folder.h"
+#include "player/study/study_hand.h"
 #include "player/study/study_linearisation.h"
 #include "player/study/study_walls.h"
 
@@ -22,6 +23,9 @@ struct Study {
 constexpr Study kStudies[] = {
     {"linearisation", "1 kHz force of a tool: held, linear, contacts solved again, against the full solve",
      study_linearisation},
+    {"hand",
+     "a simulated hand touches the demo levels through every device profile; with and without guard at 1 and 10 ms",
+     study_hand},
     {"walls", "where a virtual wall is stable: stiffness, damping, delay; closed forms, with and without the guard",
      study_walls},
 };

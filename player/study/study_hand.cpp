@@ -67,9 +67,9 @@ Status write_text(OutputFolder& out, const std::string& name, const std::string&
 }
 
 nlohmann::ordered_json to_json(const HandRun& run) {
-  return {{"level", run.level},          {"profile", run.profile},       {"delay_s", run.delay},
-          {"guard", run.guarded},        {"stable", run.stable()},       {"buzz_m", run.buzz},
-          {"buzz_at_end_m", run.late},   {"largest_force_N", run.force}, {"work_of_motors_J", run.work},
+  return {{"level", run.level},           {"profile", run.profile},       {"delay_s", run.delay},
+          {"guard", run.guarded},         {"stable", run.stable()},       {"buzz_m", run.buzz},
+          {"buzz_at_end_m", run.late},    {"largest_force_N", run.force}, {"work_of_motors_J", run.work},
           {"stiffest_N_m", run.stiffest}, {"limit_N_m", run.limit}};
 }
 
@@ -137,8 +137,8 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
   for (const Held& h : held) {
     run.buzz = std::max(run.buzz, fast_part(h, 0));
     const auto last = static_cast<std::size_t>(kLast * rate);
-    const auto end = static_cast<std::size_t>(
-        std::find(h.touches.rbegin(), h.touches.rend(), true).base() - h.touches.begin());
+    const auto end =
+        static_cast<std::size_t>(std::find(h.touches.rbegin(), h.touches.rend(), true).base() - h.touches.begin());
     run.late = std::max(run.late, fast_part(h, end > last ? end - last : 0));
   }
   return run;
@@ -160,11 +160,11 @@ Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& r
     const auto px = [&](double t) { return kLeft + w * t / end; };
     const auto py = [&](double share) { return y + h - h * share / 1.05; };
     pen.color(kInk);
-    pen.text(kLeft, y - 8, 16, 0,
-             fmt::format("{}, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.profile, run.delay * 1e3,
-                         run.guarded ? "guarded" : "without guard", run.stable() ? "stable" : "not stable",
-                         run.buzz * 1e6),
-             !run.stable());
+    pen.text(
+        kLeft, y - 8, 16, 0,
+        fmt::format("{}, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.profile, run.delay * 1e3,
+                    run.guarded ? "guarded" : "without guard", run.stable() ? "stable" : "not stable", run.buzz * 1e6),
+        !run.stable());
     for (double t = 0; t <= end + 1e-9; t += tick_step(end, 10)) {
       pen.color(kFaint);
       pen.line(px(t), y, px(t), y + h, 1);
@@ -224,15 +224,17 @@ Status study_hand(OutputFolder& out, bool quick, const Interrupt& interrupt) {
       table.push_back(std::move(run).value());
       progress.update(static_cast<double>(++done) / static_cast<double>(levels.size() * kDeviceProfiles));
     }
-  std::string csv = "level,profile,delay_s,guard,stable,buzz_m,buzz_at_end_m,largest_force_N,work_J,stiffest_N_m,limit_N_m\n";
+  std::string csv =
+      "level,profile,delay_s,guard,stable,buzz_m,buzz_at_end_m,largest_force_N,work_J,stiffest_N_m,limit_N_m\n";
   for (const std::vector<HandRun>* runs : {&plotted, &table})
     for (const HandRun& r : *runs) {
       csv += fmt::format("{},{},{:g},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:g},{:.4g}\n", r.level, r.profile, r.delay,
                          r.guarded ? 1 : 0, r.stable() ? 1 : 0, r.buzz, r.late, r.force, r.work, r.stiffest, r.limit);
       json["runs"].push_back(to_json(r));
-      print("hand: {:<15} {:<9} {:>3g} ms more, {:<13} {:<10} fast {:>6.1f} um, {:>5.2f} N, limit {:.0f} of {:.0f} N/m\n",
-            r.level, r.profile, r.delay * 1e3, r.guarded ? "guarded" : "without guard",
-            r.stable() ? "stable" : "NOT STABLE", r.buzz * 1e6, r.force, r.limit, r.stiffest);
+      print(
+          "hand: {:<15} {:<9} {:>3g} ms more, {:<13} {:<10} fast {:>6.1f} um, {:>5.2f} N, limit {:.0f} of {:.0f} N/m\n",
+          r.level, r.profile, r.delay * 1e3, r.guarded ? "guarded" : "without guard",
+          r.stable() ? "stable" : "NOT STABLE", r.buzz * 1e6, r.force, r.limit, r.stiffest);
     }
   if (const Status s = write_text(out, "hand.csv", csv); !s) return s;
   if (const Status s = write_text(out, "hand.json", json.dump(2, ' ', true) + "\n"); !s) return s;

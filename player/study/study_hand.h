@@ -18,13 +18,13 @@ struct HandSample {
 // A run of one level with one device in every probe's hand, which wants to follow the level's script.
 struct HandRun {
   std::string level, profile;
-  double delay = 0.0;   // [s] beside the profile's own
-  bool guarded = true;  // false: what the probe feels goes to the device as it is. Simulated devices only
+  double delay = 0.0;               // [s] beside the profile's own
+  bool guarded = true;              // false: what the probe feels goes to the device as it is. Simulated devices only
   std::vector<HandSample> samples;  // of the first probe
-  double force = 0.0;   // [N] the largest
-  double buzz = 0.0;    // [m] RMS of what is faster than about 20 Hz in the effector's motion in contact, the worst probe
-  double late = 0.0;    // [m] the same of the last half second in contact: what grows is more there than before
-  double work = 0.0;    // [J] of the motors on the hands, all probes
+  double force = 0.0;               // [N] the largest
+  double buzz = 0.0;  // [m] RMS of what is faster than about 20 Hz in the effector's motion in contact, the worst probe
+  double late = 0.0;  // [m] the same of the last half second in contact: what grows is more there than before
+  double work = 0.0;  // [J] of the motors on the hands, all probes
   double stiffest = 0.0, limit = 0.0;  // [N/m] of the level, and what the device renders stably
   bool stable() const;
 };

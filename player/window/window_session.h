@@ -9,6 +9,7 @@
 
 #include "components/world.h"
 #include "engine/journal.h"
+#include "engine/simulated_hands.h"
 #include "engine/touch_clock.h"
 #include "player/interrupt.h"
 #include "player/record/keeper.h"
@@ -28,6 +29,7 @@ struct WindowSession {
   OutputFolder& out;
   const Interrupt& interrupt;
   SoftClock* soft = nullptr;                  // none: nothing soft
+  SimulatedHands* hands = nullptr;            // none: no simulated hand
   std::string level;                          // what `R` opens again
   double rate = 1000.0;                       // [Hz]
   std::uint64_t ticks = 0;                    // at most
