@@ -56,7 +56,8 @@ std::string stiffness_note(const World& world, const std::string& hand, const De
   if (share == 1.0) return {};
   const auto [stiffest, its] = stiffest_surface(world);
   return fmt::format(
-      "`{}` has {:g} N/m, and the device of `{}` renders at most {:.3g} N/m stably: it gets {:.0f} % of the force; give "
+      "`{}` has {:g} N/m, and the device of `{}` renders at most {:.3g} N/m stably: it gets {:.0f} % of the force; "
+      "give "
       "the surface less stiffness, or take a stiffer or faster device",
       its, stiffest, hand, can.max_stiffness, 100.0 * share);
 }

@@ -1,5 +1,6 @@
 // Simulated hands with simulated devices in them (devices/simulated) that move probes and tools: --probe NAME=hand.
-// Read before a touch tick, written after it with what left safety. In lockstep a sample a tick; else by the wall clock.
+// Read before a touch tick, written after it with what left safety. In lockstep a sample a tick; else by the wall
+// clock.
 #pragma once
 
 #include <memory>

@@ -6,6 +6,7 @@
 
 #include "components/world.h"
 #include "content/level/level.h"
+#include "engine/simulated_hands.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -15,9 +16,11 @@ struct ProbeSource {
   DriverKind driver = DriverKind::kOrbit;
   std::string file;    // of a script, relative to the working directory
   std::string device;  // which one (devices/choose.h)
+  bool held = false;   // by a simulated hand (simulated_hands.h), which wants to follow that path
+  std::string words;   // of the hand
 };
 
-// NAME=script:FILE.csv, NAME=orbit, NAME=mouse or NAME=device:WISH.
+// NAME=script:FILE.csv, NAME=orbit, NAME=hand[:WORDS], NAME=mouse or NAME=device:WISH.
 Result<ProbeSource> parse_source(const std::string& argument);
 
 // Adds a node for each source that names no node of the level: a point probe with a device of its own. Before --set, so
@@ -36,6 +39,9 @@ Path orbit_of(const World& world, Entity hand, unsigned index);
 // Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch. Says who found nothing to
 // touch and is held where it stands.
 std::vector<std::string> make_orbits(World& world);
+
+// The simulated hands of --probe NAME=hand. Call after make_orbits.
+Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources, bool lockstep);
 
 // "script:press.csv", "orbit", "mouse", "null": what moves this probe or tool.
 std::string describe_source(const World& world, Entity hand);

@@ -92,7 +92,10 @@ WallResult run_wall(const WallLoop& loop, const WallStart& start, double seconds
                     std::vector<WallSample>* trace) {
   Loop run(loop, start, guard);
   WallResult result;
-  const auto quarter = std::max<std::size_t>(8, static_cast<std::size_t>(0.25 * seconds / loop.plant.period));
+  // A quarter holds two swings of the device on the wall.
+  const double swing = 6.283185307179586 * std::sqrt(loop.plant.mass / std::max(loop.wall.stiffness, 1.0));
+  const auto quarter =
+      std::max<std::size_t>(8, static_cast<std::size_t>(std::max(0.25 * seconds, 2.0 * swing) / loop.plant.period));
   const double begin = std::abs(start.depth) + std::abs(start.speed) * 0.01;
   const double far = loop.both_ways ? kTooMuch * begin : kTooFar;
   Window before, now;

@@ -111,9 +111,10 @@ Result<Driven> make_gain(Driven inner, Words& words, std::vector<std::string>& n
   const double force = words.key("force", plain_number, 1.0 / kLargestGain, kLargestGain,
                                  words.name == "scale" ? 1.0 : motion, "must be a number from 0.001 to 1000");
   if (motion != force && !words.wrong)
-    notes.push_back(fmt::format("{}: does not keep power: the hand does {:.3g} times the work that the world takes, and "
-                                "feels it {:.3g} times as stiff; gain={:g} keeps power",
-                                words.where, force / motion, motion * force, motion));
+    notes.push_back(
+        fmt::format("{}: does not keep power: the hand does {:.3g} times the work that the world takes, and "
+                    "feels it {:.3g} times as stiff; gain={:g} keeps power",
+                    words.where, force / motion, motion * force, motion));
   return checked(words, std::make_unique<Gain>(std::move(inner), motion, force));
 }
 

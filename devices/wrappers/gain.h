@@ -5,9 +5,9 @@
 
 namespace pliant {
 
-// World position = motion * the device's; the device's force = force * the world's. The hand does force/motion times the
-// work that the world takes: power is kept where both are the same. A passive world stays passive by any gain, since
-// the share is constant, but is felt motion * force times as stiff. Turning is not scaled; torque is, by `force`.
+// World position = motion * the device's; the device's force = force * the world's. The hand does force/motion times
+// the work that the world takes: power is kept where both are the same. A passive world stays passive by any gain,
+// since the share is constant, but is felt motion * force times as stiff. Turning is not scaled; torque is, by `force`.
 class Gain : public Wrapper {
  public:
   Gain(std::unique_ptr<Driver> inner, double motion, double force)

@@ -10,7 +10,8 @@
 // clang-format off
 #define PLIANT_STUDIES(STUDY) \
   STUDY(linearisation, "1 kHz force of a tool: held, linear, contacts solved again, against the full solve") \
-  STUDY(walls, "where a virtual wall is stable: stiffness, damping, delay; closed forms, with and without the guard")
+  STUDY(walls, "where a virtual wall is stable: stiffness, damping, delay; closed forms, with and without the guard") \
+  STUDY(hand, "a simulated hand touches the demo levels through every device profile; with and without guard at 1 and 10 ms")
 // clang-format on
 
 namespace pliant {

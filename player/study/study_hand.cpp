@@ -14,6 +14,7 @@
 #include "player/progress.h"
 #include "player/record/pen.h"
 #include "player/record/plot.h"
+#include "player/study/studies.h"
 #include "player/verbs/content_folder.h"
 #include "systems/device/reading.h"
 #include "systems/schedule.h"

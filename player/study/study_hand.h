@@ -37,6 +37,5 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
 Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& runs);
 
 // hand.csv, hand.json, hand.png.
-Status study_hand(OutputFolder& out, bool quick, const Interrupt& interrupt);
 
 }  // namespace pliant

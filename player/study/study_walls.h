@@ -37,6 +37,7 @@ struct WallFigures {
   WallPlant plant;            // without delay
   double hand_damping = 0.0;  // [N s/m] of the light hand
   std::vector<double> delays, stiffnesses, dampings;
+  std::vector<double> limits;   // [N/m] of each delay: what the guard lets the device render
   std::vector<WallCell> cells;  // delay by delay of each model, damping by damping, K fastest
   std::vector<WallCycle> cycles;
   std::size_t compared = 0, agree = 0;  // of the linear wall

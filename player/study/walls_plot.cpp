@@ -60,8 +60,8 @@ class Map {
     cairo_rectangle(pen.get(), area_.x, area_.y, area_.w, area_.h);
     cairo_clip(pen.get());
     cairo_new_path(pen.get());
-    for (int i = 0; i <= 400; ++i) {
-      const double b = top_ * i / 400.0, k = limit(b);
+    for (int i = 0; i <= 8000; ++i) {
+      const double b = top_ * i / 8000.0, k = limit(b);
       if (k > 0.0) cairo_line_to(pen.get(), x(std::clamp(std::log10(k), low_ - 1.0, high_ + 1.0)), y(b));
     }
     cairo_stroke(pen.get());
@@ -144,7 +144,8 @@ void draw(Pen& pen, const WallFigures& figures) {
       if (r > 0) plant.damping += figures.hand_damping;
       map.curve(pen, kBlue, true, [&](double B) { return passivity_limit(plant, B); });
       if (r > 0) map.curve(pen, kPurple, true, [&](double) { return quantisation_limit(plant); });
-      map.axes(pen, fmt::format("{}, delay {:g} ms", rows[r].what, delay * 1e3), r == 2, d == 0);
+      const std::string softened = r == 2 ? fmt::format(" (softened to {:.0f} N/m)", figures.limits[d]) : std::string();
+      map.axes(pen, fmt::format("{}{}, delay {:g} ms", rows[r].what, softened, delay * 1e3), r == 2, d == 0);
     }
 }
 

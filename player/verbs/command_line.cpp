@@ -97,7 +97,8 @@ void add_run(CLI::App& app, RunOptions& run) {
       verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)")
           ->check(named());
   verb->add_flag("--list", run.list, "which levels ship, and what they show")->excludes(level);
-  verb->add_option("--probe", run.probes, "NAME=SOURCE: script:FILE.csv, orbit, mouse, device:ID; may be repeated")
+  verb->add_option("--probe", run.probes,
+                   "NAME=SOURCE: script:FILE.csv, orbit, hand[:FILE.csv], mouse, device:ID; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
   verb->add_option("--set", run.sets, "NODE.EXT.KEY=VALUE for this run; NODE may be *; may be repeated")
