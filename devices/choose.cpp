@@ -47,6 +47,7 @@ std::string id_of(const DeviceInfo& device) {
 // Of a kind; the strongest first.
 Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const DeviceInfo> there) {
   const auto fits = [&](const DeviceInfo& device) {
+    if (device.can.simulated) return false;  // nobody means one without its name
     return kind == "any-force" ? pushes(device) : kind == "any-pose" ? senses_a_pose(device) : true;
   };
   const DeviceInfo* best = nullptr;

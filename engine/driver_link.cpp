@@ -77,10 +77,10 @@ void DriverLink::close() noexcept {
   claim_.release();
 }
 
-void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 origin) {
+void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 middle) {
   device.can = driver_ ? can_ : kNoDriver;
   device.workspace = driver_ ? device.scale : 1.0;
-  device.origin = driver_ ? origin : dvec3(0);
+  device.origin = driver_ && can_.workspace != dvec3(0) ? middle : dvec3(0);
   device.force_sent = device.torque_sent = dvec3(0);
   placed_rotation_ = placed;
   ready_ = false;

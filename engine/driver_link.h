@@ -31,8 +31,9 @@ class DriverLink {
   Servo* servo() const { return servo_; }  // null: its driver is called by the touch clock
 
   // `device` is moved by this driver, or by none, from now on.
-  // `origin` [m] world: where its workspace's lies.
-  void begin(HapticDevice& device, dquat placed, dvec3 origin = dvec3(0));
+  // `middle` [m] world: where the workspace of a driver that says one has its own; of others, it is in the world's
+  // frame.
+  void begin(HapticDevice& device, dquat placed, dvec3 middle);
   void forget() { ready_ = false; }  // its pose, until it says another
 
   // --- Around a tick. None allocates or waits.

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "devices/choose.h"
+#include "devices/wrappers/chain.h"
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "engine/sources.h"
@@ -96,11 +98,13 @@ Status Session::orbit(const std::string& name) {
 }
 
 Status Session::connect(const std::string& name, const std::string& driver) {
-  const std::size_t colon = driver.find(':');
-  auto made = make_driver(driver.substr(0, colon));
+  auto chosen = choose_device(driver, list_devices());
+  if (!chosen) return chosen.error();
+  if (chosen->id.empty())
+    return Error{"Session::connect `" + name + "`", "the mouse is the window's: move the probe with Session::move"};
+  auto made = make_device(chosen->id);
   if (!made) return made.error();
-  return parts_->connect(name, std::move(made).value(), colon == std::string::npos ? "" : driver.substr(colon + 1),
-                         driver);
+  return parts_->connect(name, std::move(made->driver), made->id, chosen->id);
 }
 
 Status Session::connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id) {

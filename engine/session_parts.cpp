@@ -94,6 +94,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     made.prescribed = std::make_unique<TripleBuffer<PrescribedPose>>();
     const HapticDevice& device = world.registry.get<HapticDevice>(made.device);
     made.placed_rotation = device.rotation;
+    made.placed_position = place_of(world, held);
     if (device.driver != DriverKind::kNull) made.source = EffectorSource::kLevel;
     effectors.push_back(std::move(made));
   }
@@ -225,7 +226,7 @@ void Session::Parts::take_away(SessionEffector& effector, EffectorSource source)
 
 void Session::Parts::begin(SessionEffector& effector) {
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
-  effector.link.begin(device, effector.placed_rotation);
+  effector.link.begin(device, effector.placed_rotation, effector.placed_position);
   begin_anew(world, effector.entity);
   effector.renewed = ticks > 0;  // before the first tick there is nothing to lose
 }

@@ -45,6 +45,7 @@ struct SessionEffector {
   Path path;                                                 // of kPath, for restart()
   DriverLink link;                                           // of kDriver
   GuardParameters guard;                                     // its device's, when it is connected
+  dvec3 placed_position{0};                                  // [m] world: where the scene put it
   dquat placed_rotation{1, 0, 0, 0};                         // where its driver senses none
   std::unique_ptr<TripleBuffer<PrescribedPose>> prescribed;  // owner -> touch clock
   bool renewed = false;  // touch clock's: the next tick is its source's first, and has it lost

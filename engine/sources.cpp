@@ -40,6 +40,12 @@ Entity own_device(World& world, Entity hand) {
   return made;
 }
 
+dvec3 place_of(const World& world, Entity hand) {
+  if (const Probe* probe = world.registry.find<Probe>(hand)) return probe->position;
+  const HapticDevice* device = find_device(world, hand);
+  return device ? device->position : dvec3(0);
+}
+
 Result<ProbeSource> parse_source(const std::string& argument) {
   const std::size_t equals = argument.find('=');
   const std::string where = "--probe " + argument;

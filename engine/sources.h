@@ -30,6 +30,9 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources);
 // The device that moves this probe or tool; made where there is none. Before the clocks start.
 Entity own_device(World& world, Entity hand);
 
+// Where the level put this probe or tool. [m] world. Before the clocks start.
+dvec3 place_of(const World& world, Entity hand);
+
 // Gives each named probe or tool its source; scripts are read. Call after spawn.
 Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
 

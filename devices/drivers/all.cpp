@@ -26,7 +26,7 @@ void register_all_drivers() {
     (void)register_gamepad();
     (void)register_polhem();
     (void)register_driver(
-        "force_dimension", [] { return std::make_unique<ForceDimension>(); }, list_force_dimension);
+        "forcedimension", [] { return std::make_unique<ForceDimension>(); }, list_force_dimension);
     (void)register_driver(
         "touch", [] { return std::make_unique<Touch>(); }, list_touch);
     (void)register_driver(

@@ -165,6 +165,7 @@ std::string device_profile_names() {
 
 DeviceCapabilities capabilities_of(const DeviceProfile& profile) {
   DeviceCapabilities can;
+  can.simulated = true;
   can.senses_rotation = true;
   can.max_force = profile.max_force;
   can.max_stiffness = profile.stiffness;

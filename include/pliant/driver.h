@@ -83,13 +83,14 @@ struct DeviceCapabilities {
   bool resists_only = false;       // it brakes, and cannot push: it is never written a force along the motion
   double continuous_force = 0.0;   // [N] that it bears for ever; 0: not said
   double max_velocity = 0.0;       // [m/s] faster, and its force is switched off until it is armed again; 0: not said
-  dvec3 workspace{0};              // [m] half of its extents; 0: not said
+  dvec3 workspace{0};    // [m] half of its extents, about where the scene put what it moves; 0: not said, its poses are
+                         // in the world's frame
   double rate = 0.0;     // [Hz] of samples, and of its servo; 0: the touch clock's, without a thread of its own
   double latency = 0.0;  // [s] from a write to the sample that knows of it; 0: not said
   DeviceLoop loop = DeviceLoop::kOurs;
   bool simulated = false;  // it has no motors: any number may open the same one
-  double max_grip = 0.0;  // [N] of DeviceWrench::grip; 0: not said
-  double damping = 0.0;   // [N s/m] of its mechanics in a light hand: bounds its stiffness by its rate; 0: not said
+  double max_grip = 0.0;   // [N] of DeviceWrench::grip; 0: not said
+  double damping = 0.0;    // [N s/m] of its mechanics in a light hand: bounds its stiffness by its rate; 0: not said
 };
 
 // A line on which another process may write, and what it writes to switch the force off.

@@ -7,6 +7,7 @@
 #include "devices/choose.h"
 #include "devices/drivers/all.h"
 #include "devices/wrappers/chain.h"
+#include "engine/sources.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 
@@ -45,7 +46,7 @@ Status DeviceLinks::open(World& world, bool windowed, std::vector<std::string>& 
     device.id = chosen->id;
     device.path = {};
     device.status = DeviceStatus::kLost;
-    held.link.begin(device, device.rotation, device.position);
+    held.link.begin(device, device.rotation, place_of(world, hand));
     begin_anew(world, hand);
     if (held.link.servo() && !held.link.servo()->note().empty())
       notes.push_back(fmt::format("`{}`: {}", name, held.link.servo()->note()));

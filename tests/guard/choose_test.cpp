@@ -62,6 +62,13 @@ TEST_F(Choose, AnErrorSaysWhyOfEveryAlternative) {
   EXPECT_FALSE(choose_device("any", {}));
 }
 
+TEST_F(Choose, NobodyMeansASimulatedDeviceWithoutItsName) {
+  for (DeviceInfo& device : there) device.can.simulated = true;
+  EXPECT_FALSE(choose_device("any-force", there));
+  EXPECT_FALSE(choose_device("any", there));
+  EXPECT_EQ(choose_device("strong", there)->id, "strong:7");
+}
+
 TEST_F(Choose, ADeviceThatBrakesDoesNotPush) {
   there = {device("weak", "1", 3.0)};
   there[0].can.resists_only = true;
