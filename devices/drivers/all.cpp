@@ -2,11 +2,13 @@
 
 #include <mutex>
 
+#include "devices/drivers/falcon.h"
 #include "devices/drivers/force_dimension.h"
 #include "devices/drivers/gamepad.h"
 #include "devices/drivers/haply.h"
 #include "devices/drivers/network_device.h"
 #include "devices/drivers/polhem.h"
+#include "devices/drivers/serial_device.h"
 #include "devices/drivers/sony_pad.h"
 #include "devices/drivers/spacemouse.h"
 #include "devices/drivers/touch_x.h"
@@ -14,6 +16,16 @@
 #include "pliant/driver.h"
 
 namespace pliant {
+namespace {
+
+// A name that is taken is a fault of this list, which a test finds.
+template <class D>
+void add(const char* name, DeviceLister lister) {
+  (void)register_driver(
+      name, [] { return std::make_unique<D>(); }, std::move(lister));
+}
+
+}  // namespace
 
 void register_all_drivers() {
   static std::once_flag once;
@@ -25,14 +37,12 @@ void register_all_drivers() {
     (void)register_dualshock4();
     (void)register_gamepad();
     (void)register_polhem();
-    (void)register_driver(
-        "forcedimension", [] { return std::make_unique<ForceDimension>(); }, list_force_dimension);
-    (void)register_driver(
-        "touch", [] { return std::make_unique<Touch>(); }, list_touch);
-    (void)register_driver(
-        "haply", [] { return std::make_unique<Haply>(); }, list_haply);
-    (void)register_driver(
-        "network", [] { return std::make_unique<NetworkDevice>(); }, list_network_devices);
+    add<Falcon>("falcon", list_falcon);
+    add<ForceDimension>("forcedimension", list_force_dimension);
+    add<Haply>("haply", list_haply);
+    add<NetworkDevice>("network", list_network_devices);
+    add<SerialDevice>("serial", [] { return list_serial(); });
+    add<Touch>("touch", list_touch);
   });
 }
 

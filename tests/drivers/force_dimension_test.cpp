@@ -27,7 +27,7 @@ TEST(ForceDimension, PosesAndForcesAreTurnedIntoWorldAxesAndBack) {
   EXPECT_EQ(driver.capabilities().max_force, 12.0);
   EXPECT_TRUE(driver.capabilities().senses_rotation);
   DeviceSample sample;
-  ASSERT_TRUE(runs_until(driver, sample, {.force = {1, 2, 3}}, [&](bool) { return fake.dhd.fz == 2.0; }));
+  ASSERT_TRUE(runs_until(driver, sample, {.force = {1, 2, 3}}, [&](bool came) { return came && fake.dhd.fz == 2.0; }));
   EXPECT_EQ(dvec3(fake.dhd.fx.load(), fake.dhd.fy.load(), fake.dhd.fz.load()), dvec3(3, 1, 2));
   EXPECT_EQ(sample.position, dvec3(0.02, 0.03, 0.01));
   EXPECT_TRUE(sample.ready);

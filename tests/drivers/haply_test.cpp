@@ -89,7 +89,7 @@ TEST(Haply, PosesComeForcesGoAndThereIsOneStateForEachMessage) {
   EXPECT_TRUE(haply.capabilities().senses_rotation);
   DeviceSample sample;
   EXPECT_TRUE(runs_until(haply, sample, {.force = {0, 1.5, 0.25}},
-                         [&](bool) { return commanded(service) == dvec3(0, -0.25, 1.5); }));
+                         [&](bool came) { return came && commanded(service) == dvec3(0, -0.25, 1.5); }));
   EXPECT_NEAR(length(sample.position - dvec3(0, 0.15, 0.12)), 0.0, 1e-12);
   EXPECT_EQ(sample.buttons, 1u);
   EXPECT_TRUE(sample.ready);

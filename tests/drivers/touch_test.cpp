@@ -29,7 +29,7 @@ TEST(Touch, MillimetresBecomeMetresAndTheLimitsOfTheMakerAreOn) {
   EXPECT_NEAR(driver.capabilities().max_force, 3.3, 1e-12);
   EXPECT_TRUE(fake.hd.clamp && fake.hd.ramp && fake.hd.limit);
   DeviceSample sample;
-  ASSERT_TRUE(runs_until(driver, sample, {.force = {0, 1.5, 0}}, [&](bool) { return fake.hd.fy == 1.5; }));
+  ASSERT_TRUE(runs_until(driver, sample, {.force = {0, 1.5, 0}}, [&](bool came) { return came && fake.hd.fy == 1.5; }));
   EXPECT_NEAR(length(sample.position - dvec3(0.01, 0.02, -0.03)), 0.0, 1e-15);
   EXPECT_NEAR(length(sample.rotation * dvec3(1, 0, 0) - dvec3(std::cos(0.5), std::sin(0.5), 0)), 0.0, 1e-12);
   EXPECT_EQ(sample.buttons, 2u);
