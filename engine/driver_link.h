@@ -1,5 +1,5 @@
-// One driver on one device of the world: its samples come in before a tick, what left safety goes out after it. A device
-// with a rate gets a servo in front (devices/servo/servo.h). For a Session and for a program's own loop.
+// One driver on one device of the world: its samples come in before a tick, what left safety goes out after it. A
+// device with a rate gets a servo in front (devices/servo/servo.h). For a Session and for a program's own loop.
 #pragma once
 
 #include <memory>
@@ -20,8 +20,8 @@ class DriverLink {
   DriverLink& operator=(DriverLink&& other) noexcept;
   ~DriverLink() { close(); }
 
-  // Opens it. `where` opens the error. `claimed`: "driver:id" that nobody else may have meanwhile; "": a driver of one's
-  // own. `placed`: the rotation of a device that senses none.
+  // Opens it. `where` opens the error. `claimed`: "driver:id" that nobody else may have meanwhile; "": a driver of
+  // one's own. `placed`: the rotation of a device that senses none.
   Status connect(std::unique_ptr<Driver> driver, const std::string& id, const std::string& where,
                  const std::string& claimed = {}, const GuardParameters& guard = {});
   void close() noexcept;  // written zero, and gone

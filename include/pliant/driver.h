@@ -88,8 +88,8 @@ struct DeviceCapabilities {
   double latency = 0.0;  // [s] from a write to the sample that knows of it; 0: not said
   DeviceLoop loop = DeviceLoop::kOurs;
   bool simulated = false;  // it has no motors: any number may open the same one
-  double max_grip = 0.0;  // [N] of DeviceWrench::grip; 0: not said
-  double damping = 0.0;   // [N s/m] of its mechanics in a light hand: bounds its stiffness by its rate; 0: not said
+  double max_grip = 0.0;   // [N] of DeviceWrench::grip; 0: not said
+  double damping = 0.0;    // [N s/m] of its mechanics in a light hand: bounds its stiffness by its rate; 0: not said
 };
 
 // A line on which another process may write, and what it writes to switch the force off.
