@@ -325,8 +325,8 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
     const dvec3 along = (velocity_ - wish.velocity) / speed;
     wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;
   }
-  push_.book(energy_, wrench.force, weight, way);
-  twist_.book(energy_, wrench.torque, dvec3(0), turn_);
+  push_.book(energy_, wrench.force - weight);
+  twist_.book(energy_, wrench.torque);
   return wrench;
 }
 

@@ -1,5 +1,5 @@
 // Energy at the servo's rate (methods.md 1.9): an observer adds up the work on the hand beside a tool's weight,
-// trapezoidal, and damping takes out what would go beyond what the hand gave. The touch tick has the same in
+// and damping takes out what would go beyond what the hand gave. The touch tick has the same in
 // systems/safety; this one sees every force that is written, those between two ticks among them. No slew limit comes
 // behind it, so nothing has to stop early. What sampling itself gives (K T / 2) is not its business but
 // stable_stiffness()'s.
@@ -28,12 +28,13 @@ class PassivityDamper {
   // `wanted` without as much of its part along the motion as would give too much. `way`: of the hand since the last
   // call, against what it touches. `most`: the largest size. `slow`: [m] or [rad] per period.
   dvec3 damp(const EnergyAccount& account, dvec3 wanted, dvec3 weight, dvec3 way, double most, double slow);
-  // What leaves; `way` as above.
-  void book(EnergyAccount& account, dvec3 force, dvec3 weight, dvec3 way);
-  void forget() { last_ = wanted_ = dvec3(0); }
+  // After damp(): its way is accounted for, and this leaves, beside the weight.
+  void book(EnergyAccount& account, dvec3 sent);
+  void forget() { *this = {}; }
 
  private:
   dvec3 last_{0}, wanted_{0};  // beside the weight: written last, and wanted last
+  double work_ = 0.0;          // [J] of the last way
 };
 
 }  // namespace pliant

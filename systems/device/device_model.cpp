@@ -15,9 +15,9 @@ namespace {
 
 // Of what is wanted, before safety: minus its derivatives.
 struct Slopes {
-  dmat3 stiffness{0.0}, damping{0.0};                                   // force by position, by velocity
-  dmat3 lever_stiffness{0.0};                                           // force by turn; its transpose: torque by position
-  dmat3 turning_stiffness{0.0}, turning_damping{0.0};                   // torque by turn, by spin
+  dmat3 stiffness{0.0}, damping{0.0};                  // force by position, by velocity
+  dmat3 lever_stiffness{0.0};                          // force by turn; its transpose: torque by position
+  dmat3 turning_stiffness{0.0}, turning_damping{0.0};  // torque by turn, by spin
   dvec3 wanted_force{0}, wanted_torque{0}, velocity{0}, spin{0}, of{0};  // `of`: velocity of what is touched
 };
 
@@ -123,8 +123,8 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
   if (!pushing) return model;
 
   const Passed push = passed(slopes.wanted_force, device.force_sent, *pushing, limits.force);
-  const Passed turn = turning ? passed(slopes.wanted_torque, device.torque_sent, *turning, model.max_torque)
-                              : Passed{0.0, dmat3(1.0)};
+  const Passed turn =
+      turning ? passed(slopes.wanted_torque, device.torque_sent, *turning, model.max_torque) : Passed{0.0, dmat3(1.0)};
   const double both = std::min(push.share, turn.share);
   dmat3 stiffness = push.share * push.side * slopes.stiffness * push.side * scale;
   if (const double most = row_sum(stiffness); limits.stiffness > 0.0 && most > limits.stiffness)

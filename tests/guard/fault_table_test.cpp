@@ -18,15 +18,15 @@ constexpr double kWatched = 3.0;  // [s] after the fault
 
 struct Fault {
   const char* name;
-  std::function<void(WallRig&)> begin;          // switches it on
-  std::function<void(WallRig&, double)> tick;   // before every tick, with the time since; may be none
+  std::function<void(WallRig&)> begin;         // switches it on
+  std::function<void(WallRig&, double)> tick;  // before every tick, with the time since; may be none
 };
 
 struct Row {
   std::string name;
-  double largest = 0.0;   // [N] asked of the device since the fault
-  double given = 0.0;     // [mJ] that the hand got at most since then, beside what it had put in before
-  double safe = -1.0;     // [ms] until nothing more leaves; < 0: it stays in service
+  double largest = 0.0;  // [N] asked of the device since the fault
+  double given = 0.0;    // [mJ] that the hand got at most since then, beside what it had put in before
+  double safe = -1.0;    // [ms] until nothing more leaves; < 0: it stays in service
   bool still_on = false;
   DeviceState state{};
   std::string causes;
@@ -113,7 +113,8 @@ std::vector<Fault> faults() {
                    };
                  },
                  {}});
-  all.push_back({"not a number: the pose", sensing([](DeviceSample& s) {
+  all.push_back({"not a number: the pose",
+                 sensing([](DeviceSample& s) {
                    s.position.x = std::numeric_limits<double>::quiet_NaN();
                    return true;
                  }),
@@ -123,12 +124,14 @@ std::vector<Fault> faults() {
                    rig.law = [](DeviceModel& m) { m.wrench.force.x = std::numeric_limits<double>::quiet_NaN(); };
                  },
                  {}});
-  all.push_back({"teleport: 60 mm away, and there", sensing([](DeviceSample& s) {
+  all.push_back({"teleport: 60 mm away, and there",
+                 sensing([](DeviceSample& s) {
                    s.position.y -= 0.06;
                    return true;
                  }),
                  {}});
-  all.push_back({"unit error: poses times 1000", sensing([](DeviceSample& s) {
+  all.push_back({"unit error: poses times 1000",
+                 sensing([](DeviceSample& s) {
                    s.position *= 1000.0;
                    return true;
                  }),
@@ -157,12 +160,11 @@ std::vector<Fault> faults() {
                    };
                  },
                  {}});
-  all.push_back({"saturation: the hand pushes through",
-                 [](WallRig&) {},
-                 [](WallRig& rig, double since) {
-                   rig.device.hand.wants = -0.006 - 0.024 * std::min(1.0, since / 0.3);
-                 }});
-  all.push_back({"delay of 20 ms, told by the samples' time", sensing([line = Line{}](DeviceSample& s) mutable {
+  all.push_back(
+      {"saturation: the hand pushes through", [](WallRig&) {},
+       [](WallRig& rig, double since) { rig.device.hand.wants = -0.006 - 0.024 * std::min(1.0, since / 0.3); }});
+  all.push_back({"delay of 20 ms, told by the samples' time",
+                 sensing([line = Line{}](DeviceSample& s) mutable {
                    s = line.pass(s, 20);
                    return true;
                  }),
@@ -176,7 +178,8 @@ std::vector<Fault> faults() {
                  [](WallRig& rig, double since) {  // a hand that moves
                    rig.device.hand.wants = -0.006 + 0.01 * std::sin(12.0 * since);
                  }});
-  all.push_back({"jitter: a sample comes 0 to 8 ms late", [](WallRig& rig) {
+  all.push_back({"jitter: a sample comes 0 to 8 ms late",
+                 [](WallRig& rig) {
                    rig.device.sensing = [due = 0.0, dice = Dice{}](DeviceSample& s) mutable {
                      if (s.time < due) return false;
                      due = s.time + 8e-3 * dice.roll();
@@ -188,7 +191,8 @@ std::vector<Fault> faults() {
   all.push_back(drop("drop: 50 %", 0.50));
   all.push_back(drop("drop: 90 %", 0.90));
   all.push_back(drop("drop: 100 %", 1.00));
-  all.push_back({"unplug", sensing([](DeviceSample& s) {
+  all.push_back({"unplug",
+                 sensing([](DeviceSample& s) {
                    s.ready = false;
                    return true;
                  }),
@@ -202,15 +206,16 @@ std::vector<Fault> faults() {
                    };
                  },
                  {}});
-  all.push_back({"time going back: of the samples", sensing([](DeviceSample& s) {
+  all.push_back({"time going back: of the samples",
+                 sensing([](DeviceSample& s) {
                    s.time = 1.0 - 0.1 * s.time;
                    return true;
                  }),
                  {}});
   all.push_back({"exception in the tick: the driver throws",
-                 [](WallRig& rig) { rig.device.calling = [] { throw std::runtime_error("bus off"); }; }, {}});
-  all.push_back({"process paused for 200 ms",
-                 [](WallRig& rig) { rig.stall(0.2); }, {}});
+                 [](WallRig& rig) { rig.device.calling = [] { throw std::runtime_error("bus off"); }; },
+                 {}});
+  all.push_back({"process paused for 200 ms", [](WallRig& rig) { rig.stall(0.2); }, {}});
   all.push_back({"clock slower: the device's, by 5 %",
                  [](WallRig& rig) {
                    const double from = rig.time;
@@ -234,13 +239,16 @@ std::vector<Fault> faults() {
                  },
                  {}});
   all.push_back({"permission lost: writes and reads fail from the next call",
-                 [](WallRig& rig) { rig.device.calling = [] { throw std::runtime_error("permission denied"); }; }, {}});
-  all.push_back({"battery low", sensing([](DeviceSample& s) {
+                 [](WallRig& rig) { rig.device.calling = [] { throw std::runtime_error("permission denied"); }; },
+                 {}});
+  all.push_back({"battery low",
+                 sensing([](DeviceSample& s) {
                    s.warnings = kDeviceBatteryLow;
                    return true;
                  }),
                  {}});
-  all.push_back({"thermal warning", sensing([](DeviceSample& s) {
+  all.push_back({"thermal warning",
+                 sensing([](DeviceSample& s) {
                    s.warnings = kDeviceWarm;
                    return true;
                  }),
@@ -261,9 +269,11 @@ constexpr const char* kOthers =
     "| two writers: another program has the device | 0.00 N | 0.0 mJ | refused | disconnected | is held by another "
     "program |\n"
     "| library missing a symbol | 0.00 N | 0.0 mJ | refused | disconnected | its driver does not open |\n"
-    "| process stopped (SIGSTOP) | as it was | - | by the guard process after 50 ms, where the driver has a line for it; "
+    "| process stopped (SIGSTOP) | as it was | - | by the guard process after 50 ms, where the driver has a line for "
+    "it; "
     "else by the device's own watchdog | tripped when it goes on | its servo did not run in time |\n"
-    "| kill -9 | as it was | - | by the guard process at once, where the driver has a line for it; else by the device's "
+    "| kill -9 | as it was | - | by the guard process at once, where the driver has a line for it; else by the "
+    "device's "
     "own watchdog | - | - |\n"
     "| crash (SIGSEGV, abort) and SIGTERM | 0.00 N | - | at once, by the signal handler | - | - |\n";
 

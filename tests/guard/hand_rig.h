@@ -89,9 +89,9 @@ struct WallRig {
   Servo servo;
   double time = 0.0;
   bool touch_runs = true;
-  int every = 1;                             // the servo's periods that are run: all, or one of so many
+  int every = 1;  // the servo's periods that are run: all, or one of so many
   std::uint64_t periods_run = 0;
-  std::function<void(DeviceModel&)> law;     // changes the model
+  std::function<void(DeviceModel&)> law;  // changes the model
   DeviceSample sample;
   bool heard = false;
 
