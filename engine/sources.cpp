@@ -178,8 +178,8 @@ std::string describe_source(const World& world, Entity hand) {
     case DriverKind::kMouse:
       return "mouse";
     case DriverKind::kExternal:
-      return device->id.starts_with(kSimulated) ? "hand:" + device->id.substr(kSimulated.size())
-                                                : "device:" + device->id;
+      if (!device->id.starts_with(kSimulated)) return "device:" + device->id;
+      return device->id.size() == kSimulated.size() ? "hand" : "hand:" + device->id.substr(kSimulated.size());
     case DriverKind::kNull:
       return "null";
   }

@@ -23,9 +23,11 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kWindow = 25;  // ticks of the moving mean that is taken away: what is left is above about 20 Hz
-constexpr double kLast = 0.5;        // [s]
-constexpr double kGrows = 2.0;       // [1] of the buzz at the end over that of all: it is growing
+constexpr std::size_t kWindow = 25;   // ticks of the moving mean that is taken away: what is left is above about 20 Hz
+constexpr double kTooStiff = 1500.0;  // [N/m]
+constexpr const char* kPlotted = "inverse3,hand=finger";  // little friction in a light hand: the hardest to hold
+constexpr double kLast = 0.5;                             // [s]
+constexpr double kGrows = 2.0;                            // [1] of the buzz at the end over that of all: it is growing
 
 // A probe, the device in its hand, and what both did.
 struct Held {
@@ -51,13 +53,15 @@ double fast_part(const Held& held, std::size_t from) {
   return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
 }
 
-Result<World> open_level(const std::string& name) {
+Result<World> open_level(const std::string& name, double stiffness) {
   const auto file = find_level(name);
   if (!file) return file.error();
   auto level = load_level(*file);
   if (!level) return level.error();
   auto world = spawn(*level);
   if (!world) return world.error();
+  if (stiffness > 0.0)
+    for (auto [entity, surface] : world->registry.view<Deformable>()) surface.stiffness = stiffness;
   if (const Status status = prepare_touch(*world); !status) return status.error();
   return std::move(world).value();
 }
@@ -81,8 +85,8 @@ bool HandRun::stable() const {
 }
 
 Result<HandRun> run_hand(const std::string& level, const std::string& profile, double delay, bool guarded,
-                         double seconds) {
-  auto world = open_level(level);
+                         double seconds, double stiffness) {
+  auto world = open_level(level, stiffness);
   if (!world) return world.error();
   HandRun run{level, profile, delay, guarded, {}};
   auto options = parse_simulated(profile + ",clock=tick");
@@ -150,23 +154,29 @@ Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& r
   Pen pen(kWidth, kTop + kRow * static_cast<double>(runs.size()) + 30);
   pen.color(kInk);
   const double width = pen.text(kLeft, 46, 26, 0, "a simulated hand presses the demo organ", true);
-  pen.text(kLeft + width + 20, 46, 16, 0, "force of the motors and depth of the probe, true values");
-  double peak = 0.0, deepest = 0.0;
-  for (const HandRun& run : runs)
-    for (const HandSample& s : run.samples) peak = std::max(peak, s.force), deepest = std::max(deepest, s.depth);
+  pen.text(kLeft + width + 20, 46, 16, 0,
+           fmt::format("{}: force of its motors and depth of the probe", runs.front().profile));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const HandRun& run = runs[i];
+    double peak = 1e-3, deepest = 1e-6, begin = run.samples.back().time;  // each run has scales of its own
+    for (const HandSample& s : run.samples) {
+      peak = std::max(peak, s.force);
+      deepest = std::max(deepest, s.depth);
+      if (s.depth > 0.0) begin = std::min(begin, s.time);
+    }
+    begin = std::max(0.0, begin - 0.2);
     const double y = kTop + kRow * static_cast<double>(i), h = kRow - 75, w = kWidth - kLeft - 90;
     const double end = run.samples.back().time;
-    const auto px = [&](double t) { return kLeft + w * t / end; };
+    const auto px = [&](double t) { return kLeft + w * (t - begin) / (end - begin); };
     const auto py = [&](double share) { return y + h - h * share / 1.05; };
     pen.color(kInk);
     pen.text(
         kLeft, y - 8, 16, 0,
-        fmt::format("{}, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.profile, run.delay * 1e3,
+        fmt::format("{:.0f} N/m, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.stiffest, run.delay * 1e3,
                     run.guarded ? "guarded" : "without guard", run.stable() ? "stable" : "not stable", run.buzz * 1e6),
         !run.stable());
-    for (double t = 0; t <= end + 1e-9; t += tick_step(end, 10)) {
+    const double step = tick_step(end - begin, 10);
+    for (double t = step * std::ceil(begin / step); t <= end + 1e-9; t += step) {
       pen.color(kFaint);
       pen.line(px(t), y, px(t), y + h, 1);
       pen.color(kInk);
@@ -175,11 +185,13 @@ Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& r
     pen.color(kBlue);
     cairo_set_line_width(pen.get(), 1.2);
     cairo_new_path(pen.get());
-    for (const HandSample& s : run.samples) cairo_line_to(pen.get(), px(s.time), py(s.force / peak));
+    for (const HandSample& s : run.samples)
+      if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.force / peak));
     cairo_stroke(pen.get());
     pen.color(kVermilion);
     cairo_new_path(pen.get());
-    for (const HandSample& s : run.samples) cairo_line_to(pen.get(), px(s.time), py(s.depth / deepest));
+    for (const HandSample& s : run.samples)
+      if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.depth / deepest));
     cairo_stroke(pen.get());
     pen.color(kInk);
     pen.line(kLeft, y, kLeft, y + h, 1.5);
@@ -205,9 +217,10 @@ Status study_hand(OutputFolder& out, bool quick, const Interrupt& interrupt) {
   nlohmann::ordered_json json;
   json["study"] = "hand";
   std::vector<HandRun> plotted;
-  for (const double delay : {1e-3, 10e-3})
+  // The organ as it ships, and one that is too stiff for the device.
+  for (const auto& [delay, stiffness] : {std::pair(1e-3, 0.0), {10e-3, 0.0}, {10e-3, kTooStiff}})
     for (const bool guarded : {false, true}) {
-      auto run = run_hand("three_probes", "omni", delay, guarded, quick ? 4.0 : 8.0);
+      auto run = run_hand("three_probes", kPlotted, delay, guarded, quick ? 4.0 : 8.0, stiffness);
       if (!run) return run.error();
       plotted.push_back(std::move(run).value());
     }

@@ -32,8 +32,10 @@ struct HandRun {
 // At most this much of the effector's fast motion is friction's and the encoder's; a limit cycle is more.
 inline constexpr double kQuietBuzz = 50e-6;  // [m]
 
+// `profile`: with keys after it, as in "omni,hand=finger". `stiffness` [N/m]: of every surface in the place of the
+// level's; 0: as it is.
 Result<HandRun> run_hand(const std::string& level, const std::string& profile, double delay, bool guarded,
-                         double seconds);
+                         double seconds, double stiffness = 0.0);
 Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& runs);
 
 // hand.csv, hand.json, hand.png.
