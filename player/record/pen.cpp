@@ -1,5 +1,6 @@
 #include "player/record/pen.h"
 
+#include <cairo-svg.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,6 +23,11 @@ namespace pliant {
 Pen::Pen(double width, double height)
     : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height))),
       cairo_(cairo_create(surface_)) {
+  color(kPaper);
+  cairo_paint(cairo_);
+}
+Pen::Pen(double width, double height, const std::filesystem::path& svg)
+    : surface_(cairo_svg_surface_create(svg.c_str(), width, height)), cairo_(cairo_create(surface_)) {
   color(kPaper);
   cairo_paint(cairo_);
 }
@@ -58,7 +64,12 @@ void Pen::upright_text(double x, double y, double size, const std::string& words
 }
 
 bool Pen::save(const std::filesystem::path& file) {
-  if (cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS) return true;
+  if (cairo_surface_get_type(surface_) == CAIRO_SURFACE_TYPE_SVG) {
+    cairo_surface_finish(surface_);
+    if (cairo_surface_status(surface_) == CAIRO_STATUS_SUCCESS) return true;
+  } else if (cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS) {
+    return true;
+  }
   std::error_code ignored;
   std::filesystem::remove(file, ignored);  // half of it
   return false;

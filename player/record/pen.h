@@ -1,4 +1,4 @@
-// What plots are drawn with: lines and words on a picture that becomes a PNG.
+// What plots are drawn with: lines and words on a picture that becomes a PNG, or an SVG.
 #pragma once
 
 #include <cairo.h>
@@ -20,7 +20,8 @@ inline constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContac
 // Lengths in pixels.
 class Pen {
  public:
-  Pen(double width, double height);
+  Pen(double width, double height);                                    // a PNG
+  Pen(double width, double height, const std::filesystem::path& svg);  // an SVG, which save() ends
   ~Pen();
   Pen(const Pen&) = delete;
   Pen& operator=(const Pen&) = delete;
@@ -31,7 +32,7 @@ class Pen {
   // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width.
   double text(double x, double y, double size, double align, const std::string& words, bool bold = false);
   void upright_text(double x, double y, double size, const std::string& words);
-  bool save(const std::filesystem::path& file);  // whole, or not at all
+  bool save(const std::filesystem::path& file);  // whole, or not at all; an SVG where it was begun
 
  private:
   cairo_surface_t* surface_;
