@@ -57,8 +57,8 @@ void add_probe(const PlanJson& probe, const double* rms, PlanJson& figures) {
   for (const char* figure :
        {"net_work_J", "contact_ticks", "max_torque_Nm", "late_ticks", "stale_ticks", "missed_by_m"})
     if (probe.contains(figure)) put(figure, probe[figure]);
-  for (const char* limit : {"clipped", "withheld", "gated", "slewed"})
-    if (probe.contains(limit)) put((std::string(limit) + "_ticks").c_str(), probe[limit]["ticks"]);
+  for (const std::string limit : {"clipped", "withheld", "gated", "slewed"})  // the report has those that happened
+    put((limit + "_ticks").c_str(), probe.contains(limit) ? probe[limit]["ticks"] : PlanJson(0));
 }
 
 void add_soft(const PlanJson& soft, PlanJson& figures) {

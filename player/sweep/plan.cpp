@@ -79,7 +79,8 @@ Result<PlanJson> parse(const fs::path& file) {
     if (deep) return Error{file.string(), "is nested deeper than any plan; see docs/sweep.md"};
     if (!twice.empty())
       return Error{file.string(), fmt::format("has the key \"{}\" twice in one object; leave one of them out", twice)};
-    if (!json.is_object()) return Error{file.string(), "must be a JSON object with \"level\" and \"axes\""};
+    if (!json.is_object())
+      return Error{file.string(), "is no JSON object; give it \"level\" and \"axes\" (docs/sweep.md)"};
     return json;
   } catch (const PlanJson::parse_error& error) {
     return syntax_error(file, text, error.byte);

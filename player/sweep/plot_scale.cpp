@@ -16,10 +16,6 @@ namespace {
 constexpr double kLogFactor = 30.0;  // [1] from the least to the most
 constexpr int kTicks = 5;
 
-std::string short_number(double value) {
-  return fmt::format("{:.4g}", value);
-}
-
 // Of NODE.EXT.KEY, where the node's name may hold dots.
 std::string unit_of(const std::string& name) {
   if (name == "--seconds") return "s";
@@ -35,6 +31,10 @@ std::string unit_of(const std::string& name) {
 }
 
 }  // namespace
+
+std::string short_number(double value) {
+  return std::abs(value) >= 1e3 && std::abs(value) < 1e6 ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+}
 
 double PlotScale::share(double value) const {
   if (!words.empty()) return (value + 0.5) / static_cast<double>(words.size());

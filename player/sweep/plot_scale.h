@@ -17,6 +17,9 @@ struct PlotScale {
   std::vector<std::pair<double, std::string>> ticks() const;
 };
 
+// With four digits, and without an exponent where few are needed.
+std::string short_number(double value);
+
 // Of numbers: with some room, from zero where that is near.
 PlotScale scale_of(const std::vector<double>& values);
 
