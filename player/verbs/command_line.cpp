@@ -21,6 +21,7 @@
 #include "player/study/study.h"
 #include "player/sweep/sweep.h"
 #include "player/verbs/content_folder.h"
+#include "player/verbs/device_test.h"
 #include "player/verbs/verbs.h"
 #include "pliant/content.h"
 
@@ -327,7 +328,15 @@ int parse_and_run(int argc, const char* const* argv) {
   add_files(app, inspected, inspect_json, conversion, validated);
   CLI::App* verb = app.add_subcommand("devices", "haptic and pointing devices found, and how to use each");
   verb->add_flag("--json", devices_json, "as JSON");
-  verb->footer("Example:\n  pliant devices --json");
+  DeviceTestOptions device_test;
+  CLI::Option* test =
+      verb->add_option("--test", device_test.id, "what this one senses, live")->type_name("ID")->check(named());
+  verb->add_option("--seconds", device_test.seconds, "how long it is looked at [s] (10)")
+      ->check(within(0.1, 86400.0))
+      ->needs(test);
+  verb->add_flag("--push", device_test.push, "pushes gently along each axis, once that was confirmed")->needs(test);
+  verb->footer(
+      "Examples:\n  pliant devices --json\n  pliant devices --test spacemouse\n  pliant devices --test falcon --push");
   StudyOptions study_options;
   add_study(app, study_options);
   SweepOptions sweep_options;
@@ -353,7 +362,7 @@ int parse_and_run(int argc, const char* const* argv) {
   if (name == "convert") return convert(conversion);
   if (name == "author") return author(authoring);
   if (name == "validate") return validate(validated);
-  if (name == "devices") return devices(devices_json);
+  if (name == "devices") return device_test.id.empty() ? devices(devices_json) : test_device(device_test);
   if (name == "study") return study(study_options);
   if (name == "sweep")
     return app.get_subcommand("sweep")->got_subcommand("merge") ? merge_sweep(merging) : sweep(sweep_options);
