@@ -23,7 +23,7 @@ pkg_check_modules(libwebsockets REQUIRED IMPORTED_TARGET libwebsockets)
 if(PLIANT_TESTS)
   find_package(GTest REQUIRED)
   pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # without it, tests of plugging devices in are skipped
-  find_program(UMOCKDEV_WRAPPER umockdev-wrapper)
+  find_file(UMOCKDEV_PRELOAD libumockdev-preload.so.0 PATHS /usr/lib /usr/local/lib PATH_SUFFIXES ${CMAKE_LIBRARY_ARCHITECTURE})
 endif()
 if(PLIANT_BENCH)
   find_package(benchmark REQUIRED)

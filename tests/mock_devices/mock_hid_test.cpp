@@ -1,4 +1,4 @@
-// What hidapi and sysfs show of devices that umockdev makes: run under umockdev-wrapper. A node is a pseudo terminal:
+// What hidapi and sysfs show of devices that umockdev makes: run it by ctest, or under umockdev-wrapper. A node is a pseudo terminal:
 // good for one report at a time, not for timing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
