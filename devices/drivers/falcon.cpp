@@ -46,14 +46,30 @@ Status set(PacketPort& port, const Setting (&settings)[N]) {
   return Done{};
 }
 
+// When to stop waiting: time alone would count a busy machine's pauses as the device's.
+class Patience {
+ public:
+  explicit Patience(double seconds) : end_(DeviceThread::seconds() + seconds) {}
+  // A packet without bytes has come, or none at all. False: enough of that.
+  bool empty() { return ++empties_ < 8 || DeviceThread::seconds() < end_; }
+
+ private:
+  double end_;
+  int empties_ = 0;
+};
+constexpr double kPacket = 0.002;  // [s] the chip sends one a millisecond, with bytes or without
+
 // Everything that comes within `seconds`, at most `most` bytes, without the two of the modem's state in each packet.
 std::vector<std::uint8_t> hear(PacketPort& port, std::size_t most, double seconds) {
   std::vector<std::uint8_t> all;
-  for (const double end = DeviceThread::seconds() + seconds; all.size() < most && DeviceThread::seconds() < end;) {
+  for (Patience patience(seconds); all.size() < most;) {
     std::uint8_t packet[64];
-    const auto got = port.receive(packet, end - DeviceThread::seconds());
+    const auto got = port.receive(packet, kPacket);
     if (!got) break;
-    if (*got > 2) all.insert(all.end(), packet + 2, packet + *got);
+    if (*got > 2)
+      all.insert(all.end(), packet + 2, packet + *got);
+    else if (!patience.empty())
+      break;
   }
   return all;
 }
@@ -162,11 +178,14 @@ Falcon::Answer Falcon::exchange(PacketPort& port, const std::array<int, 3>& torq
   if (!port.send(falcon_command(torque, homing, homing ? kRed : kGreen))) return Answer::kGone;
   std::array<std::uint8_t, 256> stream;
   std::size_t size = 0;
-  for (const double end = DeviceThread::seconds() + 0.01; DeviceThread::seconds() < end;) {
+  for (Patience patience(0.01);;) {
     std::uint8_t packet[64];
-    const auto got = port.receive(packet, 0.005);
+    const auto got = port.receive(packet, kPacket);
     if (!got) return Answer::kGone;
-    if (*got <= 2) continue;
+    if (*got <= 2) {
+      if (!patience.empty()) return Answer::kNone;
+      continue;
+    }
     const std::size_t taken = std::min(*got - 2, stream.size() - size);
     std::copy_n(packet + 2, taken, stream.begin() + static_cast<long>(size));
     size += taken;
@@ -174,9 +193,8 @@ Falcon::Answer Falcon::exchange(PacketPort& port, const std::array<int, 3>& torq
       report = *found;
       return Answer::kReport;
     }
-    if (size == stream.size()) return Answer::kNone;
+    if (size == stream.size()) return Answer::kNone;  // noise
   }
-  return Answer::kNone;
 }
 
 // A line to a device whose firmware runs; loads it where it does not.
