@@ -36,7 +36,7 @@ std::vector<Figure> figures_of(const SweepTable& table) {
   return out;
 }
 
-using DrawPanel = std::function<void(Pen&, const Area&, const Figure&)>;
+using DrawPanel = std::function<void(Pen&, const PlotArea&, const Figure&)>;
 
 // A panel for each figure, row by row, as name.png and name.svg.
 Status draw_picture(OutputFolder& out, const std::string& name, const std::string& title, const std::string& subtitle,
