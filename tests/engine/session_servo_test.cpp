@@ -44,7 +44,7 @@ class ServedDevice final : public Driver {
   Served& served_;
 };
 
-Scene sheet_scene(const SurfaceParameters& surface, const DeviceParameters& device = {}) {
+Scene sheet_scene(const DeformableParameters& surface, const DeviceParameters& device = {}) {
   Scene scene("servo");
   scene.add_surface("tissue", sheet(), surface);
   scene.add_probe("finger", {}, device);
