@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFullForce = 3.0;    // [N] rendered as all that the device can; what that is, no device says
 constexpr double kSendEvery = 0.005;  // [s]
-constexpr double kRenewAfter = 0.2;   // [s] an effect ends by itself (gamepad_evdev.cpp), so that a lost program does not push on
+constexpr double kRenewAfter = 0.2;   // [s] an effect ends by itself, lest a dead program pushes on
 constexpr int kMostEvents = 256;      // in one tick
 constexpr const char* kName = "gamepad";
 
