@@ -199,7 +199,7 @@ TEST(SessionServo, LockstepGivesTheSameBitsAtEveryRateOfTheDevice) {
         ASSERT_TRUE(session.step());
         forces.push_back(served.force.y);
       }
-      EXPECT_EQ(served.reads, static_cast<int>(rate * 1.099 + 1e-6) + 1) << "every period until the last tick";
+      EXPECT_EQ(served.reads, static_cast<int>(1.099 * rate + 1e-6) + 1) << "the periods until the last tick began";
       EXPECT_GT(forces.back(), 0.8);
       if (run == 0)
         first = forces;
