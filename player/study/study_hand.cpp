@@ -242,7 +242,7 @@ Status study_hand(OutputFolder& out, bool quick, const Interrupt& interrupt) {
       "level,profile,delay_s,guard,stable,buzz_m,buzz_at_end_m,largest_force_N,work_J,stiffest_N_m,limit_N_m\n";
   for (const std::vector<HandRun>* runs : {&plotted, &table})
     for (const HandRun& r : *runs) {
-      csv += fmt::format("{},{},{:g},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:g},{:.4g}\n", r.level, r.profile, r.delay,
+      csv += fmt::format("{},\"{}\",{:g},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:g},{:.4g}\n", r.level, r.profile, r.delay,
                          r.guarded ? 1 : 0, r.stable() ? 1 : 0, r.buzz, r.late, r.force, r.work, r.stiffest, r.limit);
       json["runs"].push_back(to_json(r));
       print(

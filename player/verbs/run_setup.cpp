@@ -151,9 +151,10 @@ Outcome apply_settings(const RunOptions& options, double unit, Level& level, Pre
       if (!setting.starts_with(kUnitSetting) && !is_driver_setting(setting)) run.settings.push_back(setting);
     if (const Status status = set_keys(level, run.settings); !status)
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
-    say(run, fmt::format("the recording's settings hold:{}{}{}",
-                         unit != options.unit ? fmt::format(" --unit {}", unit) : std::string(),
-                         run.settings.empty() ? "" : " --set ", fmt::join(run.settings, " --set ")));
+    if (unit != options.unit || !run.settings.empty())
+      say(run, fmt::format("the recording's settings hold:{}{}{}",
+                           unit != options.unit ? fmt::format(" --unit {}", unit) : std::string(),
+                           run.settings.empty() ? "" : " --set ", fmt::join(run.settings, " --set ")));
   }
   if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
   run.settings.insert(run.settings.end(), options.sets.begin(), options.sets.end());
