@@ -21,6 +21,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTick = 1e-3;  // [s]
 constexpr int kLeastSteps = 8;
 constexpr double kBeyond = 3.0;  // [1] a height beyond this many dents has left
+constexpr double kGone = 1e3;    // [1] ... and will not return: a damped swing may grow before it decays
 
 double least(std::vector<double> values) {
   return *std::min_element(values.begin(), values.end());
@@ -206,7 +207,7 @@ double stable_error(Integrator integrator, SpringLaw law, double omega_T, double
   for (int i = 1; i <= count; ++i) {
     stepper.step();
     const double h = std::abs(stepper.state().h);
-    if (!(h <= kBeyond * std::abs(kDent))) return kInfinite;
+    if (!(h <= kGone * std::abs(kDent))) return kInfinite;
     half[i > count / 2] = std::max(half[i > count / 2], h);
     if (static_cast<std::size_t>(i) < truth.size()) {
       const double off = (stepper.state().h - truth[static_cast<std::size_t>(i)]) / kDent;

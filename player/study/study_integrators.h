@@ -34,7 +34,7 @@ std::vector<IntegratorCase> integrate_grid(const std::vector<double>& stiffness,
 // At steps of 1 ms, the stiffness from natural frequency times step.
 VertexProblem problem_at(SpringLaw law, double omega_T, double zeta);
 
-// Whether the swing from a dent stays bounded: over `count` steps it leaves three dents' size nowhere, and its second
+// Whether the swing from a dent stays bounded: over `count` steps no height exceeds a thousand dents, and its second
 // half is no larger than its first. Infinite: it does not. Else the RMS error of its first steps, those of `truth`. [1]
 double stable_error(Integrator integrator, SpringLaw law, double omega_T, double zeta, int count,
                     const std::vector<double>& truth);
