@@ -37,7 +37,10 @@ std::string to_csv(const ParetoTable& table) {
     const ParetoRow& row = table.rows[i];
     csv += csv_text(row.group) + ',' + csv_text(row.label);
     for (const std::string& value : row.more) csv += ',' + csv_text(value);
-    put(csv, row.error);
+    if (std::isfinite(row.error))
+      put(csv, row.error);
+    else
+      csv += ",failed";
     put(csv, row.cost);
     csv += best[i] ? ",1\n" : ",0\n";
   }
@@ -60,6 +63,10 @@ std::string to_json(const ParetoTable& table) {
   for (const std::size_t i : pareto_front(table.rows)) json["front"].push_back(table.rows[i].label);
   json["shows"] = table.sentences;
   return json.dump(2, ' ', true) + "\n";
+}
+
+Error interrupted() {
+  return {"study", "was interrupted and wrote nothing; run it again"};
 }
 
 Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {

@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 constexpr double kWidth = 1600, kHeight = 1000;                       // [pixel]
-constexpr double kLeft = 96, kRight = 40, kTop = 150, kBottom = 130;  // [pixel] margins
+constexpr double kLeft = 96, kRight = 40, kTop = 118, kBottom = 130;  // [pixel] margins
 constexpr double kSmall = 12.5, kRadius = 5;                          // [pixel]
 constexpr Color kSky{0.337, 0.706, 0.914}, kFront{0.62, 0.62, 0.62};
 constexpr std::array kColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kSky, kInk, Color{0.55, 0.55, 0.0}};
@@ -35,14 +35,14 @@ struct Axis {
   }
 };
 
-// Whole and half decades around the positive, finite values.
+// Quarters of decades around the positive, finite values.
 Axis axis_of(const std::vector<double>& values, double begin, double end) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values)
     if (v > 0.0 && std::isfinite(v)) low = std::min(low, std::log10(v)), high = std::max(high, std::log10(v));
   if (!(low <= high)) low = high = 0.0;
-  low = std::floor((low - 0.15) * 2.0) / 2.0;
-  high = std::ceil((high + 0.25) * 2.0) / 2.0;
+  low = std::floor((low - 0.06) * 4.0) / 4.0;
+  high = std::ceil((high + 0.06) * 4.0) / 4.0;
   return {low, high, begin, end};
 }
 
@@ -181,6 +181,7 @@ void draw_heads(Pen& pen, const Plot& plot) {
   const double width = pen.text(kLeft, 44, 26, 0, plot.table.study, true);
   pen.text(kLeft + width + 18, 44, 16, 0, plot.table.title);
   double x = kLeft, y = 76;
+  // What the points, front and circles are.
   const auto entry = [&](const std::string& words, Color color, bool line) {
     const double w = pen.width(15, words) + 46;
     if (x + w > kWidth - kRight) x = kLeft, y += 22;

@@ -96,10 +96,6 @@ class Stopwatch {
   std::vector<double> us_;
 };
 
-Error interrupted() {
-  return {"study linearisation", "was interrupted and wrote nothing; run it again"};
-}
-
 // (d): handle and wrench of every tick.
 struct Truth {
   std::vector<RigidMotion> handle;  // at the tick's end
