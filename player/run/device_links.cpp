@@ -13,11 +13,11 @@
 
 namespace pliant {
 
-Status DeviceLinks::open(World& world, bool windowed, std::vector<std::string>& notes) {
+Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed, std::vector<std::string>& notes) {
   std::vector<DeviceInfo> there;
   bool listed = false;
   for (const Entity hand : hands(world)) {
-    if (!find_device(world, hand)) continue;
+    if (!find_device(world, hand) || held.moves(hand)) continue;
     HapticDevice& device = world.registry.get<HapticDevice>(device_of(world, hand));
     if (device.driver != DriverKind::kExternal || device.id.empty()) continue;
     if (!listed) {
@@ -40,17 +40,18 @@ Status DeviceLinks::open(World& world, bool windowed, std::vector<std::string>& 
     auto made = make_device(chosen->id);
     if (!made) return made.error();
     for (const std::string& sentence : made->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
-    Held held{name, hand, device_of(world, hand), {}};
-    if (Status s = held.link.connect(std::move(made->driver), made->id, "device `" + chosen->id + "`", chosen->id); !s)
+    Held opened{name, hand, device_of(world, hand), {}};
+    if (Status s = opened.link.connect(std::move(made->driver), made->id, "device `" + chosen->id + "`", chosen->id);
+        !s)
       return s;
     device.id = chosen->id;
     device.path = {};
     device.status = DeviceStatus::kLost;
-    held.link.begin(device, device.rotation, place_of(world, hand));
+    opened.link.begin(device, device.rotation, place_of(world, hand));
     begin_anew(world, hand);
-    if (held.link.servo() && !held.link.servo()->note().empty())
-      notes.push_back(fmt::format("`{}`: {}", name, held.link.servo()->note()));
-    links_.push_back(std::move(held));
+    if (opened.link.servo() && !opened.link.servo()->note().empty())
+      notes.push_back(fmt::format("`{}`: {}", name, opened.link.servo()->note()));
+    links_.push_back(std::move(opened));
   }
   return Done{};
 }

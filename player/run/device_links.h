@@ -7,15 +7,17 @@
 
 #include "components/world.h"
 #include "engine/driver_link.h"
+#include "engine/simulated_hands.h"
 #include "engine/touch_clock.h"
 
 namespace pliant {
 
 class DeviceLinks {
  public:
-  // Opens what each hand with the driver `external` asks for by its `id`; one without an id is moved by nobody. Where
+  // Opens what each hand with the driver `external` asks for by its `id`; one without an id is moved by nobody, and
+  // one in `held` by a simulated hand. Where
   // the mouse is an alternative, it takes its place. `notes`: what is not as one might expect.
-  Status open(World& world, bool windowed, std::vector<std::string>& notes);
+  Status open(World& world, const SimulatedHands& held, bool windowed, std::vector<std::string>& notes);
   bool any() const { return !links_.empty(); }
   bool moves(Entity hand) const;
   // Why they cannot run in virtual time, if one cannot.

@@ -287,7 +287,7 @@ Status finish(Keeper& keeper, Journal& journal) {
 // Devices are felt in real time; a simulated one, or one whose samples come by the clock, may be stepped.
 Outcome open_devices(RunOptions& options, bool windowed, Prepared& run, DeviceLinks& devices) {
   std::vector<std::string> notes;
-  const Status opened = devices.open(run.world, windowed, notes);
+  const Status opened = devices.open(run.world, run.hands, windowed, notes);
   for (const std::string& sentence : notes) say(run, sentence);
   if (!opened) return wrong_arguments(opened.error());
   if (!devices.any() || windowed || options.realtime) return {};
