@@ -17,6 +17,8 @@ pliant_component(visual pliant_visual pliant_picture)
 install(DIRECTORY include/pliant DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
+# Who sits at the machine may open its devices. udev looks in this folder whatever the prefix is: a package's is /usr.
+install(FILES devices/70-pliant.rules DESTINATION lib/udev/rules.d)
 install(DIRECTORY shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant)
 configure_package_config_file(cmake/pliant-config.cmake.in ${CMAKE_BINARY_DIR}/pliant-config.cmake
                               INSTALL_DESTINATION ${package})

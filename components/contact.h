@@ -44,6 +44,14 @@ struct Contact {
   bool sliding = false;
   dvec3 force{0};  // [N]   on the probe, world frame
 
+  // How the force changes near, for what goes by it between two ticks (systems/device/device_model.h); zero where it
+  // does not press. Written by friction_feedback.
+  dvec3 gradient{0};               // [1]     d height / dx, world frame
+  double stiffness = 0.0;          // [N/m]   along the gradient
+  double damping = 0.0;            // [N s/m] the same
+  double bristle_stiffness = 0.0;  // [N/m]   across the normal; zero while it slides
+  double bristle_damping = 0.0;    // [N s/m] the same
+
   // Field. Written by force_field.
   double amplitude = 0.0;  // [m]  alpha >= 0: the field's target at distance r is -alpha f(r)
 };

@@ -31,6 +31,7 @@ struct HapticDevice : DeviceParameters {
   // Its driver's. Written where one is connected or released and never by an edit, so that none can lift them.
   DeviceCapabilities can = kNoDriver;
   double workspace = 1.0;  // [1] world metres per metre of the driver's; 1 where poses are in world coordinates
+  dvec3 origin{0};         // [m] world: where the origin of the driver's workspace lies
 
   Handle<Path> path;  // script, orbit
   DeviceStatus status = DeviceStatus::kReady;

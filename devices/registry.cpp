@@ -31,6 +31,9 @@ Status Driver::run(std::function<void()>) {
 bool Driver::write_model(const DeviceModel&, const DeviceWrench&) {
   return false;
 }
+bool Driver::safe_line(SafeLine&) const {
+  return false;
+}
 void Driver::make_safe() noexcept {
   try {
     write({});

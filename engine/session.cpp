@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "devices/choose.h"
+#include "devices/wrappers/chain.h"
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "engine/sources.h"
@@ -96,44 +98,17 @@ Status Session::orbit(const std::string& name) {
 }
 
 Status Session::connect(const std::string& name, const std::string& driver) {
-  const std::size_t colon = driver.find(':');
-  auto made = make_driver(driver.substr(0, colon));
+  auto chosen = choose_device(driver, list_devices());
+  if (!chosen) return chosen.error();
+  if (chosen->id.empty())
+    return Error{"Session::connect `" + name + "`", "the mouse is the window's: move the probe with Session::move"};
+  auto made = make_device(chosen->id);
   if (!made) return made.error();
-  return connect(name, std::move(made).value(), colon == std::string::npos ? "" : driver.substr(colon + 1));
+  return parts_->connect(name, std::move(made->driver), made->id, chosen->id);
 }
 
 Status Session::connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id) {
-  SessionEffector* const effector = parts_->find_effector(name);
-  if (!effector) return parts_->unknown_effector(name);
-  if (Status s = parts_->stand_still("Session::connect"); !s) return s;
-  const std::string where = "Session::connect `" + name + "`";
-  if (!driver) return Error{where, "the driver is null; give one"};
-  if (Status s = parts_->may_give(*effector); !s) return s;
-  bool opened = false;
-  const auto failed = [&](const std::string& what) {
-    try {
-      if (opened) driver->close();
-    } catch (...) {  // gone all the same
-    }
-    return Error{where, what};
-  };
-  try {
-    if (Status status = driver->open(id); !status) return status;
-    opened = true;
-    effector->can = driver->capabilities();
-  } catch (const std::exception& thrown) {
-    return failed(std::string("the driver threw: ") + thrown.what());
-  } catch (...) {
-    return failed("the driver threw something unknown");
-  }
-  const DeviceCapabilities& can = effector->can;
-  for (const double limit : {can.max_force, can.max_torque, can.max_stiffness})
-    if (!(limit >= 0.0)) {
-      effector->can = {};
-      return failed("a limit among its capabilities is negative or no number; say 0 where it is not known");
-    }
-  effector->driver = std::move(driver);
-  return parts_->give(*effector, EffectorSource::kDriver);
+  return parts_->connect(name, std::move(driver), id, {});
 }
 
 Status Session::release(const std::string& name) {
@@ -149,6 +124,8 @@ Status Session::step(std::uint64_t ticks) {
   if (Status s = parts_->stand_still("Session::step"); !s) return s;
   Parts& p = *parts_;
   if (p.ended) return Error{"Session::step", std::string(p.ended) + "; call Session::restart() first"};
+  for (const SessionEffector& effector : p.effectors)
+    if (Status s = effector.link.may_step(); !s) return Error{"Session::step `" + effector.name + "`", s.error().what};
   const double dt = 1.0 / p.world.simulation.touch_rate;
   Status done = Done{};
   try {
@@ -187,6 +164,7 @@ Status Session::start() {
   if (p.ended) return Error{"Session::start", std::string(p.ended) + "; call Session::restart() first"};
   if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
   limit_tool_ticks(p.world);
+  if (Status s = p.start_drivers(); !s) return s;
   p.ended = "it has run in real time";
   TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
                    [&p] { p.clock_ended(); }};
@@ -197,6 +175,7 @@ Status Session::start() {
     p.clock->start();
   } catch (const std::exception& thrown) {
     p.clock.reset();
+    p.halt_drivers();
     p.end("its clocks did not start");
     return Error{"Session::start", std::string("no thread could be started (") + thrown.what() +
                                        "); end other programs or raise the limit (ulimit -u), then call "
@@ -219,6 +198,7 @@ Status Session::stop() {
   Parts& p = *parts_;
   if (!p.clock) return Done{};
   p.clock->stop();
+  p.halt_drivers();
   p.rows.acquire();
   p.ticks = p.clock->now() + 1;
   p.time = static_cast<double>(p.ticks) / p.world.simulation.touch_rate;

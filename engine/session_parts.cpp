@@ -52,7 +52,7 @@ std::vector<Entity> touchable(const World& world) {
 
 Session::Parts::~Parts() {
   if (clock) clock->stop();
-  for (SessionEffector& effector : effectors) close_driver(effector);
+  for (SessionEffector& effector : effectors) effector.link.close();
   if (recorder) static_cast<void>(recorder->finish());
 }
 
@@ -69,11 +69,11 @@ Status Session::Parts::prepare() {
   } catch (...) {
     made = Error{"scene", "cannot be made: something that is no std::exception was thrown; look at what is registered"};
   }
-  for (SessionEffector& effector : before) close_driver(effector);  // what the new world has no place for
+  for (SessionEffector& effector : before) effector.link.close();  // what the new world has no place for
   if (made)
     ended = nullptr;
   else
-    for (SessionEffector& effector : effectors) close_driver(effector);
+    for (SessionEffector& effector : effectors) effector.link.close();
   return made;
 }
 
@@ -94,6 +94,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     made.prescribed = std::make_unique<TripleBuffer<PrescribedPose>>();
     const HapticDevice& device = world.registry.get<HapticDevice>(made.device);
     made.placed_rotation = device.rotation;
+    made.placed_position = place_of(world, held);
     if (device.driver != DriverKind::kNull) made.source = EffectorSource::kLevel;
     effectors.push_back(std::move(made));
   }
@@ -136,8 +137,8 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
       take_away(*effector, old.source);
       continue;
     }
-    effector->driver = std::move(old.driver);
-    effector->can = old.can;
+    effector->link = std::move(old.link);
+    effector->guard = old.guard;
     effector->path = std::move(old.path);
     effector->source = EffectorSource::kNone;
     if (Status s = give(*effector, old.source); !s) return s;
@@ -190,7 +191,7 @@ Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
   device.path = {};
   device.driver = DriverKind::kExternal;
   device.status = source == EffectorSource::kPath ? DeviceStatus::kReady : DeviceStatus::kLost;
-  effector.placed = effector.ready = false;
+  effector.placed = false;
   effector.source = source;
   if (source == EffectorSource::kPath) {
     device.driver = DriverKind::kScript;
@@ -200,34 +201,51 @@ Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
   return Done{};
 }
 
+Status Session::Parts::connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id,
+                               const std::string& claimed) {
+  SessionEffector* const effector = find_effector(name);
+  if (!effector) return unknown_effector(name);
+  if (Status s = stand_still("Session::connect"); !s) return s;
+  const std::string where = "Session::connect `" + name + "`";
+  if (!driver) return Error{where, "the driver is null; give one"};
+  if (Status s = may_give(*effector); !s) return s;
+  if (Status s = effector->link.connect(std::move(driver), id, where, claimed, effector->guard); !s) return s;
+  return give(*effector, EffectorSource::kDriver);
+}
+
 void Session::Parts::take_away(SessionEffector& effector, EffectorSource source) {
-  close_driver(effector);
+  effector.link.close();
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
   device.driver = DriverKind::kNull;
   device.path = {};
   device.status = DeviceStatus::kLost;
   effector.source = source;
-  effector.placed = effector.ready = false;
+  effector.placed = false;
   begin(effector);
 }
 
 void Session::Parts::begin(SessionEffector& effector) {
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
-  device.can = effector.driver ? effector.can : kNoDriver;
-  device.workspace = effector.driver ? device.scale : 1.0;
-  device.force_sent = device.torque_sent = dvec3(0);
+  effector.link.begin(device, effector.placed_rotation, effector.placed_position);
   begin_anew(world, effector.entity);
   effector.renewed = ticks > 0;  // before the first tick there is nothing to lose
 }
 
 void Session::Parts::zero_drivers() noexcept {
-  for (SessionEffector& effector : effectors) {
-    if (!effector.driver) continue;
-    try {
-      effector.driver->write({});
-    } catch (...) {  // what fails is left: its device's own watchdog ends the force
+  for (SessionEffector& effector : effectors) effector.link.zero();
+}
+
+Status Session::Parts::start_drivers() {
+  for (SessionEffector& effector : effectors)
+    if (Status started = effector.link.start(); !started) {
+      halt_drivers();
+      return started;
     }
-  }
+  return Done{};
+}
+
+void Session::Parts::halt_drivers() noexcept {
+  for (SessionEffector& effector : effectors) effector.link.halt();
 }
 
 void Session::Parts::end(const char* why) noexcept {
@@ -249,20 +267,6 @@ void Session::Parts::show_let_go() noexcept {
 void Session::Parts::clock_ended() noexcept {
   zero_drivers();
   if (!shown) show_let_go();
-}
-
-void Session::Parts::close_driver(SessionEffector& effector) noexcept {
-  if (!effector.driver) return;
-  try {
-    effector.driver->write({});
-  } catch (...) {  // closed all the same
-  }
-  try {
-    effector.driver->close();
-  } catch (...) {  // gone all the same
-  }
-  effector.driver.reset();
-  effector.can = {};
 }
 
 void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
@@ -287,24 +291,6 @@ void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
   device.status = DeviceStatus::kReady;
 }
 
-// Without a new sample the device keeps what it said last; once that is old, safety takes it for lost.
-void Session::Parts::read_driver(SessionEffector& effector, Tick tick) {
-  HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
-  DeviceSample sample;
-  if (effector.driver->read(sample)) {
-    device.position = device.workspace * sample.position;
-    if (!effector.can.senses_rotation)
-      device.rotation = effector.placed_rotation;
-    else if (plausible_rotation(sample.rotation))
-      device.rotation = sample.rotation / glm::length(sample.rotation);
-    else
-      device.rotation = sample.rotation;  // no rotation: the pose is not taken, and counted
-    device.sensed_at = tick.time;
-    effector.ready = sample.ready;
-  }
-  device.status = effector.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
-}
-
 void Session::Parts::before(Tick tick) {
   last = tick;
   shown = false;
@@ -314,7 +300,7 @@ void Session::Parts::before(Tick tick) {
     HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
     if (after_pause) forget(effector);
     if (effector.source == EffectorSource::kPose) read_prescribed(effector, tick);
-    if (effector.source == EffectorSource::kDriver) read_driver(effector, tick);
+    if (effector.source == EffectorSource::kDriver) effector.link.read(device, tick);
     if (effector.source == EffectorSource::kPath) device.status = DeviceStatus::kReady;
     if (effector.renewed) device.status = DeviceStatus::kLost;
     effector.renewed = false;
@@ -324,18 +310,15 @@ void Session::Parts::before(Tick tick) {
 // After a pause the pose from before it is old, however little time has passed by the clock: the gate would open on it.
 void Session::Parts::forget(SessionEffector& effector) {
   if (effector.source != EffectorSource::kPose && effector.source != EffectorSource::kDriver) return;
-  effector.placed = effector.ready = false;
+  effector.placed = false;
+  effector.link.forget();
   world.registry.get<HapticDevice>(effector.device).status = DeviceStatus::kLost;
 }
 
 void Session::Parts::idle() {
   after_pause = true;
-  DeviceSample sample;
-  for (SessionEffector& effector : effectors) {
-    if (!effector.driver) continue;
-    effector.driver->read(sample);
-    effector.driver->write({});
-  }
+  for (SessionEffector& effector : effectors)
+    if (effector.link) effector.link.idle();
 }
 
 }  // namespace pliant

@@ -12,6 +12,7 @@
 
 #include "components/world.h"
 #include "content/level/level.h"
+#include "engine/driver_link.h"
 #include "engine/recording.h"
 #include "engine/session_view.h"
 #include "engine/soft_clock.h"
@@ -42,9 +43,9 @@ struct SessionEffector {
   Entity entity, device;
   EffectorSource source = EffectorSource::kNone;
   Path path;                                                 // of kPath, for restart()
-  DeviceCapabilities can;                                    // its, while it is connected
-  std::unique_ptr<Driver> driver;                            // of kDriver
-  bool ready = false;                                        // as its driver said last, since a pause
+  DriverLink link;                                           // of kDriver
+  GuardParameters guard;                                     // its device's, when it is connected
+  dvec3 placed_position{0};                                  // [m] world: where the scene put it
   dquat placed_rotation{1, 0, 0, 0};                         // where its driver senses none
   std::unique_ptr<TripleBuffer<PrescribedPose>> prescribed;  // owner -> touch clock
   bool renewed = false;  // touch clock's: the next tick is its source's first, and has it lost
@@ -137,13 +138,15 @@ struct Session::Parts {
   SessionEffector* find_effector(const std::string& name);
   const SessionEffector* find_effector(const std::string& name) const;
   Result<Entity> find_object(const std::string& name) const;
+  Result<Servo*> find_servo(const std::string& name, const char* what);
   Error unknown_effector(const std::string& name) const;
   Status stand_still(const char* what) const;  // an error while the clocks run
 
   Status may_give(const SessionEffector& effector) const;  // not if it has a source, or replays
   Status give(SessionEffector& effector, EffectorSource source);
+  Status connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id,
+                 const std::string& claimed);
   void take_away(SessionEffector& effector, EffectorSource source);  // nobody moves it
-  void close_driver(SessionEffector& effector) noexcept;
   void zero_drivers() noexcept;
   void end(const char* why) noexcept;      // every device is lost, and written zero
   void show_let_go() noexcept;             // readings without force
@@ -160,7 +163,8 @@ struct Session::Parts {
   void begin_replay(Recording recording);
   Tick replayed_tick();  // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
-  void read_driver(SessionEffector& effector, Tick tick);
+  Status start_drivers();  // of real time; those that did are halted where one does not
+  void halt_drivers() noexcept;
   void after(Tick tick);
   void idle();
 };

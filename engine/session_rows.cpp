@@ -36,9 +36,9 @@ void Session::Parts::after(Tick tick) {
   std::vector<EffectorRow>& out = rows.write();
   for (std::size_t i = 0; i < effectors.size(); ++i) {
     SessionEffector& effector = effectors[i];
+    if (effector.link) effector.link.write(world, effector.entity, effector.device, tick);
     const HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
     const DeviceWrench wrench{device.force_sent, device.torque_sent};
-    if (effector.driver) effector.driver->write(wrench);
     EffectorRow& row = out[i];
     const ProbeReading read = pliant::reading(world, effector.entity);
     row.reading.tick = tick.index;

@@ -13,6 +13,8 @@ namespace {
 
 constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
 
+constexpr std::string_view kSimulated = "simulated:";  // in front of the id of what a simulated hand holds
+
 // The first probe or tool of this name.
 Entity find_hand(const World& world, const std::string& name) {
   for (const Entity hand : hands(world))
@@ -38,6 +40,12 @@ Entity own_device(World& world, Entity hand) {
   return made;
 }
 
+dvec3 place_of(const World& world, Entity hand) {
+  if (const Probe* probe = world.registry.find<Probe>(hand)) return probe->position;
+  const HapticDevice* device = find_device(world, hand);
+  return device ? device->position : dvec3(0);
+}
+
 Result<ProbeSource> parse_source(const std::string& argument) {
   const std::size_t equals = argument.find('=');
   const std::string where = "--probe " + argument;
@@ -55,9 +63,24 @@ Result<ProbeSource> parse_source(const std::string& argument) {
     source.driver = DriverKind::kMouse;
     return source;
   }
-  if (what.starts_with("device:"))
-    return Error{where, "drivers for devices are not yet built; `pliant devices` lists what is found"};
-  return Error{where, "unknown source '" + what + "'; sources are: script:FILE.csv, orbit, mouse, device:ID"};
+  if (what.starts_with("device:") && what.size() > 7) {
+    source.driver = DriverKind::kExternal;
+    source.device = what.substr(7);
+    return source;
+  }
+  if (what == "hand" || what.starts_with("hand:")) {
+    source.held = true;
+    source.words = what == "hand" ? std::string() : what.substr(5);
+    const HandWords words = hand_words(source.words);
+    source.file = words.file;
+    if (!words.file.empty()) source.driver = DriverKind::kScript;
+    if (auto options = parse_simulated(words.device); !options) return Error{where, options.error().message()};
+    return source;
+  }
+  return Error{where,
+               "unknown source '" + what +
+                   "'; sources are: script:FILE.csv, orbit, hand[:FILE.csv], mouse, device:ID (`pliant devices` lists "
+                   "them)"};
 }
 
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
@@ -98,8 +121,11 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
       path = world.paths.add(std::move(script).value());
     }
     HapticDevice& device = world.registry.get<HapticDevice>(own_device(world, hand));
+    if (source.held && source.file.empty() && device.driver == DriverKind::kScript && device.path.valid())
+      continue;  // the hand wants to follow the level's own script
     device.driver = source.driver;
     device.file = source.file;
+    device.id = source.device;
     device.path = path;
   }
   return Done{};
@@ -130,6 +156,17 @@ std::vector<std::string> make_orbits(World& world) {
   return held;
 }
 
+Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources, bool lockstep) {
+  SimulatedHands made;
+  for (const ProbeSource& source : sources) {
+    if (!source.held) continue;
+    if (const Status added = made.add(world, find_hand(world, source.name), source.name, source.words, lockstep);
+        !added)
+      return Error{"--probe " + source.name, added.error().message()};
+  }
+  return made;
+}
+
 std::string describe_source(const World& world, Entity hand) {
   const HapticDevice* device = find_device(world, hand);
   if (!device) return "null";
@@ -141,7 +178,8 @@ std::string describe_source(const World& world, Entity hand) {
     case DriverKind::kMouse:
       return "mouse";
     case DriverKind::kExternal:
-      return "device:" + device->id;
+      if (!device->id.starts_with(kSimulated)) return "device:" + device->id;
+      return device->id.size() == kSimulated.size() ? "hand" : "hand:" + device->id.substr(kSimulated.size());
     case DriverKind::kNull:
       return "null";
   }

@@ -6,6 +6,7 @@
 
 #include "components/world.h"
 #include "content/level/level.h"
+#include "engine/simulated_hands.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -13,10 +14,13 @@ namespace pliant {
 struct ProbeSource {
   std::string name;  // of the probe or tool
   DriverKind driver = DriverKind::kOrbit;
-  std::string file;  // of a script, relative to the working directory
+  std::string file;    // of a script, relative to the working directory
+  std::string device;  // which one (devices/choose.h)
+  bool held = false;   // by a simulated hand (simulated_hands.h), which wants to follow that path
+  std::string words;   // of the hand
 };
 
-// NAME=script:FILE.csv, NAME=orbit or NAME=mouse. `device:ID` gets a sentence that says what it needs.
+// NAME=script:FILE.csv, NAME=orbit, NAME=hand[:WORDS], NAME=mouse or NAME=device:WISH.
 Result<ProbeSource> parse_source(const std::string& argument);
 
 // Adds a node for each source that names no node of the level: a point probe with a device of its own. Before --set, so
@@ -25,6 +29,9 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources);
 
 // The device that moves this probe or tool; made where there is none. Before the clocks start.
 Entity own_device(World& world, Entity hand);
+
+// Where the level put this probe or tool. [m] world. Before the clocks start.
+dvec3 place_of(const World& world, Entity hand);
 
 // Gives each named probe or tool its source; scripts are read. Call after spawn.
 Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
@@ -35,6 +42,9 @@ Path orbit_of(const World& world, Entity hand, unsigned index);
 // Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch. Says who found nothing to
 // touch and is held where it stands.
 std::vector<std::string> make_orbits(World& world);
+
+// The simulated hands of --probe NAME=hand. Call after make_orbits.
+Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources, bool lockstep);
 
 // "script:press.csv", "orbit", "mouse", "null": what moves this probe or tool.
 std::string describe_source(const World& world, Entity hand);

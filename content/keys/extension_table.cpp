@@ -241,7 +241,9 @@ std::vector<Key> device_keys() {
   std::vector<Key> keys;
   keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
-  keys.push_back(text("id", KeyType::kText, d(&H::id), "which device, for the driver `external`"));
+  keys.push_back(text("id", KeyType::kText, d(&H::id),
+                      "which device: DRIVER, DRIVER:ID, any-force, any-pose, any or mouse, or several of these in "
+                      "turn, separated by semicolons"));
   keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
                         "workspace of a device with the driver `external` to world"));
   keys.push_back(

@@ -6,6 +6,8 @@
 // that waits for its device does so in wait(), or on a thread of its own.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -25,7 +27,11 @@ struct DeviceSample {
   double grip = 0.0;           // [1] how far it is closed, 0 to 1; of a trigger, how far it is pulled
   std::uint32_t buttons = 0;   // those that are down, bit by bit, as the driver numbers them
   double time = 0.0;           // [s] when it was sensed, of the monotonic clock; 0: when it was read
+  std::uint32_t warnings = 0;  // bits of DeviceWarning
 };
+
+// What a device says of itself. Warm: its force is lowered. Battery low: its force fades, and it is to be armed again.
+enum DeviceWarning : std::uint32_t { kDeviceWarm = 1u, kDeviceBatteryLow = 2u };
 
 // What leaves for a device: finite, clamped, slew-limited, passive.
 struct DeviceWrench {
@@ -49,6 +55,11 @@ struct DeviceModel {
   dmat3 force_by_velocity{0.0};   // [N s/m]
   dmat3 torque_by_spin{0.0};      // [N m s/rad]
   double time = 0.0;              // [s] when it was made, of the monotonic clock
+  dvec3 velocity{0};              // [m/s] of what is touched: dx and v are against it
+  dvec3 carried{0};               // [m/s] the part of it that may do work: of a surface with a prescribed motion
+  dvec3 weight{0};                // [N] part of the force that may do work: of a tool that nothing carries
+  double max_force = 0.0;         // [N] the level's limit, which holds of what the model gives as well; 0: none
+  double max_torque = 0.0;        // [N m] the same
 };
 
 // Who decides when the next sample is due.
@@ -72,10 +83,21 @@ struct DeviceCapabilities {
   bool resists_only = false;       // it brakes, and cannot push: it is never written a force along the motion
   double continuous_force = 0.0;   // [N] that it bears for ever; 0: not said
   double max_velocity = 0.0;       // [m/s] faster, and its force is switched off until it is armed again; 0: not said
-  dvec3 workspace{0};              // [m] half of its extents; 0: not said
+  dvec3 workspace{0};    // [m] half of its extents, about where the scene put what it moves; 0: not said, its poses are
+                         // in the world's frame
   double rate = 0.0;     // [Hz] of samples, and of its servo; 0: the touch clock's, without a thread of its own
   double latency = 0.0;  // [s] from a write to the sample that knows of it; 0: not said
   DeviceLoop loop = DeviceLoop::kOurs;
+  bool simulated = false;  // it has no motors: any number may open the same one
+  double max_grip = 0.0;   // [N] of DeviceWrench::grip; 0: not said
+  double damping = 0.0;    // [N s/m] of its mechanics in a light hand: bounds its stiffness by its rate; 0: not said
+};
+
+// A line on which another process may write, and what it writes to switch the force off.
+struct SafeLine {
+  int descriptor = -1;
+  std::array<std::uint8_t, 64> bytes{};
+  std::size_t size = 0;  // of `bytes`
 };
 
 class Driver {
@@ -99,8 +121,12 @@ class Driver {
   // True: the device renders the model itself, and write() need not be called for it. `wrench` is what the model gives
   // where the device is now, after every limit.
   virtual bool write_model(const DeviceModel& model, const DeviceWrench& wrench);
-  // Motors off, brakes on, at once: after a fault and last of all. Of a device without such a thing, a zero wrench.
+  // Motors off, brakes on, at once: after a fault and last of all. Of a device without such a thing, a zero wrench. A
+  // wrench other than zero that is written later switches them on again. From the thread that writes, and from a signal
+  // handler after a crash: there, what needs a lock or memory may be left out.
   virtual void make_safe() noexcept;
+  // True where there is such a line, after open(): a process of its own watches this one and uses it.
+  virtual bool safe_line(SafeLine& line) const;
 };
 
 using DriverFactory = std::function<std::unique_ptr<Driver>()>;

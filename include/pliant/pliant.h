@@ -1,6 +1,7 @@
 // All of the engine. docs/embedding.md walks through it.
 #pragma once
 
+#include "pliant/device_state.h"
 #include "pliant/driver.h"
 #include "pliant/math.h"
 #include "pliant/parameters.h"

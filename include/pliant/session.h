@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/device_state.h"
 #include "pliant/driver.h"
 #include "pliant/scene.h"
 
@@ -114,6 +115,17 @@ class Session {
   Status connect(const std::string& effector, const std::string& driver);
   Status connect(const std::string& effector, std::unique_ptr<Driver> driver, const std::string& id = {});
   Status release(const std::string& effector);  // nobody moves it: no force
+
+  // --- What stands between the session and a hand (pliant/device_state.h): of drivers that say a rate, each of which
+  // has a servo. In real time it runs on a thread of its own; in lockstep in step(), in virtual time, the same periods
+  // for the same ticks, and a device that is run by its answers or by its maker's library is refused.
+  // How the next driver that is connected to it is guarded.
+  Status guard(const std::string& effector, const GuardParameters& parameters);
+  Result<DeviceReport> device_state(const std::string& effector) const;
+  Status arm(const std::string& effector);     // after a trip, or where it does not arm itself
+  Status disarm(const std::string& effector);  // until it is armed
+  // No device gives force until it is armed. From any thread, while no other connects, releases or restarts.
+  void emergency_stop();
 
   // --- Time
   Status step(std::uint64_t ticks = 1);  // what a driver was written last it keeps until the next

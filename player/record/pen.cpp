@@ -1,5 +1,6 @@
 #include "player/record/pen.h"
 
+#include <cairo-svg.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,6 +23,11 @@ namespace pliant {
 Pen::Pen(double width, double height)
     : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height))),
       cairo_(cairo_create(surface_)) {
+  color(kPaper);
+  cairo_paint(cairo_);
+}
+Pen::Pen(const std::filesystem::path& svg, double width, double height)
+    : surface_(cairo_svg_surface_create(svg.c_str(), width, height)), cairo_(cairo_create(surface_)) {
   color(kPaper);
   cairo_paint(cairo_);
 }
@@ -49,6 +55,31 @@ double Pen::text(double x, double y, double size, double align, const std::strin
   return box.x_advance;
 }
 
+double Pen::width(double size, const std::string& words) {
+  cairo_save(cairo_);
+  cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo_, size);
+  cairo_text_extents_t box;
+  cairo_text_extents(cairo_, printable(words).c_str(), &box);
+  cairo_restore(cairo_);
+  return box.x_advance;
+}
+
+std::vector<std::string> Pen::lines(double size, const std::string& words, double widest) {
+  std::vector<std::string> lines{""};
+  for (std::size_t begin = 0; begin < words.size();) {
+    const std::size_t end = std::min(words.find(' ', begin), words.size());
+    const std::string word = words.substr(begin, end - begin);
+    const std::string longer = lines.back().empty() ? word : lines.back() + ' ' + word;
+    if (lines.back().empty() || width(size, longer) <= widest)
+      lines.back() = longer;
+    else
+      lines.push_back(word);
+    begin = end + 1;
+  }
+  return lines;
+}
+
 void Pen::upright_text(double x, double y, double size, const std::string& words) {
   cairo_save(cairo_);
   cairo_translate(cairo_, x, y);
@@ -62,6 +93,22 @@ bool Pen::save(const std::filesystem::path& file) {
   std::error_code ignored;
   std::filesystem::remove(file, ignored);  // half of it
   return false;
+}
+
+bool Pen::finish() {
+  cairo_surface_finish(surface_);
+  return cairo_surface_status(surface_) == CAIRO_STATUS_SUCCESS;
+}
+
+Status draw_png_and_svg(const std::filesystem::path& png, const std::filesystem::path& svg, double width, double height,
+                        const std::function<void(Pen&)>& draw) {
+  Pen image(width, height), vectors(svg, width, height);
+  draw(image);
+  draw(vectors);
+  for (const bool as_png : {true, false})
+    if (!(as_png ? image.save(png) : vectors.finish()))
+      return Error{(as_png ? png : svg).string(), "the plot cannot be written; check the space left"};
+  return Done{};
 }
 
 std::string number(double value, double step) {

@@ -1,10 +1,14 @@
-// What plots are drawn with: lines and words on a picture that becomes a PNG.
+// What plots are drawn with: lines and words on a picture that becomes a PNG or an SVG.
 #pragma once
 
 #include <cairo.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
+
+#include "runtime/result.h"
 
 namespace pliant {
 
@@ -21,6 +25,7 @@ inline constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContac
 class Pen {
  public:
   Pen(double width, double height);
+  Pen(const std::filesystem::path& svg, double width, double height);  // there when the pen is gone
   ~Pen();
   Pen(const Pen&) = delete;
   Pen& operator=(const Pen&) = delete;
@@ -30,13 +35,21 @@ class Pen {
   void line(double x0, double y0, double x1, double y1, double width);
   // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width.
   double text(double x, double y, double size, double align, const std::string& words, bool bold = false);
+  double width(double size, const std::string& words);  // of such a text
+  // Broken at blanks, so that no line is wider, unless one word is.
+  std::vector<std::string> lines(double size, const std::string& words, double widest);
   void upright_text(double x, double y, double size, const std::string& words);
-  bool save(const std::filesystem::path& file);  // whole, or not at all
+  bool save(const std::filesystem::path& file);  // as a PNG: whole, or not at all
+  bool finish();                                 // of an SVG: the file is whole
 
  private:
   cairo_surface_t* surface_;
   cairo_t* cairo_;
 };
+
+// One drawing, in two files.
+Status draw_png_and_svg(const std::filesystem::path& png, const std::filesystem::path& svg, double width, double height,
+                        const std::function<void(Pen&)>& draw);
 
 // With as many digits as ticks `step` apart need.
 std::string number(double value, double step);

@@ -41,7 +41,11 @@ Status run_lockstep(TouchLoop& loop) {
   for (std::uint64_t n = 0; n < loop.ticks && !loop.interrupt.requested(); ++n) {
     const Tick tick = loop.replay ? replayed_tick(loop, n) : clock.next();
     if (loop.soft) loop.soft->reach(tick.time);
+    if (loop.devices) loop.devices->before(loop.world, tick);
+    if (loop.hands) loop.hands->read(loop.world, tick);
     loop.schedule.run(loop.world, tick);
+    if (loop.devices) loop.devices->after(loop.world, tick);
+    if (loop.hands) loop.hands->write(loop.world);
     loop.journal.note(loop.world, tick);
     loop.keeper.keep(loop.journal);
     for (; loop.frames && frame != loop.frame_ticks.end() && *frame == n; ++frame) {
@@ -79,16 +83,25 @@ Status run_beside(TouchLoop& loop, TouchClock& touch) {
 
 Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
   TouchHooks hooks;
-  hooks.after = [&](Tick tick) { loop.journal.note(loop.world, tick); };
+  hooks.after = [&](Tick tick) {
+    if (loop.hands) loop.hands->write(loop.world);
+    loop.journal.note(loop.world, tick);
+  };
+  if (loop.hands) hooks.before = [&](Tick tick) { loop.hands->read(loop.world, tick); };
+  if (loop.devices) loop.devices->hook(loop.world, hooks);
   TouchClock touch(loop.world, loop.schedule, loop.soft, loop.rate, loop.ticks, hooks);
   Status status = Done{};
   try {
-    touch.start();
-    status = run_beside(loop, touch);
+    if (loop.devices) status = loop.devices->start();
+    if (status) {
+      touch.start();
+      status = run_beside(loop, touch);
+    }
   } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
     status = explain(error);
   }
   touch.stop();
+  if (loop.devices) loop.devices->halt();
   overruns = touch.overruns();
   loop.keeper.keep(loop.journal);
   if (!touch.has_priority()) note(kNoPriority);

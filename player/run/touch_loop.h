@@ -7,10 +7,12 @@
 #include "components/world.h"
 #include "engine/journal.h"
 #include "engine/recording.h"
+#include "engine/simulated_hands.h"
 #include "engine/soft_clock.h"
 #include "player/interrupt.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
+#include "player/run/device_links.h"
 #include "player/run/frames.h"
 #include "runtime/schedule.h"
 
@@ -32,6 +34,8 @@ struct TouchLoop {
   std::vector<std::uint64_t> frame_ticks;  // after which ticks a picture is taken, ascending
   const Recording* replay = nullptr;       // poses for every tick, lockstep only
   SoftClock* soft = nullptr;               // none: nothing soft
+  SimulatedHands* hands = nullptr;         // none: no simulated hand
+  DeviceLinks* devices = nullptr;          // none: no device
 };
 
 Status run_lockstep(TouchLoop& loop);

@@ -8,7 +8,7 @@
 #include "player/exit.h"
 #include "player/print.h"
 #include "player/record/output_folder.h"
-#include "player/study/study_linearisation.h"
+#include "player/study/studies.h"
 
 namespace pliant {
 namespace {
@@ -19,8 +19,9 @@ struct Study {
   Status (*run)(OutputFolder& out, bool quick, const Interrupt& interrupt);
 };
 constexpr Study kStudies[] = {
-    {"linearisation", "1 kHz force of a tool: held, linear, contacts solved again, against the full solve",
-     study_linearisation},
+#define STUDY(name, what) {#name, what, study_##name},
+    PLIANT_STUDIES(STUDY)
+#undef STUDY
 };
 
 int list() {

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "content/files/file_io.h"
 #include "content/level_file.h"
 #include "player/print.h"
 #include "player/progress.h"
+#include "player/study/pareto.h"
+#include "player/study/studies.h"
 #include "player/verbs/content_folder.h"
 #include "systems/device/path.h"
 #include "systems/schedule.h"
@@ -94,10 +95,6 @@ class Stopwatch {
   std::uint64_t begin_ = 0;
   std::vector<double> us_;
 };
-
-Error interrupted() {
-  return {"study linearisation", "was interrupted and wrote nothing; run it again"};
-}
 
 // (d): handle and wrench of every tick.
 struct Truth {
@@ -333,11 +330,6 @@ std::string to_csv(const LinearisationFigures& figures) {
     csv += '\n';
   }
   return csv;
-}
-
-Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
-  return write_file(out.stage(name), std::span(bytes, text.size()));
 }
 
 void print_figures(const LinearisationFigures& figures) {

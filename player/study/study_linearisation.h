@@ -46,10 +46,9 @@ struct LinearisationFigures {
   int jumps_of_contacts = 0;   // of these, as a contact touched, let go or changed between sticking and sliding
 };
 
-// Both end with an error when `interrupt` is requested.
+// Ends with an error when `interrupt` is requested.
 Result<LinearisationFigures> measure_linearisation(const std::string& level, double pace, double seconds,
                                                    const Interrupt& interrupt);
-Status study_linearisation(OutputFolder& out, bool quick, const Interrupt& interrupt);
 
 // Force over time by each way, and error against cost.
 Status plot_linearisation(const std::filesystem::path& file, const LinearisationFigures& figures);

@@ -19,7 +19,9 @@
 #include "player/exit.h"
 #include "player/standard_streams.h"
 #include "player/study/study.h"
+#include "player/sweep/sweep.h"
 #include "player/verbs/content_folder.h"
+#include "player/verbs/device_test.h"
 #include "player/verbs/verbs.h"
 #include "pliant/content.h"
 
@@ -97,7 +99,8 @@ void add_run(CLI::App& app, RunOptions& run) {
       verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)")
           ->check(named());
   verb->add_flag("--list", run.list, "which levels ship, and what they show")->excludes(level);
-  verb->add_option("--probe", run.probes, "NAME=SOURCE: script:FILE.csv, orbit, mouse, device:ID; may be repeated")
+  verb->add_option("--probe", run.probes,
+                   "NAME=SOURCE: script:FILE.csv, orbit, hand[:FILE.csv], mouse, device:ID; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
   verb->add_option("--set", run.sets, "NODE.EXT.KEY=VALUE for this run; NODE may be *; may be repeated")
@@ -225,6 +228,32 @@ void add_study(CLI::App& app, StudyOptions& options) {
   verb->footer("Example:\n  pliant study all --quick");
 }
 
+void add_sweep(CLI::App& app, SweepOptions& options, MergeOptions& merging) {
+  CLI::App* verb = app.add_subcommand("sweep", "one level over many settings, on one machine or many");
+  verb->add_option("plan", options.plan, "what is varied (docs/sweep.md)")->check(named())->type_name("PLAN.json");
+  verb->add_option("--out", options.out, "folder of what was done; default: out/<plan's name>; a sweep there goes on")
+      ->check(named());
+  verb->add_option("--shard", options.shard,
+                   "I/N: only each Nth run, from the Ith on; default: by Slurm's array or MPI's rank, else all")
+      ->check(named())
+      ->type_name("I/N");
+  verb->add_flag("--retry-failed", options.retry_failed, "does runs that failed again");
+  verb->add_flag("--list", options.list, "every run with its id, its state and its values; writes nothing");
+  verb->add_flag("--dry-run", options.dry_run, "the commands that would run; writes nothing");
+  verb->add_option("--jobs", options.jobs, "runs at a time (1)")->check(within(1, 1024));
+  verb->footer(
+      "Examples:\n"
+      "  pliant sweep plan.json --out out/sweep --jobs 4\n"
+      "  pliant sweep merge out/sweep --out out/merged");
+  CLI::App* merge = verb->add_subcommand("merge", "tables, a report and plots of what sweeps did");
+  merge->add_option("folders", merging.folders, "--out of one sweep, or of its shards")->required()->check(named());
+  merge->add_option("--out", merging.out, "folder of the tables; FOLDER-2 and on where one has results")
+      ->required()
+      ->check(named());
+  merge->add_flag("--force", merging.force, "replace what an earlier merge wrote there");
+  merge->footer("Example:\n  pliant sweep merge out/sweep --out out/merged");
+}
+
 void add_edit(CLI::App& app, EditOptions& options, std::string& unit) {
   CLI::App* verb = app.add_subcommand("edit", "the editor: from a mesh to a level that can be touched");
   verb->add_option("file", options.file, "a level, or any mesh; none: the start page");
@@ -299,9 +328,20 @@ int parse_and_run(int argc, const char* const* argv) {
   add_files(app, inspected, inspect_json, conversion, validated);
   CLI::App* verb = app.add_subcommand("devices", "haptic and pointing devices found, and how to use each");
   verb->add_flag("--json", devices_json, "as JSON");
-  verb->footer("Example:\n  pliant devices --json");
+  DeviceTestOptions device_test;
+  CLI::Option* test =
+      verb->add_option("--test", device_test.id, "what this one senses, live")->type_name("ID")->check(named());
+  verb->add_option("--seconds", device_test.seconds, "how long it is looked at [s] (10)")
+      ->check(within(0.1, 86400.0))
+      ->needs(test);
+  verb->add_flag("--push", device_test.push, "pushes gently along each axis, once that was confirmed")->needs(test);
+  verb->footer(
+      "Examples:\n  pliant devices --json\n  pliant devices --test spacemouse\n  pliant devices --test falcon --push");
   StudyOptions study_options;
   add_study(app, study_options);
+  SweepOptions sweep_options;
+  MergeOptions merging;
+  add_sweep(app, sweep_options, merging);
   EditOptions edit_options;
   std::string edit_unit = "m";
   add_edit(app, edit_options, edit_unit);
@@ -322,8 +362,10 @@ int parse_and_run(int argc, const char* const* argv) {
   if (name == "convert") return convert(conversion);
   if (name == "author") return author(authoring);
   if (name == "validate") return validate(validated);
-  if (name == "devices") return devices(devices_json);
+  if (name == "devices") return device_test.id.empty() ? devices(devices_json) : test_device(device_test);
   if (name == "study") return study(study_options);
+  if (name == "sweep")
+    return app.get_subcommand("sweep")->got_subcommand("merge") ? merge_sweep(merging) : sweep(sweep_options);
   const Result<double> unit = parse_unit(edit_unit);
   if (!unit) return fail(kUsage, unit.error());
   edit_options.unit = *unit;
@@ -333,6 +375,23 @@ int parse_and_run(int argc, const char* const* argv) {
 }
 
 }  // namespace
+
+Status check_run_arguments(const std::vector<std::string>& arguments) {
+  CLI::App app;
+  RunOptions run;
+  const double factor = limit_factor();  // --limits would hold at once
+  add_run(app, run);
+  std::vector<std::string> words(arguments.rbegin(), arguments.rend());  // CLI11 takes them from behind
+  words.emplace_back("run");
+  std::optional<Error> wrong;
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    wrong = usage_error(app, error);
+  }
+  set_limit_factor(factor);
+  return wrong ? Status(*wrong) : Status(Done{});
+}
 
 int command_line(int argc, const char* const* argv) {
   int status = kDone;

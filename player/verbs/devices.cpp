@@ -1,16 +1,16 @@
-// pliant devices: what can move a probe: the built-in sources, and HID devices that we know by vendor and product.
+// pliant devices: what can move a probe: the built-in sources, and what the drivers find on this machine.
 #include <fmt/format.h>
-#include <hidapi/hidapi.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "devices/drivers/all.h"
 #include "player/print.h"
 #include "player/verbs/verbs.h"
+#include "pliant/driver.h"
+#include "runtime/printable.h"
 
 namespace pliant {
 namespace {
@@ -28,108 +28,78 @@ constexpr BuiltIn kBuiltIn[] = {
     {"null", "stays where the level put it", "\"driver\": \"null\" in the level's PLIANT_haptic_device"},
 };
 
-// USB vendor and product ids, from public lists.
-struct Known {
-  std::uint16_t vendor;
-  std::vector<std::uint16_t> products;
-  const char* driver;
-  const char* what;
-};
-const std::vector<Known>& known_devices() {
-  static const std::vector<Known> known{
-      {0x046d,
-       {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625, 0xc626, 0xc627, 0xc628, 0xc629, 0xc62b},
-       "spacemouse",
-       "3Dconnexion six-axis mouse (senses; no force)"},
-      {0x256f,
-       {0xc62e, 0xc62f, 0xc631, 0xc632, 0xc633, 0xc635, 0xc636, 0xc638, 0xc63a},
-       "spacemouse",
-       "3Dconnexion six-axis mouse (senses; no force)"},
-      {0x054c, {0x0ce6, 0x0df2}, "dualsense", "DualSense controller (trigger resistance, vibration)"},
-      {0x054c, {0x05c4, 0x09cc}, "dualshock4", "DualShock 4 controller (vibration)"},
-      {0x16c0, {0x0486}, "polhem", "Polhem / WoodenHaptics (three-axis force, six-axis sensing)"},
-      {0x1532, {0x0300}, "hydra", "Razer Hydra (two six-axis trackers; no force)"},
-      {0x0403, {0xcb48}, "falcon", "Novint Falcon (three-axis force)"},
+std::string full_id(const DeviceInfo& device) {
+  return device.id.empty() ? device.driver : device.driver + ":" + device.id;
+}
+
+// "senses position and rotation; pushes up to 8 N (2.5 N for long)"
+std::string describe(const DeviceCapabilities& can) {
+  std::vector<std::string> senses, renders;
+  if (can.senses_position) senses.push_back("position");
+  if (can.senses_rotation) senses.push_back("rotation");
+  if (can.senses_grip) senses.push_back("grip");
+  const auto up_to = [](double most, double lasting, const char* unit) {
+    if (!(most > 0.0)) return std::string();
+    return fmt::format(" up to {:g} {}{}", most, unit,
+                       lasting > 0.0 ? fmt::format(" ({:g} {} for long)", lasting, unit) : "");
   };
-  return known;
+  if (can.renders_force)
+    renders.push_back((can.resists_only ? "brakes" : "pushes") + up_to(can.max_force, can.continuous_force, "N"));
+  if (can.renders_torque) renders.push_back("turns" + up_to(can.max_torque, 0.0, "N m"));
+  if (can.renders_grip) renders.push_back("resists the grip");
+  if (can.renders_vibration) renders.push_back("vibrates");
+  return fmt::format("{}; {}{}",
+                     senses.empty() ? "senses buttons" : "senses " + fmt::format("{}", fmt::join(senses, ", ")),
+                     renders.empty() ? "no force" : fmt::format("{}", fmt::join(renders, ", ")),
+                     can.rate > 0.0 ? fmt::format("; {:g} Hz", can.rate) : "");
 }
 
-struct Found {
-  std::string id;  // for device:ID
-  std::string driver, what, product;
-  bool opens = false;  // may we open it?
-};
-
-std::string narrow(const wchar_t* text) {
-  std::string ascii;
-  for (; text && *text; ++text) ascii += (*text >= 0x20 && *text < 0x7f) ? static_cast<char>(*text) : '?';
-  return ascii;
+std::string how_to_use(const DeviceInfo& device) {
+  if (!device.missing.empty()) return device.missing;
+  return fmt::format("--probe NAME=device:{}; try it: pliant devices --test {}", full_id(device), full_id(device));
 }
 
-// One entry a device, though it may show several interfaces.
-std::vector<Found> find_devices() {
-  std::vector<Found> found;
-  if (hid_init() != 0) return found;
-  std::set<std::string> seen;
-  hid_device_info* all = hid_enumerate(0, 0);
-  for (const hid_device_info* info = all; info; info = info->next) {
-    for (const Known& known : known_devices()) {
-      if (info->vendor_id != known.vendor ||
-          std::find(known.products.begin(), known.products.end(), info->product_id) == known.products.end())
-        continue;
-      Found device;
-      device.id = fmt::format("{:04x}:{:04x}", info->vendor_id, info->product_id);
-      if (const std::string serial = narrow(info->serial_number); !serial.empty()) device.id += ":" + serial;
-      if (!seen.insert(device.id).second) continue;
-      device.driver = known.driver;
-      device.what = known.what;
-      device.product = narrow(info->product_string);
-      if (hid_device* handle = hid_open_path(info->path)) {
-        device.opens = true;
-        hid_close(handle);
-      }
-      found.push_back(std::move(device));
-    }
-  }
-  hid_free_enumeration(all);
-  hid_exit();
-  return found;
-}
-
-std::string how_to_use(const Found& device) {
-  std::string use = fmt::format("a driver `{}` for it is not yet built", device.driver);
-  if (!device.opens)
-    use += "; besides, it may not be opened: give your user access to its /dev/hidraw node (udev rule with uaccess)";
-  return use;
+void print_as_json(const std::vector<DeviceInfo>& found) {
+  nlohmann::ordered_json out;
+  out["built_in"] = nlohmann::ordered_json::array();
+  for (const BuiltIn& source : kBuiltIn)
+    out["built_in"].push_back({{"name", source.name}, {"what", source.what}, {"use", source.use}});
+  out["found"] = nlohmann::ordered_json::array();
+  for (const DeviceInfo& device : found)
+    out["found"].push_back({{"id", printable(full_id(device))},
+                            {"driver", device.driver},
+                            {"what", describe(device.can)},
+                            {"product", printable(device.name)},
+                            {"opens", device.missing.empty()},
+                            {"use", printable(how_to_use(device))}});
+  print_json(out);
 }
 
 }  // namespace
 
 int devices(bool json) {
-  const std::vector<Found> found = find_devices();
+  register_all_drivers();
+  const std::vector<DeviceInfo> found = list_devices();
   if (json) {
-    nlohmann::ordered_json out;
-    out["built_in"] = nlohmann::ordered_json::array();
-    for (const BuiltIn& source : kBuiltIn)
-      out["built_in"].push_back({{"name", source.name}, {"what", source.what}, {"use", source.use}});
-    out["found"] = nlohmann::ordered_json::array();
-    for (const Found& device : found)
-      out["found"].push_back({{"id", device.id},
-                              {"driver", device.driver},
-                              {"what", device.what},
-                              {"product", device.product},
-                              {"opens", device.opens},
-                              {"use", how_to_use(device)}});
-    print_json(out);
+    print_as_json(found);
     return 0;
   }
   print("Built in:\n");
   for (const BuiltIn& source : kBuiltIn) print("  {:<8} {}\n           {}\n", source.name, source.what, source.use);
-  print("\nFound on this machine:\n");
-  if (found.empty())
-    print("  no known haptic or pointing device (plugged in, switched on, passed through to this machine?)\n");
-  for (const Found& device : found)
-    print("  {} {}\n           {}\n           {}\n", device.id, device.product, device.what, how_to_use(device));
+  const auto list = [&](const char* title, bool usable) {
+    bool any = false;
+    for (const DeviceInfo& device : found) {
+      if (device.missing.empty() != usable) continue;
+      if (!any) print("\n{}:\n", title);
+      any = true;
+      print("  {}  {}\n           {}\n           {}\n", printable(full_id(device)), printable(device.name),
+            describe(device.can), printable(how_to_use(device)));
+    }
+    return any;
+  };
+  if (!list("Found on this machine", true))
+    print("\nFound on this machine:\n  no device (plugged in, switched on, passed through to this machine?)\n");
+  list("Not usable yet", false);
   return 0;
 }
 

@@ -12,6 +12,7 @@
 
 #include "content/files/file_io.h"
 #include "engine/body_journal.h"
+#include "engine/driver_limits.h"
 #include "engine/journal.h"
 #include "engine/sources.h"
 #include "engine/touch_clock.h"
@@ -61,8 +62,9 @@ struct Shown {
 };
 
 // As long as the longest script that a probe or tool follows.
-double default_seconds(const World& world) {
-  double longest = 0.0;
+double default_seconds(const Prepared& run) {
+  const World& world = run.world;
+  double longest = run.hands.seconds();
   for (const Entity hand : hands(world)) {
     const HapticDevice* device = find_device(world, hand);
     if (!device || device->driver != DriverKind::kScript || !device->path.valid()) continue;
@@ -77,7 +79,7 @@ std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepar
   if (windowed)
     return static_cast<std::uint64_t>(std::llround((options.seconds > 0.0 ? options.seconds : kEndless) * rate));
   const bool all = run.replay && options.seconds <= 0.0;
-  const double seconds = options.seconds > 0.0 ? options.seconds : default_seconds(run.world);
+  const double seconds = options.seconds > 0.0 ? options.seconds : default_seconds(run);
   const auto wanted = static_cast<std::uint64_t>(std::max<long long>(1, std::llround(seconds * rate)));
   const std::uint64_t recorded = run.replay ? run.replay->ticks.size() : wanted;
   return all ? recorded : std::min(wanted, recorded);
@@ -134,7 +136,10 @@ bool is_moved(const RunFigures& figures, std::size_t hand) {
   const HapticDevice* device = find_device(figures.world, figures.journal.probes()[hand]);
   const DriverKind driver = device ? device->driver : DriverKind::kNull;
   if (driver == DriverKind::kMouse) return figures.mode == "window";
-  if (driver == DriverKind::kExternal) return figures.keeper.summaries()[hand].source.starts_with("replay:");
+  if (driver == DriverKind::kExternal) {
+    const std::string& source = figures.keeper.summaries()[hand].source;
+    return source.starts_with("replay:") || source.starts_with("hand:");
+  }
   return driver != DriverKind::kNull;
 }
 
@@ -233,6 +238,8 @@ Ran run_shown(const RunOptions& options, const RunOptions& asked, Shown& shown, 
   WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
                         loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
   session.soft = loop.soft;
+  session.hands = loop.hands;
+  session.devices = loop.devices;
   session.level = options.level;
   session.rate = loop.rate;
   session.ticks = loop.ticks;
@@ -277,8 +284,23 @@ Status finish(Keeper& keeper, Journal& journal) {
   return kept ? closed : kept;
 }
 
+// Devices are felt in real time; a simulated one, or one whose samples come by the clock, may be stepped.
+Outcome open_devices(RunOptions& options, bool windowed, Prepared& run, DeviceLinks& devices) {
+  std::vector<std::string> notes;
+  const Status opened = devices.open(run.world, run.hands, windowed, notes);
+  for (const std::string& sentence : notes) say(run, sentence);
+  if (!opened) return wrong_arguments(opened.error());
+  if (!devices.any() || windowed || options.realtime) return {};
+  if (!options.lockstep) {
+    options.realtime = true;
+    return {};
+  }
+  const Status may = devices.may_step();
+  return may ? Outcome() : wrong_arguments({"--lockstep", may.error().message()});
+}
+
 // `shown`: the window, or null. `next`: what is to be run after this, if a window asked for it.
-Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, const Interrupt& interrupt,
+Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Interrupt& interrupt,
                      std::optional<Prepared>& next) {
   World& world = run.world;
   const double rate = world.simulation.touch_rate;
@@ -291,6 +313,10 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
                               pictures, kMostFrames)});
   if (run.replay && options.seconds > 0.0 && ticks < static_cast<std::uint64_t>(std::llround(options.seconds * rate)))
     say(run, fmt::format("the recording ends after {} ticks, before --seconds {}", ticks, options.seconds));
+
+  DeviceLinks devices;
+  if (!run.replay)
+    if (Outcome wrong = open_devices(options, shown, run, devices)) return wrong;
 
   auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out, options.force);
   if (!out) return failed(out.error());
@@ -314,7 +340,14 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
     say(run, "the level has no probe and no tool, so nothing is touched; give one with --probe NAME=orbit");
   if (!options.record.empty()) {
     RecordingHeader header{world.name, rate, {}, run.scene, run.settings};
-    for (const ProbeSummary& probe : keeper->summaries()) header.probes.push_back(probe.name);
+    for (std::size_t i = 0; i < journal.probes().size(); ++i) {
+      header.probes.push_back(keeper->summaries()[i].name);
+      const Entity hand = journal.probes()[i];
+      if (!run.hands.moves(hand) && !devices.moves(hand)) continue;
+      for (std::string& limit :
+           driver_settings(header.probes.back(), world.registry.get<HapticDevice>(device_of(world, hand))))
+        header.settings.push_back(std::move(limit));
+    }
     auto writer = RecordingWriter::create(options.record, header, options.force);
     if (!writer) return failed(writer.error());
     interrupt.remove_if_forced(writer->aside());
@@ -327,6 +360,11 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   Schedule<World> schedule(touch_schedule());
   TouchLoop loop{world, schedule, journal, *keeper, *out, interrupt, rate, ticks, frames.get(), {}, nullptr};
   loop.replay = run.replay ? &*run.replay : nullptr;
+  if (!run.hands.empty()) {
+    loop.hands = &run.hands;
+    if (const Status opened = run.hands.open(); !opened) return failed(opened.error());
+  }
+  if (devices.any()) loop.devices = &devices;
   if (options.realtime || shown) limit_tool_ticks(world);
   SoftClock soft(world);
   if (soft.any()) {
@@ -343,6 +381,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   Prepared other;
   const Ran ran = shown ? run_shown(options, run.asked, *shown, loop, other) : run_headless(options, loop);
   soft.stop();  // where an exception left it running
+  run.hands.close();
   if (ran.opened) next = std::move(other);
   if (soft.any()) world.dropped |= world.soft->dropped;
   Hash hash = journal.hash();
@@ -379,6 +418,7 @@ Outcome run_prepared(const RunOptions& options, Prepared& run, Shown* shown, con
   std::vector<std::string> sentences;
   try {
     sentences = explain_run(figures);
+    for (std::string& sentence : devices.findings()) sentences.push_back(std::move(sentence));
   } catch (const std::exception& error) {  // the figures are written without them
     figures.misses.resize(journal.probes().size());
     take(explain(error));

@@ -111,8 +111,10 @@ void say_unmoved(bool windowed, Prepared& run) {
   for (const Entity hand : hands(run.world)) {
     const HapticDevice* device = find_device(run.world, hand);
     if (!device) continue;
+    if (device->driver == DriverKind::kExternal && !device->id.empty())
+      continue;  // opened right before the clocks start
     const bool mouse = device->driver == DriverKind::kMouse && !windowed;
-    if (!mouse && device->driver != DriverKind::kExternal) continue;
+    if (!mouse && (device->driver != DriverKind::kExternal || run.hands.moves(hand))) continue;
     const Name* name = run.world.registry.find<Name>(hand);
     const std::string its = name ? name->value : std::string();
     say(run,
@@ -149,9 +151,10 @@ Outcome apply_settings(const RunOptions& options, double unit, Level& level, Pre
       if (!setting.starts_with(kUnitSetting) && !is_driver_setting(setting)) run.settings.push_back(setting);
     if (const Status status = set_keys(level, run.settings); !status)
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
-    say(run, fmt::format("the recording's settings hold:{}{}{}",
-                         unit != options.unit ? fmt::format(" --unit {}", unit) : std::string(),
-                         run.settings.empty() ? "" : " --set ", fmt::join(run.settings, " --set ")));
+    if (unit != options.unit || !run.settings.empty())
+      say(run, fmt::format("the recording's settings hold:{}{}{}",
+                           unit != options.unit ? fmt::format(" --unit {}", unit) : std::string(),
+                           run.settings.empty() ? "" : " --set ", fmt::join(run.settings, " --set ")));
   }
   if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
   run.settings.insert(run.settings.end(), options.sets.begin(), options.sets.end());
@@ -238,12 +241,16 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   for (const std::string& sentence : notes) say(run, sentence);
   for (const std::string& sentence : unused_key_notes(level)) say(run, sentence);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
-  say_unmoved(windowed, run);
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (const Status status = prepare_system(run.world); !status) return failed(status.error());
   for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);
+  auto held = make_hands(run.world, sources, !windowed && !options.realtime);
+  if (!held) return wrong_arguments(held.error());
+  run.hands = std::move(held).value();
+  for (const std::string& sentence : run.hands.notes()) say(run, sentence);
+  say_unmoved(windowed, run);
   if (const auto unfelt = unfelt_bodies(run.world)) say(run, *unfelt);
   say_creeping(run);
   say_locking(run);

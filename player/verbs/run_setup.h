@@ -7,6 +7,7 @@
 
 #include "components/world.h"
 #include "engine/recording.h"
+#include "engine/simulated_hands.h"
 #include "player/exit.h"
 #include "player/verbs/verbs.h"
 #include "runtime/result.h"
@@ -34,6 +35,7 @@ struct Prepared {
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
+  SimulatedHands hands;               // not opened
   std::uint64_t scene = 0;            // scene_hash() of the level that runs
   std::vector<std::string> settings;  // for a recording: --set, --unit and --tool-force, those of a replay before them
 };

@@ -240,16 +240,28 @@ WindowFigures WindowLoop::run() {
     return std::move(figures_);
   }
   TouchHooks hooks;
-  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
+  hooks.after = [this](Tick tick) {
+    if (s_.hands) s_.hands->write(s_.world);
+    s_.journal.note(s_.world, tick);
+  };
+  if (s_.hands) {
+    hooks.before = [this](Tick tick) { s_.hands->read(s_.world, tick); };
+    hooks.idle = [this](Tick) { s_.hands->idle(); };
+  }
+  if (s_.devices) s_.devices->hook(s_.world, hooks);
   touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
   Status status = Done{};
   try {
-    touch_->start();
-    status = turn_until_the_end();
+    if (s_.devices) status = s_.devices->start();
+    if (status) {
+      touch_->start();
+      status = turn_until_the_end();
+    }
   } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
     status = explain(error);
   }
   touch_->stop();
+  if (s_.devices) s_.devices->halt();
   try {
     keep();
     figures_.hung = !pictures_.wait(kHungEnd);

@@ -9,8 +9,10 @@
 
 #include "components/world.h"
 #include "engine/journal.h"
+#include "engine/simulated_hands.h"
 #include "engine/touch_clock.h"
 #include "player/interrupt.h"
+#include "player/run/device_links.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
 #include "player/run/frames.h"
@@ -28,6 +30,8 @@ struct WindowSession {
   OutputFolder& out;
   const Interrupt& interrupt;
   SoftClock* soft = nullptr;                  // none: nothing soft
+  SimulatedHands* hands = nullptr;            // none: no simulated hand
+  DeviceLinks* devices = nullptr;             // none: no device
   std::string level;                          // what `R` opens again
   double rate = 1000.0;                       // [Hz]
   std::uint64_t ticks = 0;                    // at most

@@ -22,23 +22,6 @@ void sense(const World& world, HapticDevice& device, double time) {
   device.sensed_at = time;
 }
 
-// How far what a probe touches has been carried in this tick, where it touches: the mean over its contacts, by their
-// forces. [m] world
-dvec3 surface_displacement(const World& world, Entity probe, double dt) {
-  const Registry& registry = world.registry;
-  dvec3 sum(0);
-  double forces = 0.0;
-  for_contacts_of(world, probe, [&](const Contact& contact) {
-    const double force = length(contact.force);
-    if (!(force > 0.0)) return;
-    forces += force;
-    if (!registry.has<MovingPose>(contact.object)) return;
-    const dvec3 at = registry.get<Pose>(contact.object).to_world(contact.foot);
-    sum += force * dt * surface_velocity(registry, contact.object, at);
-  });
-  return forces > 0.0 ? sum / forces : dvec3(0);
-}
-
 // What is not rendered is not wanted either: there is nothing to clip, and nothing that a hand misses.
 dvec3 rendered(dvec3 wanted, bool renders) {
   return renders ? wanted : dvec3(0);
@@ -74,6 +57,21 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
 }
 
 }  // namespace
+
+dvec3 surface_displacement(const World& world, Entity probe, double dt) {
+  const Registry& registry = world.registry;
+  dvec3 sum(0);
+  double forces = 0.0;
+  for_contacts_of(world, probe, [&](const Contact& contact) {
+    const double force = length(contact.force);
+    if (!(force > 0.0)) return;
+    forces += force;
+    if (!registry.has<MovingPose>(contact.object)) return;
+    const dvec3 at = registry.get<Pose>(contact.object).to_world(contact.foot);
+    sum += force * dt * surface_velocity(registry, contact.object, at);
+  });
+  return forces > 0.0 ? sum / forces : dvec3(0);
+}
 
 void read_devices(World& world, Tick tick) {
   read_mouse(world, tick);

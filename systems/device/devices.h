@@ -10,6 +10,10 @@ namespace pliant {
 void read_devices(World& world, Tick tick);   // HapticDevice -> Probe pose and velocity
 void write_devices(World& world, Tick tick);  // Probe force, tool wrench -> safety -> HapticDevice
 
+// How far what a probe touches has been carried by prescribed motions in this tick, where it touches: the mean over its
+// contacts, by their forces. [m] world
+dvec3 surface_displacement(const World& world, Entity probe, double dt);
+
 // Somebody else moves this probe or tool from now on: nothing of the hand before is true of the next. Its gate is
 // closed, its force begins at zero, and it has given no energy yet. What was counted stays.
 void begin_anew(World& world, Entity hand);

@@ -20,6 +20,11 @@ double ContactLaw::force(double depth) const {
   return hertz > 0 ? hertz * z * std::sqrt(std::max(0.0, z)) : stiffness * z;
 }
 
+double ContactLaw::slope(double depth) const {
+  const double z = -law.force(-depth), rises = law.slope(-depth);
+  return arm + (hertz > 0 ? 1.5 * hertz * std::sqrt(std::max(0.0, z)) * rises : stiffness * rises);
+}
+
 double ContactLaw::potential(double depth) const {
   if (hertz == 0.0) return stiffness * law.potential(-depth);
   if (!law.curved()) return 0.4 * hertz * depth * depth * std::sqrt(std::max(0.0, depth));

@@ -34,6 +34,7 @@ struct ContactLaw {
   double free_depth = 0.0;   // [m]   y >= 0
 
   double force(double depth) const;      // [N] law(d)
+  double slope(double depth) const;      // [N/m] of force(), the arm's among it
   double potential(double depth) const;  // [J] its integral from 0
   StoredEnergy stored(double depth) const;
 };

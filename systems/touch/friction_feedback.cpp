@@ -25,6 +25,7 @@ struct Pressing {
   Contact* contact;
   StoredEnergy stored;
   Painted stiffness;
+  double slope = 0.0;  // [N/m] of the stored energy's force
 };
 
 // y: the free surface goes back to rest by itself.
@@ -77,6 +78,7 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
     law.relaxed_depth = relaxed.value;
   }
   pressing.stored = law.stored(depth);
+  pressing.slope = law.slope(depth);
   const double least = kLeastDepth * deformable.reach;
   if (!(pressing.stored.energy > 0.5 * law.stiffness * least * least)) return false;
   out.energy = pressing.stored.energy;
@@ -128,6 +130,11 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
   contact.bristle = bristle.deflection;
   contact.sliding = bristle.sliding;
   contact.force = pose.rotation * force;
+  contact.gradient = pose.rotation * place.gradient;
+  contact.stiffness = loaded.share * pressing.slope;
+  contact.damping = damped > -(normal - damped) ? loaded.share * c : 0.0;
+  contact.bristle_stiffness = bristle.sliding ? 0.0 : K;
+  contact.bristle_damping = bristle.sliding ? 0.0 : B;
   probe.force += contact.force;
   probe.torque += cross(at - probe.position, contact.force);
 }
@@ -135,7 +142,8 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
 void release(Contact& contact) {
   contact.state = contact.height < 0 ? ContactState::kInside : ContactState::kFree;
   contact.load = contact.share = contact.normal_force = 0.0;
-  contact.force = contact.bristle = dvec3(0);
+  contact.force = contact.bristle = contact.gradient = dvec3(0);
+  contact.stiffness = contact.damping = contact.bristle_stiffness = contact.bristle_damping = 0.0;
   contact.sliding = false;
 }
 
@@ -157,7 +165,7 @@ void friction_feedback(World& world, Tick tick) {
       if (!source.tracked) continue;
       Contact& contact = registry.get<Contact>(source.contact);
       advance_free_surface(contact, source.place, mesh, object.motion);
-      pressing[count] = {&source, &contact, {}, {}};
+      pressing[count] = {&source, &contact, {}, {}, 0.0};
       if (contact.height < 0 && store(object, deformable, mesh, field, pressing[count], loaded[count])) {
         ++count;
       } else {

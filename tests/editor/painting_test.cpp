@@ -42,7 +42,7 @@ class PaintingTest : public ::testing::Test {
   }
   static void settle(Editor& editor) {
     do rest(editor);
-    while (!editor.jobs.idle() || editor.painting->working());
+    while (!editor.jobs.none() || editor.painting->working());
     rest(editor);
   }
   // From in front at the ball: x and y of the place, up to the silhouette.

@@ -31,8 +31,10 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"window", {"runtime", "components", "systems", "content"}},
     {"editor", {"runtime", "components", "systems", "content", "engine", "devices", "window"}},
     {"player", {"runtime", "components", "systems", "content", "engine", "devices", "window", "editor"}},
-    {"bench", {"runtime", "components", "systems", "content", "engine", "devices", "player", "editor", "tests", "shaders"}},
-    {"tests", {"runtime", "components", "systems", "content", "engine", "devices", "window", "player", "editor", "shaders"}},
+    {"bench",
+     {"runtime", "components", "systems", "content", "engine", "devices", "player", "editor", "tests", "shaders"}},
+    {"tests",
+     {"runtime", "components", "systems", "content", "engine", "devices", "window", "player", "editor", "shaders"}},
     {"examples", {}},
     {"fuzz", {"runtime", "components", "systems", "content", "engine", "devices"}},
 };
@@ -51,8 +53,8 @@ const std::map<std::string, std::set<std::string>> kRooms{
     {"editor/paint", {}},
     {"devices/ports", {}},
     {"devices/guard", {}},
-    {"devices/simulated", {}},
-    {"devices/wrappers", {}},
+    {"devices/simulated", {"devices/pose_file.h", "devices/spec.h"}},
+    {"devices/wrappers", {"devices/pose_file.h", "devices/spec.h"}},
     {"devices/servo", {"devices/guard"}},
 };
 

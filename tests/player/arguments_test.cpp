@@ -7,7 +7,7 @@ namespace {
 class Arguments : public CommandTest {};
 
 TEST_F(Arguments, EveryVerbExplainsItselfWithAnExample) {
-  for (const char* verb : {"run", "inspect", "convert", "validate", "devices", "study", "edit"}) {
+  for (const char* verb : {"run", "inspect", "convert", "validate", "devices", "study", "sweep", "edit"}) {
     const Said said = pliant({verb, "--help"});
     EXPECT_EQ(said.status, 0) << verb;
     EXPECT_NE(said.out.find("Example"), std::string::npos) << verb;
@@ -16,7 +16,7 @@ TEST_F(Arguments, EveryVerbExplainsItselfWithAnExample) {
   }
   const Said said = pliant({"--help"});
   EXPECT_EQ(said.status, 0);
-  for (const char* verb : {"run", "inspect", "convert", "validate", "devices", "study", "edit"})
+  for (const char* verb : {"run", "inspect", "convert", "validate", "devices", "study", "sweep", "edit"})
     EXPECT_NE(said.out.find(verb), std::string::npos) << verb;
   EXPECT_EQ(pliant({"--version"}).out.substr(0, 7), "pliant ");
 }

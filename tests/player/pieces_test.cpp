@@ -373,7 +373,9 @@ TEST(Sources, AreANameAndWhatMovesIt) {
   EXPECT_EQ(script->driver, DriverKind::kScript);
   EXPECT_EQ(parse_source("m=mouse")->driver, DriverKind::kMouse);
   EXPECT_EQ(script->file, "dir/x=1.csv");
-  for (const char* wrong : {"", "orbit", "=orbit", "p=", "p=script:", "p=orbits", "p=device:1"})
+  EXPECT_EQ(parse_source("p=device:falcon:7|delay=5ms")->driver, DriverKind::kExternal);
+  EXPECT_EQ(parse_source("p=device:falcon:7|delay=5ms")->device, "falcon:7|delay=5ms");
+  for (const char* wrong : {"", "orbit", "=orbit", "p=", "p=script:", "p=orbits", "p=device:"})
     EXPECT_FALSE(parse_source(wrong)) << wrong;
 }
 

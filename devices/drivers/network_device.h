@@ -1,0 +1,66 @@
+// Driver "network": a device at the other end of UDP, which senses its pose and renders the local model itself
+// (network_frame.h; docs/devices/network.md). Its id is the device's address: PORT, ADDRESS:PORT or nothing for port
+// 17716 of this machine.
+//
+// Either side that hears nothing for 20 ms renders nothing: the wire may fall silent at any time. While the device is
+// silent it is opened anew ten times a second, so that one that was started again is found without anyone's help.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "devices/drivers/network_frame.h"
+#include "devices/ports/packet_port.h"
+#include "devices/ports/seconds.h"
+
+namespace pliant {
+
+inline constexpr const char* kNetworkPort = "17716";
+
+class NetworkDevice final : public Driver {
+ public:
+  NetworkDevice();  // over UDP
+  explicit NetworkDevice(PortOpener opener, SecondsClock clock = monotonic_seconds);
+
+  Status open(const std::string& id) override;
+  DeviceCapabilities capabilities() const override { return can_; }
+  bool read(DeviceSample& sample) override;
+  void write(const DeviceWrench& wrench) override;
+  bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
+  void close() override;
+
+  // Of the thread that reads and writes.
+  const FrameCounts& counts() const { return counts_; }
+  double round_trip() const { return round_trip_; }  // [s] from a write to the sample that knows of it, newest; 0: none
+  const StateFrame& state() const { return state_; }
+  std::string name() const { return name_.data(); }
+
+ private:
+  bool silent(double now) const { return !heard_ || now - heard_at_ > kFrameSilence; }
+  void send(NetworkFrame& frame, double now);
+  void send_force(ForceFrame& force);
+  void hear(double now);
+  bool accept(const NetworkFrame& frame, double now);
+  bool accept_state(const NetworkFrame& frame, double now);
+
+  PortOpener opener_;
+  SecondsClock clock_;
+  std::unique_ptr<PacketPort> port_;
+  DeviceCapabilities can_;
+  std::array<char, 32> name_{};
+  StateFrame state_;
+  FrameCounts counts_;
+  std::uint32_t own_ = 0, device_ = 0;  // sessions; 0: not known
+  std::uint32_t heard_sequence_ = 0;
+  SentTimes sent_;
+  std::uint64_t heard_time_us_ = 0;  // of the device's clock
+  bool heard_ = false, fresh_ = false;
+  double heard_at_ = 0.0, opened_at_ = 0.0;  // [s]
+  double clock_offset_ = 0.0;                // [s] our clock minus the device's
+  double round_trip_ = 0.0;                  // [s]
+};
+
+// What answers on this machine's default port.
+std::vector<DeviceInfo> list_network_devices();
+
+}  // namespace pliant

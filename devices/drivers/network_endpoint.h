@@ -1,0 +1,48 @@
+// The device's side of driver "network": what a maker of such a device runs beside its motors (examples/network_device
+// is the same in one file, without Pliant). It answers one engine at a time; whoever comes while that one is heard is
+// not listened to.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "devices/drivers/network_frame.h"
+#include "devices/ports/udp_port.h"
+
+namespace pliant {
+
+class NetworkEndpoint {
+ public:
+  NetworkEndpoint(std::unique_ptr<ListeningPort> port, DeviceCapabilities can, const std::string& name,
+                  std::function<double()> clock);
+
+  // Once a period of the device's own servo: takes what came, says where the device is, and returns what to render.
+  // `now.sample` is in world axes; its time and `heard` are filled in here.
+  DeviceWrench tick(StateFrame now);
+
+  bool opened() const { return engine_ != 0; }
+  const FrameCounts& counts() const { return counts_; }
+
+ private:
+  void hear(double now);
+  void accept(const NetworkFrame& frame, double now);
+  void send(NetworkFrame& frame, double now);
+
+  std::unique_ptr<ListeningPort> port_;
+  DeviceCapabilities can_;
+  std::array<char, 32> name_{};
+  std::function<double()> clock_;
+  std::uint32_t own_ = 0, engine_ = 0;  // sessions; 0: of nobody
+  std::uint32_t heard_sequence_ = 0;
+  SentTimes sent_;
+  ForceFrame force_;
+  bool has_force_ = false;
+  double heard_at_ = 0.0, force_at_ = 0.0;  // [s]
+  FrameCounts counts_;
+};
+
+// What the model gives at a pose and its velocities; farther than `radius` away, as if it were at that distance.
+DeviceWrench model_wrench(const DeviceModel& model, double radius, const StateFrame& at);
+
+}  // namespace pliant

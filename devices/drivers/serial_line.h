@@ -1,0 +1,51 @@
+// The lines of the serial device, a protocol of our own (docs/devices/network.md): text, so that it can be watched and
+// typed, with a check sum at its end. A codec of pure functions.
+//
+//   device:  P <ms> <x> <y> <z> <buttons> <grip>*<sum>     where it is
+//   engine:  F <n> <x> <y> <z>*<sum>                       what to render; n counts lines
+//   engine:  ?*<sum>          device:  I <name> <axes> <newtons>*<sum>     who it is
+//
+// Numbers are integers: micrometres, millinewtons, milliseconds of the device's clock, thousandths of a grip. The sum
+// is the XOR of all characters before '*', two hexadecimal digits. Axes are the world's: right-handed, Y up.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pliant/driver.h"
+
+namespace pliant {
+
+struct SerialPose {
+  DeviceSample sample;
+  std::uint32_t time_ms = 0;  // of the device's clock
+};
+struct SerialIdentity {
+  std::string name;        // without blanks
+  int axes = 0;            // 1 to 3 that it renders: x, then y, then z
+  double max_force = 0.0;  // [N]
+};
+
+std::optional<SerialPose> parse_serial_pose(std::string_view line);
+std::optional<SerialIdentity> parse_serial_identity(std::string_view line);
+// With its end of line, into `into`; its length. Of an axis that the device has not, zero.
+using SerialText = std::array<char, 64>;
+std::size_t serial_force(unsigned number, const dvec3& force, SerialText& into);
+std::string serial_question();
+
+// Cuts a stream into lines; of one that is longer than any can be, the rest is dropped to its end.
+class SerialLines {
+ public:
+  void add(std::string_view bytes);
+  // The next line without its end. False: there is no whole one.
+  bool next(std::string_view& line);
+
+ private:
+  std::array<char, 1024> bytes_{};
+  std::size_t size_ = 0, taken_ = 0;
+  bool skipping_ = false;
+};
+
+}  // namespace pliant

@@ -1,0 +1,363 @@
+#include "devices/guard/guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+constexpr double kUnitNear = 0.01;     // [1] how far from unit length a rotation may be
+constexpr double kFarthestPose = 1e6;  // [m] of a device that says no workspace
+constexpr double kUsualForce = 3.3;    // [N] where nobody says a largest one
+
+bool finite(dvec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool finite(const DeviceWrench& wrench) {
+  return finite(wrench.force) && finite(wrench.torque) && std::isfinite(wrench.grip);
+}
+
+// The norm, never each axis: the direction must stay.
+dvec3 clamp_norm(dvec3 v, double most) {
+  const double size = length(v);
+  return size > most ? v * (most / size) : v;
+}
+
+// Where 0 is: not said. A parameter lowers, and never raises.
+double lowest(double device, double other) {
+  return device > 0.0 && other > 0.0 ? std::min(device, other) : std::max(device, other);
+}
+
+// What comes in is slewed; what of the last force is no longer wanted is gone at once.
+dvec3 slewed(dvec3 last, dvec3 wanted, double most) {
+  const double size = length(last);
+  if (size > 0.0) last *= std::clamp(dot(wanted, last) / (size * size), 0.0, 1.0);
+  return last + clamp_norm(wanted - last, most);
+}
+
+dvec3 turn_between(dquat from, dquat to) {
+  dquat turn = to * glm::conjugate(from);
+  if (turn.w < 0.0) turn = -turn;
+  const dvec3 axis(turn.x, turn.y, turn.z);
+  const double sine = length(axis);
+  return sine > 1e-12 ? axis * (2.0 * std::atan2(sine, turn.w) / sine) : 2.0 * axis;
+}
+
+}  // namespace
+
+double stable_stiffness(const DeviceCapabilities& can, double rate, double model_damping) {
+  if (!(can.damping > 0.0) || !(rate > 0.0)) return can.max_stiffness;
+  const double hold = 0.5 / rate + std::max(0.0, can.latency);
+  const double passive = std::max(0.0, can.damping - std::abs(model_damping)) / hold;
+  return can.max_stiffness > 0.0 ? std::min(can.max_stiffness, passive) : passive;
+}
+
+Guard::Guard(const DeviceCapabilities& can, const GuardParameters& parameters) : can_(can), parameters_(parameters) {
+  losses_.fill(-1e9);
+}
+
+void Guard::to(DeviceState state, DeviceCause cause, double now) {
+  report_.kept[report_.transitions % DeviceReport::kKept] = {report_.state, state, cause, now, length(last_.force)};
+  ++report_.transitions;
+  report_.state = state;
+  report_.cause = cause;
+  if (state != DeviceState::kActive) send_nothing();
+  if (state == DeviceState::kTripped || state == DeviceState::kDisconnected) make_safe_ = true;
+  if (state == DeviceState::kIdle) fresh_since_ = now;
+}
+
+void Guard::send_nothing() {
+  last_ = {};
+  report_.force = ramp_ = slow_speed_ = 0.0;
+  carried_ = dvec3(0);
+  fade_ = 1.0;
+  push_.forget();
+  twist_.forget();
+}
+
+void Guard::trip(DeviceCause cause, double now) {
+  if (running()) to(DeviceState::kTripped, cause, now);
+}
+
+// Once a loss at most: while it lasts, the state is armed already. What is lost while nothing leaves counts as well.
+void Guard::lose(DeviceCause cause, double now) {
+  if (state() != DeviceState::kActive) return;
+  losses_[loss_++ % kMostLosses] = now;
+  const double first = *std::min_element(losses_.begin(), losses_.end());
+  if (now - first < 1.0)
+    trip(DeviceCause::kUnsteady, now);
+  else
+    to(DeviceState::kArmed, cause, now);
+}
+
+bool Guard::take_make_safe() {
+  return std::exchange(make_safe_, false);
+}
+
+bool Guard::fresh(double now) const {
+  const double holds = can_.rate > 0.0 ? std::max(kSampleHolds, 2.5 / can_.rate) : kSampleHolds;
+  return placed_ && ready_ && now - sensed_at_ <= holds;
+}
+
+// Whether the sample's pose may be believed; where not, why is noted.
+bool Guard::sound(const DeviceSample& sample, double now) {
+  DeviceCause cause = DeviceCause::kNone;
+  const double at = sample.time > 0.0 ? sample.time : now;
+  const double far = dot(can_.workspace, can_.workspace) > 0.0 ? kFarOut * length(can_.workspace) : kFarthestPose;
+  const double unit = can_.senses_rotation ? glm::length(sample.rotation) : 1.0;
+  if (!can_.senses_position) {
+    cause = std::isfinite(sample.grip) && std::isfinite(at) ? DeviceCause::kNone : DeviceCause::kNotANumber;
+  } else if (!finite(sample.position) || !(std::abs(unit - 1.0) < kUnitNear) || !std::isfinite(at)) {
+    cause = DeviceCause::kNotANumber;
+  } else if (at < sensed_at_ || at > now + kSampleHolds) {
+    cause = DeviceCause::kTimeBack;
+  } else if (length(sample.position) > far) {
+    trip(DeviceCause::kOutside, now);
+    return false;
+  } else if (placed_) {
+    const double since = std::max(at - sensed_at_, can_.rate > 0.0 ? 0.5 / can_.rate : 1e-4);
+    if (length(sample.position - position_) > kFastestSample * since) {
+      placed_ = false;  // the next one begins anew from where it is
+      cause = DeviceCause::kJumped;
+    }
+  }
+  if (cause == DeviceCause::kNone) return true;
+  moves_ = false;
+  lose(cause, now);
+  return false;
+}
+
+void Guard::take(const DeviceSample& sample, double at) {
+  const dquat rotation = can_.senses_rotation ? glm::normalize(sample.rotation) : rotation_;
+  const bool same = placed_ && sample.position == position_ && rotation == rotation_ && sample.grip == 0.0;
+  if (!same) changed_at_ = at;
+  const double since = at - sensed_at_;
+  if (placed_ && moves_ && since > 0.0) {
+    const double share = 1.0 - std::exp(-since / kVelocityTime);
+    velocity_ += share * ((sample.position - position_) / since - velocity_);
+    spin_ += share * (turn_between(rotation_, rotation) / since - spin_);
+  } else if (!(placed_ && moves_)) {
+    velocity_ = spin_ = dvec3(0);
+  }
+  if (placed_ && moves_) {
+    way_ = sample.position - position_;
+    turn_ = turn_between(rotation_, rotation);
+  }
+  position_ = sample.position;
+  rotation_ = rotation;
+  sensed_at_ = at;
+  placed_ = moves_ = heard_ = true;
+}
+
+void Guard::sense(const DeviceSample* sample, double now, const GuardOrders& orders) {
+  dt_ = stepped_ ? now - now_ : 0.0;
+  way_ = turn_ = dvec3(0);
+  heard_ = false;
+  if (!(dt_ >= 0.0)) {  // the clock itself
+    lose(DeviceCause::kTimeBack, now);
+    dt_ = 0.0;
+    placed_ = false;
+    sensed_at_ = std::min(sensed_at_, now);
+  }
+  const double gap = can_.rate > 0.0 ? std::max(kSampleHolds, 2.5 / can_.rate) : kSampleHolds;
+  if (orders.suspended)
+    trip(DeviceCause::kSuspended, now);
+  else if (dt_ > kLatchAfter)
+    trip(DeviceCause::kClockGap, now);
+  else if (dt_ > gap)
+    lose(DeviceCause::kClockGap, now);
+  stepped_ = true;
+  now_ = now;
+  follow_orders(orders, now);
+  if (sample) {
+    if (sample->ready != ready_) {
+      ready_ = sample->ready;
+      placed_ = false;
+      if (!ready_) lose(DeviceCause::kNotReady, now);
+    }
+    buttons_ = sample->buttons;
+    warnings_ = sample->warnings;
+    if (ready_ && sound(*sample, now)) take(*sample, sample->time > 0.0 ? std::min(sample->time, now) : now);
+  }
+  watch(now);
+}
+
+// What the pose alone says.
+void Guard::watch(double now) {
+  if (!fresh(now)) {
+    fresh_since_ = now;
+    moves_ = false;
+    if (state() == DeviceState::kIdle) to(DeviceState::kDisconnected, DeviceCause::kNoSample, now);
+    return;
+  }
+  if (state() == DeviceState::kDisconnected) to(DeviceState::kIdle, DeviceCause::kConnected, now);
+  if (state() != DeviceState::kActive) return;
+  double fastest = lowest(can_.max_velocity, parameters_.max_velocity);
+  if (!(fastest > 0.0)) fastest = kDefaultVelocity;
+  if (length(velocity_) > fastest) trip(DeviceCause::kTooFast, now);
+  // A device that nobody holds may stand still as well: it loses its force, and no harm is done.
+  if (now - changed_at_ > kFrozenAfter && length(last_.force) > kGateForce) lose(DeviceCause::kFrozen, now);
+}
+
+void Guard::follow_orders(const GuardOrders& orders, double now) {
+  if (orders.disarm || orders.arm) disarmed_ = orders.disarm;
+  if (orders.failed) trip(DeviceCause::kDriverFailed, now);
+  if (orders.stop && state() != DeviceState::kTripped)
+    to(DeviceState::kTripped, DeviceCause::kEmergencyStop, now);
+  else if (orders.disarm && running())
+    to(DeviceState::kIdle, DeviceCause::kDisarmed, now);
+  else if (orders.arm && !orders.stop && (state() == DeviceState::kIdle || state() == DeviceState::kTripped)) {
+    if (!fresh(now)) return;
+    losses_.fill(-1e9);
+    energy_ = {};
+    changed_at_ = now;
+    missing_ = false;
+    to(DeviceState::kArmed, DeviceCause::kArmedByHand, now);
+  }
+}
+
+// What is missing takes the force at once, and latches where it lasts.
+void Guard::decide(const GuardWish& wish, const GuardOrders& orders, double now) {
+  if (orders.let_go) {
+    missing_ = false;
+    if (state() == DeviceState::kActive) to(DeviceState::kArmed, DeviceCause::kLetGo, now);
+    return;
+  }
+  const bool modelled = wish.known && wish.age <= kModelHolds;
+  if (!fresh(now) || !modelled) {
+    if (!missing_) missing_since_ = fresh(now) ? now - wish.age : std::min(now, sensed_at_);
+    missing_ = true;
+    lose(fresh(now) ? DeviceCause::kModelStale : ready_ ? DeviceCause::kNoSample : DeviceCause::kNotReady, now);
+    if ((wish.known || !fresh(now)) && now - missing_since_ > kLatchAfter)
+      trip(fresh(now) ? DeviceCause::kModelLost : DeviceCause::kLost, now);
+    return;
+  }
+  missing_ = false;
+  const bool held = (buttons_ & parameters_.dead_man) != 0;
+  if (state() == DeviceState::kIdle && parameters_.arming == Arming::kAutomatic && !disarmed_ &&
+      now - fresh_since_ >= kSettleTime)
+    to(DeviceState::kArmed, DeviceCause::kArmedByItself, now);
+  if (state() == DeviceState::kActive) {
+    if (!finite(wish.wrench) || !finite(wish.weight) || !finite(wish.velocity)) lose(DeviceCause::kBadForce, now);
+    if (parameters_.dead_man != 0 && !held && state() == DeviceState::kActive)
+      to(DeviceState::kArmed, DeviceCause::kDeadManReleased, now);
+    return;
+  }
+  if (state() != DeviceState::kArmed || !finite(wish.wrench) || (warnings_ & kDeviceBatteryLow)) return;
+  if (parameters_.dead_man != 0) {
+    if (held) to(DeviceState::kActive, DeviceCause::kDeadManHeld, now);
+  } else if (length(wish.wrench.force - wish.weight) < kGateForce && length(wish.wrench.torque) < kGateTorque) {
+    to(DeviceState::kActive, DeviceCause::kSmallForce, now);
+  }
+  if (state() == DeviceState::kActive) changed_at_ = now;
+}
+
+double Guard::force_limit(const GuardWish& wish) const {
+  const double most = lowest(lowest(can_.max_force, parameters_.max_force), wish.max_force);
+  return most > 0.0 ? most : std::numeric_limits<double>::infinity();
+}
+double Guard::torque_limit(const GuardWish& wish) const {
+  const double most = lowest(lowest(can_.max_torque, parameters_.max_torque), wish.max_torque);
+  return most > 0.0 ? most : std::numeric_limits<double>::infinity();
+}
+
+// Speed that grows against a large force, faster than a pushing hand makes it.
+bool Guard::runs_away(const GuardWish& wish, double dt) {
+  const double size = length(last_.force), most = force_limit(wish);
+  const double against = size > 0.0 ? -dot(velocity_ - wish.velocity, last_.force) / size : 0.0;
+  if (size < kRunawayShare * std::min(most, kUsualForce)) {
+    slow_speed_ = against;
+    return false;
+  }
+  slow_speed_ += (1.0 - std::exp(-dt / kRunawayTime)) * (against - slow_speed_);
+  return against > kRunawayGain && against - slow_speed_ > kRunawayGain;
+}
+
+DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
+  ramp_ = parameters_.ramp > 0.0 ? std::min(1.0, ramp_ + dt / parameters_.ramp) : 1.0;
+  if (warnings_ & kDeviceBatteryLow) fade_ = std::max(0.0, fade_ - dt / kFadeTime);
+  const double gain = ramp_ * fade_;
+  DeviceWrench wrench = wish.wrench;
+  double force_most = force_limit(wish), torque_most = torque_limit(wish);
+
+  // Heat: the mean square of the force over what the motors bear for ever.
+  const double bears = can_.continuous_force;
+  if (bears > 0.0 && std::isfinite(force_most)) {
+    const double square = dot(last_.force, last_.force) / (bears * bears);
+    heat_ += (1.0 - std::exp(-dt / kThermalTime)) * (square - heat_);
+    const double cool = std::clamp((1.0 - heat_) / 0.2, 0.0, 1.0);
+    const double warm = warnings_ & kDeviceWarm ? 0.0 : cool;
+    force_most = std::min(force_most, bears + warm * std::max(0.0, force_most - bears));
+    report_.heat = heat_;
+  } else if (warnings_ & kDeviceWarm) {
+    force_most *= kWarmShare;
+  }
+  if (warnings_ & kDeviceWarm) torque_most *= kWarmShare;
+
+  wrench.force = can_.renders_force ? clamp_norm(gain * wrench.force, force_most) : dvec3(0);
+  wrench.torque = can_.renders_torque ? clamp_norm(gain * wrench.torque, torque_most) : dvec3(0);
+  wrench.grip = can_.renders_grip ? std::max(0.0, gain * wrench.grip) : 0.0;
+  if (can_.max_grip > 0.0) wrench.grip = std::min(wrench.grip, can_.max_grip);
+  const dvec3 weight = clamp_norm(gain * wish.weight, length(wrench.force));
+
+  // A brake cannot push: nothing along the motion, and nothing that would start one the way it last went.
+  const double speed = length(velocity_ - wish.velocity);
+  if (can_.resists_only) {
+    if (speed > 0.0) {
+      const dvec3 along = (velocity_ - wish.velocity) / speed;
+      wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;
+    } else {
+      wrench.force = dvec3(0);
+    }
+  }
+  wrench.force = slewed(last_.force, wrench.force, parameters_.slew * dt);
+  wrench.torque = slewed(last_.torque, wrench.torque, kGuardLever * parameters_.slew * dt);
+
+  carried_ += wish.velocity * dt;
+  const dvec3 way = heard_ ? way_ - carried_ : dvec3(0);
+  if (heard_) carried_ = dvec3(0);
+  const EnergyAccount before = energy_;
+  wrench.force = push_.damp(before, wrench.force, weight, way, force_most, kGuardSlowHand * dt);
+  wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kGuardSlowTurn * dt);
+  if (can_.resists_only && speed > 0.0) {
+    const dvec3 along = (velocity_ - wish.velocity) / speed;
+    wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;
+  }
+  push_.book(energy_, wrench.force - weight);
+  twist_.book(energy_, wrench.torque);
+  return wrench;
+}
+
+DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders& orders) {
+  decide(wish, orders, now);
+  if (state() == DeviceState::kActive && runs_away(wish, dt_)) trip(DeviceCause::kRunaway, now);
+  if (state() != DeviceState::kActive) {
+    if (heat_ > 0.0) report_.heat = heat_ *= std::exp(-dt_ / kThermalTime);
+    return {};
+  }
+  const DeviceWrench wrench = limited(wish, dt_);
+  if (energy_.work > kMostGiven + kGuardShare * energy_.stored) {
+    trip(DeviceCause::kGaveEnergy, now);
+    return {};
+  }
+  if (!finite(wrench)) {  // cannot be, and must not leave
+    trip(DeviceCause::kBadForce, now);
+    return {};
+  }
+  last_ = wrench;
+  report_.force = length(wrench.force);
+  if (fade_ <= 0.0) {
+    trip(DeviceCause::kBatteryLow, now);
+    return {};
+  }
+  return wrench;
+}
+
+void Guard::close(double now) {
+  if (state() != DeviceState::kDisconnected) to(DeviceState::kDisconnected, DeviceCause::kClosed, now);
+  placed_ = false;
+}
+
+}  // namespace pliant

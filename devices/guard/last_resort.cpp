@@ -1,0 +1,69 @@
+#include "devices/guard/last_resort.h"
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <mutex>
+
+namespace pliant {
+namespace {
+
+constexpr int kCrashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+constexpr int kRequests[] = {SIGTERM, SIGINT, SIGHUP};
+
+std::array<std::atomic<Driver*>, 64> open_drivers{};
+std::atomic<bool> ended{false};
+struct sigaction before[NSIG];
+
+// Lock-free atomics, make_safe(), and the handler from before.
+void on_signal(int signal) {
+  make_all_safe();
+  sigaction(signal, &before[signal], nullptr);
+  raise(signal);  // delivered when this handler returns
+}
+
+void install() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_ONSTACK;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : kCrashes) sigaction(signal, &action, &before[signal]);
+  for (const int signal : kRequests) {
+    sigaction(signal, nullptr, &before[signal]);
+    if (!(before[signal].sa_flags & SA_SIGINFO) && before[signal].sa_handler == SIG_DFL)
+      sigaction(signal, &action, nullptr);
+  }
+  std::atexit([] { make_all_safe(); });
+}
+
+}  // namespace
+
+bool guard_to_the_last(Driver& driver) {
+  static std::once_flag once;
+  std::call_once(once, install);
+  for (std::atomic<Driver*>& slot : open_drivers) {
+    Driver* none = nullptr;
+    if (slot.compare_exchange_strong(none, &driver)) return true;
+  }
+  return false;
+}
+
+void let_go_of(Driver& driver) {
+  for (std::atomic<Driver*>& slot : open_drivers) {
+    Driver* mine = &driver;
+    if (slot.compare_exchange_strong(mine, nullptr)) return;
+  }
+}
+
+void make_all_safe() noexcept {
+  ended = true;
+  for (std::atomic<Driver*>& slot : open_drivers)
+    if (Driver* const driver = slot.exchange(nullptr)) driver->make_safe();
+}
+
+bool all_made_safe() noexcept {
+  return ended.load(std::memory_order_relaxed);
+}
+
+}  // namespace pliant

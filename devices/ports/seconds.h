@@ -1,0 +1,15 @@
+// The clock that drivers read; tests put their own in its place.
+#pragma once
+
+#include <functional>
+
+#include "runtime/clock.h"
+
+namespace pliant {
+
+using SecondsClock = std::function<double()>;  // [s] monotonic
+inline double monotonic_seconds() {
+  return static_cast<double>(now_ns()) * 1e-9;
+}
+
+}  // namespace pliant

@@ -1,0 +1,178 @@
+#include "devices/ports/udp_port.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+namespace pliant {
+
+struct UdpPort::Address {
+  sockaddr_storage bytes{};
+  socklen_t size = sizeof(sockaddr_storage);
+  bool operator==(const Address& other) const {
+    if (bytes.ss_family != other.bytes.ss_family) return false;
+    if (bytes.ss_family == AF_INET) {
+      const auto& a = reinterpret_cast<const sockaddr_in&>(bytes);
+      const auto& b = reinterpret_cast<const sockaddr_in&>(other.bytes);
+      return a.sin_port == b.sin_port && a.sin_addr.s_addr == b.sin_addr.s_addr;
+    }
+    const auto& a = reinterpret_cast<const sockaddr_in6&>(bytes);
+    const auto& b = reinterpret_cast<const sockaddr_in6&>(other.bytes);
+    return a.sin6_port == b.sin6_port && std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof(a.sin6_addr)) == 0;
+  }
+  sockaddr* raw() { return reinterpret_cast<sockaddr*>(&bytes); }
+};
+
+namespace {
+
+std::string shown(const UdpAddress& address) {
+  const bool bracketed = address.host.find(':') != std::string::npos;
+  return (bracketed ? "[" + address.host + "]" : address.host) + ":" + address.port;
+}
+
+// A socket that is never waited for, bound or to be bound; the address that it was resolved to.
+Result<int> make_socket(const UdpAddress& address, bool passive, sockaddr_storage& found, socklen_t& size) {
+  addrinfo hints{};
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_DGRAM;
+  hints.ai_flags = passive ? AI_PASSIVE | AI_NUMERICSERV : AI_NUMERICSERV;
+  addrinfo* list = nullptr;
+  if (const int failed = getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &list); failed != 0)
+    return Error{shown(address), std::string("cannot be resolved (") + gai_strerror(failed) +
+                                     "); give an ADDRESS:PORT of this network"};
+  const int made = socket(list->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  std::memcpy(&found, list->ai_addr, list->ai_addrlen);
+  size = list->ai_addrlen;
+  freeaddrinfo(list);
+  if (made < 0) return Error{shown(address), std::string("no socket: ") + std::strerror(errno)};
+  return made;
+}
+
+}  // namespace
+
+Result<UdpAddress> parse_udp_address(const std::string& text) {
+  UdpAddress address;
+  const std::size_t colon = text.rfind(':');
+  if (colon != std::string::npos) {
+    address.host = text.substr(0, colon);
+    if (address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']')
+      address.host = address.host.substr(1, address.host.size() - 2);
+    else if (address.host.find(':') != std::string::npos)
+      address.host.clear();  // IPv6 without its brackets: where does the port begin?
+  }
+  address.port = colon == std::string::npos ? text : text.substr(colon + 1);
+  int number = -1;
+  const char* end = address.port.data() + address.port.size();
+  const auto [stop, fault] = std::from_chars(address.port.data(), end, number);
+  if (fault != std::errc() || stop != end || number < 0 || number > 65535 || address.host.empty())
+    return Error{"'" + text + "'", "is no address; write PORT, ADDRESS:PORT or [IPV6]:PORT, such as 192.168.1.7:17716"};
+  return address;
+}
+
+UdpPort::UdpPort(int socket, std::string name)
+    : socket_(socket), name_(std::move(name)), peer_(std::make_unique<Address>()), last_(std::make_unique<Address>()) {}
+UdpPort::~UdpPort() {
+  ::close(socket_);
+}
+
+Result<std::unique_ptr<UdpPort>> UdpPort::connect(const UdpAddress& peer) {
+  Address address;
+  const auto socket = make_socket(peer, false, address.bytes, address.size);
+  if (!socket) return socket.error();
+  std::unique_ptr<UdpPort> port(new UdpPort(*socket, shown(peer)));
+  // Bound to the interface that leads to the peer, so that of this machine's own loopback none outside can be heard:
+  // a connected twin finds out which it is.
+  Address own;
+  const int probe = ::socket(address.bytes.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool routed =
+      probe >= 0 && ::connect(probe, address.raw(), address.size) == 0 && getsockname(probe, own.raw(), &own.size) == 0;
+  const int fault = errno;
+  if (probe >= 0) ::close(probe);
+  if (!routed) return Error{shown(peer), std::string("cannot be reached: ") + std::strerror(fault)};
+  if (own.bytes.ss_family == AF_INET) reinterpret_cast<sockaddr_in&>(own.bytes).sin_port = 0;
+  if (own.bytes.ss_family == AF_INET6) reinterpret_cast<sockaddr_in6&>(own.bytes).sin6_port = 0;
+  if (bind(*socket, own.raw(), own.size) != 0)
+    return Error{shown(peer), std::string("no port is free to talk to it from: ") + std::strerror(errno)};
+  *port->peer_ = address;
+  port->has_peer_ = true;
+  return port;
+}
+
+Result<std::unique_ptr<UdpPort>> UdpPort::listen(const UdpAddress& own) {
+  Address address;
+  const auto socket = make_socket(own, true, address.bytes, address.size);
+  if (!socket) return socket.error();
+  std::unique_ptr<UdpPort> port(new UdpPort(*socket, shown(own)));
+  if (bind(*socket, address.raw(), address.size) != 0)
+    return Error{shown(own), std::string("cannot be listened on (") + std::strerror(errno) +
+                                 "); give another PORT, or end the program that holds it"};
+  return port;
+}
+
+Status UdpPort::send(std::span<const std::uint8_t> packet) {
+  Address& to = has_peer_ ? *peer_ : *last_;
+  if (to.bytes.ss_family == AF_UNSPEC) return Done{};  // nobody has spoken yet
+  if (::sendto(socket_, packet.data(), packet.size(), MSG_NOSIGNAL, to.raw(), to.size) >= 0) return Done{};
+  switch (errno) {
+    case EAGAIN:
+    case ECONNREFUSED:
+    case ENOBUFS:
+    case EINTR:
+    case ENETUNREACH:
+    case EHOSTUNREACH:
+    case ENETDOWN:
+      return Done{};
+    default:
+      break;
+  }
+  return Error{name_, std::string("cannot be sent to: ") + std::strerror(errno)};
+}
+
+Result<std::size_t> UdpPort::receive(std::span<std::uint8_t> into, double seconds) {
+  for (;;) {
+    Address from;
+    const ssize_t got = ::recvfrom(socket_, into.data(), into.size(), 0, from.raw(), &from.size);
+    if (got > 0) {
+      if (has_peer_ && !(from == *peer_)) {
+        ++strangers_;
+        continue;
+      }
+      *last_ = from;
+      return static_cast<std::size_t>(got);
+    }
+    if (got == 0 || errno == ECONNREFUSED || errno == EINTR) continue;  // empty, or its port was closed a while ago
+    if (errno != EAGAIN) return Error{name_, std::string("cannot be heard: ") + std::strerror(errno)};
+    if (seconds <= 0.0) return std::size_t{0};
+    pollfd wait{socket_, POLLIN, 0};
+    const int ready = ::poll(&wait, 1, static_cast<int>(std::ceil(std::min(seconds, 1e6) * 1e3)));
+    if (ready == 0) return std::size_t{0};
+    seconds = ready > 0 ? seconds : 0.0;  // a signal: look once more
+  }
+}
+
+void UdpPort::take_peer() {
+  if (last_->bytes.ss_family == AF_UNSPEC) return;
+  *peer_ = *last_;
+  has_peer_ = true;
+}
+void UdpPort::free_peer() {
+  has_peer_ = false;
+}
+
+int UdpPort::port() const {
+  Address own;
+  if (getsockname(socket_, own.raw(), &own.size) != 0) return 0;
+  return ntohs(own.bytes.ss_family == AF_INET6 ? reinterpret_cast<sockaddr_in6&>(own.bytes).sin6_port
+                                               : reinterpret_cast<sockaddr_in&>(own.bytes).sin_port);
+}
+
+}  // namespace pliant

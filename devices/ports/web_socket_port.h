@@ -1,0 +1,28 @@
+// Text messages of a web socket (RFC 6455) to a service of this machine or network; Debian's libwebsockets. One thread
+// at a time.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "devices/ports/packet_port.h"
+
+namespace pliant {
+
+class WebSocketPort final : public PacketPort {
+ public:
+  // Waits for the connection, at most `seconds`. Messages longer than `longest` bytes end it with an error.
+  static Result<std::unique_ptr<WebSocketPort>> connect(const std::string& host, int port, double seconds,
+                                                        std::size_t longest);
+  ~WebSocketPort() override;
+  Status send(std::span<const std::uint8_t> text) override;
+  Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override;
+
+  struct Line;  // its half that libwebsockets calls
+
+ private:
+  explicit WebSocketPort(std::unique_ptr<Line> line);
+  std::unique_ptr<Line> line_;
+};
+
+}  // namespace pliant

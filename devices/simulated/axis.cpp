@@ -1,0 +1,118 @@
+#include "devices/simulated/axis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+constexpr double kLongestStep = 1e-4;  // [s] events are looked for at its end: two halts within one are not seen
+constexpr double kEventTime = 1e-9;    // [s]
+constexpr int kTerms = 30;
+constexpr double kTiny = 1e-17;  // [1] of the state: smaller terms of the series are left out
+
+}  // namespace
+
+Axis::Axis(const AxisParameters& parameters) : parameters_(parameters) {
+  const HandImpedance& hand = parameters.hand;
+  const double lighter = hand.holds() ? std::min(parameters.mass, hand.mass) : parameters.mass;
+  const double fastest = std::max({(parameters.damping + hand.grip_damping + hand.arm_damping) / lighter,
+                                   std::sqrt((hand.grip_stiffness + hand.arm_stiffness) / lighter),
+                                   parameters.lag > 0.0 ? 1.0 / parameters.lag : 0.0});
+  sub_step_ = fastest > 0.0 ? std::min(kLongestStep, 0.5 / fastest) : kLongestStep;
+}
+
+void Axis::place(double position) {
+  state_ = {position, 0.0, position, 0.0, 0.0};
+  command_ = 0.0;
+  sliding_ = 0;
+}
+
+void Axis::command(double force) {
+  command_ = force;
+  if (!(parameters_.lag > 0.0)) state_[4] = force;
+}
+
+double Axis::energy() const {
+  const HandImpedance& hand = parameters_.hand;
+  const double stretch = state_[2] - state_[0];
+  return 0.5 * (parameters_.mass * state_[1] * state_[1] + hand.mass * state_[3] * state_[3] +
+                (hand.holds() ? hand.grip_stiffness * stretch * stretch : 0.0));
+}
+
+double Axis::pull(const State& s) const {
+  const HandImpedance& hand = parameters_.hand;
+  return s[4] + (hand.holds() ? hand.grip_stiffness * (s[2] - s[0]) + hand.grip_damping * s[3] : push_);
+}
+
+// A s + inputs; `constant`: 1 for the state itself, 0 for its derivatives, where constants have gone.
+Axis::State Axis::slope(const State& s, double w, double w_speed, double push, double constant) const {
+  const HandImpedance& hand = parameters_.hand;
+  State d{};
+  double grip = push;  // what the device feels of the hand
+  if (hand.holds()) {
+    grip = hand.grip_stiffness * (s[2] - s[0]) + hand.grip_damping * (s[3] - s[1]);
+    d[2] = s[3];
+    d[3] = (-grip + hand.arm_stiffness * (w - s[2]) + hand.arm_damping * (w_speed - s[3]) + push) / hand.mass;
+  }
+  if (!has_friction() || sliding_ != 0) {
+    d[0] = s[1];
+    d[1] = (s[4] + grip - parameters_.damping * s[1] - constant * sliding_ * parameters_.friction) / parameters_.mass;
+  }
+  if (parameters_.lag > 0.0) d[4] = (constant * command_ - s[4]) / parameters_.lag;
+  return d;
+}
+
+Axis::State Axis::solve(const State& s, const Input& input, double dt) const {
+  State sum = s, term = slope(s, input.at, input.speed, input.push, 1.0);
+  double factor = dt;
+  for (int k = 1; k <= kTerms; ++k) {
+    bool matters = false;
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      const double add = factor * term[i];
+      matters = matters || std::abs(add) > kTiny * std::abs(sum[i]);
+      sum[i] += add;
+    }
+    if (!matters && k > 2) break;
+    term = slope(term, k == 1 ? input.speed : 0.0, 0.0, 0.0, 0.0);
+    factor *= dt / (k + 1);
+  }
+  return sum;
+}
+
+double Axis::past(const State& s) const {
+  return sliding_ != 0 ? -sliding_ * s[1] : std::abs(pull(s)) - parameters_.friction;
+}
+
+// The device stands still: it begins to slide where what pulls is stronger than friction.
+void Axis::settle_mode() {
+  const double now = pull(state_);
+  sliding_ = std::abs(now) > parameters_.friction ? side(now) : 0;
+}
+
+void Axis::advance(double dt, const AxisWill& will) {
+  push_ = will.push;
+  Input input{will.from, dt > 0.0 ? (will.to - will.from) / dt : 0.0, will.push};
+  if (has_friction() && sliding_ == 0) settle_mode();  // the motor may have jumped
+  for (double left = dt; left > 0.0;) {
+    double step = left > 1.5 * sub_step_ ? sub_step_ : left;
+    State next = solve(state_, input, step);
+    if (has_friction() && past(next) > 0.0) {
+      double before = 0.0, after = step;
+      while (after - before > kEventTime) {
+        const double middle = 0.5 * (before + after);
+        (past(solve(state_, input, middle)) > 0.0 ? after : before) = middle;
+      }
+      step = after;
+      state_ = solve(state_, input, step);
+      state_[1] = 0.0;
+      settle_mode();
+    } else {
+      state_ = next;
+    }
+    input.at += input.speed * step;
+    left -= step;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,72 @@
+// One axis of a device in a hand, in continuous time:
+//   m x'' = F - b x' - c sign(x') + k_g (y - x) + b_g (y' - x')                the device; F what its motor gives
+//   m_h y'' = k_g (x - y) + b_g (x' - y') + k_a (w - y) + b_a (w' - y') + p    the hand; w, p what it wants
+//   tau F' = u - F                                                             the amplifier; u constant between calls
+// Between events this is linear. Its exact solution is summed as a Taylor series over sub-steps, to rounding. Coulomb
+// friction switches it: an event is where the device comes to a halt, or what pulls at a device that stands still
+// exceeds c. Events are found by bisection to a nanosecond, so that stiction is exact and not a steep viscous law: a
+// smoothed sign creeps where a device stands still, and hides limit cycles.
+#pragma once
+
+#include <array>
+
+#include "devices/simulated/hand.h"
+
+namespace pliant {
+
+struct AxisParameters {
+  double mass = 0.1;      // [kg] of the effector, reflected
+  double damping = 0.0;   // [N s/m] its own
+  double friction = 0.0;  // [N] Coulomb's, kinetic = static
+  double lag = 0.0;       // [s] time constant of the amplifier; 0: none
+  HandImpedance hand;
+};
+
+// What the hand wants while an axis advances.
+struct AxisWill {
+  double from = 0.0, to = 0.0;  // [m] of the arm's spring, at the beginning and end; linear between
+  double push = 0.0;            // [N] on the hand; where nobody holds it, on the device
+};
+
+class Axis {
+ public:
+  explicit Axis(const AxisParameters& parameters);
+
+  // At rest at `position`, hand and all; no force.
+  void place(double position);
+  void kick(double velocity) { state_[1] = velocity, sliding_ = side(velocity); }
+  // `force` [N] is the motor's from now on, through the amplifier.
+  void command(double force);
+  void advance(double dt, const AxisWill& will = {});
+
+  double position() const { return state_[0]; }
+  double velocity() const { return state_[1]; }
+  double hand_position() const { return state_[2]; }
+  double motor() const { return state_[4]; }  // [N] that it gives now
+  bool sticks() const { return has_friction() && sliding_ == 0; }
+  double energy() const;  // [J] kinetic and of the grip's spring
+
+ private:
+  using State = std::array<double, 5>;  // x, x', y, y', F
+  struct Input {
+    double at = 0.0, speed = 0.0, push = 0.0;  // w = at + speed t
+  };
+
+  static int side(double v) { return v > 0.0 ? 1 : v < 0.0 ? -1 : 0; }
+  bool has_friction() const { return parameters_.friction > 0.0; }
+  State slope(const State& s, double w, double w_speed, double push, double constant) const;
+  State solve(const State& s, const Input& input, double dt) const;
+  double pull(const State& s) const;  // [N] on a device that stands still, beside friction
+  // > 0: the mode has ended before this state.
+  double past(const State& s) const;
+  void settle_mode();
+
+  AxisParameters parameters_;
+  double sub_step_;  // [s] short against every time constant
+  State state_{};
+  double command_ = 0.0;  // [N]
+  double push_ = 0.0;     // [N] while it advances
+  int sliding_ = 0;       // sign of the velocity; 0: it stands still, or nothing rubs
+};
+
+}  // namespace pliant

@@ -1,0 +1,151 @@
+#include "devices/simulated/simulated_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "runtime/clock.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kLongestCatchUp = 0.5;  // [s] of motion after a pause of whoever reads; more is left out
+constexpr double kSameTime = 1e-9;       // [s]
+
+double wall() {
+  return static_cast<double>(now_ns()) * 1e-9;
+}
+
+dvec3 in_counts(dvec3 v, double count) {
+  return count > 0.0 ? glm::round(v / count) * count : v;
+}
+
+}  // namespace
+
+SimulatedDevice::SimulatedDevice(SimulatedOptions options) : options_(std::move(options)), configured_(true) {}
+
+Status SimulatedDevice::open(const std::string& id) {
+  if (!configured_) {
+    Result<SimulatedOptions> options = parse_simulated(id);
+    if (!options) return options.error();
+    options_ = std::move(options).value();
+  }
+  begin();
+  return Done{};
+}
+
+void SimulatedDevice::begin() {
+  const DeviceProfile& profile = options_.profile;
+  AxisParameters axis;
+  axis.mass = profile.mass;
+  axis.damping = profile.damping;
+  axis.friction = profile.friction;
+  axis.lag = profile.lag;
+  axis.hand = options_.hand;
+  axes_.assign(3, Axis(axis));
+  cursor_.reset();
+  if (!options_.will.path.rows.empty()) cursor_.emplace(options_.will.path);
+  start_ = wanted_ = wants(0.0, rotation_);
+  for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)].place(start_[i]);
+  line_.assign(static_cast<std::size_t>(profile.delay * profile.rate) + 4, {});
+  first_ = waiting_ = 0;
+  time_ = 0.0;
+  index_ = 0;
+  began_ = wall();
+  open_ = true;
+}
+
+dvec3 SimulatedDevice::wants(double time, dquat& rotation) {
+  if (!cursor_) return start_;
+  const PathRow row = cursor_->at(time);
+  rotation = row.rotation;
+  return row.position;
+}
+
+// Motors get what the line has delivered until then.
+void SimulatedDevice::apply_commands(double until) {
+  while (waiting_ > 0 && line_[first_].from <= until + kSameTime) {
+    for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)].command(line_[first_].force[i]);
+    first_ = (first_ + 1) % line_.size();
+    --waiting_;
+  }
+}
+
+void SimulatedDevice::advance_to(double time) {
+  while (time_ < time - kSameTime) {
+    apply_commands(time_);
+    const double next = waiting_ > 0 ? std::min(time, line_[first_].from) : time;
+    const dvec3 to = wants(next, rotation_);
+    for (int i = 0; i < 3; ++i)
+      axes_[static_cast<std::size_t>(i)].advance(next - time_, {wanted_[i], to[i], options_.will.push[i]});
+    wanted_ = to;
+    time_ = next;
+  }
+  apply_commands(time_);
+}
+
+bool SimulatedDevice::read(DeviceSample& sample) {
+  if (!open_) return false;
+  const double rate = options_.profile.rate;
+  std::uint64_t due = index_ + 1;
+  if (options_.clock == DeviceClock::kWall) {
+    const double now = wall() - began_;
+    due = static_cast<std::uint64_t>(std::max(0.0, now) * rate) + 1;
+    if (due <= index_) return false;
+    const auto most = static_cast<std::uint64_t>(kLongestCatchUp * rate);
+    if (due > index_ + most) {  // time went by without motion
+      began_ += static_cast<double>(due - index_ - most) / rate;
+      due = index_ + most;
+    }
+  }
+  index_ = due;  // the first sample is of time 0
+  advance_to(static_cast<double>(index_ - 1) / rate);
+  sample = {};
+  sample.position = in_counts(true_position(), options_.profile.encoder);
+  sample.rotation = rotation_;
+  sample.time = options_.clock == DeviceClock::kWall ? began_ + time_ : 0.0;
+  return true;
+}
+
+// Saturates as a whole, so that the direction stays. What is no number is what a real amplifier would make of it: none.
+void SimulatedDevice::write(const DeviceWrench& wrench) {
+  if (!open_) return;
+  dvec3 force = wrench.force;
+  const double size = length(force);
+  if (!std::isfinite(size)) force = dvec3(0);
+  if (std::isfinite(size) && size > options_.profile.max_force) force *= options_.profile.max_force / size;
+  if (waiting_ == line_.size()) {  // written faster than sampled: the newest replaces the last
+    --waiting_;
+  }
+  line_[(first_ + waiting_) % line_.size()] = {time_ + options_.profile.delay,
+                                               in_counts(force, options_.profile.force_step)};
+  ++waiting_;
+  apply_commands(time_);
+}
+
+dvec3 SimulatedDevice::true_position() const {
+  return {axes_[0].position(), axes_[1].position(), axes_[2].position()};
+}
+dvec3 SimulatedDevice::true_velocity() const {
+  return {axes_[0].velocity(), axes_[1].velocity(), axes_[2].velocity()};
+}
+dvec3 SimulatedDevice::motor_force() const {
+  return {axes_[0].motor(), axes_[1].motor(), axes_[2].motor()};
+}
+
+void register_simulated() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    static_cast<void>(register_driver(
+        "simulated", [] { return std::make_unique<SimulatedDevice>(); },
+        [] {
+          std::vector<DeviceInfo> found;
+          for (const DeviceProfile& profile : device_profiles())
+            found.push_back({"simulated", profile.name, std::string(profile.title) + ", simulated, in a simulated hand",
+                             "", capabilities_of(profile)});
+          return found;
+        }));
+  });
+}
+
+}  // namespace pliant

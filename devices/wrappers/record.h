@@ -1,0 +1,42 @@
+// What a device says and is told, into a file (devices/pose_file.h) that `replay` and --probe NAME=script:FILE read.
+#pragma once
+
+#include <vector>
+
+#include "devices/pose_file.h"
+#include "devices/wrappers/wrapper.h"
+
+namespace pliant {
+
+// Keeps a row a sample, in memory taken by open(), and writes the file on close. What comes after `seconds` is counted,
+// and the file says how much it was.
+class Record : public Wrapper {
+ public:
+  Record(std::unique_ptr<Driver> inner, std::string file, double seconds)
+      : Wrapper(std::move(inner)), file_(std::move(file)), seconds_(seconds) {}
+  ~Record() override { finish(); }
+  Status open(const std::string& id) override;
+  bool read(DeviceSample& sample) override;
+  void write(const DeviceWrench& wrench) override;
+  bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
+  void close() override;
+  // Why the file was not written, after close().
+  const Status& written() const { return written_; }
+
+  static constexpr double kMost = 3600.0;  // [s]
+
+ protected:
+  Status begin() override;
+
+ private:
+  void finish() noexcept;
+  std::string file_;
+  double seconds_;  // [s]
+  std::vector<PoseFileRow> rows_;
+  std::uint64_t samples_ = 0, lost_ = 0;
+  double first_ = 0.0;  // [s] of the first sample
+  bool open_ = false;
+  Status written_ = Done{};
+};
+
+}  // namespace pliant

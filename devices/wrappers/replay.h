@@ -1,0 +1,44 @@
+// Poses from a file (devices/pose_file.h) in the place of the device's, in its time. The device inside is read, so that
+// it stays alive, and is written zero.
+#pragma once
+
+#include <vector>
+
+#include "devices/pose_file.h"
+#include "devices/wrappers/wrapper.h"
+
+namespace pliant {
+
+// Row n comes with the sample of the device inside that is the first at or after its time; the last row stays.
+class Replay : public Wrapper {
+ public:
+  Replay(std::unique_ptr<Driver> inner, std::vector<PoseFileRow> rows)
+      : Wrapper(std::move(inner)), rows_(std::move(rows)) {}
+  bool read(DeviceSample& sample) override {
+    DeviceSample now;
+    if (!inner().read(now)) return false;
+    if (samples_ == 0) first_ = now.time;
+    const double time = (now.time > 0.0 ? now.time - first_ : static_cast<double>(samples_) / rate()) + 1e-9;
+    ++samples_;
+    while (row_ + 1 < rows_.size() && rows_[row_ + 1].sample.time - rows_.front().sample.time <= time) ++row_;
+    sample = rows_[row_].sample;
+    sample.time = now.time;
+    return true;
+  }
+  void write(const DeviceWrench&) override { inner().write({}); }
+
+ protected:
+  Status begin() override {
+    row_ = 0;
+    samples_ = 0;
+    return Done{};
+  }
+
+ private:
+  std::vector<PoseFileRow> rows_;
+  std::size_t row_ = 0;
+  std::uint64_t samples_ = 0;
+  double first_ = 0.0;  // [s]
+};
+
+}  // namespace pliant

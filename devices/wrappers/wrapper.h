@@ -1,0 +1,63 @@
+// A driver around a driver. Whatever a wrapper does not change goes through unchanged: who owns the loop, how to wait,
+// how to switch the motors off. What leaves for the device inside is zero when it is closed.
+//
+// Memory is taken in open() and after; read and write take none. Random wrappers draw from a seed, so that a run can be
+// repeated. A wrapper renders no model itself (write_model): it would have to do to it what it does to samples.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "pliant/driver.h"
+
+namespace pliant {
+
+class Wrapper : public Driver {
+ public:
+  explicit Wrapper(std::unique_ptr<Driver> inner) : inner_(std::move(inner)) {}
+
+  Status open(const std::string& id) override {
+    const Status opened = inner_->open(id);
+    return opened ? begin() : opened;
+  }
+  DeviceCapabilities capabilities() const override { return inner_->capabilities(); }
+  bool read(DeviceSample& sample) override { return inner_->read(sample); }
+  void write(const DeviceWrench& wrench) override { inner_->write(wrench); }
+  void close() override { inner_->close(); }
+  void wait(double seconds) override { inner_->wait(seconds); }
+  Status run(std::function<void()> tick) override { return inner_->run(std::move(tick)); }
+  void make_safe() noexcept override { inner_->make_safe(); }
+  bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
+
+ protected:
+  // The device inside is open: its capabilities are known.
+  virtual Status begin() { return Done{}; }
+  Driver& inner() { return *inner_; }
+  const Driver& inner() const { return *inner_; }
+  // [Hz] of samples: the device's, or the touch clock's usual one.
+  double rate() const {
+    const double said = inner_->capabilities().rate;
+    return said > 0.0 ? said : 1000.0;
+  }
+
+ private:
+  std::unique_ptr<Driver> inner_;
+};
+
+// SplitMix64: small, and the same everywhere.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  double uniform() {  // [0, 1)
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,145 @@
+#include "engine/driver_link.h"
+
+#include <exception>
+#include <utility>
+
+#include "systems/device/device_model.h"
+#include "systems/safety/safety.h"
+
+namespace pliant {
+
+DriverLink& DriverLink::operator=(DriverLink&& other) noexcept {
+  if (this == &other) return *this;
+  close();
+  claim_ = std::move(other.claim_);
+  driver_ = std::move(other.driver_);
+  servo_ = std::exchange(other.servo_, nullptr);
+  can_ = std::exchange(other.can_, {});
+  placed_rotation_ = other.placed_rotation_;
+  ready_ = other.ready_;
+  return *this;
+}
+
+Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id, const std::string& where,
+                           const std::string& claimed, const GuardParameters& guard) {
+  DeviceClaim claim;
+  bool opened = false;
+  const auto failed = [&](const std::string& what) {
+    try {
+      if (opened) driver->close();
+    } catch (...) {  // gone all the same
+    }
+    return Error{where, what};
+  };
+  DeviceCapabilities can;
+  Servo* servo = nullptr;
+  try {
+    if (Status status = driver->open(id); !status) return status;
+    opened = true;
+    can = driver->capabilities();
+    for (const double limit : {can.max_force, can.max_torque, can.max_stiffness, can.max_grip, can.continuous_force,
+                               can.max_velocity, can.rate, can.latency, can.damping})
+      if (!(limit >= 0.0))
+        return failed("a limit among its capabilities is negative or no number; say 0 where it is not known");
+    if (wants_servo(can)) {
+      if (!claimed.empty() && !can.simulated)
+        if (Status taken = claim.take(claimed); !taken) return failed(taken.error().message());
+      auto served = std::make_unique<Servo>(std::move(driver), guard);
+      servo = served.get();
+      driver = std::move(served);
+      servo->adopt();
+      can = servo->capabilities();
+    }
+  } catch (const std::exception& thrown) {
+    return failed(std::string("the driver threw: ") + thrown.what());
+  } catch (...) {
+    return failed("the driver threw something unknown");
+  }
+  close();
+  claim_ = std::move(claim);
+  driver_ = std::move(driver);
+  servo_ = servo;
+  can_ = can;
+  return Done{};
+}
+
+void DriverLink::close() noexcept {
+  if (driver_) {
+    zero();
+    try {
+      driver_->close();
+    } catch (...) {  // gone all the same
+    }
+  }
+  driver_.reset();
+  servo_ = nullptr;
+  can_ = {};
+  claim_.release();
+}
+
+void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 middle) {
+  device.can = driver_ ? can_ : kNoDriver;
+  device.workspace = driver_ ? device.scale : 1.0;
+  device.origin = driver_ && can_.workspace != dvec3(0) ? middle : dvec3(0);
+  device.force_sent = device.torque_sent = dvec3(0);
+  placed_rotation_ = placed;
+  ready_ = false;
+}
+
+// Without a new sample the device keeps what it said last; once that is old, safety takes it for lost.
+void DriverLink::read(HapticDevice& device, Tick tick) {
+  DeviceSample sample;
+  if (servo_ && !servo_->runs()) servo_->advance(tick.time);
+  if (driver_->read(sample)) {
+    device.position = device.origin + device.workspace * sample.position;
+    if (!can_.senses_rotation)
+      device.rotation = placed_rotation_;
+    else if (plausible_rotation(sample.rotation))
+      device.rotation = sample.rotation / glm::length(sample.rotation);
+    else
+      device.rotation = sample.rotation;  // no rotation: the pose is not taken, and counted
+    device.sensed_at = tick.time;
+    ready_ = sample.ready;
+  }
+  device.status = ready_ ? DeviceStatus::kReady : DeviceStatus::kLost;
+}
+
+void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) {
+  HapticDevice& device = world.registry.get<HapticDevice>(entity);
+  const DeviceWrench wrench{device.force_sent, device.torque_sent};
+  if (!servo_) {
+    driver_->write(wrench);
+    return;
+  }
+  if (device.status != DeviceStatus::kReady)
+    servo_->write({});
+  else
+    servo_->write_model(device_model(world, effector, entity, tick), wrench);
+  if (!servo_->felt()) device.force_sent = device.torque_sent = dvec3(0);
+}
+
+void DriverLink::idle() {
+  DeviceSample sample;
+  driver_->read(sample);
+  driver_->write({});
+}
+
+void DriverLink::zero() noexcept {
+  if (!driver_) return;
+  try {
+    driver_->write({});
+  } catch (...) {  // what fails is left: its device's own watchdog ends the force
+  }
+}
+
+Status DriverLink::start() {
+  return servo_ ? servo_->start() : Status(Done{});
+}
+void DriverLink::halt() noexcept {
+  if (servo_) servo_->halt();
+}
+Status DriverLink::may_step() const {
+  return servo_ ? servo_->can_advance() : Status(Done{});
+}
+
+}  // namespace pliant

@@ -1,0 +1,245 @@
+// The device's side of Pliant's network protocol, to be copied into the firmware of a device of one's own: this file
+// needs nothing of Pliant, only sockets. Where a real one reads encoders and drives motors, this one simulates a handle
+// of 100 g that a spring pulls down. docs/devices/network.md explains every byte.
+//
+//   network_device [PORT]       then: pliant run LEVEL --probe NAME=device:network:PORT
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+
+namespace {
+
+enum Kind : std::uint8_t { kAsk = 1, kOpen, kDescription, kState, kForce, kClose };
+constexpr double kSilence = 0.020;                         // [s] without a force frame: no force
+constexpr double kAnswer = 0.040;                          // [s] without an answer to one of our states: the same
+constexpr double kForget = 1.0;                            // [s] without any frame: another engine may come
+constexpr int kLength[] = {0, 32, 32, 104, 100, 344, 32};  // of a frame of each kind
+constexpr float kMaxForce = 3.0f;                          // [N]
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::uint32_t crc32(const std::uint8_t* bytes, int size) {
+  std::uint32_t value = ~0u;
+  for (int i = 0; i < size; ++i) {
+    value ^= bytes[i];
+    for (int bit = 0; bit < 8; ++bit) value = (value >> 1) ^ (value & 1 ? 0xEDB88320u : 0u);
+  }
+  return ~value;
+}
+
+// A frame that is written or read from its beginning. Little-endian machines only, as nearly all are.
+struct Frame {
+  std::uint8_t bytes[344] = {};
+  int at = 0;
+  template <class T>
+  void put(T value) {
+    std::memcpy(bytes + at, &value, sizeof value);
+    at += static_cast<int>(sizeof value);
+  }
+  template <class T>
+  T get(int where) const {
+    T value;
+    std::memcpy(&value, bytes + where, sizeof value);
+    return value;
+  }
+};
+
+struct Force {
+  float now[3], x0[3], f0[3], k[9], b[9], radius;
+  bool has_model;
+};
+
+class Device {
+ public:
+  explicit Device(int socket) : socket_(socket) {
+    std::random_device random;
+    while (own_ == 0) own_ = random();
+  }
+
+  // Takes every frame that has come; false frames change nothing.
+  void hear() {
+    Frame frame;
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    for (ssize_t got; (got = recvfrom(socket_, frame.bytes, sizeof frame.bytes, MSG_TRUNC,
+                                      reinterpret_cast<sockaddr*>(&from), &size)) >= 0;
+         size = sizeof from)
+      if (whole(frame, got)) accept(frame, from);
+    if (engine_ != 0 && now() - heard_at_ > kForget) engine_ = 0;
+  }
+
+  // Where the handle is: position and velocity in metres, Y up.
+  void tell(const float position[3], const float velocity[3]) {
+    if (engine_ == 0) return;
+    Frame frame = begin(kState, engine_);
+    frame.put(heard_);            // the newest frame of the engine
+    frame.put(std::uint32_t{1});  // 1: ready; 2: stopped; 4: hot; 8: battery low
+    frame.put(std::uint32_t{0});  // buttons
+    for (int i = 0; i < 3; ++i) frame.put(position[i]);
+    for (float part : {1.0f, 0.0f, 0.0f, 0.0f}) frame.put(part);  // rotation w x y z
+    for (int i = 0; i < 3; ++i) frame.put(velocity[i]);
+    for (int i = 0; i < 3; ++i) frame.put(0.0f);  // spin
+    frame.put(0.0f);                              // grip
+    send(frame, engine_address_);
+  }
+
+  // What to render there: zero unless the engine was heard lately, and answers.
+  void render(const float position[3], const float velocity[3], float force[3]) const {
+    force[0] = force[1] = force[2] = 0.0f;
+    const std::uint32_t next = answered_ + 1;  // the first state that it has not heard of
+    const double unanswered = answered_ == sent_ ? 0.0 : sent_ - next < 1024 ? now() - sent_at_[next % 1024] : 1e9;
+    if (engine_ == 0 || now() - force_at_ > kSilence || unanswered > kAnswer) return;
+    float dx[3], far = 0.0f, most = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+      dx[i] = position[i] - force_.x0[i];
+      far += dx[i] * dx[i];
+    }
+    far = std::sqrt(far);
+    for (int i = 0; i < 3; ++i) {
+      force[i] = force_.has_model ? force_.f0[i] : force_.now[i];
+      if (!force_.has_model) continue;
+      for (int j = 0; j < 3; ++j)  // matrices by columns
+        force[i] += force_.k[3 * j + i] * dx[j] * (far > force_.radius ? force_.radius / far : 1.0f) +
+                    force_.b[3 * j + i] * velocity[j];
+    }
+    for (int i = 0; i < 3; ++i) most += force[i] * force[i];
+    if (most = std::sqrt(most); most > kMaxForce)
+      for (int i = 0; i < 3; ++i) force[i] *= kMaxForce / most;
+  }
+
+ private:
+  static bool whole(const Frame& frame, ssize_t got) {
+    if (got < 32 || std::memcmp(frame.bytes, "PLNT\1", 5) != 0) return false;
+    const int kind = frame.bytes[5];
+    if (kind < kAsk || kind > kClose || got != kLength[kind] || frame.get<std::uint16_t>(6) != got) return false;
+    Frame copy = frame;
+    std::memset(copy.bytes + 8, 0, 4);
+    return frame.get<std::uint32_t>(8) == crc32(copy.bytes, kLength[kind]);
+  }
+
+  void accept(const Frame& frame, const sockaddr_in& from) {
+    const auto kind = frame.bytes[5];
+    const auto session = frame.get<std::uint32_t>(12), peer = frame.get<std::uint32_t>(16);
+    const auto sequence = frame.get<std::uint32_t>(20);
+    const bool newer = static_cast<std::int32_t>(sequence - heard_) > 0;
+    if (kind == kOpen && engine_ == 0) {
+      engine_ = session;
+      engine_address_ = from;
+      heard_ = sequence;
+      force_at_ = -1.0;
+    } else if (kind != kAsk && (session != engine_ || from.sin_port != engine_address_.sin_port ||
+                                from.sin_addr.s_addr != engine_address_.sin_addr.s_addr)) {
+      return;
+    } else if (kind == kOpen && newer) {
+      heard_ = sequence;
+    }
+    if (kind == kAsk || kind == kOpen) return describe(session, from);
+    if (peer != own_) return;
+    if (kind == kClose) engine_ = 0;
+    if (kind != kForce || !newer) return;
+    for (int i = 0; i < 76; ++i)
+      if (!std::isfinite(frame.get<float>(40 + 4 * i))) return;
+    heard_ = sequence;
+    answered_ = frame.get<std::uint32_t>(32);
+    heard_at_ = force_at_ = now();
+    force_.has_model = (frame.get<std::uint32_t>(36) & 1) != 0;
+    std::memcpy(force_.now, frame.bytes + 40, 12);
+    std::memcpy(&force_.radius, frame.bytes + 68, 4);
+    std::memcpy(force_.x0, frame.bytes + 72, 12);
+    std::memcpy(force_.f0, frame.bytes + 100, 12);
+    std::memcpy(force_.k, frame.bytes + 128, 36);
+    std::memcpy(force_.b, frame.bytes + 272, 36);
+  }
+
+  void describe(std::uint32_t to, const sockaddr_in& address) {
+    if (to == engine_) heard_at_ = now();
+    Frame frame = begin(kDescription, to);
+    frame.put(std::uint32_t{1 | 8});  // senses position, renders force
+    for (float figure : {kMaxForce, 0.0f, 1000.0f, 1.0f, 0.0f, 1000.0f}) frame.put(figure);
+    for (int i = 0; i < 3; ++i) frame.put(0.1f);  // half of the workspace
+    char name[32] = "example of a network device";
+    for (char letter : name) frame.put(letter);
+    send(frame, address);
+  }
+
+  Frame begin(Kind kind, std::uint32_t peer) {
+    Frame frame;
+    frame.put(std::uint32_t{0x544E4C50});
+    frame.put(std::uint8_t{1});
+    frame.put(static_cast<std::uint8_t>(kind));
+    frame.put(static_cast<std::uint16_t>(kLength[kind]));
+    frame.put(std::uint32_t{0});
+    frame.put(own_);
+    frame.put(peer);
+    frame.put(++sent_);
+    frame.put(static_cast<std::uint64_t>((sent_at_[sent_ % 1024] = now()) * 1e6));
+    return frame;
+  }
+
+  void send(Frame& frame, const sockaddr_in& to) const {
+    const std::uint32_t sum = crc32(frame.bytes, frame.at);
+    std::memcpy(frame.bytes + 8, &sum, sizeof sum);
+    sendto(socket_, frame.bytes, static_cast<std::size_t>(frame.at), 0, reinterpret_cast<const sockaddr*>(&to),
+           sizeof to);
+  }
+
+  int socket_;
+  std::uint32_t own_ = 0, engine_ = 0, heard_ = 0, answered_ = 0, sent_ = 0;
+  double heard_at_ = -1.0, force_at_ = -1.0, sent_at_[1024] = {};
+  sockaddr_in engine_address_{};
+  Force force_{};
+};
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in own{};
+  own.sin_family = AF_INET;
+  own.sin_port = htons(static_cast<std::uint16_t>(count > 1 ? std::atoi(arguments[1]) : 17716));
+  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);  // INADDR_ANY: also from other machines
+  socklen_t size = sizeof own;
+  if (bind(socket, reinterpret_cast<sockaddr*>(&own), size) != 0 || fcntl(socket, F_SETFL, O_NONBLOCK) != 0)
+    return std::perror("network_device"), 1;
+  getsockname(socket, reinterpret_cast<sockaddr*>(&own), &size);
+  std::printf("listening on %d\n", ntohs(own.sin_port));
+  std::fflush(stdout);
+
+  Device device(socket);
+  float position[3] = {0, 0.02f, 0}, velocity[3] = {0, 0, 0}, force[3], largest = 0.0f;
+  constexpr float kMass = 0.1f, kSpring = 40.0f, kDamping = 4.0f, kGoal = -0.01f;  // [kg] [N/m] [N s/m] [m]
+  double next = now();
+  for (long tick = 1;; ++tick) {
+    device.hear();
+    device.tell(position, velocity);
+    device.render(position, velocity, force);
+    for (int i = 0; i < 3; ++i) {
+      const float pull = kSpring * ((i == 1 ? kGoal : 0.0f) - position[i]) - kDamping * velocity[i] + force[i];
+      velocity[i] += 0.001f / kMass * pull;
+      position[i] += 0.001f * velocity[i];
+    }
+    largest = std::max(largest, std::abs(force[1]));
+    if (tick % 1000 == 0) {
+      std::printf("y %6.2f mm  force %6.3f N  largest %6.3f N\n", 1e3 * position[1], force[1], largest);
+      std::fflush(stdout);
+    }
+    next = std::max(next + 0.001, now());
+    const auto wait = std::chrono::duration<double>(next - now());
+    pollfd none{};
+    if (wait.count() > 0) poll(&none, 0, static_cast<int>(std::ceil(wait.count() * 1e3)));
+  }
+}

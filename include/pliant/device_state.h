@@ -1,0 +1,116 @@
+// What stands between a program and a hand: the state of a device, why it changed, and how its servo runs.
+//
+//   disconnected -> idle -> armed -> active -> tripped
+//
+// Force leaves in `active` alone. Whatever is not understood takes it away at once; what repeats or lasts, or is
+// dangerous at once, trips the device, and only a person arms it again (Session::arm).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace pliant {
+
+enum class DeviceState : std::uint8_t {
+  kDisconnected,  // no sample comes
+  kIdle,          // samples come; it is not armed
+  kArmed,         // it waits until the wanted force is small, or for the dead-man button
+  kActive,        // force leaves
+  kTripped        // latched: no force until it is armed again
+};
+
+enum class DeviceCause : std::uint8_t {
+  kNone,
+  kConnected,        // samples come
+  kArmedByItself,    // fresh samples and a fresh model (Arming::kAutomatic)
+  kArmedByHand,      // Session::arm
+  kDisarmed,         // Session::disarm
+  kSmallForce,       // the gate opened on a small wanted force
+  kDeadManHeld,      // the gate opened on the dead-man button
+  kDeadManReleased,  // it was let go
+  kLetGo,            // the session paused, stopped, or lost what moves the effector
+  kNoSample,         // none for 10 ms
+  kLost,             // none for 100 ms
+  kNotReady,         // the device says that its state is not known
+  kNotANumber,       // a pose is none
+  kOutside,          // a pose far outside its workspace: a wrong unit
+  kJumped,           // a pose no hand could reach in that time
+  kFrozen,           // the very same pose for a second, under force
+  kTimeBack,         // a sample is older than the one before, or from the future
+  kTooFast,          // faster than its largest velocity
+  kRunaway,          // it gathers speed against the force
+  kGaveEnergy,       // the hand got more than it gave, in spite of damping
+  kBadForce,         // the wanted force is no number
+  kModelStale,       // no force model for 10 ms
+  kModelLost,        // none for 100 ms
+  kClockGap,         // the servo was not run for 10 ms: the process was paused, or starved
+  kSuspended,        // the machine slept
+  kUnsteady,         // five losses in one second
+  kBatteryLow,
+  kEmergencyStop,
+  kDriverFailed,  // its driver threw
+  kClosed
+};
+
+struct DeviceTransition {
+  DeviceState from = DeviceState::kDisconnected, to = DeviceState::kDisconnected;
+  DeviceCause cause = DeviceCause::kNone;
+  double time = 0.0;   // [s] of the servo's clock
+  double force = 0.0;  // [N] that was written last
+};
+
+const char* name_of(DeviceState state);
+// "active -> tripped at 12.345 s from 1.20 N: no sample for 100 ms; check cable and power, then arm it again".
+std::string describe(const DeviceTransition& transition);
+
+// Who arms a device.
+enum class Arming : std::uint8_t {
+  kAutomatic,  // it arms itself once samples and models are fresh; never after a trip
+  kByHand      // Session::arm alone
+};
+
+// How a device is guarded. Whatever is said here, the device's own limits hold.
+struct GuardParameters {
+  Arming arming = Arming::kAutomatic;
+  std::uint32_t dead_man = 0;  // buttons: force only while one of them is down; 0: none is needed
+  double max_force = 0.0;      // [N] 0: the device's
+  double max_torque = 0.0;     // [N m] the same
+  double max_velocity = 0.0;   // [m/s] the same; 2 where neither says one
+  double slew = 2000.0;        // [N/s] of force that comes in; what is let go falls at once
+  double ramp = 0.2;           // [s] in which force comes in, once the gate is open
+};
+
+// How a device's servo runs, since its start.
+struct ServoFigures {
+  std::uint64_t periods = 0;                          // run
+  std::uint64_t missed = 0;                           // deadlines: a period that could not begin in time
+  std::uint64_t samples = 0, without_sample = 0;      // periods with a new sample, and without one
+  std::uint64_t models = 0;                           // taken from the touch tick
+  double rate = 0.0;                                  // [Hz] of the last tenth of a second
+  double period_p50 = 0.0, period_p99 = 0.0;          // [us] between two beginnings
+  double period_max = 0.0;                            // [us]
+  double jitter = 0.0;                                // [us] |period - wanted|, 99 of 100 stay below it
+  double round_trip_p50 = 0.0, round_trip_max = 0.0;  // [us] from a write to the sample that answers it, if told
+  double oldest_model = 0.0;                          // [us] that a force was made from
+  bool has_priority = false;                          // SCHED_FIFO was granted
+};
+
+// All that a person wants to know about a device.
+struct DeviceReport {
+  static constexpr std::size_t kKept = 32;
+  DeviceState state = DeviceState::kDisconnected;
+  DeviceCause cause = DeviceCause::kNone;  // of the last transition
+  double force = 0.0;                      // [N] as written last
+  double heat = 0.0;                       // [1] 1: its force is lowered to what it bears for ever
+  std::uint64_t transitions = 0;           // since the start; the last kKept of them are in `kept`
+  std::array<DeviceTransition, kKept> kept{};
+  ServoFigures figures;
+
+  // i of the newest min(transitions, kKept), oldest first.
+  const DeviceTransition& transition(std::uint64_t i) const {
+    return kept[(transitions > kKept ? transitions + i : i) % kKept];
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,139 @@
+#include "player/run/device_links.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "devices/choose.h"
+#include "devices/drivers/all.h"
+#include "devices/wrappers/chain.h"
+#include "engine/sources.h"
+#include "systems/device/devices.h"
+#include "systems/device/hands.h"
+
+namespace pliant {
+
+Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed, std::vector<std::string>& notes) {
+  std::vector<DeviceInfo> there;
+  bool listed = false;
+  for (const Entity hand : hands(world)) {
+    if (!find_device(world, hand) || held.moves(hand)) continue;
+    HapticDevice& device = world.registry.get<HapticDevice>(device_of(world, hand));
+    if (device.driver != DriverKind::kExternal || device.id.empty()) continue;
+    if (!listed) {
+      register_all_drivers();
+      there = list_devices();
+      listed = true;
+    }
+    const Name* const named = world.registry.find<Name>(hand);
+    const std::string name = named ? named->value : std::string();
+    auto chosen = choose_device(device.id, there);
+    if (!chosen) return Error{"probe `" + name + "`", chosen.error().message()};
+    for (const std::string& sentence : chosen->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
+    if (chosen->id.empty()) {
+      if (!windowed)
+        return Error{"probe `" + name + "`",
+                     "the mouse would move it, and needs a window; set DISPLAY, or plug in a device"};
+      device.driver = DriverKind::kMouse;
+      continue;
+    }
+    auto made = make_device(chosen->id);
+    if (!made) return made.error();
+    for (const std::string& sentence : made->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
+    Held opened{name, hand, device_of(world, hand), {}};
+    if (Status s = opened.link.connect(std::move(made->driver), made->id, "device `" + chosen->id + "`", chosen->id);
+        !s)
+      return s;
+    device.id = chosen->id;
+    device.path = {};
+    device.status = DeviceStatus::kLost;
+    opened.link.begin(device, device.rotation, place_of(world, hand));
+    begin_anew(world, hand);
+    if (opened.link.servo() && !opened.link.servo()->note().empty())
+      notes.push_back(fmt::format("`{}`: {}", name, opened.link.servo()->note()));
+    links_.push_back(std::move(opened));
+  }
+  return Done{};
+}
+
+bool DeviceLinks::moves(Entity hand) const {
+  return std::any_of(links_.begin(), links_.end(), [&](const Held& held) { return held.hand == hand; });
+}
+
+Status DeviceLinks::may_step() const {
+  for (const Held& held : links_)
+    if (Status s = held.link.may_step(); !s) return s;
+  return Done{};
+}
+
+void DeviceLinks::before(World& world, Tick tick) {
+  for (Held& held : links_) held.link.read(world.registry.get<HapticDevice>(held.device), tick);
+}
+
+void DeviceLinks::after(World& world, Tick tick) {
+  for (Held& held : links_) held.link.write(world, held.hand, held.device, tick);
+}
+
+void DeviceLinks::hook(World& world, TouchHooks& hooks) {
+  if (!any()) return;
+  hooks.before = [this, &world, then = std::move(hooks.before)](Tick tick) {
+    before(world, tick);
+    if (then) then(tick);
+  };
+  hooks.after = [this, &world, then = std::move(hooks.after)](Tick tick) {
+    after(world, tick);
+    if (then) then(tick);
+  };
+  hooks.idle = [this, then = std::move(hooks.idle)](Tick tick) {
+    for (Held& held : links_) held.link.idle(), held.link.forget();
+    if (then) then(tick);
+  };
+  hooks.end = [this, then = std::move(hooks.end)] {
+    for (Held& held : links_) held.link.zero();
+    if (then) then();
+  };
+}
+
+Status DeviceLinks::start() {
+  for (Held& held : links_)
+    if (Status s = held.link.start(); !s) {
+      halt();
+      return s;
+    }
+  return Done{};
+}
+
+void DeviceLinks::halt() noexcept {
+  for (Held& held : links_) held.link.halt();
+}
+
+std::vector<std::string> DeviceLinks::findings() {
+  std::vector<std::string> all;
+  for (Held& held : links_) {
+    Servo* const servo = held.link.servo();
+    if (!servo) continue;
+    const DeviceReport& report = servo->report();
+    std::uint64_t worse = 0;
+    std::string last;
+    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(report.transitions, DeviceReport::kKept); ++i) {
+      const DeviceTransition& one = report.transition(i);
+      const bool lost = one.from == DeviceState::kActive && one.cause != DeviceCause::kLetGo &&
+                        one.cause != DeviceCause::kClosed && one.cause != DeviceCause::kDisarmed;
+      if (!lost && one.to != DeviceState::kTripped) continue;
+      ++worse;
+      last = describe(one);
+    }
+    if (worse == 1) all.push_back(fmt::format("device of `{}`: {}", held.name, last));
+    if (worse > 1)
+      all.push_back(
+          fmt::format("device of `{}`: its force was taken away {} times, the last time: {}", held.name, worse, last));
+    if (report.figures.missed > 0)
+      all.push_back(
+          fmt::format("device of `{}`: {} of {} periods of its servo began late ({:.0f} us at most); close other "
+                      "programs, or grant SCHED_FIFO (`ulimit -r`)",
+                      held.name, report.figures.missed, report.figures.periods, report.figures.period_max));
+  }
+  return all;
+}
+
+}  // namespace pliant

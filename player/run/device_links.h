@@ -1,0 +1,45 @@
+// The devices of a run: a driver for every probe and tool that one moves (devices/choose.h, engine/driver_link.h),
+// opened before its clocks start, and written zero with the last of its ticks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "components/world.h"
+#include "engine/driver_link.h"
+#include "engine/simulated_hands.h"
+#include "engine/touch_clock.h"
+
+namespace pliant {
+
+class DeviceLinks {
+ public:
+  // Opens what each hand with the driver `external` asks for by its `id`; one without an id is moved by nobody, and
+  // one in `held` by a simulated hand. Where
+  // the mouse is an alternative, it takes its place. `notes`: what is not as one might expect.
+  Status open(World& world, const SimulatedHands& held, bool windowed, std::vector<std::string>& notes);
+  bool any() const { return !links_.empty(); }
+  bool moves(Entity hand) const;
+  // Why they cannot run in virtual time, if one cannot.
+  Status may_step() const;
+
+  // --- Around a tick
+  void before(World& world, Tick tick);
+  void after(World& world, Tick tick);
+  // Real time: the hooks of a touch clock do both, and what else a loop does after them.
+  void hook(World& world, TouchHooks& hooks);
+  Status start();
+  void halt() noexcept;
+  // What became of each: transitions that a person should know of.
+  std::vector<std::string> findings();
+
+ private:
+  struct Held {
+    std::string name;
+    Entity hand, device;
+    DriverLink link;
+  };
+  std::vector<Held> links_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,92 @@
+#include "player/study/pareto.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <span>
+
+#include "content/files/file_io.h"
+#include "player/print.h"
+#include "player/record/csv.h"
+
+namespace pliant {
+
+std::vector<std::size_t> pareto_front(const std::vector<ParetoRow>& rows) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (std::isfinite(rows[i].error) && std::isfinite(rows[i].cost)) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return rows[a].cost != rows[b].cost ? rows[a].cost < rows[b].cost : rows[a].error < rows[b].error;
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t i : order)
+    if (front.empty() || rows[i].error < rows[front.back()].error) front.push_back(i);
+  return front;
+}
+
+std::string to_csv(const ParetoTable& table) {
+  std::vector<bool> best(table.rows.size());
+  for (const std::size_t i : pareto_front(table.rows)) best[i] = true;
+  std::string csv = "group,label";
+  for (const std::string& name : table.more) csv += ',' + csv_text(name);
+  csv += ',' + csv_text(table.error_name) + ',' + csv_text(table.cost_name) + ",on_front\n";
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const ParetoRow& row = table.rows[i];
+    csv += csv_text(row.group) + ',' + csv_text(row.label);
+    for (const std::string& value : row.more) csv += ',' + csv_text(value);
+    if (std::isfinite(row.error))
+      put(csv, row.error);
+    else
+      csv += ",failed";
+    put(csv, row.cost);
+    csv += best[i] ? ",1\n" : ",0\n";
+  }
+  return csv;
+}
+
+std::string to_json(const ParetoTable& table) {
+  nlohmann::ordered_json json;
+  json["study"] = table.study;
+  json["title"] = table.title;
+  json["cost"] = table.cost_axis;
+  json["error"] = table.error_axis;
+  for (const ParetoRow& row : table.rows) {
+    nlohmann::ordered_json entry{{"group", row.group}, {"label", row.label}};
+    for (std::size_t k = 0; k < table.more.size(); ++k) entry[table.more[k]] = row.more[k];
+    entry[table.error_name] = row.error;  // not finite: null
+    entry[table.cost_name] = row.cost;
+    json["rows"].push_back(std::move(entry));
+  }
+  for (const std::size_t i : pareto_front(table.rows)) json["front"].push_back(table.rows[i].label);
+  json["shows"] = table.sentences;
+  return json.dump(2, ' ', true) + "\n";
+}
+
+Error interrupted() {
+  return {"study", "was interrupted and wrote nothing; run it again"};
+}
+
+Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+  return write_file(out.stage(name), std::span(bytes, text.size()));
+}
+
+Status write_study(OutputFolder& out, const ParetoTable& table) {
+  if (const Status done = write_text(out, table.study + ".csv", to_csv(table)); !done) return done;
+  if (const Status done = write_text(out, table.study + ".json", to_json(table)); !done) return done;
+  if (const Status done = plot_pareto(out, table.study, table); !done) return done;
+  print("{}: {}\n", table.study, table.title);
+  print("the front of {} rows: {:>32} {:>32}\n", table.rows.size(), table.error_axis, table.cost_axis);
+  for (const std::size_t i : pareto_front(table.rows)) {
+    const ParetoRow& row = table.rows[i];
+    print("  {:<40} {:>12.3g} {:>12.3g}\n", row.group == row.label ? row.label : row.group + ' ' + row.label, row.error,
+          row.cost);
+  }
+  for (const std::string& sentence : table.sentences) print("{}\n", sentence);
+  return Done{};
+}
+
+}  // namespace pliant

@@ -1,0 +1,51 @@
+// Cost against error: what every study measures, how it is written and drawn.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "player/record/output_folder.h"
+
+namespace pliant {
+
+// A way to do the job. An error that is not finite says that it failed: it is on no front, and stands on the plot's
+// upper edge.
+struct ParetoRow {
+  std::string label;              // of the point on the plot: short
+  double cost = 0.0;              // > 0; a timing differs from run to run
+  double error = 0.0;             // >= 0; the same bits in every run
+  std::string group;              // points of one group share a colour, and a line where `joined`
+  std::vector<std::string> more;  // the table's columns of that name
+};
+
+struct ParetoTable {
+  std::string study;                           // names the files
+  std::string title;                           // one line: what is compared with what
+  std::string cost_name, cost_axis;            // column, such as cost_us; axis, with its unit
+  std::string error_name, error_axis;          // the same
+  std::vector<std::string> more;               // further columns, the same in every run
+  std::vector<ParetoRow> rows;                 //
+  std::vector<std::string> sentences;          // what it shows, computed from the rows
+  bool joined = true;                          // points of a group are joined in their order
+  std::vector<std::size_t> drawn = {};         // rows on the plot; empty: all
+  double least_error = 0.0, most_error = 0.0;  // the plot's range; 0: the rows' own
+};
+
+// The rows that none betters in cost and error both, the cheapest first. Of equals the first.
+std::vector<std::size_t> pareto_front(const std::vector<ParetoRow>& rows);
+
+// Columns: group, label, `more`, error, cost, and whether the row is on the front.
+std::string to_csv(const ParetoTable& table);
+// Study, title, units, rows, front, sentences. Errors that are not finite are null.
+std::string to_json(const ParetoTable& table);
+
+// STUDY.csv, STUDY.json, STUDY.svg and STUDY.png; prints the front and the sentences.
+Status write_study(OutputFolder& out, const ParetoTable& table);
+// One of a study's further files.
+Status write_text(OutputFolder& out, const std::string& name, const std::string& text);
+Error interrupted();  // what a study that was ended early returns
+// STEM.svg and STEM.png.
+Status plot_pareto(OutputFolder& out, const std::string& stem, const ParetoTable& table);
+
+}  // namespace pliant

@@ -1,0 +1,24 @@
+// The studies that ship. One line here and one file make a study: study_NAME.cpp defines
+// `Status study_NAME(OutputFolder& out, bool quick, const Interrupt& interrupt)`. It stages its files in `out`, prints
+// what they show, and ends with an error when `interrupt` is requested.
+#pragma once
+
+#include "player/interrupt.h"
+#include "player/record/output_folder.h"
+#include "runtime/result.h"
+
+// clang-format off
+#define PLIANT_STUDIES(STUDY) \
+  STUDY(linearisation, "1 kHz force of a tool: held, linear, contacts solved again, against the full solve") \
+  STUDY(walls, "where a virtual wall is stable: stiffness, damping, delay; closed forms, with and without the guard") \
+  STUDY(hand, "a simulated hand touches the demo levels through every device profile; with and without guard at 1 and 10 ms") \
+  STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability")
+// clang-format on
+
+namespace pliant {
+
+#define STUDY(name, what) Status study_##name(OutputFolder& out, bool quick, const Interrupt& interrupt);
+PLIANT_STUDIES(STUDY)
+#undef STUDY
+
+}  // namespace pliant

@@ -1,0 +1,258 @@
+#include "player/study/study_hand.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "content/files/file_io.h"
+#include "content/level_file.h"
+#include "devices/guard/guard.h"
+#include "engine/simulated_hands.h"
+#include "player/print.h"
+#include "player/progress.h"
+#include "player/record/pen.h"
+#include "player/record/plot.h"
+#include "player/study/studies.h"
+#include "player/verbs/content_folder.h"
+#include "systems/device/reading.h"
+#include "systems/schedule.h"
+#include "systems/touch/prepare.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kWindow = 25;   // ticks of the moving mean that is taken away: what is left is above about 20 Hz
+constexpr double kTooStiff = 1500.0;  // [N/m]
+constexpr const char* kPlotted = "inverse3,hand=finger";  // little friction in a light hand: the hardest to hold
+constexpr double kLast = 0.5;                             // [s]
+constexpr double kGrows = 2.0;                            // [1] of the buzz at the end over that of all: it is growing
+
+// A probe, the device in its hand, and what both did.
+struct Held {
+  Entity probe, device;
+  std::unique_ptr<SimulatedDevice> driver;
+  std::vector<dvec3> way;     // [m] true
+  std::vector<bool> touches;  // in contact
+  dvec3 last_motor{0}, last_at{0};
+};
+
+// RMS of the fast part of the motion over ticks in contact.
+double fast_part(const Held& held, std::size_t from) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (std::size_t i = std::max(from, kWindow); i + kWindow < held.way.size(); ++i) {
+    if (!held.touches[i - kWindow] || !held.touches[i] || !held.touches[i + kWindow]) continue;
+    dvec3 mean(0);
+    for (std::size_t k = i - kWindow; k <= i + kWindow; ++k) mean += held.way[k];
+    const dvec3 fast = held.way[i] - mean / static_cast<double>(2 * kWindow + 1);
+    sum += dot(fast, fast);
+    ++n;
+  }
+  return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
+}
+
+Result<World> open_level(const std::string& name, double stiffness) {
+  const auto file = find_level(name);
+  if (!file) return file.error();
+  auto level = load_level(*file);
+  if (!level) return level.error();
+  auto world = spawn(*level);
+  if (!world) return world.error();
+  if (stiffness > 0.0)
+    for (auto [entity, surface] : world->registry.view<Deformable>()) surface.stiffness = stiffness;
+  if (const Status status = prepare_touch(*world); !status) return status.error();
+  return std::move(world).value();
+}
+
+Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+  return write_file(out.stage(name), std::span(bytes, text.size()));
+}
+
+nlohmann::ordered_json to_json(const HandRun& run) {
+  return {{"level", run.level},           {"profile", run.profile},       {"delay_s", run.delay},
+          {"guard", run.guarded},         {"stable", run.stable()},       {"buzz_m", run.buzz},
+          {"buzz_at_end_m", run.late},    {"largest_force_N", run.force}, {"work_of_motors_J", run.work},
+          {"stiffest_N_m", run.stiffest}, {"limit_N_m", run.limit}};
+}
+
+}  // namespace
+
+bool HandRun::stable() const {
+  return buzz < kQuietBuzz && late < std::max(kQuietBuzz, kGrows * buzz);
+}
+
+Result<HandRun> run_hand(const std::string& level, const std::string& profile, double delay, bool guarded,
+                         double seconds, double stiffness) {
+  auto world = open_level(level, stiffness);
+  if (!world) return world.error();
+  HandRun run{level, profile, delay, guarded, {}};
+  auto options = parse_simulated(profile + ",clock=tick");
+  if (!options) return options.error();
+  const double rate = world->simulation.touch_rate;
+  options->profile.rate = rate;
+  options->profile.delay += delay;
+  DeviceCapabilities can = capabilities_of(options->profile);
+  run.limit = can.max_stiffness = stable_stiffness(can, rate);
+  for (auto [entity, surface] : world->registry.view<const Deformable>())
+    run.stiffest = std::max(run.stiffest, surface.stiffness);
+  const double share = softening(*world, can);
+  std::vector<Held> held;
+  for (auto [entity, probe] : world->registry.view<const Probe>()) {
+    HapticDevice& device = world->registry.get<HapticDevice>(probe.device);
+    if (!device.path.valid()) continue;
+    SimulatedOptions its = *options;
+    its.will.path = world->paths[device.path];
+    device.path = {};
+    device.driver = DriverKind::kExternal;
+    if (guarded) device.can = can;
+    held.push_back({entity, probe.device, std::make_unique<SimulatedDevice>(std::move(its)), {}, {}});
+    if (const Status opened = held.back().driver->open(""); !opened) return opened.error();
+  }
+  if (held.empty()) return Error{level, "has no probe on a script; choose a level with PLIANT_probe"};
+  Schedule<World> schedule(touch_schedule());
+  const auto ticks = static_cast<std::uint64_t>(seconds * rate);
+  for (std::uint64_t n = 0; n < ticks; ++n) {
+    const Tick tick{n, 1.0 / rate, static_cast<double>(n) / rate};
+    for (Held& h : held) {
+      HapticDevice& device = world->registry.get<HapticDevice>(h.device);
+      DeviceSample sample;
+      h.driver->read(sample);
+      device.position = sample.position;
+      device.rotation = sample.rotation;
+      device.sensed_at = tick.time;
+      device.status = DeviceStatus::kReady;
+    }
+    schedule.run(*world, tick);
+    for (Held& h : held) {
+      const dvec3 safe = share * world->registry.get<HapticDevice>(h.device).force_sent;
+      h.driver->write({guarded ? safe : world->registry.get<Probe>(h.probe).force, dvec3(0), 0.0});
+      const dvec3 at = h.driver->true_position(), motor = h.driver->motor_force();
+      if (n > 0) run.work += 0.5 * dot(motor + h.last_motor, at - h.last_at);
+      h.last_motor = motor, h.last_at = at;
+      const ProbeReading said = reading(*world, h.probe);
+      h.way.push_back(at);
+      h.touches.push_back(said.in_contact);
+      run.force = std::max(run.force, length(motor));
+      if (&h == &held.front()) run.samples.push_back({tick.time, said.in_contact ? said.depth : 0.0, length(motor)});
+    }
+  }
+  for (const Held& h : held) {
+    run.buzz = std::max(run.buzz, fast_part(h, 0));
+    const auto last = static_cast<std::size_t>(kLast * rate);
+    const auto end =
+        static_cast<std::size_t>(std::find(h.touches.rbegin(), h.touches.rend(), true).base() - h.touches.begin());
+    run.late = std::max(run.late, fast_part(h, end > last ? end - last : 0));
+  }
+  return run;
+}
+
+Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& runs) {
+  constexpr double kWidth = 1600, kRow = 265, kLeft = 90, kTop = 90;
+  Pen pen(kWidth, kTop + kRow * static_cast<double>(runs.size()) + 30);
+  pen.color(kInk);
+  const double width = pen.text(kLeft, 46, 26, 0, "a simulated hand presses the demo organ", true);
+  pen.text(kLeft + width + 20, 46, 16, 0,
+           fmt::format("{}: force of its motors and depth of the probe", runs.front().profile));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const HandRun& run = runs[i];
+    double peak = 1e-3, deepest = 1e-6, begin = run.samples.back().time;  // each run has scales of its own
+    for (const HandSample& s : run.samples) {
+      peak = std::max(peak, s.force);
+      deepest = std::max(deepest, s.depth);
+      if (s.depth > 0.0) begin = std::min(begin, s.time);
+    }
+    begin = std::max(0.0, begin - 0.2);
+    const double y = kTop + kRow * static_cast<double>(i), h = kRow - 75, w = kWidth - kLeft - 90;
+    const double end = run.samples.back().time;
+    const auto px = [&](double t) { return kLeft + w * (t - begin) / (end - begin); };
+    const auto py = [&](double share) { return y + h - h * share / 1.05; };
+    pen.color(kInk);
+    pen.text(
+        kLeft, y - 8, 16, 0,
+        fmt::format("{:.0f} N/m, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.stiffest, run.delay * 1e3,
+                    run.guarded ? "guarded" : "without guard", run.stable() ? "stable" : "not stable", run.buzz * 1e6),
+        !run.stable());
+    const double step = tick_step(end - begin, 10);
+    for (double t = step * std::ceil(begin / step); t <= end + 1e-9; t += step) {
+      pen.color(kFaint);
+      pen.line(px(t), y, px(t), y + h, 1);
+      pen.color(kInk);
+      pen.text(px(t), y + h + 20, 14, 0.5, fmt::format("{:g}", t));
+    }
+    pen.color(kBlue);
+    cairo_set_line_width(pen.get(), 1.2);
+    cairo_new_path(pen.get());
+    for (const HandSample& s : run.samples)
+      if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.force / peak));
+    cairo_stroke(pen.get());
+    pen.color(kVermilion);
+    cairo_new_path(pen.get());
+    for (const HandSample& s : run.samples)
+      if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.depth / deepest));
+    cairo_stroke(pen.get());
+    pen.color(kInk);
+    pen.line(kLeft, y, kLeft, y + h, 1.5);
+    pen.line(kLeft, y + h, kLeft + w, y + h, 1.5);
+    pen.line(kLeft + w, y, kLeft + w, y + h, 1.5);
+    const double fs = tick_step(peak, 3), ds = tick_step(deepest * 1e3, 3);
+    pen.color(kBlue);
+    for (double f = 0; f <= peak; f += fs) pen.text(kLeft - 8, py(f / peak) + 5, 14, 1.0, number(f, fs));
+    pen.upright_text(kLeft - 50, y + h / 2, 15, "force [N]");
+    pen.color(kVermilion);
+    for (double d = 0; d <= deepest * 1e3; d += ds)
+      pen.text(kLeft + w + 8, py(d * 1e-3 / deepest) + 5, 14, 0.0, number(d, ds));
+    pen.upright_text(kLeft + w + 60, y + h / 2, 15, "depth [mm]");
+  }
+  pen.color(kInk);
+  pen.text(kWidth / 2, kTop + kRow * static_cast<double>(runs.size()) - 18, 15, 0.5, "time [s]");
+  if (!pen.save(png)) return Error{png.string(), "the plot cannot be written; check the space left"};
+  return Done{};
+}
+
+Status study_hand(OutputFolder& out, bool quick, const Interrupt& interrupt) {
+  Progress progress("study hand");
+  nlohmann::ordered_json json;
+  json["study"] = "hand";
+  std::vector<HandRun> plotted;
+  // The organ as it ships, and one that is too stiff for the device.
+  for (const auto& [delay, stiffness] : {std::pair(1e-3, 0.0), {10e-3, 0.0}, {10e-3, kTooStiff}})
+    for (const bool guarded : {false, true}) {
+      auto run = run_hand("three_probes", kPlotted, delay, guarded, quick ? 4.0 : 8.0, stiffness);
+      if (!run) return run.error();
+      plotted.push_back(std::move(run).value());
+    }
+  const std::vector<std::string> levels =
+      quick ? std::vector<std::string>{"three_probes"}
+            : std::vector<std::string>{"three_probes", "inclusion", "glass_heart", "chrome_cushion", "turning_ball"};
+  std::vector<HandRun> table;
+  std::size_t done = 0;
+  for (const std::string& level : levels)
+    for (const DeviceProfile& profile : device_profiles()) {
+      if (interrupt.requested()) return Error{"study hand", "interrupted; nothing was written"};
+      auto run = run_hand(level, profile.name, 0.0, true, quick ? 3.0 : 8.0);
+      if (!run) return run.error();
+      run->samples.clear();
+      table.push_back(std::move(run).value());
+      progress.update(static_cast<double>(++done) / static_cast<double>(levels.size() * kDeviceProfiles));
+    }
+  std::string csv =
+      "level,profile,delay_s,guard,stable,buzz_m,buzz_at_end_m,largest_force_N,work_J,stiffest_N_m,limit_N_m\n";
+  for (const std::vector<HandRun>* runs : {&plotted, &table})
+    for (const HandRun& r : *runs) {
+      csv += fmt::format("{},\"{}\",{:g},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:g},{:.4g}\n", r.level, r.profile, r.delay,
+                         r.guarded ? 1 : 0, r.stable() ? 1 : 0, r.buzz, r.late, r.force, r.work, r.stiffest, r.limit);
+      json["runs"].push_back(to_json(r));
+      print(
+          "hand: {:<15} {:<9} {:>3g} ms more, {:<13} {:<10} fast {:>6.1f} um, {:>5.2f} N, limit {:.0f} of {:.0f} N/m\n",
+          r.level, r.profile, r.delay * 1e3, r.guarded ? "guarded" : "without guard",
+          r.stable() ? "stable" : "NOT STABLE", r.buzz * 1e6, r.force, r.limit, r.stiffest);
+    }
+  if (const Status s = write_text(out, "hand.csv", csv); !s) return s;
+  if (const Status s = write_text(out, "hand.json", json.dump(2, ' ', true) + "\n"); !s) return s;
+  return plot_hand(out.stage("hand.png"), plotted);
+}
+
+}  // namespace pliant

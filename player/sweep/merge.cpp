@@ -1,0 +1,61 @@
+// pliant sweep merge: the lines of all shards become tables, a report and plots.
+#include "content/files/file_io.h"
+#include "player/exit.h"
+#include "player/print.h"
+#include "player/record/output_folder.h"
+#include "player/sweep/sweep.h"
+#include "player/sweep/sweep_plot.h"
+#include "player/sweep/table.h"
+
+namespace pliant {
+namespace {
+
+Status write(OutputFolder& out, const std::string& name, const std::string& text) {
+  return write_file(out.stage(name), {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void say_what_is_odd(const SweepTable& table) {
+  if (table.torn > 0)
+    note(std::to_string(table.torn) +
+         " lines were left out that a killed sweep wrote half of; their runs count as "
+         "missing where nothing else has them");
+  if (table.foreign > 0)
+    note(std::to_string(table.foreign) + " runs were left out that the plan does not have (any more)");
+  if (!table.disagree.empty())
+    note(
+        std::to_string(table.disagree.size()) +
+        " runs were done more than once, with other figures; compare the machines or builds that did them (report.json "
+        "has their ids)");
+}
+
+}  // namespace
+
+int merge_sweep(const MergeOptions& options) {
+  const std::vector<std::filesystem::path> folders(options.folders.begin(), options.folders.end());
+  auto table = read_table(folders);
+  if (!table) return fail(kFailed, table.error());
+  auto out = OutputFolder::create(options.out, options.force);
+  if (!out) return fail(kFailed, out.error());
+  for (const auto& [name, text] : {std::pair("results.csv", results_csv(*table)),
+                                   {"timings.csv", timings_csv(*table)},
+                                   {"report.json", merge_report(*table)}})
+    if (const Status ok = write(*out, name, text); !ok) return fail(kFailed, out->at_place(ok.error()));
+  std::string left_out;
+  const auto plots = plot_sweep(*table, *out, left_out);
+  if (!plots) return fail(kFailed, out->at_place(plots.error()));
+  if (const Status ok = out->commit(); !ok) return fail(kFailed, ok.error());
+  say_what_is_odd(*table);
+  if (!left_out.empty()) note(left_out);
+
+  std::size_t done = 0, failed = 0;
+  for (const SweepRow& row : table->rows) {
+    done += row.done();
+    failed += !row.done() && !row.line.is_null();
+  }
+  print("{}: {} of {} runs done, {} failed, {} missing: results.csv, report.json, {} plots; timings.csv (measured)\n",
+        out->shown().string(), done, table->rows.size(), failed, table->rows.size() - done - failed, *plots);
+  if (out->moved()) print("({} has results already, which stay; --force replaces a merge's)\n", out->asked().string());
+  return kDone;
+}
+
+}  // namespace pliant

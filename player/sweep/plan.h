@@ -1,0 +1,37 @@
+// A sweep's plan as read from its file (docs/sweep.md), and the runs that it stands for.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "player/sweep/axis.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+struct SweepPlan {
+  std::filesystem::path file;
+  std::filesystem::path level;                               // that exists
+  std::vector<std::pair<std::string, std::string>> options;  // --name and value of each, "" of a flag; sorted by name
+  std::vector<SweepAxis> axes;                               // the steps' first, each in the order of the file
+  std::size_t samples = 1;                                   // of the Latin hypercube
+  double timeout = 0.0;                                      // [s] of a run by the clock on the wall; 0: none
+
+  std::size_t count() const;
+  // The value of each axis. The first axis changes slowest, the sample fastest.
+  std::vector<PlanJson> values_of(std::size_t run) const;
+};
+
+// The arguments after LEVEL of a run: options, --set of the plan, --set of the axes (those of all nodes first, then by
+// name). Files are as they stand in the plan.
+std::vector<std::string> arguments_of(const SweepPlan& plan, const std::vector<PlanJson>& values);
+// The same argument, with the file it names (a script, a recording) found from the plan's folder.
+std::string with_file(const SweepPlan& plan, const std::string& argument);
+// That file; empty where it names none.
+std::filesystem::path file_of(const SweepPlan& plan, const std::string& argument);
+
+// Unknown keys are refused by name. Options and their values are tried as `pliant run` reads them.
+Result<SweepPlan> read_plan(const std::filesystem::path& file);
+
+}  // namespace pliant

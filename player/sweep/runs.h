@@ -1,0 +1,26 @@
+// Does runs of a plan, some at a time, and adds a line for each to the shard's file.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "player/interrupt.h"
+#include "player/sweep/lines.h"
+#include "player/sweep/shard.h"
+
+namespace pliant {
+
+struct RunsDone {
+  std::size_t done = 0, failed = 0;
+  bool torn = false;  // the shard's file ended in the middle of a line
+};
+
+// The command of a run, after `pliant`. `out`: its folder.
+std::vector<std::string> command_of(const SweepPlan& plan, const SweepRun& run, const std::string& out, unsigned jobs);
+
+// `wanted`: numbers in `expanded`. Ends early, with what was done, when that is requested.
+Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, const std::vector<std::size_t>& wanted,
+                         const std::filesystem::path& folder, const Shard& shard, unsigned jobs,
+                         const Interrupt& interrupt);
+
+}  // namespace pliant

@@ -1,0 +1,139 @@
+#include "player/sweep/sweep_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "player/sweep/sweep_panels.h"
+
+namespace pliant {
+namespace {
+
+// [pixel]
+constexpr double kWidth = 1600, kTitle = 84, kRow = 330, kFoot = 10, kLeft = 84, kRight = 28, kBetween = 100;
+constexpr double kAbove = 36, kBelow = 66;
+constexpr int kColumns = 3;
+constexpr std::size_t kMostPanels = 24;  // of a picture
+constexpr std::size_t kMostMaps = 10;    // pairs of axes
+
+// Numbers that are not the same in every run.
+std::vector<Figure> figures_of(const SweepTable& table) {
+  std::vector<Figure> out;
+  for (const std::string& name : table.figures) {
+    Figure figure{name, {}};
+    std::set<double> seen;
+    for (const SweepRow& row : table.rows) {
+      const bool has = row.done() && row.line["figures"].contains(name) && row.line["figures"][name].is_number();
+      figure.of_row.push_back(has ? row.line["figures"][name].get<double>() : std::nan(""));
+      if (has) seen.insert(figure.of_row.back());
+    }
+    if (seen.size() > 1) out.push_back(std::move(figure));
+  }
+  return out;
+}
+
+using DrawPanel = std::function<void(Pen&, const PlotArea&, const Figure&)>;
+
+// A panel for each figure, row by row, as name.png and name.svg.
+Status draw_picture(OutputFolder& out, const std::string& name, const std::string& title, const std::string& subtitle,
+                    const std::vector<Figure>& figures, const DrawPanel& draw) {
+  const std::size_t shown = std::min(figures.size(), kMostPanels);
+  const int columns = static_cast<int>(std::min<std::size_t>(shown, kColumns));
+  const auto rows = (shown + kColumns - 1) / kColumns;
+  const double height = kTitle + kRow * static_cast<double>(rows) + kFoot;
+  const double w = (kWidth - kLeft - kRight - kBetween * (kColumns - 1)) / kColumns, h = kRow - kAbove - kBelow;
+  const double width = std::max(kLeft + kRight + (w + kBetween) * columns - kBetween, 1100.0);
+  const auto all = [&](Pen& pen) {
+    pen.color(kInk);
+    const double used = pen.text(kLeft, 46, 24, 0, title, true);
+    pen.text(kLeft + used + 18, 46, 15, 0, subtitle);
+    for (std::size_t i = 0; i < shown; ++i)
+      draw(pen,
+           {kLeft + (w + kBetween) * static_cast<double>(i % kColumns),
+            kTitle + kRow * static_cast<double>(i / kColumns) + kAbove, w, h},
+           figures[i]);
+  };
+  const auto png = out.stage(name + ".png"), svg = out.stage(name + ".svg");
+  return draw_png_and_svg(png, svg, width, height, all);
+}
+
+// As a file's name has it.
+std::string plain(const std::string& axis) {
+  std::string out = axis.starts_with("--") ? axis.substr(2) : axis;
+  if (out.starts_with("*.")) out = "all" + out.substr(1);
+  for (char& c : out)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_') c = '_';
+  return out.substr(0, 60);
+}
+
+}  // namespace
+
+Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::string& left_out) {
+  const std::vector<Figure> figures = figures_of(table);
+  std::size_t plots = 0, maps = 0, pairs = 0;
+  if (figures.empty()) return plots;
+  std::set<std::string> names;
+  const auto free_name = [&](const std::string& wanted) {
+    std::string name = wanted;
+    for (int n = 2; !names.insert(name).second; ++n) name = wanted + "-" + std::to_string(n);
+    return name;
+  };
+  const auto level = table.sweep["level"].get<std::string>();
+  std::size_t done = 0;
+  for (const SweepRow& row : table.rows) done += row.done();
+  const std::string runs = fmt::format("; {} run{}", done, done == 1 ? "" : "s");
+  std::vector<AxisValues> along;
+  std::vector<std::size_t> varied;
+  for (std::size_t a = 0; a < table.axes.size(); ++a) {
+    along.push_back(values_along(table, a));
+    if (along[a].steps.size() > 1) varied.push_back(a);
+  }
+  for (const std::size_t a : varied) {
+    const bool sampled = table.axes[a].sampled, alone = varied.size() == 1;
+    const std::string subtitle = "along " + table.axes[a].name +
+                                 (sampled ? ": every run"
+                                  : alone ? ""
+                                          : ": the mean over the other axes, and their range shaded") +
+                                 runs;
+    const Status ok = draw_picture(out, free_name("curves-" + plain(table.axes[a].name)), level, subtitle, figures,
+                                   [&](Pen& pen, const PlotArea& area, const Figure& figure) {
+                                     draw_curve(pen, area, figure, along[a], sampled);
+                                   });
+    if (!ok) return ok.error();
+    ++plots;
+  }
+  for (std::size_t i = 0; i < varied.size(); ++i)
+    for (std::size_t j = i + 1; j < varied.size(); ++j) {
+      if (++pairs > kMostMaps) continue;
+      const std::size_t a = varied[i], b = varied[j];
+      const bool sampled = table.axes[a].sampled || table.axes[b].sampled;
+      std::vector<Figure> uneven;
+      for (const Figure& figure : figures)
+        if (!is_flat(figure, along[a], along[b], sampled)) uneven.push_back(figure);
+      if (uneven.empty()) continue;
+      const std::string subtitle = (sampled              ? "every run"
+                                    : varied.size() == 2 ? ""
+                                                         : "the mean over the other axes") +
+                                   (sampled || varied.size() > 2 ? runs : runs.substr(2));
+      const Status ok =
+          draw_picture(out, free_name("map-" + plain(table.axes[a].name) + "-" + plain(table.axes[b].name)), level,
+                       subtitle, uneven, [&](Pen& pen, const PlotArea& area, const Figure& figure) {
+                         draw_map(pen, area, figure, along[a], along[b], sampled);
+                       });
+      if (!ok) return ok.error();
+      ++maps;
+    }
+  if (figures.size() > kMostPanels)
+    left_out = fmt::format("each plot has the first {} of {} figures that vary", kMostPanels, figures.size());
+  if (pairs > kMostMaps)
+    left_out +=
+        fmt::format("{}maps are of the first {} of {} pairs of axes", left_out.empty() ? "" : "; ", kMostMaps, pairs);
+  if (!left_out.empty()) left_out += "; results.csv has them all";
+  return plots + maps;
+}
+
+}  // namespace pliant

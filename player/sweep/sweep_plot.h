@@ -1,0 +1,17 @@
+// Plots of a sweep, as .png and .svg: a curve of each figure along each axis, and a map of each figure over each two
+// axes.
+#pragma once
+
+#include <string>
+
+#include "player/record/output_folder.h"
+#include "player/sweep/table.h"
+#include "runtime/result.h"
+
+namespace pliant {
+
+// Figures that are the same in every run are not drawn. How many plots were staged; `left_out` says what a picture had
+// no room for.
+Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::string& left_out);
+
+}  // namespace pliant

@@ -1,0 +1,185 @@
+#include "player/verbs/device_test.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <thread>
+
+#include "devices/choose.h"
+#include "devices/drivers/all.h"
+#include "devices/servo/servo.h"
+#include "devices/wrappers/chain.h"
+#include "player/exit.h"
+#include "player/interrupt.h"
+#include "player/print.h"
+#include "runtime/clock.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kRate = 1000.0;      // [Hz] of what stands in for the touch clock
+constexpr double kTellEvery = 0.1;    // [s]
+constexpr double kPushForce = 0.5;    // [N] at most
+constexpr double kPushShare = 0.15;   // [1] of the device's largest force, at most
+constexpr double kPushSeconds = 1.0;  // [s] each way along an axis: a half wave
+constexpr int kPlaneWide = 41, kPlaneHigh = 11;
+
+// The device, behind its guard where it pushes.
+class Held {
+ public:
+  Status open(const std::string& wish, std::string& shown) {
+    auto chosen = choose_device(wish, list_devices());
+    if (!chosen) return chosen.error();
+    for (const std::string& sentence : chosen->notes) note(sentence);
+    if (chosen->id.empty())
+      return Error{"--test " + wish, "the mouse needs no test; name a device that `pliant devices` lists"};
+    shown = chosen->name;
+    auto made = make_device(chosen->id);
+    if (!made) return made.error();
+    if (Status s = made->driver->open(made->id); !s) return s;
+    driver_ = std::move(made->driver);
+    if (wants_servo(driver_->capabilities())) {
+      auto served = std::make_unique<Servo>(std::move(driver_));
+      servo_ = served.get();
+      driver_ = std::move(served);
+      servo_->adopt();
+      if (Status s = servo_->start(); !s) return s;
+      if (!servo_->note().empty()) note(servo_->note());
+    }
+    return Done{};
+  }
+  ~Held() {
+    if (!driver_) return;
+    try {
+      driver_->write({});
+      if (servo_) servo_->halt();
+      driver_->close();
+    } catch (...) {  // its own watchdog ends the force
+    }
+  }
+  Driver& driver() { return *driver_; }
+  Servo* servo() { return servo_; }
+
+ private:
+  std::unique_ptr<Driver> driver_;
+  Servo* servo_ = nullptr;
+};
+
+// x to the right, y up; z beside it.
+std::string plane(dvec3 at, dvec3 half) {
+  const auto cell = [](double v, double most, int count) {
+    return static_cast<int>(std::lround((std::clamp(v / most, -1.0, 1.0) + 1.0) * 0.5 * (count - 1)));
+  };
+  const int column = cell(at.x, half.x, kPlaneWide), row = kPlaneHigh - 1 - cell(at.y, half.y, kPlaneHigh),
+            depth = kPlaneHigh - 1 - cell(at.z, half.z, kPlaneHigh);
+  std::string out;
+  for (int r = 0; r < kPlaneHigh; ++r) {
+    out += "  |";
+    for (int c = 0; c < kPlaneWide; ++c)
+      out += r == row && c == column ? 'o' : r == kPlaneHigh / 2 && c == kPlaneWide / 2 ? '+' : ' ';
+    out += "|  ";
+    out += r == depth ? '=' : '|';
+    out += r == 0 ? "  z: towards you\n" : r == kPlaneHigh - 1 ? "  z: away\n" : "\n";
+  }
+  return out;
+}
+
+std::string told(const DeviceSample& sample, const DeviceCapabilities& can, double rate, Servo* servo) {
+  std::string line = fmt::format("  x {:7.1f}  y {:7.1f}  z {:7.1f} mm", 1e3 * sample.position.x,
+                                 1e3 * sample.position.y, 1e3 * sample.position.z);
+  if (can.senses_rotation) {
+    const dvec3 turned = glm::degrees(glm::eulerAngles(sample.rotation));
+    line += fmt::format("  turned {:4.0f} {:4.0f} {:4.0f} deg", turned.x, turned.y, turned.z);
+  }
+  if (can.senses_grip) line += fmt::format("  grip {:3.0f} %", 100 * sample.grip);
+  line += fmt::format("  buttons {:x}  {:.0f} samples/s", sample.buttons, rate);
+  if (servo) {
+    const DeviceReport& report = servo->report();
+    line += fmt::format("  {}  {:.2f} N", name_of(report.state), report.force);
+  } else if (!sample.ready) {
+    line += "  not ready";
+  }
+  return line;
+}
+
+// Reads and tells for `seconds`, or until it is interrupted; `force` is asked for every tick.
+template <class Force>
+void look(Held& held, double seconds, const Interrupt& interrupt, Force&& force) {
+  const DeviceCapabilities can = held.driver().capabilities();
+  const bool drawn = ::isatty(STDOUT_FILENO);
+  dvec3 half = can.workspace;
+  for (int i = 0; i < 3; ++i)
+    if (!(half[i] > 0.0)) half[i] = 0.1;
+  RealtimeClock clock(kRate);
+  DeviceSample sample;
+  std::uint64_t samples = 0, told_samples = 0;
+  double told_at = 0.0;
+  bool drew = false;
+  while (!interrupt.requested()) {
+    const Tick tick = clock.next();
+    if (tick.time > seconds) break;
+    if (held.driver().read(sample)) ++samples;
+    held.driver().write({.force = force(tick.time)});
+    if (tick.time - told_at < (drawn ? kTellEvery : 1.0)) continue;
+    const double rate = static_cast<double>(samples - told_samples) / (tick.time - told_at);
+    if (drawn && drew) std::fputs(fmt::format("\033[{}A", kPlaneHigh + 1).c_str(), stdout);  // over what was drawn
+    if (drawn) std::fputs(plane(sample.position, half).c_str(), stdout);
+    print("{}{}\n", told(sample, can, rate, held.servo()), drawn ? "    " : "");
+    std::fflush(stdout);
+    drew = true;
+    told_at = tick.time;
+    told_samples = samples;
+  }
+  held.driver().write({});
+  if (samples == 0) note("no sample came; is the device switched on, and does nobody else hold it?");
+}
+
+bool confirmed(double most) {
+  print("It will push with at most {:.2f} N along x, y and z, a second each. Hold it lightly, and type yes: ", most);
+  std::fflush(stdout);
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "yes";
+}
+
+}  // namespace
+
+int test_device(const DeviceTestOptions& options) {
+  register_all_drivers();
+  Held held;
+  std::string name;
+  if (Status s = held.open(options.id, name); !s) return fail(kFailed, s.error());
+  print("{}; Ctrl-C ends the test\n", name);
+  const Interrupt interrupt;
+  const DeviceCapabilities can = held.driver().capabilities();
+  if (!options.push) {
+    look(held, options.seconds, interrupt, [](double) { return dvec3(0); });
+    return kDone;
+  }
+  if (!can.renders_force || can.resists_only) return fail(kUsage, {"--push", name + " does not push; leave it out"});
+  const double most = can.max_force > 0.0 ? std::min(kPushForce, kPushShare * can.max_force) : kPushForce;
+  if (!confirmed(most)) {
+    note("nothing was pushed, because the answer was not `yes`");
+    return kDone;
+  }
+  look(held, 1.0 + 3 * kPushSeconds, interrupt, [&](double time) {
+    const double since = time - 0.5;
+    const int axis = static_cast<int>(std::floor(since / kPushSeconds));
+    dvec3 force(0);
+    if (since > 0.0 && axis < 3) force[axis] = most * std::sin(2 * 3.14159265358979 * since / kPushSeconds);
+    return force;
+  });
+  if (Servo* servo = held.servo()) {
+    const DeviceReport& report = servo->report();
+    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(report.transitions, DeviceReport::kKept); ++i)
+      print("  {}\n", describe(report.transition(i)));
+  }
+  return kDone;
+}
+
+}  // namespace pliant

@@ -1,0 +1,159 @@
+// The simulated device as a driver.
+#include "devices/simulated/simulated_device.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "devices/pose_file.h"
+
+namespace pliant {
+namespace {
+
+TEST(SimulatedDevice, EveryProfileIsListedAndOpensByItsName) {
+  register_simulated();
+  register_simulated();  // again, to no harm
+  std::size_t found = 0;
+  for (const DeviceInfo& info : list_devices()) {
+    if (info.driver != "simulated") continue;
+    ++found;
+    auto driver = make_driver("simulated");
+    ASSERT_TRUE(driver);
+    ASSERT_TRUE((*driver)->open(info.id)) << info.id;
+    const DeviceCapabilities can = (*driver)->capabilities();
+    EXPECT_EQ(can.max_force, info.can.max_force);
+    EXPECT_GT(can.max_force, 0.0);
+    EXPECT_GT(can.max_stiffness, 0.0);
+    EXPECT_GE(can.rate, 1000.0);
+    EXPECT_TRUE(can.continuous_force <= can.max_force);
+  }
+  EXPECT_EQ(found, kDeviceProfiles);
+}
+
+TEST(SimulatedDevice, ForceActsAfterTheTransportDelayAndItsPositionIsInCounts) {
+  SimulatedDevice device;
+  ASSERT_TRUE(device.open("touch,hand=none,clock=tick,delay=2.5ms,lag=0,friction=0,damping=0,mass=0.1,encoder=1um"));
+  DeviceSample sample;
+  for (int i = 0; i <= 10; ++i) {
+    ASSERT_TRUE(device.read(sample));
+    device.write({dvec3(1, 0, 0), dvec3(0), 0.0});
+    const double since = std::max(0.0, 1e-3 * i - 2.5e-3), x = 0.5 * 1.0 / 0.1 * since * since;
+    EXPECT_NEAR(device.true_position().x, x, 1e-12) << i;
+    EXPECT_NEAR(sample.position.x, std::round(x * 1e6) * 1e-6, 1e-15) << i;
+  }
+}
+
+TEST(SimulatedDevice, ForceSaturatesByItsNormAndComesInCounts) {
+  SimulatedDevice device;
+  ASSERT_TRUE(device.open("touch,hand=none,clock=tick,delay=0,lag=0,max_force=3,force_step=0.5"));
+  DeviceSample sample;
+  ASSERT_TRUE(device.read(sample));
+  device.write({dvec3(30, 40, 0), dvec3(0), 0.0});
+  EXPECT_EQ(device.motor_force(), dvec3(2, 2.5, 0)) << "3 N along (3, 4, 0), in half newtons";
+  device.write({dvec3(std::nan(""), 0, 0), dvec3(0), 0.0});
+  EXPECT_EQ(device.motor_force(), dvec3(0));
+}
+
+TEST(SimulatedDevice, LockstepGivesTheSameBitsEveryTime) {
+  std::vector<dvec3> first;
+  for (int run = 0; run < 2; ++run) {
+    SimulatedDevice device;
+    ASSERT_TRUE(device.open("omni,clock=tick,push=0:-0.5:0,at=0:0.001:0"));
+    std::vector<dvec3> way;
+    for (int i = 0; i < 500; ++i) {
+      DeviceSample sample;
+      ASSERT_TRUE(device.read(sample));
+      way.push_back(sample.position);
+      device.write({dvec3(0, std::max(0.0, -400.0 * sample.position.y), 0), dvec3(0), 0.0});
+    }
+    if (run == 0) first = way;
+    EXPECT_EQ(way, first);
+  }
+}
+
+TEST(SimulatedDevice, HandFollowsItsPathInFreeSpaceAndLagsInAWall) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "pliant_hand_path.csv";
+  {
+    std::ofstream out(file);
+    out << "time_s,x,y,z\n0,0,0.02,0\n1,0,-0.02,0\n2,0,-0.02,0\n";
+  }
+  for (const double K : {0.0, 400.0}) {
+    SimulatedDevice device;
+    ASSERT_TRUE(device.open("falcon,clock=tick,path=" + file.string()));
+    DeviceSample sample;
+    for (int i = 0; i < 2000; ++i) {
+      ASSERT_TRUE(device.read(sample));
+      device.write({dvec3(0, std::max(0.0, -K * sample.position.y), 0), dvec3(0), 0.0});
+    }
+    // Springs in series: wall K, grip and arm, within what friction holds.
+    const HandImpedance& hand = device.options().hand;
+    const double k = 1.0 / (1.0 / hand.arm_stiffness + 1.0 / hand.grip_stiffness), rest = -0.02 * k / (k + K);
+    EXPECT_NEAR(sample.position.y, rest, device.options().profile.friction / (k + K) + 1e-4) << K;
+  }
+  std::filesystem::remove(file);
+}
+
+// No timing is asserted: only that its samples are those of its own clock, whenever it is asked.
+TEST(SimulatedDevice, OnTheWallClockSamplesComeAtItsRateHoweverOftenItIsAsked) {
+  SimulatedDevice device;
+  ASSERT_TRUE(device.open("omega.7"));
+  double last = 0.0;
+  int came = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  while (came < 20 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20)) {
+    DeviceSample sample;
+    if (!device.read(sample)) continue;
+    if (came > 0) {
+      const double periods = (sample.time - last) * 4000.0;
+      EXPECT_GT(periods, 0.999);
+      EXPECT_NEAR(periods, std::round(periods), 1e-3);
+    }
+    last = sample.time;
+    ++came;
+  }
+  EXPECT_EQ(came, 20);
+}
+
+TEST(SimulatedDevice, BadWordsGetOneSentence) {
+  const struct {
+    const char* id;
+    const char* part;
+  } bad[] = {{"fantom", "profiles are: touch"},
+             {"touch,hand=strong", "none, finger, relaxed, firm"},
+             {"touch,clock=fast", "wall, tick"},
+             {"touch,delay=2", "up to 1s"},
+             {"touch,delay=-1ms", "up to 1s"},
+             {"touch,mass=0", "0.001 to 100 kg"},
+             {"touch,rate=nan", "1 to 20000 Hz"},
+             {"touch,weight=3", "unknown key 'weight'"},
+             {"touch,omni", "unknown profile 'omni'"},
+             {"touch,push=1:2", "three numbers"},
+             {"touch,path=/nowhere.csv", "cannot be opened"}};
+  for (const auto& [id, part] : bad) {
+    SimulatedDevice device;
+    const Status status = device.open(id);
+    ASSERT_FALSE(status) << id;
+    EXPECT_THAT(status.error().message(), testing::HasSubstr(part)) << id;
+  }
+}
+
+TEST(PoseFile, BadLinesAreNamed) {
+  for (const auto& [text, part] : {std::pair("", "holds no rows"),
+                                   {"a,b\n", ":1: the header"},
+                                   {"time_s,x,y,z\n0,1,2\n", ":2: this row is not 4"},
+                                   {"time_s,x,y,z\n0,1,2,3\n0,1,2,3\n", ":3: time does not grow"},
+                                   {"time_s,x,y,z\n0,1,2,inf\n", ":2: this row"},
+                                   {"time_s,x,y,z,qw,qx,qy,qz\n0,1,2,3,0,0,0,0\n", ":2: the quaternion"}}) {
+    const auto rows = parse_poses(text, "file.csv");
+    ASSERT_FALSE(rows) << text;
+    EXPECT_THAT(rows.error().message(), testing::HasSubstr(part));
+  }
+}
+
+}  // namespace
+}  // namespace pliant

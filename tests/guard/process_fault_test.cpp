@@ -1,0 +1,231 @@
+// Faults that need processes: one that is killed, stopped or crashes while a device is under force, and two that want
+// the same device. The other end of a socket pair is the device.
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "devices/guard/last_resort.h"
+#include "devices/servo/claim.h"
+#include "devices/servo/servo.h"
+
+namespace pliant {
+namespace {
+
+// A device at the end of a socket: a double a packet, [N].
+class SocketDriver final : public Driver {
+ public:
+  SocketDriver(int line, bool safe_line) : line_(line), safe_line_(safe_line) {}
+  Status open(const std::string&) override { return Done{}; }
+  DeviceCapabilities capabilities() const override { return {.max_force = 3.0, .rate = 1000.0}; }
+  bool read(DeviceSample& sample) override {
+    sample = {};
+    sample.position.x = 1e-5 * (++reads_ % 7);
+    return true;
+  }
+  void write(const DeviceWrench& wrench) override { send(wrench.force.y); }
+  void close() override {}
+  bool safe_line(SafeLine& line) const override {
+    const double zero = 0.0;
+    line.descriptor = line_;
+    line.size = sizeof zero;
+    std::memcpy(line.bytes.data(), &zero, sizeof zero);
+    return safe_line_;
+  }
+
+ private:
+  void send(double force) {
+    [[maybe_unused]] const ssize_t sent = ::send(line_, &force, sizeof force, MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
+  int line_ = -1, reads_ = 0;
+  bool safe_line_ = false;
+};
+
+// The next force that comes, at most five seconds later; NaN: none.
+double receive(int line) {
+  pollfd watched{line, POLLIN, 0};
+  double force = std::numeric_limits<double>::quiet_NaN();
+  if (::poll(&watched, 1, 5000) == 1 && ::recv(line, &force, sizeof force, 0) == sizeof force) return force;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+// Until a force of about `wanted` comes. False: it does not.
+bool comes(int line, double wanted) {
+  for (int i = 0; i < 20000; ++i) {
+    const double force = receive(line);
+    if (std::isnan(force)) return false;
+    if (std::abs(force - wanted) < 1e-6) return true;
+  }
+  return false;
+}
+
+// A process of its own that holds the device under 1 N, until something happens to it.
+struct Child {
+  pid_t pid = -1;
+  int line = -1;
+  ~Child() {
+    if (pid > 0) {
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, nullptr, 0);
+    }
+    ::close(line);
+  }
+};
+
+[[noreturn]] void hold(int line, bool safe_line, const std::function<void(Servo&)>& then) {
+  Servo servo(std::make_unique<SocketDriver>(line, safe_line));
+  if (!servo.open("") || !servo.start()) ::_exit(3);
+  double wanted = 0.0;
+  for (int held = 0;;) {
+    DeviceModel model;
+    if (held == 0 && servo.state() == DeviceState::kTripped) servo.arm();  // a busy machine
+    if (held == 0 && !servo.felt()) wanted = 0.0;
+    if (servo.felt()) wanted = std::min(1.0, wanted + 0.02);
+    if (servo.felt() && wanted >= 1.0) ++held;
+    model.wrench.force.y = wanted;
+    servo.write_model(model, model.wrench);
+    if (held == 500 && then) then(servo);
+    ::usleep(1000);
+  }
+}
+
+void start(Child& child, bool safe_line, const std::function<void(Servo&)>& then = {}) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends), 0);
+  child.pid = ::fork();
+  ASSERT_GE(child.pid, 0);
+  if (child.pid == 0) {
+    ::close(ends[0]);
+    hold(ends[1], safe_line, then);
+  }
+  ::close(ends[1]);
+  child.line = ends[0];
+}
+
+TEST(ProcessFault, AfterKillNineTheGuardProcessSwitchesTheForceOff) {
+  Child child;
+  start(child, true);
+  ASSERT_TRUE(comes(child.line, 1.0));
+  ::kill(child.pid, SIGKILL);
+  double last = 1.0;
+  for (double force = receive(child.line); !std::isnan(force); force = receive(child.line)) last = force;
+  EXPECT_EQ(last, 0.0) << "the last that the device heard, before its line closed";
+}
+
+TEST(ProcessFault, AStoppedProcessIsZeroedByItsGuardProcessAndTripsWhenItGoesOn) {
+  Child child;
+  start(child, true);
+  ASSERT_TRUE(comes(child.line, 1.0));
+  ::kill(child.pid, SIGSTOP);
+  EXPECT_TRUE(comes(child.line, 0.0)) << "by the guard process";
+  ::usleep(150'000);
+  ::kill(child.pid, SIGCONT);
+  for (int i = 0; i < 200; ++i) ASSERT_EQ(receive(child.line), 0.0) << "tripped: " << i;
+}
+
+// Sanitizers have handlers of their own.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+void expect_zero_at_death(const std::function<void(Servo&)>& death, int signal) {
+  Child child;
+  start(child, false, death);
+  ASSERT_TRUE(comes(child.line, 1.0));
+  double last = 1.0;
+  for (double force = receive(child.line); !std::isnan(force); force = receive(child.line)) last = force;
+  EXPECT_EQ(last, 0.0);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child.pid, &status, 0), child.pid);
+  child.pid = -1;
+  ASSERT_TRUE(WIFSIGNALED(status)) << "it still dies of its signal";
+  EXPECT_EQ(WTERMSIG(status), signal);
+}
+
+TEST(ProcessFault, ACrashMakesEveryOpenDeviceSafeAndThenTakesItsCourse) {
+  expect_zero_at_death([](Servo&) { ::raise(SIGSEGV); }, SIGSEGV);
+  expect_zero_at_death([](Servo&) { std::abort(); }, SIGABRT);
+  expect_zero_at_death([](Servo&) { ::raise(SIGTERM); }, SIGTERM);
+}
+#endif
+
+TEST(ProcessFault, AWatchmanThatIsEndedInOrderWritesNothing) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends), 0);
+  SafeLine line;
+  line.descriptor = ends[1];
+  line.size = 8;
+  Watchman watchman;
+  ASSERT_TRUE(watchman.start(line, 0.01));
+  watchman.end();
+  EXPECT_FALSE(watchman.watches());
+  pollfd watched{ends[0], POLLIN, 0};
+  EXPECT_EQ(::poll(&watched, 1, 0), 0);
+  EXPECT_FALSE(watchman.start(SafeLine{})) << "no line";
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST(ProcessFault, OneDeviceHasOneWriterHereAndInOtherPrograms) {
+  const std::string device = "test-device:" + std::to_string(::getpid());
+  DeviceClaim first, second;
+  ASSERT_TRUE(first.take(device));
+  const Status twice = second.take(device);
+  ASSERT_FALSE(twice);
+  EXPECT_THAT(twice.error().message(), testing::HasSubstr("moves another effector already"));
+  int ready[2], done[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  ASSERT_EQ(::pipe(done), 0);
+  first.release();
+  ASSERT_TRUE(second.take(device)) << "a claim that is released is free";
+  second.release();
+  const pid_t other = ::fork();
+  if (other == 0) {
+    DeviceClaim claim;
+    const char held = claim.take(device) ? 'y' : 'n';
+    char wait = 0;
+    [[maybe_unused]] ssize_t size = ::write(ready[1], &held, 1);
+    size = ::read(done[0], &wait, 1);
+    ::_exit(0);
+  }
+  char held = 0;
+  ASSERT_EQ(::read(ready[0], &held, 1), 1);
+  ASSERT_EQ(held, 'y');
+  const Status taken = first.take(device);
+  EXPECT_FALSE(taken);
+  if (!taken) EXPECT_THAT(taken.error().message(), testing::HasSubstr("is held by another program"));
+  ASSERT_EQ(::write(done[1], &held, 1), 1);
+  ::waitpid(other, nullptr, 0);
+  EXPECT_TRUE(first.take(device)) << "a program that has ended holds nothing";
+  for (const int end : {ready[0], ready[1], done[0], done[1]}) ::close(end);
+}
+
+// A maker's library of another version: it is there, and one function is not.
+class LibraryDriver final : public Driver {
+ public:
+  Status open(const std::string&) override {
+    void* const library = ::dlopen("libc.so.6", RTLD_NOW);
+    if (library && ::dlsym(library, "dhd_not_in_here")) return Done{};
+    return Error{"library `libc.so.6`", "has no function `dhd_not_in_here`; install a newer version"};
+  }
+  bool read(DeviceSample&) override { return false; }
+  void write(const DeviceWrench&) override { ADD_FAILURE() << "it was never open"; }
+  void close() override {}
+};
+
+TEST(ProcessFault, ALibraryThatLacksASymbolIsNeverWrittenTo) {
+  Servo servo(std::make_unique<LibraryDriver>());
+  const Status opened = servo.open("");
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.error().message(), testing::HasSubstr("dhd_not_in_here"));
+  EXPECT_FALSE(servo.start());
+}
+
+}  // namespace
+}  // namespace pliant
