@@ -121,10 +121,11 @@ double find_in_mesh(const LevelNode& node, const LevelMesh& mesh, double crease,
 
 // How surfaces will feel where their meshes do not suit them. What instances have in common is said of the first: a
 // mesh can be shown ten thousand times, and it is built once.
-void find_in_meshes(const Level& level, Findings& findings) {
+void find_in_meshes(const Level& level, Findings& findings, const std::atomic<bool>* stop) {
   std::map<std::pair<std::int32_t, double>, double> mean_edge;  // of a mesh and its crease angle
   std::set<std::tuple<std::int32_t, double, double>> seen;      // and the reach
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    if (stop && *stop) return;
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene || node.mesh < 0 || (!node.deformable && !node.rigid_body)) continue;
     const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
@@ -235,8 +236,9 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   return findings;
 }
 
-Findings validate_level(Level level, const std::function<Status(World&)>& prepare) {
+Findings validate_level(Level level, const std::function<Status(World&)>& prepare, const std::atomic<bool>* stop) {
   Findings findings;
+  const auto stopped = [stop] { return stop && *stop; };
   const bool bare = !level.has_pliant();
   if (bare) {
     findings.push_back(
@@ -248,7 +250,8 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
     findings.push_back(from_spawn(level, size.error()));
     return findings;
   }
-  find_in_meshes(level, findings);
+  find_in_meshes(level, findings, stop);
+  if (stopped()) return findings;
   for (const DeviceFault& fault : find_shared_devices(level))
     findings.push_back({Severity::kError, pointer_of(level, fault.node), fault.what});
   find_idle(level, findings);
@@ -263,14 +266,15 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
     if (!panorama) findings.push_back({Severity::kError, pointer, panorama.error().message()});
     for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
   }
-  if (any_error(findings)) return findings;
+  if (any_error(findings) || stopped()) return findings;
   Result<World> world = spawn_moving_images(level);
   if (!world) {
     findings.push_back(from_spawn(level, world.error()));
     return findings;
   }
+  if (stopped()) return findings;
   find_in_tissue(level, *world, findings);
-  if (prepare)
+  if (prepare && !stopped())
     if (const Status status = prepare(*world); !status) findings.push_back(from_prepare(level, status.error()));
   return findings;
 }

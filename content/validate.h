@@ -1,6 +1,7 @@
 // Everything that `pliant validate` says of a level.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 
@@ -18,6 +19,8 @@ namespace pliant {
 Findings validate_level(const std::filesystem::path& path, const std::function<Status(World&)>& prepare = {});
 
 // The same of a level in memory, whose document has been heard; files that it names are sought beside `level.path`.
-Findings validate_level(Level level, const std::function<Status(World&)>& prepare = {});
+// Once `stop` is set it soon returns what it has found so far.
+Findings validate_level(Level level, const std::function<Status(World&)>& prepare = {},
+                        const std::atomic<bool>* stop = nullptr);
 
 }  // namespace pliant

@@ -90,8 +90,8 @@ Status App::run() {
     if (!script) return script.error();
     script_ = *std::move(script);
   }
-  if (!options_.file.empty() && find_recovery(options_.file, state_folder())) {
-    files_->open(options_.file, options_.unit);  // asks which
+  if (!options_.file.empty() && (find_recovery(options_.file, state_folder()) || lock_holder(options_.file))) {
+    files_->open(options_.file, options_.unit);  // asks which, or who has it
   } else if (!options_.file.empty()) {
     auto document = Document::open(options_.file, options_.unit);
     if (!document) return document.error();
@@ -280,6 +280,10 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   play_.update();
   rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
+  if (picture_.trouble != said_trouble_) {
+    said_trouble_ = picture_.trouble;
+    if (!said_trouble_.empty()) editor.say(said_trouble_, Severity::kError);
+  }
   editor.hovered = kNoNode;  // the tree and the viewport say what it is
   draw_top();
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
@@ -369,7 +373,8 @@ void App::draw_top() {
   ImGui::SameLine(0, ui::px(ui::kWide));
   draw_play_buttons();
   // The document, in the middle of what is left; how it is shown at the right.
-  const std::string title = editor.document.title() + (editor.document.dirty() ? "  \u2022" : "");
+  const std::string title = editor.document.title() + (files_->read_only() ? " (read-only)" : "") +
+                            (editor.document.dirty() ? "  \u2022" : "");
   const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
   {
     const ui::Scope scope("View mode");

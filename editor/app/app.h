@@ -107,6 +107,7 @@ class App {
   std::map<std::string, bool> open_;   // dialogs
   std::set<std::string> wanted_tabs_;  // come to the front in the next frame
   StagePicture picture_;
+  std::string said_trouble_;  // of pictures
   std::uint64_t order_ = 0, question_ = 0;
   std::optional<dvec2> asked_;
   ViewBar view_bar_;

@@ -5,13 +5,15 @@
 namespace pliant {
 
 void Autosave::follow(const Editor& editor) {
-  if (place_ && document_ == editor.documents && file_ == editor.document.file()) return;
+  if (place_ && document_ == editor.documents && file_ == editor.document.file() && shared == of_shared_) return;
   forget();
   document_ = editor.documents;
   file_ = editor.document.file();
+  of_shared_ = shared;
   written_ = ~std::uint64_t{0};
   said_ = false;
-  place_ = std::make_shared<RecoveryPlace>(file_, editor.document.folder(), editor.document.title(), state_folder_);
+  place_ = std::make_shared<RecoveryPlace>(shared ? std::filesystem::path() : file_, editor.document.folder(),
+                                           editor.document.title(), state_folder_);
 }
 
 void Autosave::update(Editor& editor) {
@@ -29,12 +31,13 @@ void Autosave::update(Editor& editor) {
   written_ = revision;
   *writes_ = true;
   editor.jobs.start("autosave", "",
-                    [place = place_, writes = writes_, state = editor.state(), this](const Jobs::Stop&) {
+                    [place = place_, writes = writes_, state = editor.state(),
+                     unsaved = editor.document.unsaved_scripts(), this](const Jobs::Stop&) {
                       struct AtTheEnd {
                         std::atomic<bool>& flag;
                         ~AtTheEnd() { flag = false; }
                       } at_the_end{*writes};
-                      const Status status = place->write(state);
+                      const Status status = place->write(state, unsaved);
                       const std::string fault = status ? "" : status.error().message();
                       return [fault, this](Editor& to) {
                         if (fault.empty() || said_) return;
@@ -46,7 +49,7 @@ void Autosave::update(Editor& editor) {
 
 void Autosave::write_now(Editor& editor) {
   follow(editor);
-  if (editor.document.worth_keeping()) (void)place_->write(editor.state());
+  if (editor.document.worth_keeping()) (void)place_->write(editor.state(), editor.document.unsaved_scripts());
 }
 
 void Autosave::forget() {

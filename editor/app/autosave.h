@@ -16,6 +16,9 @@ class Autosave {
   explicit Autosave(std::filesystem::path state_folder) : state_folder_(std::move(state_folder)) {}
   double interval = 30.0;  // [s] between two copies; what is lost at most, and what is done while a copy is written
 
+  // Another editor has the document's file open: copies do not go where its own go.
+  bool shared = false;
+
   // Once a frame. A copy is written where the document differs from its file and from the copy before, and taken away
   // where it does not differ from its file any more, or another document was opened.
   void update(Editor& editor);
@@ -32,6 +35,7 @@ class Autosave {
   std::shared_ptr<std::atomic<bool>> writes_ = std::make_shared<std::atomic<bool>>(false);
   std::uint64_t document_ = ~std::uint64_t{0};  // Editor::documents that `place_` is of
   std::filesystem::path file_;
+  bool of_shared_ = false;
   std::uint64_t written_ = ~std::uint64_t{0};  // revision
   double began_ = -1e9;                        // [s] the copy before
   bool said_ = false;

@@ -8,9 +8,12 @@
 #include <chrono>
 #include <ctime>
 
+#include "content/files/file_io.h"
+#include "content/files/image.h"
 #include "content/level_file.h"
 #include "editor/app/app.h"
 #include "editor/document/named_files.h"
+#include "systems/visual/gpu/shader_source.h"
 
 namespace pliant {
 namespace {
@@ -54,6 +57,7 @@ Files::Files(App& app, bool native) : autosave(state_folder()), app_(app), nativ
 
 void Files::update() {
   autosave.interval = app_.settings.autosave;
+  follow_lock();
   autosave.update(app_.editor);
   // What was recovered stays where it was until a newer copy, or the file itself, has it.
   if (!recovered_.copy.empty() && (autosave.has_copy() || !app_.editor.document.dirty())) {
@@ -106,32 +110,65 @@ void Files::ask_open() {
 
 void Files::open(const fs::path& file, double unit) {
   app_.leave_document([this, file, unit] {
-    std::optional<RecoveryCopy> copy = find_recovery(file, state_folder());
-    if (!copy) return load(file, unit);
-    const FileStamp saved = stamp_of(file);
-    app_.ask(
-        {"Changes were not saved when the editor ended",
-         {file.filename().string() + " has changes in a copy for recovery:",
-          "the copy is of " + time_text(copy->time) +
-              (saved.there ? ", the file of " + time_text(saved.time) + "." : "; the file itself is gone.")},
-         {{"Recover the changes", "Opens the copy; nothing is written to the file until you save.",
-           [this, c = *copy] { recover(c); }},
-          {"Open the file", "The copy is kept until you change something.", [this, file, unit] { load(file, unit); }},
-          {"Cancel", "", {}}}});
+    ask_who_has(file, [this, file, unit](bool read_only) {
+      std::optional<RecoveryCopy> copy = find_recovery(file, state_folder());
+      // A copy that a running editor writes is no remains of one that ended.
+      if (!copy || read_only || lock_holder(file)) return load(file, unit, read_only);
+      const FileStamp saved = stamp_of(file);
+      app_.ask(
+          {"Changes were not saved when the editor ended",
+           {file.filename().string() + " has changes in a copy for recovery:",
+            "the copy is of " + time_text(copy->time) +
+                (saved.there ? ", the file of " + time_text(saved.time) + "." : "; the file itself is gone.")},
+           {{"Recover the changes", "Opens the copy; nothing is written to the file until you save.",
+             [this, c = *copy] { recover(c); }},
+            {"Open the file", "The copy is kept until you change something.", [this, file, unit] { load(file, unit); }},
+            {"Cancel", "", {}}}});
+    });
   });
 }
 
-void Files::load(const fs::path& file, double unit) {
-  app_.editor.jobs.start("open", "Opening " + file.filename().string(), [this, file, unit](const Jobs::Stop&) {
-    auto document = std::make_shared<Result<Document>>(Document::open(file, unit));
-    return [this, document, file](Editor& to) {
-      if (!*document) return to.say(document->error().message(), Severity::kError);
-      to.take(std::move(**document));
-      to.say("Opened " + file.filename().string());
-      app_.settings.used(file);
-      (void)app_.settings.save();
-    };
-  });
+void Files::ask_who_has(const fs::path& file, std::function<void(bool)> then) {
+  const std::optional<LockHolder> holder = lock_holder(file);
+  if (!holder) return then(false);
+  app_.ask({file.filename().string() + " is open in another editor",
+            {text_of(*holder) + ".", "Whoever saves last replaces what the other one saved."},
+            {{"Open read-only", "Saving asks for another name.", [then] { then(true); }},
+             {"Edit it all the same", "Both may save.", [then] { then(false); }},
+             {"Cancel", "", {}}}});
+}
+
+// The file of the document is marked as open, and as soon as another editor that has it lets it go.
+void Files::follow_lock() {
+  const Editor& editor = app_.editor;
+  const fs::path& file = editor.document.file();
+  const bool another = locked_document_ != editor.documents || locked_file_ != file;
+  if (!another && (file.empty() || read_only_ || (lock_ && lock_->held()) || editor.now - lock_tried_ < 2.0)) return;
+  if (locked_document_ != editor.documents) read_only_ = std::exchange(next_read_only_, false);
+  if (another && locked_document_ == editor.documents) read_only_ = false;  // saved elsewhere
+  locked_document_ = editor.documents;
+  locked_file_ = file;
+  lock_tried_ = editor.now;
+  lock_.reset();
+  autosave.shared = !file.empty() && lock_holder(file).has_value();
+  if (file.empty() || read_only_) return;
+  lock_ = std::make_unique<FileLock>(file);
+  if (lock_->took_over()) app_.editor.say(file.filename().string() + " was left open by an editor that runs no more");
+}
+
+void Files::load(const fs::path& file, double unit, bool read_only) {
+  app_.editor.jobs.start(
+      "open", "Opening " + file.filename().string(), [this, file, unit, read_only](const Jobs::Stop&) {
+        auto document = std::make_shared<Result<Document>>(Document::open(file, unit));
+        return [this, document, file, read_only](Editor& to) {
+          if (!*document) return to.say(document->error().message(), Severity::kError);
+          to.take(std::move(**document));
+          next_read_only_ = read_only;
+          to.say("Opened " + file.filename().string() + (read_only ? ", read-only: saving asks for another name" : ""));
+          app_.settings.used(file);
+          (void)app_.settings.save();
+        };
+      });
 }
 
 void Files::recover(const RecoveryCopy& copy) {
@@ -151,7 +188,8 @@ void Files::recover(const RecoveryCopy& copy) {
 
 bool Files::save() {
   Document& document = app_.editor.document;
-  if (document.file().empty()) {
+  if (document.file().empty() || read_only_) {
+    if (read_only_) app_.editor.say(document.title() + " was opened read-only; save it under another name");
     save_as();
     return false;
   }
@@ -178,14 +216,15 @@ void Files::ask_name(const char* title, bool copy, std::function<void()> then) {
   choose(wish, [this, copy, then](const fs::path& chosen) {
     fs::path file = chosen;
     if (!is_level_name(file)) file += ".glb";
-    const bool is_own = file == app_.editor.document.file();
+    const bool is_own = file == app_.editor.document.file() && !read_only_;
     std::error_code gone;
     if (!fs::exists(file, gone) || is_own) return write(file, copy, then);
+    const std::optional<LockHolder> holder = lock_holder(file);
     // The desktop's dialog has asked already, unless the ending came after it.
     const FileStamp there = stamp_of(file);
     app_.ask({"Replace " + file.filename().string() + "?",
               {"There is a file of this name already, of " + time_text(there.time) + ".",
-               "In " + file.parent_path().string()},
+               holder ? "It is open in another editor: " + text_of(*holder) : "In " + file.parent_path().string()},
               {{"Replace", "What is in it now is lost.", [this, file, copy, then] { write(file, copy, then); }},
                {"Another name", "",
                 [this, copy, then] { ask_name(copy ? "Save a copy as" : "Save the level as", copy, then); }},
@@ -236,6 +275,7 @@ void Files::reload(const std::string& what) {
 
 void Files::close_in_order() {
   autosave.forget();
+  lock_.reset();
   if (!recovered_.copy.empty()) remove_recovery(recovered_);
 }
 
@@ -251,43 +291,124 @@ void Files::watch() {
   if (editor.now - watched_ < kEvery || asking_ || editor.jobs.running("watch") || editor.jobs.running("open")) return;
   watched_ = editor.now;
   const fs::path folder = editor.document.folder(), file = editor.document.file();
-  std::vector<fs::path> paths;
-  for (const std::string& name : named_files(editor.state()))
-    if (const Result<fs::path> path = confined_path(folder, name); path) paths.push_back(*path);
-  if (!file.empty()) paths.push_back(file);
-  if (paths.empty()) return;
-  editor.jobs.start(
-      "watch", "", [this, paths, known = editor.document.file_stamp(), document = editor.documents](const Jobs::Stop&) {
-        std::map<fs::path, FileStamp> now;
-        for (const fs::path& path : paths) now[path] = stamp_of(path);
-        return [this, now, known, document](Editor&) { compare(now, known, document); };
+  Watches all;
+  const auto add = [&](const std::vector<std::string>& names, Watched kind) {
+    for (const std::string& name : names)
+      if (const Result<fs::path> path = confined_path(folder, name); path) all[*path] = {kind, name, {}};
+  };
+  add(named_files(editor.state()), Watched::kNamed);
+  std::vector<std::string> scripts;
+  for (const auto& each : editor.state().nodes)
+    if (each->node.device && each->node.device->driver == DriverKind::kScript)
+      scripts.push_back(each->node.device->file);
+  add(scripts, Watched::kScript);
+  const OwnFiles own = own_files(editor.state());
+  add(own.pictures, Watched::kPicture);
+  add(own.buffers, Watched::kBuffer);
+  if (!file.empty()) all[file] = {Watched::kLevel, "", {}};
+  editor.jobs.start("watch", "",
+                    [this, all, known = editor.document.file_stamp(), document = editor.documents](const Jobs::Stop&) {
+                      Watches now = all;
+                      std::error_code gone;
+                      for (const auto& entry : fs::directory_iterator(gpu::shader_folder(), gone))
+                        now[entry.path()] = {Watched::kShader, "", {}};
+                      for (auto& [path, watch] : now) watch.stamp = stamp_of(path);
+                      return [this, now, known, document](Editor&) { compare(now, known, document); };
+                    });
+}
+
+void Files::read_script_again(const std::string& name, const fs::path& path) {
+  app_.editor.jobs.start(
+      "read " + name, "Reading " + name, [this, name, path, document = app_.editor.documents](const Jobs::Stop&) {
+        auto keys = std::make_shared<Result<ScriptKeys>>(load_keys(path));
+        return [this, name, keys, document](Editor& to) {
+          if (to.documents != document) return;
+          if (!*keys) return to.say(keys->error().message(), Severity::kWarning);
+          if (to.document.is_on_disk(name, **keys)) return;  // it was written here
+          const State before = to.state();
+          const bool taken = to.document.script_read_again(name, **keys);
+          ++to.files_read;
+          for (const auto& each : to.on_change) each(before, to.state());
+          if (taken) return to.say(name + " has changed on disk and was read again");
+          asking_ = true;
+          app_.ask({name + " has changed on disk",
+                    {"Another program has written the path, and it was changed here, too."},
+                    {{"Keep mine", "Saving will replace what is on disk.", [this] { asking_ = false; }},
+                     {"Load theirs", "Undo brings yours back.", [this, name, keys] {
+                        asking_ = false;
+                        Editor& editor = app_.editor;
+                        for (const auto& each : editor.state().nodes)
+                          if (each->node.device && each->node.device->file == name) {
+                            editor.apply("Read again", with_script(editor.state(), each->id, name, **keys));
+                            break;
+                          }
+                      }}}});
+        };
       });
 }
 
-void Files::compare(const std::map<fs::path, FileStamp>& now, const FileStamp& known, std::uint64_t document) {
+void Files::read_picture_again(const std::string& name, const fs::path& path) {
+  app_.editor.jobs.start(
+      "read " + name, "Reading " + name,
+      [name, path, document = app_.editor.documents](const Jobs::Stop&) -> std::function<void(Editor&)> {
+        const Result<Bytes> bytes = read_file(path);
+        auto encoded = std::make_shared<const Bytes>(bytes ? *bytes : Bytes());
+        auto image = std::make_shared<Result<Image>>(bytes ? decode_image(*bytes, name) : Result<Image>(bytes.error()));
+        return [name, encoded, image, document](Editor& to) {
+          if (to.documents != document) return;
+          if (!*image) return to.say(image->error().message(), Severity::kWarning);
+          const State before = to.state();
+          const std::uint64_t revision = to.document.revision();
+          to.document.picture_read_again(name, **image, *encoded);
+          if (to.document.revision() == revision) return;  // it is what it was
+          for (const auto& each : to.on_change) each(before, to.state());
+          to.say(name + " has changed on disk and was read again");
+        };
+      });
+}
+
+void Files::compare(const Watches& now, const FileStamp& known, std::uint64_t document) {
   Editor& editor = app_.editor;
   if (editor.documents != document) return;
+  const bool written_here = !(seen_level_ == known);  // saving writes its buffers, too
+  seen_level_ = known;
   if (seen_document_ != document) {
     seen_.clear();
     seen_document_ = document;
     unsettled_ = {};
   }
   const fs::path file = editor.document.file();
-  for (const auto& [path, stamp] : now) {
-    if (path == file) continue;
+  bool shaders = false, buffers = false;
+  for (const auto& [path, watch] : now) {
+    if (watch.kind == Watched::kLevel) continue;
     const auto before = seen_.find(path);
-    if (before != seen_.end() && before->second != stamp) {
-      editor.say(path.filename().string() + (stamp.there ? " has changed on disk" : " is gone"));
+    const bool changed = before != seen_.end() && before->second != watch.stamp;
+    seen_[path] = watch.stamp;
+    if (!changed) continue;
+    if (watch.kind == Watched::kShader) {
+      shaders = true;
+    } else if (watch.kind == Watched::kBuffer) {
+      buffers = buffers || (!written_here && watch.stamp.there);
+    } else if (watch.stamp.there && watch.kind == Watched::kScript) {
+      read_script_again(watch.name, path);
+    } else if (watch.stamp.there && watch.kind == Watched::kPicture) {
+      read_picture_again(watch.name, path);
+    } else {
+      editor.say(path.filename().string() + (watch.stamp.there ? " has changed on disk" : " is gone"));
       ++editor.files_read;
       editor.found_at = ~std::uint64_t{0};
     }
-    seen_[path] = stamp;
   }
+  if (shaders) app_.stage().reload_shaders();
+  if (shaders) editor.say("Shaders have changed on disk and are compiled again");
+  if (buffers && !editor.document.dirty()) return reload("Read again");
+  if (buffers) editor.say("The level's meshes have changed on disk; File, Revert reads them", Severity::kWarning);
   const auto level = now.find(file);
-  if (level == now.end() || !level->second.there || !(known == editor.document.file_stamp()) || level->second == known)
+  if (level == now.end() || !level->second.stamp.there || !(known == editor.document.file_stamp()) ||
+      level->second.stamp == known)
     return;
-  if (level->second != unsettled_) {  // once more in a second: it may still be written
-    unsettled_ = level->second;
+  if (level->second.stamp != unsettled_) {  // once more in a second: it may still be written
+    unsettled_ = level->second.stamp;
     return;
   }
   if (!editor.document.dirty()) {
@@ -295,18 +416,19 @@ void Files::compare(const std::map<fs::path, FileStamp>& now, const FileStamp& k
     return reload("Read again");
   }
   asking_ = true;
-  app_.ask({file.filename().string() + " has changed on disk",
-            {"Another program has written it " + time_text(level->second.time) + ", and there are changes here, too."},
-            {{"Keep mine", "Saving will replace what is on disk.",
-              [this] {
-                asking_ = false;
-                app_.editor.document.accept_file();
-              }},
-             {"Load theirs", "Undo brings yours back.", [this] {
-                asking_ = false;
-                app_.editor.document.accept_file();
-                reload("Read again");
-              }}}});
+  app_.ask(
+      {file.filename().string() + " has changed on disk",
+       {"Another program has written it " + time_text(level->second.stamp.time) + ", and there are changes here, too."},
+       {{"Keep mine", "Saving will replace what is on disk.",
+         [this] {
+           asking_ = false;
+           app_.editor.document.accept_file();
+         }},
+        {"Load theirs", "Undo brings yours back.", [this] {
+           asking_ = false;
+           app_.editor.document.accept_file();
+           reload("Read again");
+         }}}});
 }
 
 }  // namespace pliant

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "editor/app/autosave.h"
 #include "editor/app/native_dialog.h"
+#include "editor/document/file_lock.h"
 #include "editor/document/file_stamp.h"
 
 namespace pliant {
@@ -30,8 +32,9 @@ class Files {
   void save_as(std::function<void()> then = {});
   void save_copy();
   void revert();
-  void close_in_order();    // the program ends as the user wants it
-  void save_what_can_be();  // the program has to end
+  bool read_only() const { return read_only_; }  // saving asks for another name
+  void close_in_order();                         // the program ends as the user wants it
+  void save_what_can_be();                       // the program has to end
 
   Autosave autosave;
   // Asks for a name; `then` is called with what was chosen.
@@ -43,11 +46,22 @@ class Files {
   void given_up() { then_ = nullptr; }
 
  private:
-  void load(const std::filesystem::path& file, double unit);
+  void load(const std::filesystem::path& file, double unit, bool read_only = false);
+  void ask_who_has(const std::filesystem::path& file, std::function<void(bool read_only)> then);
+  void follow_lock();
   void write(const std::filesystem::path& file, bool copy, const std::function<void()>& then);
   void ask_name(const char* title, bool copy, std::function<void()> then);
   void watch();
-  void compare(const std::map<std::filesystem::path, FileStamp>& now, const FileStamp& known, std::uint64_t document);
+  enum class Watched : std::uint8_t { kLevel, kBuffer, kScript, kPicture, kNamed, kShader };
+  struct Watch {
+    Watched kind = Watched::kNamed;
+    std::string name;  // as the level has it
+    FileStamp stamp;
+  };
+  using Watches = std::map<std::filesystem::path, Watch>;
+  void compare(const Watches& now, const FileStamp& known, std::uint64_t document);
+  void read_script_again(const std::string& name, const std::filesystem::path& path);
+  void read_picture_again(const std::string& name, const std::filesystem::path& path);
   void reload(const std::string& what);
 
   App& app_;
@@ -55,12 +69,18 @@ class Files {
   FileWish wish_;
   std::uint64_t wishes_ = 0;
   std::function<void(const std::filesystem::path&)> then_;
-  RecoveryCopy recovered_;  // where the document comes from, until there is a newer copy
+  std::unique_ptr<FileLock> lock_;  // of the document's file; held or not
+  std::uint64_t locked_document_ = ~std::uint64_t{0};
+  std::filesystem::path locked_file_;
+  double lock_tried_ = 0.0;                          // [s]
+  bool read_only_ = false, next_read_only_ = false;  // of the document; of the one that is being opened
+  RecoveryCopy recovered_;                           // where the document comes from, until there is a newer copy
   // Watching.
   double watched_ = 0.0;                             // [s]
   std::map<std::filesystem::path, FileStamp> seen_;  // of files that the level names
   std::uint64_t seen_document_ = ~std::uint64_t{0};
-  FileStamp unsettled_;  // of the level, when it was another for the first time: it may still be written
+  FileStamp seen_level_;  // as the document had it when the others were looked at last
+  FileStamp unsettled_;   // of the level, when it was another for the first time: it may still be written
   bool asking_ = false;
 };
 

@@ -63,13 +63,32 @@ QuickFix with(std::string label, NodeId id, std::string extension, std::string k
           [=](const State& s, NodeId&) { return with_value(s, std::span(&id, 1), extension, key, value); }};
 }
 
+// A device of its own, for a probe or tool.
 Result<State> with_device(const State& state, NodeId id) {
   const NodeIds one(&id, 1);
   Result<State> next(state);
   if (!has_component(state, id, "haptic_device")) next = with_component(state, one, "haptic_device");
   if (next) next = with_value(*next, one, "haptic_device", "driver", "mouse");
-  if (next) next = with_value(*next, one, "probe", "device", next->find(id)->node.name);
+  const bool probe = state.find(id)->node.probe.has_value();
+  if (next) next = with_value(*next, one, probe ? "probe" : "handle", "device", next->find(id)->node.name);
   return next;
+}
+
+// A name that no device has: the one that was probably meant, else a device of its own.
+std::optional<QuickFix> fix_of_device(const State& state, const DocumentNode& node) {
+  const LevelNode& it = node.node;
+  const std::string named = it.probe ? it.probe_device : it.handle ? it.handle->device : "";
+  const DocumentNode* const device = state.find(named);
+  if (named.empty() || (device && device->node.device)) return {};
+  std::vector<std::string> devices;
+  for (const auto& each : state.nodes)
+    if (each->node.device) devices.push_back(each->node.name);
+  const std::string meant = suggestion(named, devices);
+  for (const std::string& name : devices)
+    if (!meant.empty() && meant == suggestion(name, {name}))
+      return with("Use the device " + name, node.id, it.probe ? "probe" : "handle", "device", name);
+  return QuickFix{"Add a device, moved by the mouse",
+                  [id = node.id](const State& s, NodeId&) { return with_device(s, id); }};
 }
 
 std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, const Finding& finding) {
@@ -97,8 +116,8 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
     return with("Let it move", id, "rigid_body", "fixed", false);
   if (it.probe && says("nothing moves it"))
     return QuickFix{"Add a device, moved by the mouse", [id](const State& s, NodeId&) { return with_device(s, id); }};
-  if (it.probe && !it.probe_device.empty() && !state.find(it.probe_device))
-    return with("Clear the device", id, "probe", "device", "");
+  if (finding.severity == Severity::kError && says("which is no node"))
+    if (std::optional<QuickFix> fix = fix_of_device(state, *node)) return fix;
   if (has_key && finding.severity == Severity::kNote && !value_of_key(state, id, extension, key).is_null())
     return QuickFix{"Reset " + key, [id, extension, key](const State& s, NodeId&) {
                       return with_default(s, std::span(&id, 1), extension, key);
@@ -133,7 +152,8 @@ std::vector<EditorFinding> editor_findings(const State& state, const Findings& f
   return all;
 }
 
-Findings find_in_state(const State& state, const std::filesystem::path& file, const std::filesystem::path& folder) {
+Findings find_in_state(const State& state, const std::filesystem::path& file, const std::filesystem::path& folder,
+                       const std::atomic<bool>* stop) {
   Level level = level_of(state);
   level.path = file.empty() ? folder / "untitled" : file;
   leave_out_scripts(level, state.scripts, DriverKind::kMouse);  // something moves it
@@ -141,11 +161,14 @@ Findings find_in_state(const State& state, const std::filesystem::path& file, co
     return {{Severity::kNote, "",
              "nothing can be touched yet: select a mesh and add a deformable surface or a soft "
              "body in the inspector"}};
-  return validate_level(std::move(level), [](World& world) -> Status {
-    for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
+  const auto prepare = [stop](World& world) -> Status {
+    for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft}) {
+      if (stop && *stop) break;
       if (const Status status = prepare_system(world); !status) return status;
+    }
     return Done{};
-  });
+  };
+  return validate_level(std::move(level), prepare, stop);
 }
 
 void FindingsWatch::update(Editor& editor) {
@@ -154,9 +177,10 @@ void FindingsWatch::update(Editor& editor) {
     seen_ = revision;
     document_ = editor.documents;
     since_ = editor.now;
+    editor.jobs.cancel("findings");  // nobody wants its answer any more
   }
-  // One at a time: what is asked of a large level cannot be stopped. A run has the machine to itself.
-  if (up_to_date(editor) || editor.playing || editor.now - since_ < kRest || editor.jobs.running("findings")) return;
+  // One at a time: what was stopped ends at the next mesh or system. A run has the machine to itself.
+  if (up_to_date(editor) || editor.playing || editor.now - since_ < kRest || editor.jobs.any("findings")) return;
   if (editor.state().nodes.empty()) {
     editor.findings.clear();
     editor.found_at = revision;
@@ -168,7 +192,7 @@ void FindingsWatch::update(Editor& editor) {
                      folder = editor.document.folder()](const Jobs::Stop& stop) -> std::function<void(Editor&)> {
                       if (stop) return {};
                       auto found = std::make_shared<std::vector<EditorFinding>>(
-                          editor_findings(state, find_in_state(state, file, folder)));
+                          editor_findings(state, find_in_state(state, file, folder, &stop)));
                       return [found, revision, document, read](Editor& to) {
                         if (to.documents != document || to.files_read != read) return;
                         to.findings = std::move(*found);

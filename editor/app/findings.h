@@ -22,6 +22,8 @@ class FindingsWatch {
 std::vector<EditorFinding> editor_findings(const State& state, const Findings& findings);
 
 // Everything that is found in the state; `folder` is where files that it names are sought.
-Findings find_in_state(const State& state, const std::filesystem::path& file, const std::filesystem::path& folder);
+// Once `stop` is set it soon returns what it has found so far.
+Findings find_in_state(const State& state, const std::filesystem::path& file, const std::filesystem::path& folder,
+                       const std::atomic<bool>* stop = nullptr);
 
 }  // namespace pliant

@@ -42,6 +42,10 @@ bool Jobs::running(const std::string& key) const {
   return std::any_of(jobs_.begin(), jobs_.end(), [&](const auto& job) { return job->key == key && !job->stop; });
 }
 
+bool Jobs::any(const std::string& key) const {
+  return std::any_of(jobs_.begin(), jobs_.end(), [&](const auto& job) { return job->key == key; });
+}
+
 bool Jobs::idle() const {
   return std::none_of(jobs_.begin(), jobs_.end(),
                       [](const auto& job) { return !job->stop.load() && !job->what.empty(); });

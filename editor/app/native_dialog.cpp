@@ -33,7 +33,9 @@ std::vector<std::string> command_of(const FileWish& wish) {
     std::vector<std::string> command{"zenity", "--file-selection", "--title=" + wish.title, "--filename=" + start};
     if (wish.save) command.push_back("--save");
     if (!wish.save) {
-      command.push_back("--file-filter=Levels and meshes | *.glb *.gltf *.obj *.stl *.ply *.off *.msh *.vtk *.mesh");
+      command.push_back(
+          "--file-filter=Levels and meshes | *.glb *.gltf *.obj *.stl *.ply *.off *.msh *.vtk *.mesh *.fbx "
+          "*.dae");
       command.push_back("--file-filter=All files | *");
     }
     return command;

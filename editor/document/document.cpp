@@ -1,7 +1,9 @@
 #include "editor/document/document.h"
 
+#include "content/gltf/gltf_document.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
+#include "editor/document/recovery.h"
 
 namespace pliant {
 
@@ -43,6 +45,10 @@ Result<Document> Document::recover(const fs::path& copy, const fs::path& file, c
   document->folder_ = !file.empty() ? file.parent_path() : folder.empty() ? copy.parent_path() : folder;
   document->saved_ = ~std::uint64_t{0};
   document->recovered_ = true;
+  State& state = document->steps_[0].state;
+  state.scripts.clear();
+  document->read_scripts(state);  // from where the document's own are
+  for (auto& [name, keys] : scripts_beside_copy(copy)) state.scripts[name] = keys;
   document->remember_file();
   return document;
 }
@@ -175,6 +181,63 @@ bool Document::file_changed() const {
 void Document::accept_file() {
   remember_file();
   saved_ = ~std::uint64_t{0};
+}
+
+void Document::in_every_state(const std::function<bool(State&)>& change) {
+  for (Step& step : steps_) {
+    if (!change(step.state)) continue;
+    const bool is_saved = step.revision == saved_;
+    step.revision = next_revision_++;
+    if (is_saved) saved_ = step.revision;
+  }
+}
+
+bool Document::is_on_disk(const std::string& name, const ScriptKeys& keys) const {
+  const auto known = scripts_on_disk_.find(name);
+  return known != scripts_on_disk_.end() && *known->second == keys;
+}
+
+bool Document::script_read_again(const std::string& name, const ScriptKeys& keys) {
+  const auto fresh = std::make_shared<const ScriptKeys>(keys);
+  const auto known = scripts_on_disk_.find(name);
+  const std::shared_ptr<const ScriptKeys> before = known == scripts_on_disk_.end() ? nullptr : known->second;
+  scripts_on_disk_[name] = fresh;
+  in_every_state([&](State& state) {
+    const auto has = state.scripts.find(name);
+    if (has != state.scripts.end() && (!before || !(*has->second == *before))) return false;
+    state.scripts[name] = fresh;
+    return true;
+  });
+  return *state().scripts.at(name) == keys;  // in_every_state has seen to it that there is one
+}
+
+void Document::picture_read_again(const std::string& uri, const Image& image,
+                                  const std::vector<std::uint8_t>& encoded) {
+  std::map<const Level*, std::shared_ptr<const Level>> anew;  // states share it
+  in_every_state([&](State& state) {
+    const Level* const before = state.rest.get();
+    if (!before->source || !before->source->json.contains("images")) return false;
+    if (!anew.contains(before)) {
+      const Json& images = before->source->json["images"];
+      auto rest = std::make_shared<Level>(*before);
+      auto source = std::make_shared<SourceDocument>(*before->source);
+      bool found = false;
+      for (std::size_t i = 0; i < images.size() && i < rest->images.size(); ++i) {
+        if (!images[i].contains("uri") || images[i]["uri"] != uri) continue;
+        if (i < source->images.size() && source->images[i] == encoded) continue;  // saved here, say
+        const std::string name = rest->images[i].name;
+        rest->images[i] = image;
+        rest->images[i].name = name;
+        if (i < source->images.size()) source->images[i] = encoded;
+        found = true;
+      }
+      rest->source = std::move(source);
+      anew[before] = found ? std::move(rest) : nullptr;
+    }
+    if (!anew[before]) return false;
+    state.rest = anew[before];
+    return true;
+  });
 }
 
 }  // namespace pliant

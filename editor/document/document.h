@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,13 @@ class Document {
   const FileStamp& file_stamp() const { return stamp_; }
   void accept_file();  // keep what is here, whatever the file is now: from now on that is a change
 
+  // A file that the level names is another one on disk. Every state that has it as it was gets it as it is; that is no
+  // change of the document. False: the script was changed here, too, and stays as it is here.
+  bool script_read_again(const std::string& name, const ScriptKeys& keys);
+  // The picture of this number (glTF's), of files that name it so.
+  void picture_read_again(const std::string& uri, const Image& image, const std::vector<std::uint8_t>& encoded);
+  bool is_on_disk(const std::string& name, const ScriptKeys& keys) const;  // as far as is known here
+
   // What was read differently than one might expect.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -82,6 +90,7 @@ class Document {
   explicit Document(State state, NodeId next);
   Status write(const std::filesystem::path& file, const State& state, bool scripts_too) const;
   void remember_file();
+  void in_every_state(const std::function<bool(State&)>& change);
   void read_scripts(State& state);
 
   std::vector<Step> steps_;

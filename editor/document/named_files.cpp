@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "content/files/file_io.h"
+#include "content/gltf/gltf_document.h"
 
 namespace pliant {
 
@@ -21,6 +22,21 @@ std::vector<std::string> named_files(const State& state) {
   }
   if (state.environment) add(state.environment->panorama);
   return names;
+}
+
+OwnFiles own_files(const State& state) {
+  OwnFiles files;
+  const auto collect = [&](const char* key, std::vector<std::string>& names) {
+    const Json& json = state.rest->source->json;
+    if (!json.contains(key)) return;
+    for (const Json& each : json[key])
+      if (each.contains("uri") && !each["uri"].get_ref<const std::string&>().starts_with("data:"))
+        names.push_back(each["uri"].get<std::string>());
+  };
+  if (!state.rest || !state.rest->source) return files;
+  collect("images", files.pictures);
+  collect("buffers", files.buffers);
+  return files;
 }
 
 Result<std::vector<std::string>> bring_named_files(const State& state, const fs::path& from, const fs::path& to) {

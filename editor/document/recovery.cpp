@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
@@ -23,6 +24,33 @@ constexpr const char* kEnding = ".recovery.glb";
 // Of a copy in the user's folder: what it is of.
 fs::path about_of_copy(const fs::path& copy) {
   return fs::path(copy).concat(".json");
+}
+
+// Paths that a copy needs and the level's own file format has no place for.
+fs::path scripts_of_copy(const fs::path& copy) {
+  return fs::path(copy).concat(".paths.json");
+}
+
+Status write_json(const fs::path& file, const Json& json) {
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return write_file(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+// Before the copy itself: a level never stands without the paths that it names.
+Status write_scripts(const fs::path& copy, const Scripts& scripts) {
+  std::error_code gone;
+  if (scripts.empty()) {
+    fs::remove(scripts_of_copy(copy), gone);
+    return Done{};
+  }
+  Json all = Json::object();
+  for (const auto& [name, script] : scripts) {
+    Json keys = Json::array();
+    for (const PathKey& k : script->keys)
+      keys.push_back({k.time, k.anchor.x, k.anchor.y, k.anchor.z, k.normal.x, k.normal.y, k.normal.z, k.height});
+    all[name] = {{"smooth", script->smooth}, {"repeats", script->repeats}, {"keys", std::move(keys)}};
+  }
+  return write_json(scripts_of_copy(copy), all);
 }
 
 std::uint64_t fnv1a(const std::string& text) {
@@ -103,6 +131,25 @@ std::vector<RecoveryCopy> find_recoveries(const fs::path& state_folder) {
   return found;
 }
 
+Scripts scripts_beside_copy(const fs::path& copy) {
+  Scripts scripts;
+  const Result<Bytes> bytes = read_file(scripts_of_copy(copy));
+  const Json all = bytes ? Json::parse(bytes->begin(), bytes->end(), nullptr, false) : Json();
+  if (!all.is_object()) return scripts;
+  for (const auto& [name, its] : all.items()) try {
+      ScriptKeys script;
+      script.smooth = its.at("smooth").get<bool>();
+      script.repeats = its.at("repeats").get<bool>();
+      for (const Json& k : its.at("keys")) {
+        const auto n = k.get<std::array<double, 8>>();
+        script.keys.push_back({n[0], {n[1], n[2], n[3]}, {n[4], n[5], n[6]}, n[7]});
+      }
+      scripts[name] = std::make_shared<const ScriptKeys>(std::move(script));
+    } catch (const Json::exception&) {  // not what was written: the others may be
+    }
+  return scripts;
+}
+
 void remove_recovery(const RecoveryCopy& copy) {
   std::error_code gone;
   // What a copy was being written to when the editor ended.
@@ -115,6 +162,7 @@ void remove_recovery(const RecoveryCopy& copy) {
   }
   fs::remove(copy.copy, gone);
   fs::remove(about_of_copy(copy.copy), gone);
+  fs::remove(scripts_of_copy(copy.copy), gone);
 }
 
 RecoveryPlace::RecoveryPlace(fs::path file, fs::path folder, std::string title, fs::path state_folder)
@@ -125,24 +173,25 @@ RecoveryPlace::RecoveryPlace(fs::path file, fs::path folder, std::string title, 
       state_folder_(std::move(state_folder)),
       title_(std::move(title)) {}
 
-Status RecoveryPlace::write(const State& state) {
-  Status status = beside_.empty() ? Status(Error{}) : save_state(state, beside_);
-  if (!status) status = write_apart(state);
+Status RecoveryPlace::write(const State& state, const Scripts& unsaved) {
+  Status status = beside_.empty() ? Status(Error{}) : write_scripts(beside_, unsaved);
+  if (status) status = save_state(state, beside_);
+  if (!status) status = write_apart(state, unsaved);
   written_ = status.ok();
   if (!wanted_) remove();
   return status;
 }
 
-Status RecoveryPlace::write_apart(const State& state) {
+Status RecoveryPlace::write_apart(const State& state, const Scripts& unsaved) {
   std::error_code failed;
   fs::create_directories(state_folder_, failed);
+  if (Status s = write_scripts(apart_, unsaved); !s) return s;
   if (Status s = save_state(state, apart_); !s) return s;
   const Json about{{"file", file_.string()},
                    {"folder", folder_.string()},
                    {"title", title_},
                    {"process", static_cast<int>(::getpid())}};
-  const std::string text = about.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  return write_file(about_of_copy(apart_), std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  return write_json(about_of_copy(apart_), about);
 }
 
 void RecoveryPlace::forget() {
@@ -152,8 +201,11 @@ void RecoveryPlace::forget() {
 
 void RecoveryPlace::remove() const {
   std::error_code gone;
-  if (!beside_.empty()) fs::remove(beside_, gone);
-  fs::remove(apart_, gone);
+  for (const fs::path& copy : {beside_, apart_}) {
+    if (copy.empty()) continue;
+    fs::remove(copy, gone);
+    fs::remove(scripts_of_copy(copy), gone);
+  }
   fs::remove(about_of_copy(apart_), gone);
 }
 

@@ -29,6 +29,8 @@ std::filesystem::path recovery_beside(const std::filesystem::path& file);
 std::optional<RecoveryCopy> find_recovery(const std::filesystem::path& file, const std::filesystem::path& state_folder);
 // In the user's folder, of editors that run no more; newest first.
 std::vector<RecoveryCopy> find_recoveries(const std::filesystem::path& state_folder);
+// The paths that were in no file when the copy was written; empty: there were none, or they cannot be read.
+Scripts scripts_beside_copy(const std::filesystem::path& copy);
 // With what belongs to it. A failure leaves it for the next time.
 void remove_recovery(const RecoveryCopy& copy);
 
@@ -38,13 +40,14 @@ class RecoveryPlace {
   // `file` empty: the document has none. `folder`: where files that it names are sought.
   RecoveryPlace(std::filesystem::path file, std::filesystem::path folder, std::string title,
                 std::filesystem::path state_folder);
-  // On any thread, one at a time. Nothing is left once forget() was called, even if that was meanwhile.
-  Status write(const State& state);
+  // `unsaved`: paths that are in no file as they are. On any thread, one at a time. Nothing is left once forget() was
+  // called, even if that was meanwhile.
+  Status write(const State& state, const Scripts& unsaved = {});
   void forget();  // on any thread
   bool written() const { return written_; }
 
  private:
-  Status write_apart(const State& state);
+  Status write_apart(const State& state, const Scripts& unsaved);
   void remove() const;
   const std::filesystem::path file_, folder_, beside_, apart_, state_folder_;
   const std::string title_;

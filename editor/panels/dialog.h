@@ -16,9 +16,10 @@ class Dialog {
         {std::min(ui::px(size.x), all.x - ui::px(ui::kWide)), std::min(ui::px(size.y), all.y - ui::px(ui::kWide))});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ui::palette().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kWide), ui::px(ui::kPad)));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ui::px(1));
     ImGui::Begin(name, nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
     ImGui::PopStyleColor();
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
     ui::title(title);

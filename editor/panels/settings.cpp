@@ -14,7 +14,7 @@ class SettingsPanel : public Panel {
   Place place() const override { return Place::kOver; }
 
   void draw(Editor&) override {
-    const Dialog dialog(app_, name(), "Settings", {460, 250});
+    const Dialog dialog(app_, name(), "Settings", {460, 180});
     Settings& s = app_.settings;
     const Settings before = s;
     const auto column = [] { ImGui::SameLine(ui::px(150)); };

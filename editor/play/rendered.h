@@ -19,6 +19,7 @@ class Rendered {
  private:
   bool shows_ = false, waits_ = false;
   std::uint64_t made_ = ~std::uint64_t{0}, seen_ = ~std::uint64_t{0};  // revisions: under way or shown; changed last
+  std::uint64_t files_ = 0;                                            // Editor::files_read that it was made with
   double changed_at_ = 0.0;
 };
 

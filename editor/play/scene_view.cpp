@@ -33,6 +33,14 @@ void SceneView::make() {
   }
 }
 
+Status SceneView::reload() {
+  if (run_ || !world_) return Done{};
+  auto renderer = Renderer::create(*world_);
+  if (!renderer) return renderer.error();
+  renderer_ = std::move(renderer).value();
+  return Done{};
+}
+
 Status SceneView::draw(const SolidOrder& order, GLuint framebuffer, int width, int height) {
   if (!renderer_) return Error{"Rendered", trouble_.empty() ? "there is nothing to draw" : trouble_};
   if (run_) {

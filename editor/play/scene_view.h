@@ -20,6 +20,7 @@ class SceneView : public Scenery {
   Status draw(const SolidOrder& order, GLuint framebuffer, int width, int height) override;
   void ask(std::optional<dvec2> pixel) override { asked_ = pixel; }
   SolidPicked pick(double x, double y) override;
+  Status reload() override;  // of a level that is played: at the next Play
   bool moves() const override { return run_ != nullptr; }
   bool wants_picture() const override;
 

@@ -150,9 +150,9 @@ Result<Script> Script::load(const std::filesystem::path& file) {
     std::getline(words >> std::ws, step.rest);
     std::istringstream rest(step.rest);
     for (std::string word; rest >> word;) step.words.push_back(word);
-    constexpr const char* kVerbs[] = {"click",     "drag", "press",      "move", "release", "wheel",
-                                      "key",       "type", "set",        "wait", "await",   "expect",
-                                      "expect-no", "say",  "screenshot", "drop", "figures", "close"};
+    constexpr const char* kVerbs[] = {"click", "drag",       "press", "move",    "release", "wheel",     "key",
+                                      "type",  "set",        "wait",  "await",   "expect",  "expect-no", "say",
+                                      "hear",  "screenshot", "drop",  "figures", "close"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
       return Error{fmt::format("{}:{}", script.file_, row),
                    "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
@@ -321,6 +321,12 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     if (!now.has_said(step.rest)) return wrong("the console does not say '" + step.rest + "'");
     return Done{};
   }
+  if (step.verb == "hear") {
+    if (began_ < 0) began_ = now.now;
+    waits = !now.has_said(step.rest);
+    if (waits && now.now - began_ > kPatience) return wrong("the console does not say '" + step.rest + "'");
+    return Done{};
+  }
   if (step.verb == "figures") {
     now.figures(step.rest);
     return Done{};
@@ -348,7 +354,7 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
   const std::string& verb = steps_.front().verb;
   const bool in_parts = verb == "move" || verb == "release";  // of a press: the hand does not wait
   if (++rest_ < kRestFrames) return Done{};
-  if (!now.under_way.empty() && !in_parts && verb != "wait" && verb != "await") {
+  if (!now.under_way.empty() && !in_parts && verb != "wait" && verb != "await" && verb != "hear") {
     if (until_ == 0.0) until_ = now.now + kPatience;
     if (now.now < until_) return Done{};
     return Error{fmt::format("{}:{}", file_, steps_.front().line),

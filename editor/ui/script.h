@@ -14,6 +14,7 @@
 //   wait SECONDS
 //   await PLACE [SECONDS]                                    until a widget of that address is there and on
 //   expect PLACE / expect-no PLACE                           an error unless it is (not) there
+//   hear TEXT                                                until the console's text holds it
 //   say TEXT                                                 an error unless the console's text holds it
 //   screenshot FILE.png                                      into the folder of --out
 //   figures NAME                                             prints how long frames took since the last of these

@@ -82,17 +82,23 @@ mat4 clip_from_world(const Viewpoint& view, double orthographic, double aspect, 
 
 Result<SolidView> SolidView::make() {
   SolidView view;
-  const auto load = [](gpu::Program& into, std::initializer_list<const char*> names) -> Status {
-    Result<gpu::Program> program = gpu::Program::load(names);
-    if (!program) return program.error();
-    into = *std::move(program);
-    return Done{};
-  };
-  if (Status s = load(view.solid_, {"editor_solid.vert", "editor_solid.frag"}); !s) return s.error();
-  if (Status s = load(view.lines_program_, {"editor_lines.vert", "editor_lines.frag"}); !s) return s.error();
-  if (Status s = load(view.screen_, {"editor_screen.vert", "editor_screen.frag"}); !s) return s.error();
+  if (Status s = view.reload(); !s) return s.error();
   view.empty_ = gpu::VertexArray::make();
   return view;
+}
+
+Status SolidView::reload() {
+  Result<gpu::Program> solid = gpu::Program::load({"editor_solid.vert", "editor_solid.frag"});
+  if (!solid) return solid.error();
+  Result<gpu::Program> lines = gpu::Program::load({"editor_lines.vert", "editor_lines.frag"});
+  if (!lines) return lines.error();
+  Result<gpu::Program> screen = gpu::Program::load({"editor_screen.vert", "editor_screen.frag"});
+  if (!screen) return screen.error();
+  solid_ = *std::move(solid);
+  lines_program_ = *std::move(lines);
+  screen_ = *std::move(screen);
+  drawn_ = false;
+  return Done{};
 }
 
 SolidView::MeshOnGpu& SolidView::on_gpu(const std::shared_ptr<const DocumentMesh>& mesh) {

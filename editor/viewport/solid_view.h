@@ -53,6 +53,7 @@ struct SolidPicked {
 class SolidView {
  public:
   static Result<SolidView> make();
+  Status reload();  // its shaders; an error leaves those that it has
 
   // Into `framebuffer`, which has width x height pixels. What has been drawn before is not drawn again.
   void draw(const SolidOrder& order, GLuint framebuffer, int width, int height);

@@ -76,6 +76,17 @@ void Stage::show(std::function<std::unique_ptr<Scenery>()> make) {
   });
 }
 
+void Stage::reload_shaders() {
+  post([this] {
+    shader_trouble_.clear();
+    drawn_.reset();
+    for (const auto& reload :
+         {std::function<Status()>([this] { return solid_ ? solid_->reload() : Status(Done{}); }),
+          std::function<Status()>([this] { return scenery_ ? scenery_->reload() : Status(Done{}); })})
+      if (const Status status = reload(); !status) shader_trouble_ = status.error().message();
+  });
+}
+
 void Stage::run() {
   context_->take();
   try {
@@ -178,7 +189,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
   }
   const std::uint64_t began = now_ns();
   StagePicture done;
-  done.trouble = failure_;
+  done.trouble = failure_.empty() ? shader_trouble_ : failure_;
   drawn_.reset();
   try {
     bool drawn = false;

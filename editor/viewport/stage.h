@@ -26,6 +26,7 @@ class Scenery {
   virtual void ask(std::optional<dvec2>) {}
   // Pixels count from the upper left corner, of the picture drawn last.
   virtual SolidPicked pick(double x, double y) = 0;
+  virtual Status reload() { return Done{}; }           // its shaders; an error leaves those that it has
   virtual bool moves() const { return true; }          // another picture may be wanted without a new order
   virtual bool wants_picture() const { return true; }  // and is, now
 };
@@ -68,6 +69,8 @@ class Stage {
   // On the stage's thread, before the next picture: `make` returns what is shown instead of the document, or null for
   // the document again. What was shown before is destroyed first.
   void show(std::function<std::unique_ptr<Scenery>()> make);
+  // Shaders are read and compiled again; what is wrong with them is the trouble of the next pictures.
+  void reload_shaders();
   // Runs on the stage's thread before the next picture, its context current.
   void post(std::function<void()> task);
 
@@ -105,7 +108,7 @@ class Stage {
   double fixed_ms_ = 0.0;                         // of a picture, whatever its resolution
   double sample_pixels_ = 0.0, sample_ms_ = 0.0;  // [1] of all, [ms]: an earlier picture of another resolution
   bool software_ = false;
-  std::string failure_;
+  std::string failure_, shader_trouble_;
   std::thread thread_;
 };
 

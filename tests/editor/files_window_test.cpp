@@ -2,6 +2,7 @@
 #include <csignal>
 #include <thread>
 
+#include "content/files/image.h"
 #include "content/level_file.h"
 #include "editor/document/recovery.h"
 #include "tests/editor/small_level.h"
@@ -211,6 +212,104 @@ TEST_F(FilesWindowTest, TheEditorsConsoleIsFilteredAndCleared) {
            "click Scene/finger/row\nkey Delete\nkey Ctrl+Z\nclick Tab/Console\nsay Undone: Delete\n"
            "click Console/Notes\nscreenshot console.png\nclick Console/Copy\nclick Console/Clear\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
+}
+
+TEST_F(FilesWindowTest, ASecondEditorOnAFileIsToldAndMayOpenItReadOnly) {
+  std::ofstream(folder / ".small.glb.lock") << R"({"process": 1, "started": 1, "host": "ward3", "user": "anna",
+                                                  "since": "2026-05-04 10:03"})";
+  const std::string before = read_text(folder / "small.glb");
+  const Said said = edit("small.glb",
+                         "await Question/Open read-only\nscreenshot who.png\nclick Question/Open read-only\n"
+                         "say read-only\nclick Scene/finger/row\nkey Delete\nkey Ctrl+S\nawait Files/Save\n"
+                         "screenshot save.png\nset Files/Name mine\nsay Saved as mine.glb\nclose\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(read_text(folder / "small.glb"), before);
+  EXPECT_EQ(document("mine.glb").state().find("finger"), nullptr);
+  EXPECT_TRUE(fs::exists(folder / ".small.glb.lock")) << "the other editor's is left alone";
+  EXPECT_FALSE(fs::exists(folder / ".mine.glb.lock"));
+
+  const Said both = edit("small.glb",
+                         "await Question/Edit it all the same\nclick Question/Edit it all the same\nsay Opened\n"
+                         "click Scene/finger/row\nkey Delete\nkey Ctrl+S\nsay Saved small.glb\nclose\n");
+  ASSERT_EQ(both.status, 0) << both.err;
+  EXPECT_EQ(document("small.glb").state().find("finger"), nullptr);
+}
+
+// A sheet of one colour, whose picture lies beside it.
+std::string sheet_with_picture() {
+  const float v[] = {0, 0, 0, 0.1f, 0, 0, 0.1f, 0, 0.1f, 0, 0, 0.1f, 0, 0, 1, 0, 1, 1, 0, 1};
+  const std::uint16_t index[] = {0, 2, 1, 0, 3, 2};
+  std::string bytes(reinterpret_cast<const char*>(v), sizeof v);
+  bytes.append(reinterpret_cast<const char*>(index), sizeof index);
+  std::string text;
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (int k = 3; k >= 0; --k) text += kDigits[word >> (6 * k) & 63u];
+  }
+  for (std::size_t i = 0; i < (3 - bytes.size() % 3) % 3; ++i) text[text.size() - 1 - i] = '=';
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[
+    {"name":"sheet","mesh":0,"extensions":{"PLIANT_deformable":{}}},
+    {"name":"finger","translation":[0.05,0.05,0.05],"extensions":{"PLIANT_probe":{"device":"finger"},
+     "PLIANT_haptic_device":{"driver":"script","file":"press.csv"}}}],
+    "extensionsUsed":["PLIANT_deformable","PLIANT_probe","PLIANT_haptic_device"],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2,"material":0}]}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0}}],
+    "textures":[{"source":0}],"images":[{"uri":"sheet.png"}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[0.1,0,0.1]},
+     {"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"},
+     {"bufferView":2,"componentType":5123,"count":6,"type":"SCALAR"}],
+    "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":32},
+     {"buffer":0,"byteOffset":80,"byteLength":12}],
+    "buffers":[{"byteLength":92,"uri":"data:application/octet-stream;base64,)" +
+         text + "\"}]}";
+}
+
+std::string one_color(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+  const std::uint8_t rgba[] = {r, g, b, 255, r, g, b, 255, r, g, b, 255, r, g, b, 255};
+  const auto png = encode_png(2, 2, rgba);
+  return {png.begin(), png.end()};
+}
+
+TEST_F(FilesWindowTest, PicturesScriptsAndShadersThatChangeOnDiskAreSeenWithoutBeingAskedFor) {
+  write_text(folder / "level.gltf", sheet_with_picture());
+  write_text(folder / "sheet.png", one_color(220, 40, 40));
+  write_text(folder / "press.csv", "time_s,x,y,z\n0,0.05,0.05,0.05\n1,0.05,-0.002,0.05\n");
+  write_text(folder / "blue.png", one_color(40, 40, 220));
+  write_text(folder / "other.csv", "time_s,x,y,z\n0,0.05,0.05,0.05\n2,0.05,-0.004,0.05\n3,0.06,-0.004,0.05\n");
+  fs::copy(fs::path(PLIANT_SOURCE_DIR) / "shaders", folder / "shaders", fs::copy_options::recursive);
+  const std::string shader = read_text(folder / "shaders" / "editor_screen.frag");
+  write_text(folder / "broken.frag", "#version 450\nthis is no shader\n");
+  write_text(folder / "whole.frag", shader + "\n// again\n");
+  const auto once = [](const std::string& shot, const std::string& from, const std::string& to) {
+    return "while [ ! -e shots/" + shot + " ]; do sleep 0.1; done; cp " + from + " part.tmp; mv part.tmp " + to + "; ";
+  };
+  const std::string writer = "sh -c '(" + once("red.png", "blue.png", "sheet.png") +
+                             once("blue.png", "other.csv", "press.csv") +
+                             once("script.png", "broken.frag", "shaders/editor_screen.frag") +
+                             once("broken.png", "whole.frag", "shaders/editor_screen.frag") + ") & exec \"$@\"' --";
+  write_text(folder / "script.txt",
+             "click View mode/Rendered\nwait 3\nscreenshot red.png\n"
+             "hear sheet.png has changed on disk and was read again\nwait 1\nscreenshot blue.png\n"
+             "hear press.csv has changed on disk and was read again\nclick Scene/finger/row\nclick Tab/Path\n"
+             "expect Path/Row 3/time\nscreenshot script.png\n"
+             "hear Shaders have changed\nhear editor_screen.frag\nwait 1\nscreenshot broken.png\n"
+             "wait 3\nclick View mode/Solid\nscreenshot solid.png\nclose\n");
+  const Said said = pliant(
+      {"edit", "level.gltf", "--size", "1280x720", "--config", "config", "--out", "shots", "--input", "script.txt"},
+      "PLIANT_SHADERS=" + quoted((folder / "shaders").string()) + " " + around() + " " + writer);
+  ASSERT_EQ(said.status, 0) << said.err;
+  const auto red = load_image(folder / "shots" / "red.png"), blue = load_image(folder / "shots" / "blue.png");
+  ASSERT_TRUE(red.ok() && blue.ok());
+  const auto tinted = [](const Image& image, std::size_t strong, std::size_t weak) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) count += image.rgba[i + strong] > image.rgba[i + weak] + 60;
+    return count;
+  };
+  EXPECT_GT(tinted(*red, 0, 2), 2 * tinted(*blue, 0, 2) + 2000) << "the picture of the sheet was red";
+  EXPECT_GT(tinted(*blue, 2, 0), tinted(*red, 2, 0) + 2000) << "and is blue";
 }
 
 }  // namespace

@@ -77,22 +77,37 @@ TEST(EditorFindings, AScriptThatIsNotThereCanBeCleared) {
   EXPECT_EQ(editor.state().find("finger")->node.device->file, "");
 }
 
-TEST(EditorFindings, ADeviceThatNoNodeHasCanBeCleared) {
-  const OwnFolder folder("findings_device");
+TEST(EditorFindings, ADeviceThatNoNodeHasIsTheOneThatWasMeantOrANewOne) {
+  for (const bool misspelt : {true, false}) {
+    const OwnFolder folder("findings_device");
+    Editor editor;
+    Level level = testing::sheet_and_finger();
+    level.nodes[1].device.reset();
+    level.nodes[1].probe_device = "hand";
+    LevelNode hand;
+    hand.name = "hand";
+    hand.device.emplace();
+    hand.device->driver = DriverKind::kMouse;
+    level.nodes.push_back(hand);
+    take(editor, level, folder.path);
+    const NodeId finger = id_of(editor.document, "finger");
+    ASSERT_TRUE(editor.apply("Set", with_value(editor.state(), std::span(&finger, 1), "probe", "device",
+                                               misspelt ? "hnad" : "left stylus")));
+    expect_mended(editor, "which is no node", "finger");
+    EXPECT_EQ(editor.state().find("finger")->node.probe_device, misspelt ? "hand" : "finger");
+    EXPECT_EQ(editor.state().find("finger")->node.device.has_value(), !misspelt);
+  }
+}
+
+TEST(EditorFindings, ADeviceThatIsANodeWithoutOneIsMendedToo) {
+  const OwnFolder folder("findings_bare_device");
   Editor editor;
   take(editor, testing::sheet_and_finger(), folder.path);
   const NodeId finger = id_of(editor.document, "finger");
-  ASSERT_TRUE(editor.apply("Add", with_node(editor.state(), editor.document.new_id(), kNoNode, [] {
-                             LevelNode n;
-                             n.name = "hand";
-                             n.device.emplace();
-                             return n;
-                           }())));
-  ASSERT_TRUE(editor.apply("Set", with_value(editor.state(), std::span(&finger, 1), "probe", "device", "hand")));
-  const NodeId hand = id_of(editor.document, "hand");
-  ASSERT_TRUE(editor.apply("Delete", without(editor.state(), std::span(&hand, 1))));
-  if (editor.state().find("finger")->node.probe_device.empty()) GTEST_SKIP() << "deleting clears the reference itself";
-  expect_mended(editor, "hand", "finger");
+  ASSERT_TRUE(editor.apply("Remove", without_component(editor.state(), std::span(&finger, 1), "haptic_device")));
+  ASSERT_TRUE(editor.apply("Set", with_value(editor.state(), std::span(&finger, 1), "probe", "device", "sheet")));
+  expect_mended(editor, "which is no node", "finger");
+  EXPECT_TRUE(editor.state().find("finger")->node.device);
 }
 
 TEST(EditorFindings, ADocumentIsCheckedOnceItRestsAndAgainAfterAChange) {
@@ -120,6 +135,38 @@ TEST(EditorFindings, ADocumentIsCheckedOnceItRestsAndAgainAfterAChange) {
   watch.update(editor);
   check();
   EXPECT_GT(editor.findings.size(), before);
+}
+
+TEST(EditorFindings, ACheckWhoseAnswerNobodyWantsEndsBeforeTheLevelIsPrepared) {
+  const Level level = testing::sheet_and_finger();
+  std::atomic<bool> stop{false};
+  bool prepared = false;
+  const auto prepare = [&](World&) -> Status {
+    prepared = true;
+    return Done{};
+  };
+  static_cast<void>(validate_level(level, prepare, &stop));
+  EXPECT_TRUE(prepared);
+  prepared = false;
+  stop = true;
+  EXPECT_TRUE(validate_level(level, prepare, &stop).empty());
+  EXPECT_FALSE(prepared);
+}
+
+TEST(EditorFindings, AChangeStopsTheCheckThatIsUnderWay) {
+  const OwnFolder folder("findings_stop");
+  Editor editor;
+  take(editor, testing::sheet_and_finger(), folder.path);
+  FindingsWatch watch;
+  watch.update(editor);
+  editor.now += 2 * FindingsWatch::kRest;
+  watch.update(editor);
+  ASSERT_TRUE(editor.jobs.running("findings"));
+  const NodeId finger = id_of(editor.document, "finger");
+  ASSERT_TRUE(editor.apply("Remove", without_component(editor.state(), std::span(&finger, 1), "haptic_device")));
+  watch.update(editor);
+  EXPECT_FALSE(editor.jobs.running("findings"));
+  EXPECT_TRUE(editor.jobs.any("findings")) << "another one waits for it";
 }
 
 }  // namespace

@@ -111,6 +111,30 @@ TEST(Recovery, ACopyThatIsStillBeingWrittenWhenTheDocumentIsGivenUpDoesNotStay) 
   }
 }
 
+TEST(Recovery, APathThatIsInNoFileYetIsInTheCopy) {
+  const OwnFolder folder("recovery_path");
+  Editor editor;
+  const fs::path file = folder.path / "small.glb", copy = folder.path / ".small.glb.recovery.glb";
+  opened(editor, file);
+  Autosave autosave(folder.path / "state");
+  ScriptKeys keys;
+  keys.keys = {{0.0, {0.05, 0, 0.05}, {0, 1, 0}, 0.1 / 3}, {1.5, {0.05, 0, 0.05}, {0, 1, 0}, -0.005}};
+  editor.apply("Path", with_script(editor.state(), id_of(editor.document, "finger"), "press.csv", keys));
+  autosave.update(editor);
+  wait(editor);
+  ASSERT_FALSE(fs::exists(folder.path / "press.csv")) << "a script is written when the level is saved";
+  const Result<Document> recovered = Document::recover(copy, file);
+  ASSERT_TRUE(recovered.ok()) << recovered.error().message();
+  ASSERT_TRUE(recovered->state().scripts.contains("press.csv"));
+  EXPECT_EQ(*recovered->state().scripts.at("press.csv"), keys) << "to the bit";
+  EXPECT_EQ(recovered->unsaved_scripts().count("press.csv"), 1u) << "saving writes it";
+  ASSERT_TRUE(editor.document.save().ok());
+  autosave.update(editor);
+  std::vector<fs::path> left = left_in(folder.path);
+  std::sort(left.begin(), left.end());
+  EXPECT_EQ(left, (std::vector<fs::path>{"press.csv", "small.glb"}));
+}
+
 TEST(Recovery, ADocumentWithoutAFileIsKeptInTheUsersFolderAndFoundThereWithWhatItWasOf) {
   const OwnFolder folder("recovery_apart");
   Editor editor;
