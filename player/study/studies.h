@@ -10,7 +10,8 @@
 // clang-format off
 #define PLIANT_STUDIES(STUDY) \
   STUDY(linearisation, "1 kHz force of a tool: held, linear, contacts solved again, against the full solve") \
-  STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability")
+  STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability") \
+  STUDY(shapes, "the surface of a press by every shape, against closed forms and blocks of tetrahedra")
 // clang-format on
 
 namespace pliant {
