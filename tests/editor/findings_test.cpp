@@ -1,4 +1,5 @@
 // What is found in a document while one works, and what the quick fixes do about it.
+#include "content/validate.h"
 #include "editor/app/findings.h"
 
 #include <gtest/gtest.h>
