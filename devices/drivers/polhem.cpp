@@ -13,7 +13,6 @@ namespace {
 
 constexpr const char* kKeys[] = {"mechanism", "home"};
 constexpr const char* kHomes[] = {"button", "here", "kept"};
-constexpr int kMostReports = 64;  // in one call
 constexpr int kMostCounts = 400;  // a motor turns in a millisecond: 12,000 rpm at 2000 counts a turn
 constexpr int kNearHome = 100;    // counts that the arm may have been moved while its encoders were set
 constexpr int kAskAgain = 20;     // reports after which the encoders are set again
