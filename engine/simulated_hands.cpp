@@ -51,6 +51,12 @@ double softening(const World& world, const DeviceCapabilities& can) {
   return can.max_stiffness > 0.0 && stiffest > can.max_stiffness ? can.max_stiffness / stiffest : 1.0;
 }
 
+DeviceCapabilities before_softening(DeviceCapabilities can, double share) {
+  can.max_stiffness /= share;
+  can.max_force /= share;
+  return can;
+}
+
 std::string stiffness_note(const World& world, const std::string& hand, const DeviceCapabilities& can) {
   const double share = softening(world, can);
   if (share == 1.0) return {};
@@ -97,6 +103,7 @@ Status SimulatedHands::add(World& world, Entity hand, const std::string& name, c
   held.share = softening(world, device.can);
   if (std::string sentence = stiffness_note(world, name, device.can); !sentence.empty())
     notes_.push_back(std::move(sentence));
+  device.can = before_softening(device.can, held.share);
   hands_.push_back(std::move(held));
   return Done{};
 }

@@ -29,6 +29,8 @@ std::string stiffness_note(const World& world, const std::string& hand, const De
 // [1] What of a surface's force may reach such a device, so that it feels no stiffer than the device renders stably. A
 // share of a passive force is passive; the surface itself, and what others feel of it, stay as they are.
 double softening(const World& world, const DeviceCapabilities& can);
+// What safety is to hold to before that share is taken, so that nothing is limited twice.
+DeviceCapabilities before_softening(DeviceCapabilities can, double share);
 
 class SimulatedHands {
  public:

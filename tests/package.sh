@@ -55,6 +55,34 @@ said=$("$work/picture/build/picture")
 echo "$said"
 echo "$said" | grep -qE '^(9216 bytes|none: .*(EGL|OpenGL|graphics))' || { echo "a picture of 64 x 36 has 9216 bytes"; exit 1; }
 
+# The drivers that ship: component `devices`.
+mkdir "$work/drivers"
+cat >"$work/drivers/CMakeLists.txt" <<'TEXT'
+cmake_minimum_required(VERSION 3.25)
+project(drivers LANGUAGES CXX)
+find_package(pliant REQUIRED COMPONENTS engine devices)
+add_executable(drivers main.cpp)
+target_link_libraries(drivers PRIVATE pliant::drivers pliant::engine)
+TEXT
+cat >"$work/drivers/main.cpp" <<'TEXT'
+#include <pliant/driver.h>
+#include <pliant/drivers.h>
+
+#include <cstdio>
+
+int main() {
+  pliant::register_all_drivers();
+  for (const std::string& name : pliant::driver_names()) std::printf("%s ", name.c_str());
+  std::printf("\n");
+}
+TEXT
+cmake -S "$work/drivers" -B "$work/drivers/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/installed" \
+  >"$work/configure.log" || { cat "$work/configure.log"; exit 1; }
+cmake --build "$work/drivers/build" >"$work/build.log" || { cat "$work/build.log"; exit 1; }
+said=$("$work/drivers/build/drivers")
+echo "$said"
+echo "$said" | grep -q 'falcon .*haply .*spacemouse' || { echo "a driver that ships is missing"; exit 1; }
+
 # Touch alone drags in neither graphics nor readers of files.
 libraries=$(ldd "$work/build/hello_touch")
 echo "$libraries" | grep -E 'libGL|libEGL|epoxy|assimp|draco|OpenEXR|hidapi|glfw' && { echo "hello_touch needs too much"; exit 1; }

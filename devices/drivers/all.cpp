@@ -1,4 +1,4 @@
-#include "devices/drivers/all.h"
+#include "pliant/drivers.h"
 
 #include <mutex>
 

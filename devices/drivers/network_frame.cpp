@@ -83,8 +83,11 @@ struct Numbers {
 };
 
 void put_description(ByteWriter& out, const DescriptionFrame& frame) {
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < std::size(kAbilities); ++i) bits |= (frame.can.*kAbilities[i] ? 1u : 0u) << i;
+  std::uint32_t bits = 0, bit = 1;
+  for (const auto ability : kAbilities) {
+    if (frame.can.*ability) bits |= bit;
+    bit <<= 1;
+  }
   out.put(bits);
   for (const auto figure : kFigures) out.put_real(frame.can.*figure);
   put(out, frame.can.workspace);

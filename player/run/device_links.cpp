@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "devices/choose.h"
-#include "devices/drivers/all.h"
+#include "pliant/drivers.h"
 #include "devices/wrappers/chain.h"
 #include "engine/sources.h"
 #include "systems/device/devices.h"

@@ -27,9 +27,39 @@ std::vector<std::size_t> pareto_front(const std::vector<ParetoRow>& rows) {
   return front;
 }
 
+std::vector<std::vector<std::size_t>> fronts(const ParetoTable& table, const std::vector<std::size_t>& rows) {
+  std::vector<std::string> groups;
+  std::vector<std::vector<std::size_t>> parts;
+  for (const std::size_t i : rows) {
+    const std::string group = table.front_by_group ? table.rows[i].group : "";
+    const auto found = std::find(groups.begin(), groups.end(), group);
+    if (found == groups.end()) {
+      groups.push_back(group);
+      parts.push_back({i});
+    } else {
+      parts[static_cast<std::size_t>(found - groups.begin())].push_back(i);
+    }
+  }
+  for (std::vector<std::size_t>& part : parts) {
+    std::vector<ParetoRow> own;
+    for (const std::size_t i : part) own.push_back(table.rows[i]);
+    std::vector<std::size_t> front;
+    for (const std::size_t i : pareto_front(own)) front.push_back(part[i]);
+    part = std::move(front);
+  }
+  return parts;
+}
+
+std::vector<std::vector<std::size_t>> fronts(const ParetoTable& table) {
+  std::vector<std::size_t> all(table.rows.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return fronts(table, all);
+}
+
 std::string to_csv(const ParetoTable& table) {
   std::vector<bool> best(table.rows.size());
-  for (const std::size_t i : pareto_front(table.rows)) best[i] = true;
+  for (const auto& front : fronts(table))
+    for (const std::size_t i : front) best[i] = true;
   std::string csv = "group,label";
   for (const std::string& name : table.more) csv += ',' + csv_text(name);
   csv += ',' + csv_text(table.error_name) + ',' + csv_text(table.cost_name) + ",on_front\n";
@@ -60,7 +90,9 @@ std::string to_json(const ParetoTable& table) {
     entry[table.cost_name] = row.cost;
     json["rows"].push_back(std::move(entry));
   }
-  for (const std::size_t i : pareto_front(table.rows)) json["front"].push_back(table.rows[i].label);
+  for (const auto& front : fronts(table))
+    for (const std::size_t i : front)
+      json["front"].push_back({{"group", table.rows[i].group}, {"label", table.rows[i].label}});
   json["shows"] = table.sentences;
   return json.dump(2, ' ', true) + "\n";
 }
@@ -79,12 +111,13 @@ Status write_study(OutputFolder& out, const ParetoTable& table) {
   if (const Status done = write_text(out, table.study + ".json", to_json(table)); !done) return done;
   if (const Status done = plot_pareto(out, table.study, table); !done) return done;
   print("{}: {}\n", table.study, table.title);
-  print("the front of {} rows: {:>32} {:>32}\n", table.rows.size(), table.error_axis, table.cost_axis);
-  for (const std::size_t i : pareto_front(table.rows)) {
-    const ParetoRow& row = table.rows[i];
-    print("  {:<40} {:>12.3g} {:>12.3g}\n", row.group == row.label ? row.label : row.group + ' ' + row.label, row.error,
-          row.cost);
-  }
+  print("front of {} rows: {:>32} {:>32}\n", table.rows.size(), table.error_axis, table.cost_axis);
+  for (const auto& front : fronts(table))
+    for (const std::size_t i : front) {
+      const ParetoRow& row = table.rows[i];
+      print("  {:<40} {:>12.3g} {:>12.3g}\n", row.group == row.label ? row.label : row.group + ' ' + row.label,
+            row.error, row.cost);
+    }
   for (const std::string& sentence : table.sentences) print("{}\n", sentence);
   return Done{};
 }

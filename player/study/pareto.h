@@ -27,6 +27,7 @@ struct ParetoTable {
   std::vector<std::string> more;               // further columns, the same in every run
   std::vector<ParetoRow> rows;                 //
   std::vector<std::string> sentences;          // what it shows, computed from the rows
+  bool front_by_group = false;                 // each group has a front of its own: it answers a question of its own
   bool joined = true;                          // points of a group are joined in their order
   std::vector<std::size_t> drawn = {};         // rows on the plot; empty: all
   double least_error = 0.0, most_error = 0.0;  // the plot's range; 0: the rows' own
@@ -34,6 +35,10 @@ struct ParetoTable {
 
 // The rows that none betters in cost and error both, the cheapest first. Of equals the first.
 std::vector<std::size_t> pareto_front(const std::vector<ParetoRow>& rows);
+
+// Of the whole table, or of each group; places in table.rows.
+std::vector<std::vector<std::size_t>> fronts(const ParetoTable& table, const std::vector<std::size_t>& rows);
+std::vector<std::vector<std::size_t>> fronts(const ParetoTable& table);
 
 // Columns: group, label, `more`, error, cost, and whether the row is on the front.
 std::string to_csv(const ParetoTable& table);

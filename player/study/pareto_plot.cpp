@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 constexpr double kWidth = 1600, kHeight = 1000;                       // [pixel]
-constexpr double kLeft = 96, kRight = 40, kTop = 118, kBottom = 130;  // [pixel] margins
+constexpr double kLeft = 96, kRight = 40, kTop = 118, kBottom = 172;  // [pixel] margins
 constexpr double kSmall = 12.5, kRadius = 5;                          // [pixel]
 constexpr Color kSky{0.337, 0.706, 0.914}, kFront{0.62, 0.62, 0.62};
 constexpr std::array kColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kSky, kInk, Color{0.55, 0.55, 0.0}};
@@ -103,23 +103,24 @@ void draw_grid(Pen& pen, const Plot& plot) {
 }
 
 void draw_front(Pen& pen, const Plot& plot) {
-  std::vector<ParetoRow> rows;
-  for (const std::size_t i : plot.shown) rows.push_back(plot.table.rows[i]);
-  const std::vector<std::size_t> front = pareto_front(rows);
-  if (front.empty()) return;
-  pen.color(kFront, 0.45);
-  cairo_set_line_width(pen.get(), 9);
-  cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
-  cairo_new_path(pen.get());
-  // In steps: between two of its points the dearer one is not to be had yet.
-  double y = plot.py(rows[front[0]]);
-  cairo_move_to(pen.get(), plot.px(rows[front[0]]), y);
-  for (const std::size_t i : front) {
-    cairo_line_to(pen.get(), plot.px(rows[i]), y);
-    cairo_line_to(pen.get(), plot.px(rows[i]), y = plot.py(rows[i]));
+  for (const std::vector<std::size_t>& front : fronts(plot.table, plot.shown)) {
+    if (front.empty()) continue;
+    const ParetoRow& first = plot.table.rows[front[0]];
+    plot.table.front_by_group ? pen.color(plot.color(first), 0.25) : pen.color(kFront, 0.45);
+    cairo_set_line_width(pen.get(), plot.table.front_by_group ? 5 : 9);
+    cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
+    cairo_new_path(pen.get());
+    // In steps: between two of its points the dearer one is not to be had yet.
+    double y = plot.py(first);
+    cairo_move_to(pen.get(), plot.px(first), y);
+    for (const std::size_t i : front) {
+      const ParetoRow& row = plot.table.rows[i];
+      cairo_line_to(pen.get(), plot.px(row), y);
+      cairo_line_to(pen.get(), plot.px(row), y = plot.py(row));
+    }
+    cairo_line_to(pen.get(), kWidth - kRight, y);
+    cairo_stroke(pen.get());
   }
-  cairo_line_to(pen.get(), kWidth - kRight, y);
-  cairo_stroke(pen.get());
 }
 
 void draw_points(Pen& pen, const Plot& plot) {
@@ -201,7 +202,7 @@ void draw_heads(Pen& pen, const Plot& plot) {
     row.group = group;
     entry(group, plot.color(row), false);
   }
-  entry("Pareto front", kFront, true);
+  entry(plot.table.front_by_group ? "bands: each one's Pareto front" : "Pareto front", kFront, true);
   for (const std::size_t i : plot.shown)
     if (plot.failed(plot.table.rows[i])) {
       entry("open circles at the top: failed", kPaper, true);

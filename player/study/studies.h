@@ -12,7 +12,8 @@
   STUDY(linearisation, "1 kHz force of a tool: held, linear, contacts solved again, against the full solve") \
   STUDY(walls, "where a virtual wall is stable: stiffness, damping, delay; closed forms, with and without the guard") \
   STUDY(hand, "a simulated hand touches the demo levels through every device profile; with and without guard at 1 and 10 ms") \
-  STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability")
+  STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability") \
+  STUDY(shapes, "the surface of a press by every shape, against closed forms and blocks of tetrahedra")
 // clang-format on
 
 namespace pliant {

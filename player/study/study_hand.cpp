@@ -107,7 +107,7 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
     its.will.path = world->paths[device.path];
     device.path = {};
     device.driver = DriverKind::kExternal;
-    if (guarded) device.can = can;
+    if (guarded) device.can = before_softening(can, share);
     held.push_back({entity, probe.device, std::make_unique<SimulatedDevice>(std::move(its)), {}, {}});
     if (const Status opened = held.back().driver->open(""); !opened) return opened.error();
   }

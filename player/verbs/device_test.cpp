@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "devices/choose.h"
-#include "devices/drivers/all.h"
+#include "pliant/drivers.h"
 #include "devices/servo/servo.h"
 #include "devices/wrappers/chain.h"
 #include "player/exit.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/drivers/all.h"
+#include "pliant/drivers.h"
 #include "player/print.h"
 #include "player/verbs/verbs.h"
 #include "pliant/driver.h"

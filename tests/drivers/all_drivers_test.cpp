@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "devices/drivers/all.h"
+#include "pliant/drivers.h"
 #include "pliant/driver.h"
 
 namespace pliant {

@@ -42,6 +42,18 @@ void expect_mended(Editor& editor, const std::string& text, const std::string& n
     EXPECT_EQ(each.finding.message.find(text), std::string::npos) << each.finding.message;
 }
 
+// As another program leaves it: an edit would refuse a name that is no node with a device.
+Result<State> with_its_device(const State& state, NodeId probe, const char* name) {
+  State next = state;
+  for (auto& each : next.nodes)
+    if (each->id == probe) {
+      auto changed = std::make_shared<DocumentNode>(*each);
+      changed->node.probe_device = name;
+      each = changed;
+    }
+  return next;
+}
+
 TEST(EditorFindings, AProbeThatNothingMovesGetsADevice) {
   const OwnFolder folder("findings_probe");
   Level level = testing::sheet_and_finger();
@@ -80,20 +92,34 @@ TEST(EditorFindings, AScriptThatIsNotThereCanBeCleared) {
 
 TEST(EditorFindings, ADeviceThatNoNodeHasIsTheOneThatWasMeantOrANewOne) {
   for (const bool misspelt : {true, false}) {
+    const OwnFolder folder("findings_device");
+    Editor editor;
     Level level = testing::sheet_and_finger();
     level.nodes[1].device.reset();
-    level.nodes[1].probe_device = misspelt ? "hnad" : "left stylus";
+    level.nodes[1].probe_device = "hand";
     LevelNode hand;
     hand.name = "hand";
     hand.device.emplace();
     hand.device->driver = DriverKind::kMouse;
     level.nodes.push_back(hand);
-    Editor editor;  // files that name no device are refused, and edits keep names in step
-    ASSERT_TRUE(editor.apply("New", state_of(level, editor.document.next_id())));
+    take(editor, level, folder.path);
+    const NodeId finger = id_of(editor.document, "finger");
+    ASSERT_TRUE(editor.apply("Set", with_its_device(editor.state(), finger, misspelt ? "hnad" : "left stylus")));
     expect_mended(editor, "which is no node", "finger");
     EXPECT_EQ(editor.state().find("finger")->node.probe_device, misspelt ? "hand" : "finger");
     EXPECT_EQ(editor.state().find("finger")->node.device.has_value(), !misspelt);
   }
+}
+
+TEST(EditorFindings, ADeviceThatIsANodeWithoutOneIsMendedToo) {
+  const OwnFolder folder("findings_bare_device");
+  Editor editor;
+  take(editor, testing::sheet_and_finger(), folder.path);
+  const NodeId finger = id_of(editor.document, "finger");
+  ASSERT_TRUE(editor.apply("Remove", without_component(editor.state(), std::span(&finger, 1), "haptic_device")));
+  ASSERT_TRUE(editor.apply("Set", with_its_device(editor.state(), finger, "sheet")));
+  expect_mended(editor, "which is no node", "finger");
+  EXPECT_TRUE(editor.state().find("finger")->node.device);
 }
 
 TEST(EditorFindings, ADocumentIsCheckedOnceItRestsAndAgainAfterAChange) {

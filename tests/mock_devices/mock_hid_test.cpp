@@ -15,7 +15,7 @@
 #include <string>
 #include <thread>
 
-#include "devices/drivers/all.h"
+#include "pliant/drivers.h"
 #include "devices/ports/hid_port.h"
 #include "pliant/driver.h"
 #include "tests/drivers/emulated_spacemouse.h"
