@@ -1,14 +1,19 @@
-// What painting costs: making the surface, a ray, a footprint, a dab of every mode, the end of a stroke, a fill and a
-// refinement, from 2e4 triangles to 1e6. The error is the footprint's worst distance against arcs of the sphere.
+// What painting costs: opening the level, making the surface, a ray, a footprint, a dab of every mode, the end of a
+// stroke, a fill and a refinement, from 2e4 triangles to 1e6. The error is the footprint's worst distance against arcs
+// of the sphere.
 //   bench_paint [--large] [--out FILE.json]
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "bench/measure.h"
+#include "content/level_file.h"
+#include "editor/document/document.h"
 #include "editor/paint/coarse.h"
 #include "editor/paint/stroke.h"
 #include "runtime/hash.h"
@@ -41,17 +46,34 @@ dvec3 place(int i) {
   return {ring * std::cos(angle), ring * std::sin(angle), z};
 }
 
+// A level of the mesh that can be touched.
+Level playable(const LevelMesh& mesh) {
+  Level level;
+  level.meshes.push_back(mesh);
+  LevelNode node;
+  node.name = "organ";
+  node.mesh = 0;
+  node.deformable.emplace();
+  level.nodes.push_back(node);
+  return level;
+}
+
 std::string measure(const LevelMesh& mesh, double edge) {
   std::string rows;
   const auto row = [&](const char* what, const Times& times, std::size_t count) {
     fmt::print("{:24} {} {:9}\n", what, times.text(), count);
     rows += fmt::format(R"({}"{}": {})", rows.empty() ? "" : ", ", what, times.json());
   };
-  Times make, ray, foot, end, filled, refined;
+  Times open, make, ray, foot, end, filled, refined;
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / fmt::format("bench_{}.glb", ::getpid());
+  if (!save_level(playable(mesh), file).ok()) return {};
+  for (int i = 0; i < 3; ++i) open.add([&] { (void)Document::open(file); });
+  std::filesystem::remove(file);
   make.add([&] { (void)PaintSurface::make(mesh, dmat3(1)); });
   const PaintSurface surface = *PaintSurface::make(mesh, dmat3(1));
   const std::size_t vertices = surface.mesh().vertex_count;
   fmt::print("{} triangles; times in us: p50, p99, max; vertices\n", surface.mesh().triangles.size());
+  row("open", open, vertices);
   row("surface", make, vertices);
 
   // About 5,000 vertices, or a third of the sphere.

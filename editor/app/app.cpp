@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr float kTop = 40, kBar = 26;  // [point]
 constexpr float kTopPad = 9;           // [point] above the buttons of the top bar
-constexpr float kLeastLeft = 160, kLeastRight = 240, kLeastBottom = 90, kLeastView = 200;  // [point]
+constexpr float kLeastLeft = 160, kLeastRight = 300, kLeastBottom = 90, kLeastView = 200;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
 constexpr float kClick = 4;                            // [point] a press that moves farther is a drag
@@ -416,7 +416,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
     ImGui::End();
     return;
   }
-  if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
+  if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) {
     for (const auto& each : panels_) {
       if (each->place() != place || !each->shown(editor)) continue;
       const std::string badge = each->badge(editor);

@@ -31,7 +31,7 @@ class Jobs {
   void cancel(const std::string& key);
   bool running(const std::string& key) const;
   bool any(const std::string& key) const;  // the same, or one that was cancelled and has not ended yet
-  bool idle() const;                 // nothing that a user would wait for
+  bool idle() const;                       // nothing that a user would wait for
   bool none() const { return jobs_.empty(); }
   std::vector<std::string> under_way() const;  // what each does, for the status line
   // On the interface's thread, once a frame.

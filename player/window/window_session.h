@@ -12,9 +12,9 @@
 #include "engine/simulated_hands.h"
 #include "engine/touch_clock.h"
 #include "player/interrupt.h"
-#include "player/run/device_links.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
+#include "player/run/device_links.h"
 #include "player/run/frames.h"
 #include "window/window.h"
 
