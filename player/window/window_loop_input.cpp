@@ -122,15 +122,17 @@ void WindowLoop::emergency_stop() {
       false);
 }
 
-// As a hand would: once a picture shows it, the button is down for a picture.
+// As a hand would: once a picture shows it, the mouse goes there for a picture, and its button is down for the next.
 void WindowLoop::press_widgets() {
   if (wanted_widget_.empty()) return;
   for (const ui::Place& place : widgets_) {
     if (place.address != wanted_widget_) continue;
-    mouse_.x = 0.5 * static_cast<double>(place.low.x + place.high.x);
-    mouse_.y = 0.5 * static_cast<double>(place.low.y + place.high.y);
-    mouse_.down[0] = true;
-    wanted_widget_.clear();
+    const double x = 0.5 * static_cast<double>(place.low.x + place.high.x),
+                 y = 0.5 * static_cast<double>(place.low.y + place.high.y);
+    mouse_.down[0] = std::hypot(mouse_.x - x, mouse_.y - y) < kSamePlace && wants_mouse_;
+    mouse_.x = x;
+    mouse_.y = y;
+    if (mouse_.down[0]) wanted_widget_.clear();
     return;
   }
   if (seconds_ - wanted_since_ < kPressWithin) return;
