@@ -425,6 +425,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
                                             wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
+      ui::underline_item();  // told apart from one under the pointer
       ImGui::BeginChild(each->name());
       {
         const ui::Scope scope(each->name());

@@ -23,17 +23,18 @@ struct NamedKey {
   const char* name;
   int key;
 };
-constexpr NamedKey kNamed[] = {{"Tab", GLFW_KEY_TAB},        {"Esc", GLFW_KEY_ESCAPE},
-                               {"Space", GLFW_KEY_SPACE},    {"Home", GLFW_KEY_HOME},
-                               {"End", GLFW_KEY_END},        {"Enter", GLFW_KEY_ENTER},
-                               {"Delete", GLFW_KEY_DELETE},  {"Backspace", GLFW_KEY_BACKSPACE},
-                               {"Left", GLFW_KEY_LEFT},      {"Right", GLFW_KEY_RIGHT},
-                               {"Up", GLFW_KEY_UP},          {"Down", GLFW_KEY_DOWN},
-                               {"PageUp", GLFW_KEY_PAGE_UP}, {"PageDown", GLFW_KEY_PAGE_DOWN},
-                               {".", GLFW_KEY_PERIOD},       {",", GLFW_KEY_COMMA},
-                               {"/", GLFW_KEY_SLASH},        {"-", GLFW_KEY_MINUS},
-                               {"=", GLFW_KEY_EQUAL},        {"[", GLFW_KEY_LEFT_BRACKET},
-                               {"]", GLFW_KEY_RIGHT_BRACKET}};
+constexpr NamedKey kNamed[] = {
+    {"Tab", GLFW_KEY_TAB},         {"Esc", GLFW_KEY_ESCAPE},
+    {"Space", GLFW_KEY_SPACE},     {"Home", GLFW_KEY_HOME},
+    {"End", GLFW_KEY_END},         {"Enter", GLFW_KEY_ENTER},
+    {"Delete", GLFW_KEY_DELETE},   {"Backspace", GLFW_KEY_BACKSPACE},
+    {"Left", GLFW_KEY_LEFT},       {"Right", GLFW_KEY_RIGHT},
+    {"Up", GLFW_KEY_UP},           {"Down", GLFW_KEY_DOWN},
+    {"PageUp", GLFW_KEY_PAGE_UP},  {"PageDown", GLFW_KEY_PAGE_DOWN},
+    {".", GLFW_KEY_PERIOD},        {",", GLFW_KEY_COMMA},
+    {"/", GLFW_KEY_SLASH},         {"-", GLFW_KEY_MINUS},
+    {"=", GLFW_KEY_EQUAL},         {"[", GLFW_KEY_LEFT_BRACKET},
+    {"]", GLFW_KEY_RIGHT_BRACKET}, {"Escape", GLFW_KEY_ESCAPE}};  // the first of two names is written
 
 std::optional<double> number_of(const std::string& text) {
   double value = 0;

@@ -34,6 +34,11 @@ void end_widgets() {
   std::erase_if(g_before, [](const Place& each) { return each.low.x == each.high.x && each.low.y == each.high.y; });
 }
 
+void underline_item() {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y - px(2)}, high, color(palette().accent));
+}
+
 void known_at(std::string_view label, ImVec2 low, ImVec2 high) {
   g_now.push_back({address_of(label), low, high, true});
 }

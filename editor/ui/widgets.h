@@ -33,6 +33,7 @@ class Scope {  // names what is drawn while it lives
 void end_widgets();                                              // of a frame
 void known_as(std::string_view label);                           // the item that was drawn last
 void known_at(std::string_view label, ImVec2 low, ImVec2 high);  // something that is drawn by hand
+void underline_item();                                           // the same, in the accent: it is the open one
 // By its address, or by its label where only one has it.
 std::optional<Place> find_widget(std::string_view address);
 std::vector<std::string> widget_addresses();
