@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "devices/choose.h"
-#include "pliant/drivers.h"
 #include "devices/wrappers/chain.h"
 #include "engine/sources.h"
+#include "pliant/drivers.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 

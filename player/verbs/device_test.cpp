@@ -11,12 +11,12 @@
 #include <thread>
 
 #include "devices/choose.h"
-#include "pliant/drivers.h"
 #include "devices/servo/servo.h"
 #include "devices/wrappers/chain.h"
 #include "player/exit.h"
 #include "player/interrupt.h"
 #include "player/print.h"
+#include "pliant/drivers.h"
 #include "runtime/clock.h"
 
 namespace pliant {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pliant/drivers.h"
 #include "player/print.h"
 #include "player/verbs/verbs.h"
 #include "pliant/driver.h"
+#include "pliant/drivers.h"
 #include "runtime/printable.h"
 
 namespace pliant {
