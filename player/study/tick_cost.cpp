@@ -38,7 +38,7 @@ TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks) {
   Stage stage;
   Deformable d;
   // Zones overhang the disc, so the disc itself holds fewer than the awake vertices wanted.
-  d.reach = 2 * kRadius * std::sqrt(std::min(0.9, 0.36 * awake / (6.0 * n * n + 2)));
+  d.reach = 2 * kRadius * std::sqrt(std::min(0.9, 0.315 * awake / (6.0 * n * n + 2)));
   const Entity surface = stage.add(scenes::sphere(n, kRadius), d);
   const Entity probe = stage.add_probe({0, kRadius + 0.001, 0});
   stage.prepare();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "content/level_file.h"
 #include "engine/limits.h"
@@ -29,25 +30,32 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return found;
 }
 
-// Ticks in which a force of any probe or tool was withheld; where it has no surface to orbit, an effector follows what
-// the level says.
+// A file may name several objects alike, a session does not.
+void tell_apart(Level& level) {
+  std::set<std::string> names;
+  for (LevelNode& node : level.nodes)
+    for (int i = 2; !names.insert(node.name).second; ++i) node.name = fmt::format("{} ({})", node.name, i);
+}
+
+// Ticks in which a force of any probe or tool was withheld.
 void orbit(HardFigure& worst, const fs::path& file, bool friction, bool bodies) {
   auto level = load_level(file);
   if (!level) return;  // not sound
   const std::string where = file.filename().string() + (friction ? "" : ", without friction");
   if (!level->has_pliant()) {
     make_touchable(*level);
-    if (!add_probes(*level, {{"p", DriverKind::kOrbit, {}, {}, false, {}}})) return;
+    tell_apart(*level);
+    if (!add_probes(*level, {{"orbiting probe", DriverKind::kOrbit, {}, {}, false, {}}})) return;
   }
   for (LevelNode& node : level->nodes) {
     if (node.soft_body && !bodies) return;
+    if (node.device) node.device->driver = DriverKind::kOrbit;
     if (friction) continue;
     if (node.deformable) node.deformable->friction_static = node.deformable->friction_sliding = 0.0;
   }
   auto session = Session::open(Scene(*level));
   worst.need(session.ok(), where + (session ? "" : ": " + session.error().message()));
   if (!session) return;
-  for (const std::string& effector : session->effectors()) (void)session->orbit(effector);
   const World& world = SessionInside::of(*session).world;
   const auto ticks = static_cast<std::uint64_t>(kOrbit * world.simulation.touch_rate);
   worst.need(session->step(ticks).ok(), where + ": it did not run");
