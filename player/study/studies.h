@@ -15,7 +15,9 @@
   STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability") \
   STUDY(shapes, "the surface of a press by every shape, against closed forms and blocks of tetrahedra") \
   STUDY(hardcases, "where haptic engines break: what must hold there, the verdict and the figure") \
-  STUDY(surfaces, "facets, force shading, curved patches against spheres, tori, saddles: ripple, direction, work, us")
+  STUDY(surfaces, "facets, force shading, curved patches against spheres, tori, saddles: ripple, direction, work, us") \
+  STUDY(fidelity, "one indentation by P1, every shape and law, and by the FEM at four resolutions: force and surface") \
+  STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes")
 // clang-format on
 
 namespace pliant {
