@@ -187,8 +187,15 @@ Result<std::pair<double, double>> Script::place(const std::string& text, bool& t
       if (like.size() < 600) like += (like.empty() ? "" : ", ") + each;
     return Error{"", "there is no single widget '" + address + "' now; there are: " + like};
   }
-  return std::pair{static_cast<double>(found->low.x) + fx * static_cast<double>(found->high.x - found->low.x),
-                   static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y)};
+  const double x = static_cast<double>(found->low.x) + fx * static_cast<double>(found->high.x - found->low.x),
+               y = static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y);
+  const auto within = [](double at, float low, float high) {
+    return at >= static_cast<double>(low) && at <= static_cast<double>(high);
+  };
+  if (within(fx, 0, 1) && within(fy, 0, 1) &&
+      (!within(x, found->seen_low.x, found->seen_high.x) || !within(y, found->seen_low.y, found->seen_high.y)))
+    return Error{"", "'" + address + "' is scrolled out of sight; turn the wheel over its panel first"};
+  return std::pair{x, y};
 }
 
 void Script::key_events(const std::string& keys, bool) {
@@ -213,7 +220,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   bool there = true;
   if (step.verb == "click" || step.verb == "press" || step.verb == "move" || step.verb == "drag") {
     const auto from = place(address_of(step.words, i), there);
-    waits = !from && !there && rest_ < kLateFrames;
+    waits = !from && rest_ < kLateFrames;
     if (waits) return Done{};
     if (!from) return wrong(from.error().what);
     std::pair<double, double> to = *from;

@@ -20,7 +20,8 @@ namespace pliant::ui {
 // Where a widget was in the frame before.
 struct Place {
   std::string address;
-  ImVec2 low{0, 0}, high{0, 0};  // [pixel]
+  ImVec2 low{0, 0}, high{0, 0};            // [pixel]
+  ImVec2 seen_low{0, 0}, seen_high{0, 0};  // what its panel shows of it
   bool enabled = true;
 };
 class Scope {  // names what is drawn while it lives
