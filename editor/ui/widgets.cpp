@@ -71,6 +71,10 @@ std::vector<std::string> widget_addresses() {
   return all;
 }
 
+const std::vector<Place>& widgets() {
+  return g_before;
+}
+
 void hint(const char* text) {
   if (!text || !*text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   if (ImGui::GetCurrentContext() && ImGui::GetIO().MouseDown[0]) return;

@@ -38,6 +38,7 @@ void underline_item();                                           // the same, in
 // By its address, or by its label where only one has it.
 std::optional<Place> find_widget(std::string_view address);
 std::vector<std::string> widget_addresses();
+const std::vector<Place>& widgets();  // of the frame before
 
 // `hint` is what a tooltip says; where the widget is off, why.
 void hint(const char* text);
