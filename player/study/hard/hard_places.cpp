@@ -44,6 +44,38 @@ HardFigure on_a_vertex(const HardSetting&) {
   return worst;
 }
 
+// Along lines from vertex to vertex of a coarse sphere, 3 mm deep: the foot meets vertices and edges exactly.
+HardFigure from_vertex_to_vertex(const HardSetting&) {
+  HardFigure worst;
+  Stage stage;
+  const Deformable d = frictionless();
+  const Entity ball = stage.add(scenes::sphere(12, 0.1), d);
+  const Mesh& mesh = stage.mesh(ball);
+  const auto above = [&](std::uint32_t v) { return dvec3(mesh.normal(v)); };
+  const Entity probe = stage.add_probe(0.101 * above(0));
+  stage.prepare();
+  std::uint32_t at = 0;
+  stage.move(probe, 0.097 * above(at), 0.1);
+  std::vector<bool> seen(mesh.vertex_count);
+  for (int way = 0; way < 400; ++way) {
+    seen[at] = true;
+    std::uint32_t next = at;
+    double least = 1e30;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
+      if (const double far = length(dvec3(mesh.position(v)) - dvec3(mesh.position(at))); !seen[v] && far < least)
+        least = far, next = v;
+    const dvec3 from = above(at), to = above(next);
+    for (int i = 1; i <= 50; ++i) {
+      const dvec3 out = normalize(from + (to - from) * (i / 50.0));
+      stage.place(probe, 0.097 * out);
+      stage.tick();
+      worst.add(length(raw_force(stage, probe) - law(d, 0.003) * out) / law(d, 0.003), fmt::format("way {}", way));
+    }
+    at = next;
+  }
+  return worst;
+}
+
 HardFigure on_an_edge(const HardSetting&) {
   HardFigure worst;
   press(worst, "edge", scenes::sheet(10, 0.1), {0.015, -0.003, 0.01}, 1);
@@ -186,6 +218,9 @@ std::vector<HardCase> hard_places() {
   return {
       {"OnAVertexTheForceIsThatOfTheLaw", "methods.md 3.9: probe on a vertex or edge", kForce, "of the law [1]", 0.01,
        on_a_vertex},
+      {"AProbeLedFromVertexToVertexFeelsTheSphere", "methods.md 3.9: probe on a vertex or edge",
+       "400 lines between neighbours of 866 vertices, 3 mm deep: the force of the sphere", "of it [1]", 0.02,
+       from_vertex_to_vertex},
       {"OnAnEdgeTheForceIsThatOfTheLaw", "methods.md 3.9: probe on a vertex or edge", kForce, "of the law [1]", 0.01,
        on_an_edge},
       {"NothingIsTunnelledThroughAtTwentyMetresPerSecond", "methods.md 3.9: 20 m/s pass-through",
