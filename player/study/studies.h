@@ -15,7 +15,9 @@
   STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability") \
   STUDY(shapes, "the surface of a press by every shape, against closed forms and blocks of tetrahedra") \
   STUDY(hardcases, "where haptic engines break: what must hold there, the verdict and the figure") \
-  STUDY(surfaces, "facets, force shading, curved patches against spheres, tori, saddles: ripple, direction, work, us")
+  STUDY(surfaces, "facets, force shading, curved patches against spheres, tori, saddles: ripple, direction, work, us") \
+  STUDY(collision, "local walks, the tree and brute force, on meshes up to two million triangles: us against misses") \
+  STUDY(scale, "a tick, a frame and a soft step, by vertices, moving vertices, tetrahedra and contacts: fitted powers")
 // clang-format on
 
 namespace pliant {
