@@ -17,7 +17,9 @@
   STUDY(hardcases, "where haptic engines break: what must hold there, the verdict and the figure") \
   STUDY(surfaces, "facets, force shading, curved patches against spheres, tori, saddles: ripple, direction, work, us") \
   STUDY(fidelity, "one indentation by P1, every shape and law, and by the FEM at four resolutions: force and surface") \
-  STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes")
+  STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes") \
+  STUDY(collision, "local walks, the tree and brute force, on meshes up to two million triangles: us against misses") \
+  STUDY(scale, "a tick, a frame and a soft step, by vertices, moving vertices, tetrahedra and contacts: fitted powers")
 // clang-format on
 
 namespace pliant {

@@ -10,6 +10,7 @@
 #include "engine/session_inside.h"
 #include "engine/sources.h"
 #include "player/study/hard/hard_case.h"
+#include "player/study/study_collision.h"
 #include "player/study/tick_cost.h"
 #include "player/verbs/content_folder.h"
 
@@ -108,6 +109,14 @@ HardFigure most_ticks(const HardSetting& setting) {
   return worst;
 }
 
+HardFigure nearest_queries(const HardSetting& setting) {
+  HardFigure worst;
+  for (const PublishedQuery& query : kFcpw)
+    if (!setting.brief || query.vertices <= 100'000)
+      worst.add(closest_us(query.vertices, 5000) / query.scalar_us, fmt::format("{} vertices", query.vertices));
+  return worst;
+}
+
 }  // namespace
 
 std::vector<HardCase> hard_levels() {
@@ -121,6 +130,9 @@ std::vector<HardCase> hard_levels() {
        "us", 10, half_of_ticks, "", true},
       {"NearlyAllTicksTakeNoMoreThanThirtyMicroseconds", "contact-energy.md 4: cost",
        "1e6 vertices, 2,000 awake: 99 % of ticks", "us", 30, most_ticks, "", true},
+      {"TheNearestPointIsFoundWithinTwiceTheTimeOfFcpw", "contact-energy.md 4: cost",
+       "spheres of 1e5 and 1e6 vertices: time over FCPW's scalar figure, measured on another machine", "of it [1]", 2,
+       nearest_queries, "", true},
   };
 }
 
