@@ -13,6 +13,8 @@ void LinkState::to(DeviceState state, DeviceCause cause, double now) {
 void LinkState::follow_orders(double now) {
   const std::uint32_t given = orders_.exchange(0, std::memory_order_relaxed);
   renewed_ = false;
+  // What gives no force has nothing to be stopped.
+  if (!(can_.renders_force || can_.renders_torque || can_.renders_grip || can_.renders_vibration)) return;
   if (given & kStop) {
     if (report_.state != DeviceState::kTripped) to(DeviceState::kTripped, DeviceCause::kEmergencyStop, now);
     latched_ = true;

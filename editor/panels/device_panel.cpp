@@ -14,9 +14,6 @@ class DevicePanel : public Panel {
   explicit DevicePanel(App& app) : app_(app) {}
   const char* name() const override { return "Devices"; }
   Place place() const override { return Place::kRight; }
-  std::string badge(const Editor&) const override {
-    return app_.play().on() ? ui::devices_badge(app_.play().status().devices) : std::string();
-  }
 
   void draw(Editor& editor) override {
     Play& play = app_.play();

@@ -238,13 +238,13 @@ void draw_rates(const DeviceView& d, std::uint64_t late_ticks) {
     line = fmt::format("{:.0f} of {:.0f} Hz", f.rate, d.can.rate);
     if (f.read_p50 > 0.0) line += fmt::format(", read after {:.2f} ms", 1e-3 * f.read_p50);
     if (f.round_trip_p50 > 0.0) line += fmt::format(", round trip {:.2f} ms", 1e-3 * f.round_trip_p50);
-    line += fmt::format("; jitter {:.2f} ms; {} deadlines missed, {} models late", 1e-3 * f.jitter, f.missed,
+    line += fmt::format("; jitter {:.2f} ms; missed deadlines {}, late models {}", 1e-3 * f.jitter, f.missed,
                         f.late_models);
     if (!f.has_priority) line += "; without SCHED_FIFO";
   } else {
     line = fmt::format("{:.0f} samples a second, read by the touch clock", f.rate);
   }
-  line += fmt::format("; {} ticks late", late_ticks);
+  line += fmt::format(", late ticks {}", late_ticks);
   dim(line.c_str());
   hint(
       "How often the device is served; how long its sample took to be read; deadlines that its own loop missed; force "
@@ -376,12 +376,16 @@ void device_list(const DevicesView& view, const std::string& stop_keys, DeviceOr
     gap(2);
   }
   for (const DeviceView& each : view.devices) draw_device(each, view.late_ticks, orders);
-  for (const DevicesView::Other& other : view.others)
-    dim(fmt::format("{}: moved by {}, not by a device", printable(other.effector), printable(other.source)).c_str());
+  if (!view.others.empty() && section("Without a device", view.devices.empty())) {
+    ImGui::PushFont(font(Type::kSmall));
+    for (const DevicesView::Other& other : view.others)
+      dim(fmt::format("{}: {}", printable(other.effector), printable(other.source)).c_str());
+    ImGui::PopFont();
+  }
   if (view.devices.empty() && view.others.empty()) dim("Nothing here is moved by a device.");
   if (view.unusable.empty()) return;
   gap(kGap);
-  if (!section("Not usable yet")) return;
+  if (!section("Not usable yet", view.devices.empty())) return;
   for (const DeviceInfo& device : view.unusable) {
     ImGui::TextUnformatted(printable(device.name).c_str());
     dim(printable(device.missing).c_str());

@@ -193,6 +193,7 @@ Status WindowLoop::learn(const PictureDone& done) {
   if (done.options != ordered_options_) options_ = done.options;
   wants_mouse_ = done.wants_mouse;
   widgets_ = done.widgets;
+  press_widgets();
   if (s_.devices && done.orders.any()) s_.devices->order(done.orders);
   if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
     ++screenshots_;  // another window took the name meanwhile

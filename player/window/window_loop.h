@@ -33,7 +33,7 @@ class WindowLoop {
   void handle(const InputEvent& event);
   void key(int key);
   void emergency_stop();
-  void press_widget(const std::string& address);
+  void press_widgets();
   void press(const InputEvent& event);
   void decide(const std::optional<Picked>& seen);
   void release();
@@ -68,6 +68,8 @@ class WindowLoop {
   std::optional<TouchClock> touch_;
   std::atomic<bool> hands_stopped_{false};  // no force for a simulated hand any more
   std::vector<ui::Place> widgets_;          // of the last picture
+  std::string wanted_widget_;               // that a script presses once it is there
+  double wanted_since_ = 0.0;               // [s]
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
   double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed

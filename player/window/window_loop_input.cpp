@@ -12,7 +12,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kSamePlace = 2.0;  // [pixel]
+constexpr double kSamePlace = 2.0;    // [pixel]
+constexpr double kPressWithin = 3.0;  // [s] that a script waits for what it presses
 
 std::size_t imgui_button(MouseButton button) {
   return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
@@ -121,17 +122,20 @@ void WindowLoop::emergency_stop() {
       false);
 }
 
-// As a hand would: the button is down for a picture.
-void WindowLoop::press_widget(const std::string& address) {
+// As a hand would: once a picture shows it, the button is down for a picture.
+void WindowLoop::press_widgets() {
+  if (wanted_widget_.empty()) return;
   for (const ui::Place& place : widgets_) {
-    if (place.address != address) continue;
+    if (place.address != wanted_widget_) continue;
     mouse_.x = 0.5 * static_cast<double>(place.low.x + place.high.x);
     mouse_.y = 0.5 * static_cast<double>(place.low.y + place.high.y);
     mouse_.down[0] = true;
+    wanted_widget_.clear();
     return;
   }
-  say("the script presses `" + address + "`, which is not there", true);
-  note("the script presses `" + address + "`, which is not there");
+  if (seconds_ - wanted_since_ < kPressWithin) return;
+  note("the script presses `" + wanted_widget_ + "`, which is not there");
+  wanted_widget_.clear();
 }
 
 void WindowLoop::key(int key) {
@@ -234,7 +238,8 @@ void WindowLoop::handle(const InputEvent& event) {
         key(event.key);
       break;
     case InputKind::kWidget:
-      press_widget(event.file);
+      wanted_widget_ = event.file;
+      wanted_since_ = seconds_;
       break;
     case InputKind::kKeyUp:
     case InputKind::kText:

@@ -32,7 +32,7 @@ class DeviceWindowTest : public CommandTest {
 };
 
 TEST_F(DeviceWindowTest, ALevelsDeviceIsPlayedStoppedByTheKeyAndArmedByThePanel) {
-  level_wants("falcon:nowhere; simulated:touch");
+  level_wants("falcon; simulated:touch");
   const Said said = edited(
       "click Tab/Devices\nawait Devices/Look again\nclick Play/Play\nsay falcon\n"
       "hear plays in real time\nawait Devices/tip/Active 20\nwait 0.3\nscreenshot active.png\n"
@@ -46,7 +46,7 @@ TEST_F(DeviceWindowTest, ALevelsDeviceIsPlayedStoppedByTheKeyAndArmedByThePanel)
 }
 
 TEST_F(DeviceWindowTest, WhereNoDeviceIsThereTheMouseTakesItsPlace) {
-  level_wants("falcon:nowhere; mouse");
+  level_wants("falcon; mouse");
   const Said said = edited(
       "click Play/Play\nawait Play/Pause\nhear falcon\nwait 0.5\nclick Tab/Devices\nscreenshot none.png\n"
       "press Viewport@0.5,0.45\nwait 1\nrelease\nkey Shift+Space\nclose\n");

@@ -42,6 +42,7 @@ struct Bench {
   EmulatedSony pad{SonyModel::kDualSense, false};
   double from = -1.0, to = -1.0;          // [s] the cap is unplugged
   double cap_said = 0.0, pad_said = 0.0;  // [s]
+  bool cap_rests = true;
 
   bool unplugged(double t) const { return t >= from && t < to; }
   void run_cap(double t) {
@@ -49,7 +50,8 @@ struct Bench {
     if (t - cap_said < 0.008) return;
     cap_said = t;
     const dvec3 d = deflection(t);
-    if (cap.hid.unplugged || d == dvec3(0)) return;  // a cap at rest is silent
+    if (cap.hid.unplugged || (d == dvec3(0) && cap_rests)) return;  // a cap at rest is silent
+    cap_rests = d == dvec3(0);
     const auto counts = [](double share) { return static_cast<int>(350 * share); };
     cap.deflect({counts(d.x), counts(d.z), counts(-d.y), 0, 0, 0});
     cap.press(t > 1.4 && t < 3.0 ? 1 : 0);
