@@ -243,8 +243,9 @@ std::vector<Key> device_keys() {
   keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id),
-                      "which device: DRIVER, DRIVER:ID, any-force, any-pose, any or mouse, or several of these in "
-                      "turn, separated by semicolons"));
+                      "which device, with the driver `external`: DRIVER, DRIVER:ID, any-force, any-pose, any or mouse, "
+                      "or several of these in turn, separated by semicolons; behind each, after a bar, what maps its "
+                      "workspace: scale=2, clutch=BUTTON, frame=X:Y:Z, border=40mm"));
   keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
                         "workspace of a device with the driver `external` to world"));
   keys.push_back(

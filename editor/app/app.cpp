@@ -183,6 +183,12 @@ std::string App::keys_of(const Action& action) const {
   return bound == settings.keys.end() ? action.keys : bound->second;
 }
 
+std::string App::keys_of(const std::string& id) const {
+  for (const Action& each : actions_)
+    if (each.id == id) return keys_of(each);
+  return {};
+}
+
 void App::do_action(const std::string& id) {
   for (const Action& each : actions_)
     if (each.id == id && each.enabled(editor)) {
@@ -227,6 +233,13 @@ void App::keys(std::span<const InputEvent> events) {
     ViewTool* const t = tool();
     const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    const auto urgent = std::find_if(actions_.begin(), actions_.end(), [&](const Action& each) {
+      return each.always && !pressed.empty() && keys_of(each) == pressed && each.enabled(editor);
+    });
+    if (urgent != actions_.end()) {
+      urgent->run(editor);
+      continue;
+    }
     if (!rebinding.empty()) {
       if (!pressed.empty()) rebound = pressed;
       continue;
@@ -425,6 +438,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
                                             wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
+      ui::underline_item();  // told apart from one under the pointer
       ImGui::BeginChild(each->name());
       {
         const ui::Scope scope(each->name());

@@ -27,6 +27,7 @@
 #include "player/verbs/device_test.h"
 #include "player/verbs/verbs.h"
 #include "pliant/content.h"
+#include "pliant/drivers.h"
 
 namespace pliant {
 namespace {
@@ -448,6 +449,7 @@ int parse_and_run(int argc, const char* const* argv) {
   if (!unit) return fail(kUsage, unit.error());
   edit_options.unit = *unit;
   edit_options.levels = shipped_levels();
+  register_all_drivers();
   const Status edited = edit(edit_options);
   return edited ? kDone : fail(kFailed, edited.error());
 }

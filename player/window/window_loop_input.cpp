@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "editor/ui/script.h"
 #include "player/exit.h"
 #include "runtime/printable.h"
 
@@ -109,6 +110,30 @@ void WindowLoop::wheel(const InputEvent& event) {
   }
 }
 
+void WindowLoop::emergency_stop() {
+  if (!s_.devices && !s_.hands) return;
+  if (s_.devices) s_.devices->stop_all();
+  hands_stopped_ = true;
+  state_.figures = true;
+  state_.show_devices = s_.devices != nullptr;
+  say(s_.devices ? "emergency stop: no device has force until it is armed in the panel"
+                 : "emergency stop: the simulated hands feel nothing until the level is started anew (R)",
+      false);
+}
+
+// As a hand would: the button is down for a picture.
+void WindowLoop::press_widget(const std::string& address) {
+  for (const ui::Place& place : widgets_) {
+    if (place.address != address) continue;
+    mouse_.x = 0.5 * static_cast<double>(place.low.x + place.high.x);
+    mouse_.y = 0.5 * static_cast<double>(place.low.y + place.high.y);
+    mouse_.down[0] = true;
+    return;
+  }
+  say("the script presses `" + address + "`, which is not there", true);
+  note("the script presses `" + address + "`, which is not there");
+}
+
 void WindowLoop::key(int key) {
   RenderOptions& options = options_;
   switch (key) {
@@ -121,6 +146,10 @@ void WindowLoop::key(int key) {
       break;
     case GLFW_KEY_TAB:
       state_.figures = !state_.figures;
+      break;
+    case GLFW_KEY_D:
+      state_.show_devices = !state_.show_devices;
+      state_.figures |= state_.show_devices;
       break;
     case GLFW_KEY_F12:
       ++screenshots_;
@@ -198,7 +227,14 @@ void WindowLoop::handle(const InputEvent& event) {
       wheel(event);
       break;
     case InputKind::kKey:
-      if (!event.repeated) key(event.key);
+      if (event.repeated) break;
+      if (!s_.stop_keys.empty() && ui::keys_text(event.key, event.modifiers) == s_.stop_keys)
+        emergency_stop();
+      else
+        key(event.key);
+      break;
+    case InputKind::kWidget:
+      press_widget(event.file);
       break;
     case InputKind::kKeyUp:
     case InputKind::kText:
