@@ -91,6 +91,7 @@ struct Columns {
   std::size_t at[kQuantities] = {};  // 1 and on; 0: not there
   double factor[kQuantities] = {1, 1, 1};
   std::optional<std::size_t> probe;
+  std::size_t axis[3] = {};  // of a run's force, 1 and on
   std::size_t count = 0;
   char mark = ',';
 };
@@ -104,6 +105,8 @@ Result<Columns> read_head(std::string_view line, const std::string& where) {
   bool run = std::find(heads.begin(), heads.end(), "probe") != heads.end();  // a run's forces.csv
   for (std::size_t i = 0; i < heads.size(); ++i) {
     if (heads[i] == "probe") out.probe = i;
+    for (std::size_t a = 0; a < 3; ++a)
+      if (run && heads[i] == std::string_view("fxfyfz").substr(2 * a, 2)) out.axis[a] = i + 1;
     if (run && heads[i] == "fn") {
       out.at[kForce] = i + 1;
       continue;
@@ -161,7 +164,8 @@ Status check(const PressRecord& record, const std::string& where) {
 
 }  // namespace
 
-Result<PressRecord> parse_press(std::string_view text, const std::string& where, const std::string& probe) {
+Result<PressRecord> parse_press(std::string_view text, const std::string& where, const std::string& probe,
+                                bool with_friction) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   PressRecord record;
   record.name = where;
@@ -202,6 +206,15 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
                                        words_of(q).what, printable(cell.substr(0, 40)))};
       value[q] *= columns->factor[q];
     }
+    if (with_friction && columns->axis[0] && columns->axis[1] && columns->axis[2]) {
+      double square = 0.0, along = 0.0;
+      for (const std::size_t axis : columns->axis) {
+        if (!read_number(cells[axis - 1], along) || !std::isfinite(along))
+          return Error{here, "its force is no finite number; correct the row or leave it out"};
+        square += along * along;
+      }
+      value[kForce] = std::sqrt(square);
+    }
     if (columns->at[kTime]) {
       if (!record.time.empty() && !(value[kTime] > record.time.back()))
         return Error{here, "its time does not grow from the row before; sort the rows and remove doubles"};
@@ -225,10 +238,11 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
   return record;
 }
 
-Result<PressRecord> read_press(const std::filesystem::path& file, const std::string& probe) {
+Result<PressRecord> read_press(const std::filesystem::path& file, const std::string& probe, bool with_friction) {
   const Result<Bytes> bytes = read_file(file, limits::kScriptFile);
   if (!bytes) return bytes.error();
-  return parse_press({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file.string(), probe);
+  return parse_press({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file.string(), probe,
+                     with_friction);
 }
 
 }  // namespace pliant

@@ -22,8 +22,10 @@ struct PressRecord {
 
 // Names of columns, and the units that they may end with, as NAME_UNIT, `NAME [UNIT]` or `NAME (UNIT)`:
 //   time, t: s ms us min h;  depth, indentation, displacement, d: m cm mm um nm;  force, load, f: N mN uN nN kN.
-// `probe`: of a forces.csv with several, which one. Errors name the file and the line.
-Result<PressRecord> read_press(const std::filesystem::path& file, const std::string& probe = {});
-Result<PressRecord> parse_press(std::string_view text, const std::string& where, const std::string& probe = {});
+// `probe`: of a forces.csv with several, which one. `whole`: of a forces.csv the norm of the force, with friction, as a
+// report has it, instead of the normal one. Errors name the file and the line.
+Result<PressRecord> read_press(const std::filesystem::path& file, const std::string& probe = {}, bool whole = false);
+Result<PressRecord> parse_press(std::string_view text, const std::string& where, const std::string& probe = {},
+                                bool whole = false);
 
 }  // namespace pliant

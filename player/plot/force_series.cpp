@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kLongest = 4096;  // rows of a spectrum's window
 constexpr std::size_t kShortest = 64;   // below it there is no spectrum
 constexpr double kUneven = 0.01;        // [1] of the usual distance of rows
+constexpr double kClosed = 1e-9;        // [1] of the work put in: rounding
+constexpr double kFast = 20.0;          // [Hz]
 constexpr double kPi = 3.14159265358979323846;
 
 std::string_view next_cell(std::string_view& line, std::string& scratch) {
@@ -174,10 +176,13 @@ SeriesSummary summary_of(const ForceSeries& s) {
     if (work > 0) out.put_in += work;
   }
   out.rms = pressed > 0 ? std::sqrt(square / pressed) : 0.0;
+  if (std::abs(out.lost) < kClosed * out.put_in) out.lost = 0.0;
+  if (s.normal.back() > 0) out.lost = std::numeric_limits<double>::quiet_NaN();
   const Spectrum spectrum = spectrum_of(s);
-  double most = 0.0;
-  for (std::size_t i = spectrum.density.size() / 20 + 1; i < spectrum.density.size(); ++i)
-    if (spectrum.density[i] > most) most = spectrum.density[i], out.loudest = spectrum.frequency[i];
+  double power = 0.0;
+  for (std::size_t i = 0; i < spectrum.density.size(); ++i)
+    if (spectrum.frequency[i] > kFast) power += spectrum.density[i] * spectrum.density[i] * spectrum.frequency[0];
+  out.fast = std::sqrt(power);
   return out;
 }
 

@@ -36,8 +36,8 @@ struct SeriesSummary {
   double depth = 0.0, force = 0.0;      // [m] [N] largest
   double rms = 0.0;                     // [N] of the normal force, in contact
   double stiffness = 0.0;               // [N/m] largest force over the depth there
-  double lost = 0.0, put_in = 0.0;      // [J] net and positive work along the depth: the hysteresis loop
-  double loudest = 0.0;                 // [Hz] of the spectrum, but for its first twentieth
+  double lost = 0.0, put_in = 0.0;      // [J] net and positive work along the depth: the loop. NaN: it ended pressed
+  double fast = 0.0;                    // [N] RMS of what the spectrum has above 20 Hz
 };
 SeriesSummary summary_of(const ForceSeries& series);
 

@@ -68,13 +68,17 @@ struct Column {
 };
 constexpr Column kColumns[] = {{"seconds", "time [s]", 1.0, &SeriesSummary::seconds},
                                {"contact_s", "contact [s]", 1.0, &SeriesSummary::contact},
-                               {"max_depth_m", "max depth [mm]", 1e3, &SeriesSummary::depth},
-                               {"max_force_N", "max force [N]", 1.0, &SeriesSummary::force},
-                               {"rms_force_N", "RMS force [N]", 1.0, &SeriesSummary::rms},
-                               {"stiffness_N_m", "force/depth [N/m]", 1.0, &SeriesSummary::stiffness},
+                               {"max_depth_m", "depth [mm]", 1e3, &SeriesSummary::depth},
+                               {"max_force_N", "force [N]", 1.0, &SeriesSummary::force},
+                               {"rms_force_N", "RMS [N]", 1.0, &SeriesSummary::rms},
+                               {"stiffness_N_m", "F/d [N/m]", 1.0, &SeriesSummary::stiffness},
                                {"put_in_J", "work in [mJ]", 1e3, &SeriesSummary::put_in},
                                {"lost_J", "lost [mJ]", 1e3, &SeriesSummary::lost},
-                               {"peak_Hz", "peak [Hz]", 1.0, &SeriesSummary::loudest}};
+                               {"rms_above_20Hz_N", "> 20 Hz [mN]", 1e3, &SeriesSummary::fast}};
+
+std::string shown_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
@@ -89,7 +93,12 @@ std::string summary_csv(const std::vector<Drawn>& all) {
   for (const Drawn& each : all) {
     text += csv_text(each.series.run) + "," + csv_text(each.series.probe) + (each.series.tool ? ",tool," : ",probe,") +
             csv_text(joined(each.series.objects));
-    for (const Column& column : kColumns) put(text, each.summary.*column.value);
+    for (const Column& column : kColumns) {
+      if (std::isfinite(each.summary.*column.value))
+        put(text, each.summary.*column.value);
+      else
+        text += ",";
+    }
     text += "\n";
   }
   return text;
@@ -188,7 +197,7 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
     pen.text(kFirst, y, 13, 0, name.size() < all[i].name.size() ? ".." + name : name);
     for (std::size_t c = 0; c < std::size(kColumns); ++c)
       pen.text(right - kColumn * static_cast<double>(std::size(kColumns) - 1 - c), y, 13, 1.0,
-               fmt::format("{:.4g}", all[i].summary.*kColumns[c].value * kColumns[c].scale));
+               shown_number(all[i].summary.*kColumns[c].value * kColumns[c].scale));
   }
   if (all.size() > 2 * kMostDrawn)
     pen.text(kFirst, y + 22, 13, 0, fmt::format("... and {} more in summary.csv", all.size() - 2 * kMostDrawn));
@@ -206,6 +215,8 @@ void say_differences(const std::vector<Drawn>& all) {
     if (!each.spectrum.even && !each.spectrum.frequency.empty())
       note(each.name +
            ": its rows are not evenly spaced (ticks were skipped): its spectrum takes them as if they were");
+    if (std::isnan(each.summary.lost))
+      note(each.name + ": its run ended pressed, so that its loop is open and nothing is known to be lost");
     if (each.spectrum.frequency.empty()) note(each.name + ": has too few rows for a spectrum");
   }
   objects.erase("");
@@ -257,9 +268,9 @@ int plot_runs(const PlotOptions& options) {
   say_differences(all);
   if (shown < all.size()) note(fmt::format("the picture has the first {} of {} probes and tools", shown, all.size()));
   for (const Drawn& each : all)
-    print("{}: {:.3g} {} {}, {:.4g} N, {:.4g} N/m, {:.3g} of {:.3g} mJ lost\n", each.name, each.summary.depth * 1e3,
-          "mm", each.series.tool ? "device-handle offset" : "deep", each.summary.force, each.summary.stiffness,
-          each.summary.lost * 1e3, each.summary.put_in * 1e3);
+    print("{}: {:.3g} mm {}, {:.4g} N, {:.4g} N/m, {} of {:.3g} mJ lost\n", each.name, each.summary.depth * 1e3,
+          each.series.tool ? "device-handle offset" : "deep", each.summary.force, each.summary.stiffness,
+          shown_number(each.summary.lost * 1e3), each.summary.put_in * 1e3);
   print("{}: {} files{}\n", out->shown().string(), out->written().size(),
         out->moved() ? " (the folder that was meant has results already, which stay; --force replaces them)" : "");
   return kDone;
