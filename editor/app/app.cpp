@@ -457,6 +457,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       ImGui::PopStyleVar(2);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
+      ui::underline_item();  // told apart from one under the pointer
       ImGui::BeginChild(each->name());
       {
         const ui::Scope scope(each->name());
