@@ -13,8 +13,6 @@ namespace {
 
 constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
 
-constexpr std::string_view kSimulated = "simulated:";  // in front of the id of what a simulated hand holds
-
 // The first probe or tool of this name.
 Entity find_hand(const World& world, const std::string& name) {
   for (const Entity hand : hands(world))
@@ -156,12 +154,11 @@ std::vector<std::string> make_orbits(World& world) {
   return held;
 }
 
-Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources, bool lockstep) {
+Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources) {
   SimulatedHands made;
   for (const ProbeSource& source : sources) {
     if (!source.held) continue;
-    if (const Status added = made.add(world, find_hand(world, source.name), source.name, source.words, lockstep);
-        !added)
+    if (const Status added = made.add(world, find_hand(world, source.name), source.words); !added)
       return Error{"--probe " + source.name, added.error().message()};
   }
   return made;
@@ -178,8 +175,8 @@ std::string describe_source(const World& world, Entity hand) {
     case DriverKind::kMouse:
       return "mouse";
     case DriverKind::kExternal:
-      if (!device->id.starts_with(kSimulated)) return "device:" + device->id;
-      return device->id.size() == kSimulated.size() ? "hand" : "hand:" + device->id.substr(kSimulated.size());
+      if (!device->id.starts_with(kHandId)) return "device:" + device->id;
+      return device->id.size() == kHandId.size() ? "hand" : device->id;
     case DriverKind::kNull:
       return "null";
   }

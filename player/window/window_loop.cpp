@@ -240,14 +240,7 @@ WindowFigures WindowLoop::run() {
     return std::move(figures_);
   }
   TouchHooks hooks;
-  hooks.after = [this](Tick tick) {
-    if (s_.hands) s_.hands->write(s_.world);
-    s_.journal.note(s_.world, tick);
-  };
-  if (s_.hands) {
-    hooks.before = [this](Tick tick) { s_.hands->read(s_.world, tick); };
-    hooks.idle = [this](Tick) { s_.hands->idle(); };
-  }
+  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
   if (s_.devices) s_.devices->hook(s_.world, hooks);
   touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
   Status status = Done{};
