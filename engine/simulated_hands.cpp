@@ -1,6 +1,9 @@
 #include "engine/simulated_hands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "devices/spec.h"
 #include "devices/wrappers/chain.h"
@@ -43,6 +46,24 @@ dvec3 middle_of(const Path& path) {
   return 0.5 * (low + high);
 }
 
+// A path that a workspace does not hold: one sentence, or none.
+std::string beyond_stops(const World& world, Entity hand, const SimulatedOptions& options) {
+  dvec3 farthest(0);
+  for (const PathRow& row : options.will.path.rows) farthest = glm::max(farthest, glm::abs(row.position));
+  for (int i = 0; i < 3; ++i) {
+    const double reach = options.profile.workspace[i];
+    if (!(farthest[i] > reach)) continue;
+    const Name* const name = world.registry.find<Name>(hand);
+    return fmt::format(
+        "the path of `{}` goes {:.0f} mm from its middle along {}, and the workspace of `{}` ends at {:.0f} mm: its "
+        "end "
+        "stops hold it there; set PLIANT_haptic_device.scale to {:.2g}, or take a larger device",
+        name ? name->value : std::string(), 1e3 * farthest[i], "xyz"[i], options.profile.name, 1e3 * reach,
+        std::ceil(10.0 * farthest[i] / reach) / 10.0);
+  }
+  return {};
+}
+
 }  // namespace
 
 Status SimulatedHands::add(World& world, Entity hand, const std::string& words) {
@@ -61,6 +82,9 @@ Status SimulatedHands::add(World& world, Entity hand, const std::string& words) 
   } else if (options->will.path.rows.empty()) {
     options->will.path.rows = {{0.0, dvec3(0), device.rotation}};
   }
+  if (parts.wrappers.empty() && options->stops)
+    if (std::string sentence = beyond_stops(world, hand, *options); !sentence.empty())
+      notes_.push_back(std::move(sentence));
   auto simulated = std::make_unique<SimulatedDevice>(std::move(options).value());
   held.device = simulated.get();
   auto chain = wrap(std::move(simulated), parts.wrappers);
