@@ -112,14 +112,11 @@ void WindowLoop::wheel(const InputEvent& event) {
 }
 
 void WindowLoop::emergency_stop() {
-  if (!s_.devices && !s_.hands) return;
-  if (s_.devices) s_.devices->stop_all();
-  hands_stopped_ = true;
+  if (!s_.devices) return;
+  s_.devices->stop_all();
   state_.figures = true;
-  state_.show_devices = s_.devices != nullptr;
-  say(s_.devices ? "emergency stop: no device has force until it is armed in the panel"
-                 : "emergency stop: the simulated hands feel nothing until the level is started anew (R)",
-      false);
+  state_.show_devices = true;
+  say("emergency stop: no device has force until it is armed in the panel", false);
 }
 
 // As a hand would: once a picture shows it, the mouse goes there for a picture, and its button is down for the next.
