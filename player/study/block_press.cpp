@@ -94,40 +94,62 @@ TetMesh tets_of(const Grid& grid, const BlockPress& p) {
   return mesh;
 }
 
-}  // namespace
-
-Result<PressedBlock> press_block(const BlockPress& press, double depth) {
-  const TetMesh mesh = tets_of(grid_of(press), press);
-  TissueMaterial material;
-  material.young = press.young;
-  material.poisson = press.poisson;
-  material.strain = Strain::kLinear;
-  PressedBlock out;
-  out.depth = depth;
-  out.tets = mesh.tets.size();
-  const std::uint64_t begin = processor_ns();
-  Tissue tissue(mesh, material, mesh.free_count);
-  for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) tissue.position()[i].y -= depth;
-  const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);
-  solver->analyse(tissue.inner());
-  if (!settle_tissue(tissue, *solver, dvec3(0), {}).solved)
-    return Error{"study shapes", "the block of tetrahedra could not be solved; this is a defect of the study"};
-  tissue.assemble(1.0, dvec3(0));
-  for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) out.force += tissue.elastic_force()[3 * i + 1];
-  out.ms = static_cast<double>(processor_ns() - begin) * 1e-6;
+// Positive: the surface gives way. Means over the top's rings.
+void read_top(const TetMesh& mesh, const Tissue& tissue, double punch, PressedBlock& out) {
   std::map<long, std::pair<double, double>> rings;  // by the radius: shares and how many
   for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
     const dvec3 x = mesh.nodes[i];
     if (x.y != 0.0) continue;
-    auto& [sum, count] = rings[std::lround(std::hypot(x.x, x.z) / press.radius * 1e6)];
-    sum -= (tissue.position()[i].y - x.y) / depth;
+    auto& [sum, count] = rings[std::lround(std::hypot(x.x, x.z) / punch * 1e6)];
+    sum -= (tissue.position()[i].y - x.y) / out.depth;
     count += 1.0;
   }
   for (const auto& [at, ring] : rings) {
-    out.radius.push_back(static_cast<double>(at) * 1e-6 * press.radius);
+    out.radius.push_back(static_cast<double>(at) * 1e-6 * punch);
     out.share.push_back(ring.first / ring.second);
   }
-  return out;
+}
+
+}  // namespace
+
+Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std::vector<double>& depths) {
+  const TetMesh mesh = tets_of(grid_of(press), press);
+  TissueMaterial material;
+  material.young = press.young;
+  material.poisson = press.poisson;
+  material.strain = press.strain;
+  TissueStep settle;
+  if (press.strain == Strain::kCorotational) settle.iterations = 20, settle.tolerance = 1e-7;
+  std::uint64_t begin = processor_ns();
+  Tissue tissue(mesh, material, mesh.free_count);
+  const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);
+  solver->analyse(tissue.inner());
+  std::vector<PressedBlock> all;
+  double before = 0.0;
+  for (const double depth : depths) {
+    PressedBlock out;
+    out.depth = depth;
+    out.tets = mesh.tets.size();
+    for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) tissue.position()[i].y -= depth - before;
+    const TissueReport report = settle_tissue(tissue, *solver, dvec3(0), settle);
+    if (!report.solved)
+      return Error{"study", "the block of tetrahedra could not be solved; this is a defect of the study"};
+    out.solves = report.iterations;
+    tissue.assemble(1.0, dvec3(0));
+    for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) out.force += tissue.elastic_force()[3 * i + 1];
+    out.ms = static_cast<double>(processor_ns() - begin) * 1e-6;
+    read_top(mesh, tissue, press.radius, out);
+    all.push_back(std::move(out));
+    before = depth;
+    begin = processor_ns();
+  }
+  return all;
+}
+
+Result<PressedBlock> press_block(const BlockPress& press, double depth) {
+  auto all = press_block(press, std::vector<double>{depth});
+  if (!all) return all.error();
+  return std::move(all->front());
 }
 
 }  // namespace pliant

@@ -1,0 +1,268 @@
+#include "player/study/study_time_step.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "player/progress.h"
+#include "player/study/pareto.h"
+#include "player/study/processor_time.h"
+#include "player/study/studies.h"
+
+namespace pliant {
+namespace {
+
+constexpr StepScheme kSchemes[] = {StepScheme::kEuler, StepScheme::kMidpoint, StepScheme::kMidpointTwice,
+                                   StepScheme::kBdf2};
+constexpr double kEvery = 1.0 / 30.0;                     // [s] that traces are compared at
+constexpr int kRates[] = {30, 60, 120, 240, 480, 960};    // [Hz]
+constexpr int kTruthRate = 3840, kQuickTruthRate = 1920;  // [Hz]
+constexpr int kUsualRate = 60;                            // [Hz] PLIANT_simulation's default soft_step
+
+// A block of cells, from the origin up, centred; the pinned nodes last. Neighbours mirror one another.
+TetMesh block(int nx, int ny, int nz, double cell, const std::function<bool(dvec3)>& pinned) {
+  std::vector<dvec3> places;
+  for (int i = 0; i <= nx; ++i)
+    for (int j = 0; j <= ny; ++j)
+      for (int k = 0; k <= nz; ++k) places.push_back(cell * dvec3(i - 0.5 * nx, j, k - 0.5 * nz));
+  TetMesh mesh;
+  std::vector<std::uint32_t> name(places.size());
+  for (const bool held : {false, true}) {
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (pinned(places[i]) == held) name[i] = mesh.node_count(), mesh.nodes.push_back(places[i]);
+    if (!held) mesh.free_count = mesh.node_count();
+  }
+  const std::array<std::array<int, 3>, 6> orders{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      for (int k = 0; k < nz; ++k)
+        for (const auto& order : orders) {
+          const std::array<int, 3> cell_at{i, j, k};
+          std::array<int, 3> at;
+          for (std::size_t d = 0; d < 3; ++d) at[d] = cell_at[d] + cell_at[d] % 2;
+          const auto node = [&] {
+            return name[static_cast<std::size_t>((at[0] * (ny + 1) + at[1]) * (nz + 1) + at[2])];
+          };
+          Tet tet{node(), 0, 0, 0};
+          for (std::size_t s = 0; s < 3; ++s) {
+            const auto d = static_cast<std::size_t>(order[s]);
+            at[d] = cell_at[d] + (1 - cell_at[d] % 2);
+            tet[s + 1] = node();
+          }
+          const dvec3 a = mesh.nodes[tet[0]];
+          if (dot(cross(mesh.nodes[tet[1]] - a, mesh.nodes[tet[2]] - a), mesh.nodes[tet[3]] - a) < 0)
+            std::swap(tet[2], tet[3]);
+          mesh.tets.push_back(tet);
+        }
+  return mesh;
+}
+
+// A sphere whose middle is told by the time.
+Obstacle sphere(double radius, std::function<dvec3(double)> middle) {
+  return [radius, middle = std::move(middle)](dvec3 place, double time) -> std::optional<Penetration> {
+    const dvec3 away = place - middle(time);
+    const double far = length(away);
+    if (!(far < radius) || far == 0.0) return std::nullopt;
+    return Penetration{radius - far, away / far};
+  };
+}
+
+double smooth(double t) {  // 0 to 1, at rest at both ends
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+struct StepRow {
+  std::string scene;
+  StepScheme scheme;
+  int rate;
+  double error, ms;
+};
+
+std::string label_of(const StepRow& row) {
+  return fmt::format("{:.3g} ms", 1000.0 / row.rate);
+}
+
+ParetoTable table_of(const std::string& name, const std::string& title) {
+  ParetoTable table;
+  table.study = name;
+  table.title = title;
+  table.cost_name = "cost_ms_per_s";
+  table.cost_axis = "cost [ms of processor time a simulated second]; labels: the step";
+  table.error_name = "error";
+  table.error_axis = "RMS distance from the converged motion over the RMS of the motion [1]";
+  table.more = {"step_s", "rate_hz"};
+  table.most_error = 3.0;
+  table.least_error = 1e-7;
+  return table;
+}
+
+ParetoRow row_of(const StepRow& row) {
+  return {label_of(row),
+          row.ms,
+          row.error,
+          name_of(row.scheme),
+          {fmt::format("{:.9g}", 1.0 / row.rate), std::to_string(row.rate)}};
+}
+
+// Of all scenes: the geometric mean of errors, the mean of costs.
+std::vector<StepRow> means(const std::vector<StepRow>& rows) {
+  std::vector<StepRow> out;
+  for (const StepScheme scheme : kSchemes)
+    for (const int rate : kRates) {
+      double logs = 0.0, ms = 0.0, count = 0.0;
+      for (const StepRow& row : rows)
+        if (row.scheme == scheme && row.rate == rate) logs += std::log(row.error), ms += row.ms, count += 1.0;
+      if (count > 0) out.push_back({"all", scheme, rate, std::exp(logs / count), ms / count});
+    }
+  return out;
+}
+
+const StepRow* find(const std::vector<StepRow>& rows, StepScheme scheme, int rate) {
+  for (const StepRow& row : rows)
+    if (row.scheme == scheme && row.rate == rate) return &row;
+  return nullptr;
+}
+
+std::vector<std::string> sentences(const std::vector<StepRow>& all, const std::vector<StepRow>& mean,
+                                   const std::string& truth) {
+  std::string usual =
+      fmt::format("At the usual step of {:.3g} ms Euler, which levels step with, is off by", 1000.0 / kUsualRate);
+  for (const StepRow& row : all)
+    if (row.scheme == StepScheme::kEuler && row.rate == kUsualRate)
+      usual += fmt::format("{} {:.2g} % ({})", usual.ends_with("by") ? "" : ",", 100 * row.error, row.scene);
+  usual += "; the mean over the motions is";
+  for (const StepScheme scheme : kSchemes)
+    usual += fmt::format("{} {:.2g} % {}", usual.ends_with("is") ? "" : ",",
+                         100 * find(mean, scheme, kUsualRate)->error, name_of(scheme));
+  std::string slopes = "Error falls between the two shortest steps with the power";
+  for (const StepScheme scheme : kSchemes)
+    slopes += fmt::format("{} {:.1f} ({})", slopes.ends_with("power") ? "" : ",",
+                          std::log2(find(mean, scheme, kRates[std::size(kRates) - 2])->error /
+                                    find(mean, scheme, kRates[std::size(kRates) - 1])->error),
+                          name_of(scheme));
+  return {usual + ".", slopes + "; " + truth + "."};
+}
+
+}  // namespace
+
+std::vector<TissueScene> step_scenes(int cells) {
+  std::vector<TissueScene> scenes(4);
+  for (TissueScene& scene : scenes) scene.material = {.young = 5e3, .poisson = 0.4, .density = 1000, .beta = 1e-3};
+  const double height = 0.04, cell = height / cells;
+  // A bar that is held at one end and let go.
+  TissueScene& swing = scenes[0];
+  swing.name = "free swing";
+  swing.mesh = block(4 * cells, cells, cells, 0.03 / cells, [](dvec3 p) { return p.x < -0.0599; });
+  swing.material.young = 1e5;
+  swing.gravity = dvec3(0, -9.81, 0);
+  // A block that is bonded below, and a sphere.
+  const auto bonded = [&] { return block(2 * cells, cells, 2 * cells, cell, [](dvec3 p) { return p.y < 1e-9; }); };
+  const double radius = 0.015, over = height + radius;
+  TissueScene& press = scenes[1];
+  press.name = "press";
+  press.mesh = bonded();
+  press.obstacle = sphere(radius, [over](double t) { return dvec3(0.002, over - 0.008 * smooth(t / 0.2), 0.001); });
+  TissueScene& slide = scenes[2];
+  slide.name = "slide";
+  slide.mesh = bonded();
+  slide.obstacle = sphere(radius, [over](double t) {
+    return dvec3(-0.015 + 0.03 * smooth((t - 0.1) / 0.25), over - 0.006 * smooth(t / 0.1), 0.001);
+  });
+  // A block that is thrown on the ground.
+  TissueScene& impact = scenes[3];
+  impact.name = "impact";
+  impact.mesh = block(cells, cells, cells, cell, [](dvec3) { return false; });
+  impact.velocity = dvec3(0, -0.5, 0);
+  impact.gravity = dvec3(0, -9.81, 0);
+  impact.obstacle = [](dvec3 place, double) -> std::optional<Penetration> {
+    constexpr double kGround = -0.01;  // [m]
+    if (!(place.y < kGround)) return std::nullopt;
+    return Penetration{kGround - place.y, dvec3(0, 1, 0)};
+  };
+  impact.seconds = 0.2;
+  return scenes;
+}
+
+Trace trace_of(const TissueScene& scene, StepScheme scheme, double step, double every, double* ms,
+               const std::function<bool(double)>& goes_on) {
+  const std::uint64_t begin = process_ns();
+  TissueRun run(scene, scheme);
+  const int samples = static_cast<int>(std::lround(scene.seconds / every)),
+            steps = static_cast<int>(std::lround(every / step));
+  Trace trace;
+  for (int i = 0; i < samples; ++i) {
+    if (!goes_on(static_cast<double>(i) / samples)) return {};
+    for (int k = 0; k < steps; ++k)
+      if (!run.step(step)) return {};
+    trace.push_back(run.position());
+  }
+  if (ms) *ms = static_cast<double>(process_ns() - begin) * 1e-6 / (samples * every);
+  return trace;
+}
+
+double trace_error(const TissueScene& scene, const Trace& trace, const Trace& truth, double every) {
+  if (trace.size() != truth.size()) return std::numeric_limits<double>::infinity();
+  double off = 0.0, size = 0.0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const double t = every * static_cast<double>(k + 1);
+    const dvec3 free =
+        scene.mesh.free_count == scene.mesh.node_count() ? t * scene.velocity + 0.5 * t * t * scene.gravity : dvec3(0);
+    for (std::uint32_t i = 0; i < scene.mesh.free_count; ++i) {
+      const dvec3 error = trace[k][i] - truth[k][i], way = truth[k][i] - scene.mesh.nodes[i] - free;
+      off += dot(error, error);
+      size += dot(way, way);
+    }
+  }
+  return std::sqrt(off / size);
+}
+
+Status study_time_step(OutputFolder& out, bool quick, const Interrupt& interrupt) {
+  Progress progress("study time_step");
+  const int truth_rate = quick ? kQuickTruthRate : kTruthRate;
+  std::vector<StepRow> rows;
+  double worst = 0.0, done = 0.0;
+  const std::vector<TissueScene> scenes = step_scenes(quick ? 2 : 4);
+  for (const TissueScene& scene : scenes) {
+    double from = 0.0, part = 0.5;
+    const auto goes_on = [&](double share) {
+      progress.update((done + from + part * share) / static_cast<double>(scenes.size()));
+      return !interrupt.requested();
+    };
+    const Trace truth = trace_of(scene, StepScheme::kConverged, 1.0 / truth_rate, kEvery, nullptr, goes_on);
+    from = 0.5, part = 0.25;
+    const Trace coarser = trace_of(scene, StepScheme::kConverged, 2.0 / truth_rate, kEvery, nullptr, goes_on);
+    if (interrupt.requested()) return interrupted();
+    worst = std::max(worst, trace_error(scene, coarser, truth, kEvery));
+    from = 0.75, part = 0.0;
+    const std::string name =
+        scene.name.substr(scene.name.find(' ') == std::string::npos ? 0 : scene.name.find(' ') + 1);
+    ParetoTable table = table_of("time_step_" + name, scene.name + ": soft steps by scheme and length");
+    for (const StepScheme scheme : kSchemes)
+      for (const int rate : kRates) {
+        double ms = 0.0;
+        const Trace trace = trace_of(scene, scheme, 1.0 / rate, kEvery, &ms, goes_on);
+        if (interrupt.requested()) return interrupted();
+        rows.push_back({scene.name, scheme, rate, trace_error(scene, trace, truth, kEvery), ms});
+        table.rows.push_back(row_of(rows.back()));
+        from += 0.25 / static_cast<double>(std::size(kSchemes) * std::size(kRates));
+      }
+    if (const Status written = write_text(out, table.study + ".csv", to_csv(table)); !written) return written;
+    if (const Status drawn = plot_pareto(out, table.study, table); !drawn) return drawn;
+    done += 1.0;
+  }
+  const std::vector<StepRow> mean = means(rows);
+  ParetoTable table = table_of("time_step", "soft steps by scheme and length: free swing, press, slide and impact");
+  table.error_axis += ", geometric mean";
+  for (const StepRow& row : mean) table.rows.push_back(row_of(row));
+  table.sentences = sentences(
+      rows, mean,
+      fmt::format(
+          "the converged motion, in steps of {:.3g} ms, differs from that in steps of twice the length by {:.1g}",
+          1000.0 / truth_rate, worst));
+  return write_study(out, table);
+}
+
+}  // namespace pliant

@@ -1,0 +1,68 @@
+// The study `time_step` against what is known: free fall, the order of each scheme, and a spring's deepest dent.
+#include "player/study/study_time_step.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+TEST(StudyTimeStep, AFallingBlockIsWhereTheClosedFormOfEachSchemeHasIt) {
+  TissueScene fall = step_scenes(1)[3];
+  fall.obstacle = {};
+  constexpr double kStep = 0.01, kEnd = 0.1;
+  for (const StepScheme scheme : {StepScheme::kEuler, StepScheme::kMidpoint, StepScheme::kMidpointTwice}) {
+    fall.seconds = kEnd;
+    const Trace trace = trace_of(fall, scheme, kStep, kEnd);
+    ASSERT_EQ(trace.size(), 1u);
+    // Implicit Euler takes the velocity at each step's end: g T t / 2 too far.
+    const double late = scheme == StepScheme::kEuler ? 0.5 * kStep * kEnd : 0.0;
+    const double way = fall.velocity.y * kEnd + fall.gravity.y * (0.5 * kEnd * kEnd + late);
+    for (std::size_t i = 0; i < trace[0].size(); ++i)
+      EXPECT_NEAR(trace[0][i].y - fall.mesh.nodes[i].y, way, 1e-9) << name_of(scheme);
+  }
+}
+
+TEST(StudyTimeStep, EulerIsOfOrderOneAndTheOthersOfOrderTwoWhereTheMotionIsSmooth) {
+  TissueScene swing = step_scenes(1)[0];
+  swing.seconds = 0.1;
+  constexpr double kEvery = 1.0 / 30;
+  const Trace truth = trace_of(swing, StepScheme::kConverged, kEvery / 512, kEvery);
+  const auto order = [&](StepScheme scheme) {
+    const double coarse = trace_error(swing, trace_of(swing, scheme, kEvery / 32, kEvery), truth, kEvery),
+                 fine = trace_error(swing, trace_of(swing, scheme, kEvery / 64, kEvery), truth, kEvery);
+    return std::log2(coarse / fine);
+  };
+  EXPECT_NEAR(order(StepScheme::kEuler), 1.0, 0.2);
+  EXPECT_NEAR(order(StepScheme::kMidpointTwice), 2.0, 0.3);
+  EXPECT_NEAR(order(StepScheme::kBdf2), 2.0, 0.6);
+}
+
+TEST(StudyTimeStep, TheGroundStopsABlockWhoseEnergyIsThenInTheSpringsAndTheTissue) {
+  TissueScene impact = step_scenes(1)[3];
+  const Trace trace = trace_of(impact, StepScheme::kMidpointTwice, 1.0 / 960, 1.0 / 60);
+  double lowest = 0.0, last = 0.0;
+  for (const std::vector<dvec3>& at : trace) {
+    last = at[0].y;
+    for (const dvec3 p : at) lowest = std::min(lowest, p.y);
+  }
+  // The block's kinetic energy and weight against four springs alone bound the dent.
+  double mass = 1000 * 0.04 * 0.04 * 0.04;
+  const double deepest = 0.5 * std::sqrt(mass / (4 * impact.stiffness)) + 9.81 * mass / (2 * impact.stiffness);
+  EXPECT_LT(lowest, -0.01);
+  EXPECT_GT(lowest, -0.01 - 2 * deepest);
+  EXPECT_GT(last, -0.01 - deepest);
+}
+
+TEST(StudyTimeStep, ErrorsAreTheSameBitsInEveryRun) {
+  TissueScene press = step_scenes(1)[1];
+  press.seconds = 0.1;
+  const Trace a = trace_of(press, StepScheme::kBdf2, 1.0 / 120, 1.0 / 30),
+              b = trace_of(press, StepScheme::kBdf2, 1.0 / 120, 1.0 / 30);
+  ASSERT_FALSE(a.empty());
+  EXPECT_EQ(a, b);
+}
+
+}  // namespace
+}  // namespace pliant
