@@ -27,32 +27,20 @@
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
+#include "tests/scenes/paddle.h"
 
 namespace pliant {
 namespace {
 
 constexpr double kStep = 1.0 / 60, kTick = 1e-3;  // [s]
-const dvec3 kPaddle(0.084, 0.018, 0.048);         // [m]
-const dvec3 kBed(0.072, 0, 0.036);                // [m] where studs stand
-constexpr double kStud = 0.003;                   // [m] wide and high
-constexpr double kDepth = 1.5e-3;                 // [m] how far the device leads the paddle into the studs ...
-constexpr double kPressed = 0.3;                  // [s] ... by when
-constexpr double kCircle = 3e-3, kTurn = 2.0;     // [m] radius, [s] once around
-constexpr double kFriction = 0.4;                 // [1]
 constexpr int kExactSweeps = 50000;               // of the contacts' own reference
 constexpr double kExact = 1e-12;                  // [1] its tolerance
 
-// Cells of the paddle: six tetrahedra each.
-struct Cells {
-  int along, high, across;
-};
-// Studs in rows on so many grounds side by side: two bodies have 60 contacts at most.
-struct Studs {
-  int grounds, along, across;
-  int count() const { return grounds * along * across; }
-};
+using scenes::kUsualBed, scenes::kUsualPaddle;
+using Cells = scenes::PaddleCells;
+using Studs = scenes::StudBed;
+constexpr auto& kSizes = scenes::kPaddles;
+constexpr auto& kBeds = scenes::kBeds;
 
 // From its making, on the wall and of the processor for this thread.
 class Stopwatch {
@@ -81,21 +69,6 @@ double clock_ms() {
   std::vector<double> empty;
   for (int i = 0; i < 1000; ++i) empty.push_back(Stopwatch().processor_ms());
   return median(std::move(empty));
-}
-
-// Pyramids in rows, points up at y = 0.
-Primitive studs(double from, double to, int along, int across) {
-  Primitive p;
-  for (int i = 0; i < along; ++i)
-    for (int k = 0; k < across; ++k) {
-      const dvec3 top(from + (to - from) * (i + 0.5) / along, 0, kBed.z * ((k + 0.5) / across - 0.5));
-      const auto first = static_cast<std::uint32_t>(p.position.size());
-      p.position.push_back(vec3(top));
-      for (const dvec3 corner : {dvec3(-1, -2, -1), dvec3(-1, -2, 1), dvec3(1, -2, 1), dvec3(1, -2, -1)})
-        p.position.push_back(vec3(top + 0.5 * kStud * corner));
-      for (const std::uint32_t v : {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1, 1, 4, 3, 1, 3, 2}) p.index.push_back(first + v);
-    }
-  return p;
 }
 
 // Of every step [ms], of the processor but for kWall and kSweeps (a part of kContacts), and of tool_feedback in every
@@ -135,29 +108,9 @@ class Bench {
  public:
   Bench(Cells cells, Studs bed, ToolForce force) : stage_(kStep, 1 / kTick) {
     const double before = heap();
-    TetMesh paddle = tets::box(cells.along, cells.high, cells.across, -0.5 * kPaddle * dvec3(1, 0, 1),
-                               0.5 * kPaddle * dvec3(1, 2, 1));
-    tets::hold(
-        paddle, [](dvec3) { return false; }, [](dvec3 x) { return x.y > 0.999 * kPaddle.y; });
-    costs_.tetrahedra = paddle.tets.size();
-    SoftBody tissue;
-    tissue.young = 1e4;
-    tissue.poisson = 0.45;
-    tissue.rayleigh = {1.0, 0.005};
-    tissue.friction_static = tissue.friction_sliding = kFriction;
-    Handle6 handle;
-    handle.translation = {2000, 20};
-    handle.rotation = {5, 0.05};
-    handle.max_force = 50;
-    handle.max_torque = 5;
-    tool_ = stage_.add_soft(std::move(paddle), tissue, {kStart}, &handle);
-    RigidBody ground;
-    ground.fixed = true;
-    ground.friction_static = ground.friction_sliding = kFriction;
-    for (int i = 0; i < bed.grounds; ++i) {
-      const auto edge = [&](int k) { return kBed.x * (double(k) / bed.grounds - 0.5); };
-      stage_.add_rigid(studs(edge(i), edge(i + 1), bed.along, bed.across), ground, {});
-    }
+    tool_ = scenes::add_paddle(stage_, cells);
+    scenes::add_bed(stage_, bed);
+    costs_.tetrahedra = static_cast<std::size_t>(cells.tetrahedra());
     costs_.studs = bed.count();
     const double loaded = heap();
     ASSERT(prepare_touch(stage_.world).ok() && prepare_tools(stage_.world).ok());
@@ -170,7 +123,7 @@ class Bench {
 
   // `checks`: of how many steps the errors are looked at, evenly.
   Costs run(int steps, int checks) {
-    while (time_ < kPressed) step(false);
+    while (time_ < scenes::kPaddlePressed) step(false);
     for (int i = 1; i <= steps; ++i) {
       step(true);
       if (i * checks / steps > (i - 1) * checks / steps) check();
@@ -184,14 +137,7 @@ class Bench {
   }
 
  private:
-  static constexpr dvec3 kStart{0, 0.5e-3, 0};
-
   ToolTouchState& touch_tool() { return *stage_.world.tools->tools.front(); }
-
-  dvec3 path(double time) const {
-    const double down = std::min(1.0, time / kPressed), turned = std::max(0.0, time - kPressed) / kTurn * 2 * M_PI;
-    return kStart + dvec3(kCircle * std::sin(turned), -down * (kStart.y + kDepth), kCircle * (1 - std::cos(turned)));
-  }
 
   // One soft step and the ticks during it. Its last two systems run when the ticks are over.
   void step(bool measured) {
@@ -226,7 +172,7 @@ class Bench {
   void touch(bool measured) {
     time_ = static_cast<double>(++ticks_) * kTick;
     HapticDevice& device = stage_.device_of(tool_);
-    device.position = path(time_);
+    device.position = scenes::paddle_path(time_);
     device.sensed_at = time_;
     for (const System<World>& system : touch_) {
       const Stopwatch watch;
@@ -305,11 +251,6 @@ class Bench {
   Costs costs_;
 };
 
-// 540, 2,016, 10,080 and 40,128 tetrahedra; studs for about 10, 30, 60 and 200 contacts: some touch an edge too.
-constexpr Cells kSizes[]{{9, 2, 5}, {14, 3, 8}, {24, 5, 14}, {38, 8, 22}};
-constexpr Studs kBeds[]{{1, 3, 3}, {1, 9, 3}, {2, 3, 9}, {6, 4, 7}};
-constexpr Cells kUsualSize = kSizes[1];
-constexpr Studs kUsualBed = kBeds[2];
 constexpr double kGoal = 60;  // [1/s] soft steps of the usual tool on the usual bed
 
 double per_tetrahedron(const Costs& c, double bytes) {
@@ -317,7 +258,7 @@ double per_tetrahedron(const Costs& c, double bytes) {
 }
 
 Costs measure(const Cells& cells, const Studs& bed, ToolForce force, int repeats) {
-  const int tetrahedra = 6 * cells.along * cells.high * cells.across;
+  const int tetrahedra = cells.tetrahedra();
   const int steps = tetrahedra > 30000 ? 16 : tetrahedra > 3000 ? 60 : 240;
   Costs costs;
   for (int i = 0; i < repeats; ++i) {
@@ -330,7 +271,7 @@ Costs measure(const Cells& cells, const Studs& bed, ToolForce force, int repeats
       for (std::size_t k = 0; k < costs.times[timed].size(); ++k)
         costs.times[timed][k] = std::min(costs.times[timed][k], again.times[timed][k]);
   }
-  costs.usual = cells.along == kUsualSize.along && bed.count() == kUsualBed.count();
+  costs.usual = cells.along == kUsualPaddle.along && bed.count() == kUsualBed.count();
   return costs;
 }
 
@@ -435,9 +376,9 @@ int run(Which which, int repeats, const std::string& out) {
   print_head();
   for (const Cells& cells : kSizes)
     for (const Studs& bed : kBeds) {
-      const bool usual_size = cells.along == kUsualSize.along, usual_bed = bed.count() == kUsualBed.count();
+      const bool usual_size = cells.along == kUsualPaddle.along, usual_bed = bed.count() == kUsualBed.count();
       const bool wanted = which == Which::kUsual   ? usual_size && usual_bed
-                          : which == Which::kSmall ? cells.along <= kUsualSize.along
+                          : which == Which::kSmall ? cells.along <= kUsualPaddle.along
                                                    : true;
       if ((!usual_size && !usual_bed) || !wanted) continue;
       all.push_back(measure(cells, bed, ToolForce::kContacts, repeats));
@@ -445,7 +386,8 @@ int run(Which which, int repeats, const std::string& out) {
       if (usual_size && bed.count() <= kMaxCondensed) ticks.emplace_back("contacts", all.back());
     }
   const auto usual = std::find_if(all.begin(), all.end(), [](const Costs& c) { return c.usual; });
-  if (which != Which::kUsual) ticks.emplace_back("linear", measure(kUsualSize, kUsualBed, ToolForce::kLinear, repeats));
+  if (which != Which::kUsual)
+    ticks.emplace_back("linear", measure(kUsualPaddle, kUsualBed, ToolForce::kLinear, repeats));
   print_ticks(ticks);
   print_memory(all);
   const std::vector<double>& step = usual->times[kProcessor];

@@ -40,10 +40,6 @@ std::vector<Alternative> alternatives_of(std::string_view wish) {
   }
 }
 
-std::string id_of(const DeviceInfo& device) {
-  return device.id.empty() ? device.driver : device.driver + ":" + device.id;
-}
-
 // Of a kind; the strongest first.
 Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const DeviceInfo> there) {
   const auto fits = [&](const DeviceInfo& device) {
@@ -78,7 +74,7 @@ Result<DeviceChoice> by_name(const Alternative& wish, std::span<const DeviceInfo
   const DeviceInfo* missing = nullptr;
   for (const DeviceInfo& device : there) {
     if (device.driver != driver || (!id.empty() && device.id != id)) continue;
-    if (device.missing.empty()) return DeviceChoice{id_of(device) + wish.wrappers, device.name, {}};
+    if (device.missing.empty()) return DeviceChoice{full_id(device) + wish.wrappers, device.name, {}};
     if (!missing) missing = &device;
   }
   if (missing) return Error{wish.what, fmt::format("{}: {}", missing->name, missing->missing)};
@@ -86,6 +82,10 @@ Result<DeviceChoice> by_name(const Alternative& wish, std::span<const DeviceInfo
 }
 
 }  // namespace
+
+std::string full_id(const DeviceInfo& device) {
+  return device.id.empty() ? device.driver : device.driver + ":" + device.id;
+}
 
 Result<DeviceChoice> choose_device(const std::string& wish, std::span<const DeviceInfo> there) {
   std::vector<std::string> notes;
@@ -97,7 +97,7 @@ Result<DeviceChoice> choose_device(const std::string& wish, std::span<const Devi
       chosen = DeviceChoice{"", "mouse", {}};
     } else if (one.what == "any" || one.what == "any-force" || one.what == "any-pose") {
       if (const auto device = of_kind(one.what, there); device)
-        chosen = DeviceChoice{id_of(**device) + one.wrappers, (*device)->name, {}};
+        chosen = DeviceChoice{full_id(**device) + one.wrappers, (*device)->name, {}};
       else
         chosen = device.error();
     } else {

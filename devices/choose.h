@@ -24,6 +24,8 @@ struct DeviceChoice {
   std::vector<std::string> notes;  // why an earlier alternative does not hold
 };
 
+// "falcon:0"; of a driver that has one device, its name.
+std::string full_id(const DeviceInfo& device);
 // The error says of every alternative why it cannot be.
 Result<DeviceChoice> choose_device(const std::string& wish, std::span<const DeviceInfo> there);
 

@@ -1,4 +1,5 @@
 // Drivers by name (pliant/driver.h).
+#include <algorithm>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -22,6 +23,32 @@ Registered& registered() {
   return all;
 }
 
+// Where either has no serial number, its kind decides.
+bool same_hardware(const std::string& a, const std::string& b) {
+  constexpr std::size_t kKind = 10;  // of "054c:0ce6:"
+  if (a.size() < kKind || b.size() < kKind || a.compare(0, kKind, b, 0, kKind) != 0) return false;
+  return a.size() == kKind || b.size() == kKind || a == b;
+}
+
+std::vector<DeviceInfo> each_once(std::vector<DeviceInfo> found) {
+  std::vector<DeviceInfo> once;
+  for (const bool general : {false, true})
+    for (DeviceInfo& info : found) {
+      if (info.general != general) continue;
+      DeviceInfo* made_for = nullptr;
+      for (DeviceInfo& other : once)
+        if (general && !other.general && other.also.empty() && same_hardware(info.hardware, other.hardware))
+          made_for = &other;
+      if (made_for)
+        made_for->also = info.id.empty() ? info.driver : info.driver + ":" + info.id;
+      else
+        once.push_back(std::move(info));
+    }
+  std::stable_sort(once.begin(), once.end(),
+                   [](const DeviceInfo& a, const DeviceInfo& b) { return a.driver < b.driver; });
+  return once;
+}
+
 }  // namespace
 
 void Driver::wait(double) {}
@@ -32,6 +59,9 @@ bool Driver::write_model(const DeviceModel&, const DeviceWrench&) {
   return false;
 }
 bool Driver::safe_line(SafeLine&) const {
+  return false;
+}
+bool Driver::gone() const {
   return false;
 }
 void Driver::make_safe() noexcept {
@@ -96,7 +126,7 @@ std::vector<DeviceInfo> list_devices() {
   std::vector<DeviceInfo> found;
   for (const DeviceLister& lister : listers)
     for (DeviceInfo& info : lister()) found.push_back(std::move(info));
-  return found;
+  return each_once(std::move(found));
 }
 
 }  // namespace pliant

@@ -17,6 +17,7 @@ DriverLink& DriverLink::operator=(DriverLink&& other) noexcept {
   can_ = std::exchange(other.can_, {});
   placed_rotation_ = other.placed_rotation_;
   ready_ = other.ready_;
+  state_ = std::move(other.state_);
   return *this;
 }
 
@@ -60,6 +61,7 @@ Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id
   driver_ = std::move(driver);
   servo_ = servo;
   can_ = can;
+  if (!servo_) state_ = std::make_unique<LinkState>(can);
   return Done{};
 }
 
@@ -72,6 +74,7 @@ void DriverLink::close() noexcept {
     }
   }
   driver_.reset();
+  state_.reset();
   servo_ = nullptr;
   can_ = {};
   claim_.release();
@@ -90,7 +93,9 @@ void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 middle) {
 void DriverLink::read(HapticDevice& device, Tick tick) {
   DeviceSample sample;
   if (servo_ && !servo_->runs()) servo_->advance(tick.time);
-  if (driver_->read(sample)) {
+  const bool fresh = driver_->read(sample);
+  if (state_ && state_->sense(fresh ? &sample : nullptr, tick.time)) ready_ = false;  // comes back through the gate
+  if (fresh) {
     device.position = device.origin + device.workspace * sample.position;
     if (!can_.senses_rotation)
       device.rotation = placed_rotation_;
@@ -99,7 +104,7 @@ void DriverLink::read(HapticDevice& device, Tick tick) {
     else
       device.rotation = sample.rotation;  // no rotation: the pose is not taken, and counted
     device.sensed_at = tick.time;
-    ready_ = sample.ready;
+    ready_ = sample.ready && !(state_ && state_->renewed());
   }
   device.status = ready_ ? DeviceStatus::kReady : DeviceStatus::kLost;
 }
@@ -108,7 +113,8 @@ void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) 
   HapticDevice& device = world.registry.get<HapticDevice>(entity);
   const DeviceWrench wrench{device.force_sent, device.torque_sent};
   if (!servo_) {
-    driver_->write(wrench);
+    if (!state_->may_leave(wrench, tick.time)) device.force_sent = device.torque_sent = dvec3(0);
+    driver_->write({device.force_sent, device.torque_sent});
     return;
   }
   if (device.status != DeviceStatus::kReady)
@@ -120,8 +126,26 @@ void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) 
 
 void DriverLink::idle() {
   DeviceSample sample;
-  driver_->read(sample);
+  const bool fresh = driver_->read(sample);
+  if (state_) state_->rest(fresh ? &sample : nullptr);
   driver_->write({});
+}
+
+const DeviceReport& DriverLink::report() {
+  static const DeviceReport none;
+  return servo_ ? servo_->report() : state_ ? state_->report() : none;
+}
+void DriverLink::arm() {
+  if (servo_) servo_->arm();
+  if (state_) state_->arm();
+}
+void DriverLink::disarm() {
+  if (servo_) servo_->disarm();
+  if (state_) state_->disarm();
+}
+void DriverLink::stop() {
+  if (servo_) servo_->stop();
+  if (state_) state_->stop();
 }
 
 void DriverLink::zero() noexcept {

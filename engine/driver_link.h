@@ -8,6 +8,7 @@
 #include "components/world.h"
 #include "devices/servo/claim.h"
 #include "devices/servo/servo.h"
+#include "engine/link_state.h"
 #include "runtime/clock.h"
 #include "runtime/result.h"
 
@@ -25,6 +26,11 @@ class DriverLink {
   Status connect(std::unique_ptr<Driver> driver, const std::string& id, const std::string& where,
                  const std::string& claimed = {}, const GuardParameters& guard = {});
   void close() noexcept;  // written zero, and gone
+  // Its owner's. What stands between it and a hand: of its servo, or of a driver without one (link_state.h).
+  const DeviceReport& report();
+  void arm();
+  void disarm();
+  void stop();  // from any thread: no force until it is armed
   bool connected() const { return driver_ != nullptr; }
   explicit operator bool() const { return connected(); }
   const DeviceCapabilities& can() const { return can_; }
@@ -55,7 +61,8 @@ class DriverLink {
   Servo* servo_ = nullptr;
   DeviceCapabilities can_;
   dquat placed_rotation_{1, 0, 0, 0};
-  bool ready_ = false;  // as it said last, since a pause
+  bool ready_ = false;                // as it said last, since a pause
+  std::unique_ptr<LinkState> state_;  // of a driver without a servo
 };
 
 }  // namespace pliant

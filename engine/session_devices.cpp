@@ -5,13 +5,11 @@
 
 namespace pliant {
 
-Result<Servo*> Session::Parts::find_servo(const std::string& name, const char* what) {
+Result<DriverLink*> Session::Parts::find_link(const std::string& name, const char* what) {
   SessionEffector* const effector = find_effector(name);
   if (!effector) return unknown_effector(name);
-  if (Servo* const servo = effector->link.servo()) return servo;
-  return Error{std::string(what) + " `" + name + "`",
-               effector->link ? "its driver says no rate, so that the touch clock calls it without a servo"
-                              : "has no driver; call Session::connect() first"};
+  if (effector->link) return &effector->link;
+  return Error{std::string(what) + " `" + name + "`", "has no driver; call Session::connect() first"};
 }
 
 Status Session::guard(const std::string& name, const GuardParameters& parameters) {
@@ -27,28 +25,27 @@ Status Session::guard(const std::string& name, const GuardParameters& parameters
 }
 
 Result<DeviceReport> Session::device_state(const std::string& name) const {
-  auto servo = parts_->find_servo(name, "Session::device_state");
-  if (!servo) return servo.error();
-  return (*servo)->report();
+  auto link = parts_->find_link(name, "Session::device_state");
+  if (!link) return link.error();
+  return (*link)->report();
 }
 
 Status Session::arm(const std::string& name) {
-  auto servo = parts_->find_servo(name, "Session::arm");
-  if (!servo) return servo.error();
-  (*servo)->arm();
+  auto link = parts_->find_link(name, "Session::arm");
+  if (!link) return link.error();
+  (*link)->arm();
   return Done{};
 }
 
 Status Session::disarm(const std::string& name) {
-  auto servo = parts_->find_servo(name, "Session::disarm");
-  if (!servo) return servo.error();
-  (*servo)->disarm();
+  auto link = parts_->find_link(name, "Session::disarm");
+  if (!link) return link.error();
+  (*link)->disarm();
   return Done{};
 }
 
 void Session::emergency_stop() {
-  for (SessionEffector& effector : parts_->effectors)
-    if (Servo* const servo = effector.link.servo()) servo->stop();
+  for (SessionEffector& effector : parts_->effectors) effector.link.stop();
 }
 
 }  // namespace pliant

@@ -139,7 +139,7 @@ struct Session::Parts {
   SessionEffector* find_effector(const std::string& name);
   const SessionEffector* find_effector(const std::string& name) const;
   Result<Entity> find_object(const std::string& name) const;
-  Result<Servo*> find_servo(const std::string& name, const char* what);
+  Result<DriverLink*> find_link(const std::string& name, const char* what);
   Error unknown_effector(const std::string& name) const;
   Status stand_still(const char* what) const;  // an error while the clocks run
 

@@ -95,7 +95,7 @@ Status SimulatedHands::add(World& world, Entity hand, const std::string& name, c
   device.driver = DriverKind::kExternal;
   device.path = {};
   device.file.clear();
-  device.id = "simulated:" + words;
+  device.id = std::string(kHandId) + words;
   device.can = held.driver->capabilities();
   device.can.max_stiffness = stable_stiffness(device.can, device.can.rate);
   device.workspace = 1.0;  // paths are in metres of the world
@@ -145,6 +145,14 @@ void SimulatedHands::write(World& world) {
   for (Held& held : hands_) {
     const HapticDevice& device = world.registry.get<HapticDevice>(held.device);
     held.driver->write({held.share * device.force_sent, held.share * device.torque_sent, 0.0});
+  }
+}
+
+void SimulatedHands::let_go(World& world) {
+  for (Held& held : hands_) {
+    HapticDevice& device = world.registry.get<HapticDevice>(held.device);
+    device.force_sent = device.torque_sent = dvec3(0);
+    held.driver->write({});
   }
 }
 

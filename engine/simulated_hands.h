@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "components/world.h"
@@ -13,6 +14,8 @@
 #include "runtime/result.h"
 
 namespace pliant {
+
+inline constexpr std::string_view kHandId = "hand:";  // in front of the words, as the id of what such a hand holds
 
 // The words behind "hand:" of a source, apart: [FILE][,PROFILE][,KEY=VALUE...][|WRAPPER=VALUE...], in any order before
 // the bar. FILE is what is neither a profile's name nor holds '='.
@@ -46,7 +49,8 @@ class SimulatedHands {
   // Around a tick; neither allocates nor waits.
   void read(World& world, Tick tick);
   void write(World& world);
-  void idle();  // instead of both while a loop is paused; on the wall clock the hands go on
+  void let_go(World& world);  // instead of write(): nobody feels anything
+  void idle();                // instead of both while a loop is paused; on the wall clock the hands go on
   void close() noexcept;
   ~SimulatedHands() { close(); }
   SimulatedHands() = default;

@@ -13,8 +13,6 @@ namespace {
 
 constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
 
-constexpr std::string_view kSimulated = "simulated:";  // in front of the id of what a simulated hand holds
-
 // The first probe or tool of this name.
 Entity find_hand(const World& world, const std::string& name) {
   for (const Entity hand : hands(world))
@@ -178,8 +176,8 @@ std::string describe_source(const World& world, Entity hand) {
     case DriverKind::kMouse:
       return "mouse";
     case DriverKind::kExternal:
-      if (!device->id.starts_with(kSimulated)) return "device:" + device->id;
-      return device->id.size() == kSimulated.size() ? "hand" : "hand:" + device->id.substr(kSimulated.size());
+      if (!device->id.starts_with(kHandId)) return "device:" + device->id;
+      return device->id.size() == kHandId.size() ? "hand" : device->id;
     case DriverKind::kNull:
       return "null";
   }

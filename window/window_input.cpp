@@ -86,6 +86,10 @@ std::optional<InputEvent> parse_event(const std::string& name, const std::string
     event.kind = InputKind::kDrop;
     event.file = arguments;
     return arguments.empty() ? std::nullopt : std::optional(event);
+  } else if (name == "click") {
+    event.kind = InputKind::kWidget;
+    event.file = arguments;
+    return arguments.empty() ? std::nullopt : std::optional(event);
   } else if (name == "close") {
     event.kind = InputKind::kClose;
   } else {

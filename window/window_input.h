@@ -10,7 +10,19 @@
 
 namespace pliant {
 
-enum class InputKind : std::uint8_t { kMove, kPress, kRelease, kWheel, kKey, kKeyUp, kText, kDrop, kFocus, kClose };
+enum class InputKind : std::uint8_t {
+  kMove,
+  kPress,
+  kRelease,
+  kWheel,
+  kKey,
+  kKeyUp,
+  kText,
+  kDrop,
+  kFocus,
+  kClose,
+  kWidget
+};
 enum class MouseButton : std::uint8_t { kLeft, kMiddle, kRight };
 enum ModifierBit : std::uint8_t { kShift = 1, kControl = 2, kAlt = 4, kSuper = 8 };
 
@@ -21,14 +33,15 @@ struct InputEvent {
   int key = 0;                 // as GLFW numbers them; of kText: the code point
   bool repeated = false;       // of kKey: held down
   std::uint8_t modifiers = 0;  // ModifierBit
-  std::string file;            // that was dropped
+  std::string file;            // that was dropped; of kWidget, which only a script has: its address
 };
 
 // Events from a file, for trying the window without a hand. Columns: time_s,event,args, where event and args are
 //   move X Y | press [BUTTON] [MODIFIER...] | release [BUTTON] | wheel CLICKS [MODIFIER...] | key NAME | drop FILE |
-//   close
+//   click ADDRESS | close
 // BUTTON is left (default), middle or right; MODIFIER shift, control or alt; NAME a letter or digit, F1 to F12, Tab,
-// Esc, Space or Home. Times [s] ascend and count from the first picture.
+// Esc, Space or Home; ADDRESS of a button in the panel of devices: Devices/PROBE/Arm, Devices/Stop all. Times [s]
+// ascend and count from the first picture.
 class InputScript {
  public:
   static constexpr double kLongestPause = 0.5;  // [s]

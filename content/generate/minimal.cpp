@@ -44,7 +44,14 @@ constexpr const char* kLevel = R"({{
       "extras": {{"about": "radius 0 is a point; the script says where it is and when"}}
     }}
   ],
-  "meshes": [{{"name": "sheet", "primitives": [{{"attributes": {{"POSITION": 1}}, "indices": 0}}]}}],
+  "meshes": [{{"name": "sheet", "primitives": [{{"attributes": {{"POSITION": 1}}, "indices": 0, "material": 0}}]}}],
+  "materials": [
+    {{
+      "name": "rubber",
+      "pbrMetallicRoughness": {{"baseColorFactor": [0.6, 0.2, 0.16, 1], "metallicFactor": 0, "roughnessFactor": 0.38}},
+      "doubleSided": true
+    }}
+  ],
   "accessors": [
     {{"bufferView": 0, "componentType": 5123, "count": {1}, "type": "SCALAR"}},
     {{"bufferView": 1, "componentType": 5126, "count": {0}, "type": "VEC3", "min": [-{5}, 0, -{5}], "max": [{5}, 0, {5}]}}

@@ -2,16 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "content/generate/instrument.h"
 #include "content/generate/stage.h"
 #include "content/generate/strokes.h"
 #include "content/level_file.h"
+#include "content/mesh/mesh_build.h"
 
 namespace pliant::generate {
 namespace {
 
 constexpr double kScriptRate = 100.0;  // [Hz] of rows
+
+// The net with the normals that the engine draws it with, so that every viewer shows the same edges: a vertex at a
+// crease is there once for each smooth part.
+Primitive with_normals(const std::string& name, const Net& net) {
+  Primitive plain;
+  for (const dvec3& p : net.position) plain.position.push_back(vec3(p));
+  for (const uvec3& t : net.triangles) plain.index.insert(plain.index.end(), {t.x, t.y, t.z});
+  const auto built = build_mesh(name, {&plain, 1}, mat4(1.0f));
+  if (!built) return plain;  // it is refused where it is loaded, with the reason
+  const Mesh& mesh = built->mesh;
+  Primitive primitive;
+  std::vector<std::vector<std::uint32_t>> copies(mesh.vertex_count);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t v = mesh.triangles[t][corner];
+      const vec3 normal = mesh.normal(t, corner);
+      auto copy = std::ranges::find_if(copies[v], [&](std::uint32_t c) { return primitive.normal[c] == normal; });
+      if (copy == copies[v].end()) {
+        copies[v].push_back(static_cast<std::uint32_t>(primitive.position.size()));
+        copy = copies[v].end() - 1;
+        primitive.position.push_back(mesh.position(v));
+        primitive.normal.push_back(normal);
+      }
+      primitive.index.push_back(*copy);
+    }
+  return primitive;
+}
 
 }  // namespace
 
@@ -61,9 +90,7 @@ LevelNode& add_shape(Level& level, const std::string& name, const Solid& solid, 
 }
 
 LevelNode& add_mesh(Level& level, const std::string& name, const Net& net, std::int32_t material) {
-  Primitive primitive;
-  for (const dvec3& p : net.position) primitive.position.push_back(vec3(p));
-  for (const uvec3& t : net.triangles) primitive.index.insert(primitive.index.end(), {t.x, t.y, t.z});
+  Primitive primitive = with_normals(name, net);
   primitive.material = material;
   level.meshes.push_back({name, {std::move(primitive)}});
   LevelNode& node = add_node(level, name);

@@ -35,7 +35,7 @@ Solid torus(double major, double minor);
 // A node whose mesh covers `solid`; `cell` [m] is the grid's.
 LevelNode& add_shape(Level& level, const std::string& name, const Solid& solid, const Box& box, double cell,
                      std::int32_t material);
-// A node with a mesh of its own, without normals: it is drawn with creases where it has them.
+// A node with a mesh of its own, and the normals of its smooth parts between creases.
 LevelNode& add_mesh(Level& level, const std::string& name, const Net& net, std::int32_t material);
 // A slab with rounded edges that does not move. `yaw` [degree] about +Y.
 void add_fixed(Level& level, const std::string& name, dvec3 half, dvec3 at, double yaw, std::int32_t material);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "content/keys/bonded_layer.h"
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_crease.h"
@@ -175,7 +176,7 @@ std::vector<Key> deformable_keys() {
                         "Young's modulus, instead of `stiffness`; 0: not given"));
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
   keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
-                        "thickness of the layer, with `young`; 0: deep"));
+                        "thickness of the layer, which is bonded to something rigid, with `young`; 0: deep"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
                         "error budget: the cheapest shape and distance whose measured error on this surface is within "
                         "it, where no key says them; 0: none"));
@@ -245,8 +246,9 @@ std::vector<Key> device_keys() {
   keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
   keys.push_back(text("id", KeyType::kText, d(&H::id),
-                      "which device: DRIVER, DRIVER:ID, any-force, any-pose, any or mouse, or several of these in "
-                      "turn, separated by semicolons"));
+                      "which device, with the driver `external`: DRIVER, DRIVER:ID, any-force, any-pose, any or mouse, "
+                      "or several of these in turn, separated by semicolons; behind each, after a bar, what maps its "
+                      "workspace: scale=2, clutch=BUTTON, frame=X:Y:Z, border=40mm"));
   keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
                         "workspace of a device with the driver `external` to world"));
   keys.push_back(
@@ -439,8 +441,8 @@ std::vector<Extension> make_table() {
 }  // namespace
 
 double calibrated_stiffness(double young, double poisson, double thickness) {
-  const double radius = thickness > 0.0 ? std::min(thickness, kContactRadius) : kContactRadius;
-  return 2.0 * young / (1.0 - poisson * poisson) * radius;
+  const double layer = thickness > 0.0 ? bonded_layer_factor(kContactRadius / thickness, poisson) : 1.0;
+  return 2.0 * young / (1.0 - poisson * poisson) * kContactRadius * layer;
 }
 
 const std::vector<Extension>& extension_table() {

@@ -30,8 +30,8 @@ Status check_references(const Level& level);
 Json node_extensions(const LevelNode& node, const Json& before);
 Json scene_extensions(const Level& level, const Json& before);
 
-// Stiffness of a point contact of 4 mm radius on a half-space: 2 E/(1-nu^2) a [N/m]; a layer thinner than that lends
-// its thickness as the radius (methods.md 1.3 and 4).
+// Stiffness of a point contact of 4 mm radius on a half-space: 2 E/(1-nu^2) a [N/m] (methods.md 1.3 and 4); a bonded
+// layer of this thickness [m] is stiffer by bonded_layer_factor(a / thickness, nu).
 double calibrated_stiffness(double young, double poisson, double thickness);
 
 struct SchemaFile {

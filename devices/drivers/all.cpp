@@ -1,5 +1,3 @@
-#include "pliant/drivers.h"
-
 #include <mutex>
 
 #include "devices/drivers/falcon.h"
@@ -14,6 +12,7 @@
 #include "devices/drivers/touch_x.h"
 #include "devices/simulated/simulated_device.h"
 #include "pliant/driver.h"
+#include "pliant/drivers.h"
 
 namespace pliant {
 namespace {

@@ -119,6 +119,7 @@ class Gamepad final : public Driver {
     sent_ = output;
     sent_at_ = now;
   }
+  bool gone() const override { return gone_; }
   void close() override {
     if (line_) write({});
     line_.reset();
@@ -195,7 +196,8 @@ Status register_gamepad() {
       [] {
         std::vector<DeviceInfo> infos;
         for (const GamepadFound& found : find_gamepads())
-          infos.push_back({kName, found.id, found.traits.name, found.missing, what_it_can(found.traits)});
+          infos.push_back(
+              {kName, found.id, found.traits.name, found.missing, what_it_can(found.traits), found.hardware, true});
         return infos;
       });
 }

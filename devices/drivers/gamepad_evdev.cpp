@@ -178,6 +178,7 @@ std::vector<GamepadFound> find_gamepads() {
     if (!read_traits(device, one.traits)) continue;
     one.path = "/dev/input/" + event;
     one.id = first_line(device + "/uniq");
+    one.hardware = first_line(device + "/id/vendor") + ":" + first_line(device + "/id/product") + ":" + one.id;
     if (one.id.empty()) one.id = one.path;
     const int file = ::open(one.path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
     if (file < 0)

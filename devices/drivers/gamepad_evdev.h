@@ -14,6 +14,7 @@ struct GamepadFound {
   std::string id;        // its unique id (a serial or address), else the path
   GamepadTraits traits;  // without the ranges of its axes, which only an open device tells
   std::string missing;   // why it cannot be opened and what to do; empty: it can
+  std::string hardware;  // DeviceInfo::hardware
 };
 
 // What sysfs shows: event devices with ABS_X, ABS_Y and a button of a gamepad or joystick.

@@ -73,6 +73,7 @@ class Polhem final : public Driver {
     input_ = {};
     jumps_ = asked_ = 0;
     here_ = *home == "here";
+    by_button_ = *home == "button";
     drive(dvec3(0));  // the report that starts it
     if (gone_) return Error{where, "does not take a report; plug it in again"};
     return Done{};
@@ -112,6 +113,8 @@ class Polhem final : public Driver {
     } catch (...) {  // the device's watchdog ends the force
     }
   }
+  // One that was said to be parked when it was opened, or whose encoders were said to be right, is not so any more.
+  bool gone() const override { return gone_ && by_button_; }
   void close() override {
     make_safe();
     port_.reset();
@@ -184,6 +187,7 @@ class Polhem final : public Driver {
   int jumps_ = 0, asked_ = 0;
   bool here_ = false;  // the arm was parked when it was opened
   bool gone_ = false, fresh_ = false, placed_ = false, set_ = false, calibrated_ = false;
+  bool by_button_ = false;
 };
 
 std::vector<DeviceInfo> list_polhems() {

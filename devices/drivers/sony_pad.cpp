@@ -88,8 +88,11 @@ class SonyPad final : public Driver {
     sample.grip = input_.right;
     sample.buttons = input_.buttons;
     sample.time = now;
+    sample.battery = input_.battery;
+    sample.charging = input_.charging;
     return true;
   }
+  bool gone() const override { return gone_; }
 
   void write(const DeviceWrench& wrench) override {
     if (!port_ || gone_) return;
@@ -196,7 +199,7 @@ Status register_pad(const char* name, SonyModel model, std::span<const HidMatch>
         std::vector<DeviceInfo> infos;
         for (const HidFound& found : find_hid(matches))
           infos.push_back({name, found.id, found.name + (found.bluetooth ? " (Bluetooth)" : ""), found.missing,
-                           what_it_can(model)});
+                           what_it_can(model), found.hardware});
         return infos;
       });
 }

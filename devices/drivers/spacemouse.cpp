@@ -100,6 +100,7 @@ class SpaceMouse final : public Driver {
     return true;
   }
   void write(const DeviceWrench&) override {}
+  bool gone() const override { return gone_; }
   void close() override {
     port_.reset();
     gone_ = false;
@@ -120,7 +121,7 @@ class SpaceMouse final : public Driver {
 std::vector<DeviceInfo> list_spacemice() {
   std::vector<DeviceInfo> infos;
   for (const HidFound& found : find_hid(kMatches))
-    infos.push_back({"spacemouse", found.id, found.name, found.missing, what_it_can()});
+    infos.push_back({"spacemouse", found.id, found.name, found.missing, what_it_can(), found.hardware});
   return infos;
 }
 

@@ -91,6 +91,10 @@ const char* name_of(DeviceState state) {
   return "";
 }
 
+std::string describe(DeviceCause cause) {
+  return sentence(cause);
+}
+
 std::string describe(const DeviceTransition& t) {
   return fmt::format("{} -> {} at {:.3f} s from {:.2f} N: {}", name_of(t.from), name_of(t.to), t.time, t.force,
                      sentence(t.cause));

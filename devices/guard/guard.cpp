@@ -69,7 +69,7 @@ void Guard::to(DeviceState state, DeviceCause cause, double now) {
 }
 
 void Guard::send_nothing() {
-  last_ = {};
+  last_ = report_.sent = {};
   report_.force = ramp_ = slow_speed_ = 0.0;
   carried_ = dvec3(0);
   fade_ = 1.0;
@@ -290,9 +290,10 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
     const double cool = std::clamp((1.0 - heat_) / 0.2, 0.0, 1.0);
     const double warm = warnings_ & kDeviceWarm ? 0.0 : cool;
     force_most = std::min(force_most, bears + warm * std::max(0.0, force_most - bears));
+    report_.max_force = force_most;
     report_.heat = heat_;
   } else if (warnings_ & kDeviceWarm) {
-    force_most *= kWarmShare;
+    report_.max_force = force_most *= kWarmShare;
   }
   if (warnings_ & kDeviceWarm) torque_most *= kWarmShare;
 
@@ -331,6 +332,9 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
 }
 
 DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders& orders) {
+  report_.wanted = wish.known ? wish.wrench : DeviceWrench{};
+  const double most = force_limit(wish);
+  report_.max_force = std::isfinite(most) ? most : 0.0;
   decide(wish, orders, now);
   if (state() == DeviceState::kActive && runs_away(wish, dt_)) trip(DeviceCause::kRunaway, now);
   if (state() != DeviceState::kActive) {
@@ -346,7 +350,7 @@ DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders
     trip(DeviceCause::kBadForce, now);
     return {};
   }
-  last_ = wrench;
+  last_ = report_.sent = wrench;
   report_.force = length(wrench.force);
   if (fade_ <= 0.0) {
     trip(DeviceCause::kBatteryLow, now);

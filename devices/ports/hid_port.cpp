@@ -120,7 +120,8 @@ std::vector<HidFound> find_hid(std::span<const HidMatch> matches) {
     const std::string name =
         product.empty() ? fmt::format("{:04x}:{:04x}", info->vendor_id, info->product_id) : product;
     found.push_back({path, serial.empty() ? path : serial, name, info->vendor_id, info->product_id,
-                     info->bus_type == HID_API_BUS_BLUETOOTH, why_not(path)});
+                     info->bus_type == HID_API_BUS_BLUETOOTH, why_not(path),
+                     fmt::format("{:04x}:{:04x}:{}", info->vendor_id, info->product_id, serial)});
   }
   hid_free_enumeration(all);
   std::sort(found.begin(), found.end(), [](const HidFound& a, const HidFound& b) {

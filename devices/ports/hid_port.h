@@ -28,7 +28,8 @@ struct HidFound {
   std::string name;
   std::uint16_t vendor = 0, product = 0;
   bool bluetooth = false;
-  std::string missing;  // why it cannot be opened and what to do; empty: it can
+  std::string missing;   // why it cannot be opened and what to do; empty: it can
+  std::string hardware;  // DeviceInfo::hardware
 };
 
 // What is there now, in the order of the paths. Opens each for an instant. From any thread.

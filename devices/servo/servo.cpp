@@ -15,6 +15,7 @@ namespace pliant {
 namespace {
 
 constexpr double kTellEvery = 0.05;    // [s] of reports for a person to read
+constexpr double kLateModel = 2e-3;    // [s] two ticks of the touch clock
 constexpr double kSlept = 0.020;       // [s] less is the two clocks' reading
 constexpr double kLongestWait = 5e-3;  // [s] for a reply: an order is heard at least so often
 
@@ -60,7 +61,8 @@ void Servo::adopt() {
   can_.max_stiffness = stable_stiffness(can_, can_.rate);
   guard_ = Guard(can_, parameters_);
   figures_ = {};
-  periods_ = jitter_ = trips_ = {};
+  periods_ = jitter_ = trips_ = reads_ = {};
+  came_ = false;
   virtual_periods_ = 0;
   looped_ = failed_ = told_ = false;
   if (!guard_to_the_last(*inner_)) note_ = "more devices are open than a crash handler knows";
@@ -177,6 +179,7 @@ GuardWish Servo::wish(double now) {
   wish.max_force = model.max_force;
   wish.max_torque = model.max_torque;
   figures_.oldest_model = std::max(figures_.oldest_model, 1e6 * wish.age);
+  if (wish.age > kLateModel) ++figures_.late_models;
   return wish;
 }
 
@@ -220,6 +223,10 @@ void Servo::period(double now) {
   if (sampled) {
     samples_.write() = sample;
     samples_.publish();
+    newest_ = sample;
+    came_at_ = now;
+    came_ = true;
+    if (sample.time > 0.0) reads_.add(ns(now - sample.time));
   }
   watchman_.beat();
   measure(now, sampled);
@@ -254,12 +261,16 @@ void Servo::tell() {
   figures_.jitter = jitter_.percentile_us(0.99);
   figures_.round_trip_p50 = trips_.percentile_us(0.5);
   figures_.round_trip_max = trips_.max_us();
+  figures_.read_p50 = reads_.percentile_us(0.5);
+  figures_.read_max = reads_.max_us();
   figures_.has_priority = granted_;
   told_transitions_ = guard_.report().transitions;
   told_ = true;
   DeviceReport& out = reports_.write();
   out = guard_.report();
   out.figures = figures_;
+  out.sample = newest_;
+  out.sample_age = came_ ? last_ - came_at_ : -1.0;
   reports_.publish();
 }
 

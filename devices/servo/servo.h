@@ -102,7 +102,10 @@ class Servo final : public Driver {
   double sleep_offset_ = 0;  // [s] how long the machine has slept, at the last look
   bool looked_ = false;
   ServoFigures figures_;
-  Histogram periods_, jitter_, trips_;
+  Histogram periods_, jitter_, trips_, reads_;
+  DeviceSample newest_;
+  double came_at_ = 0.0;  // [s]
+  bool came_ = false;
   double last_ = 0.0, written_at_ = 0.0, told_at_ = 0.0;
   std::uint64_t told_periods_ = 0, told_transitions_ = 0;
   bool told_ = false;

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kLongestDelay = 1.0;  // [s]
 constexpr double kFastest = 20000.0;   // [Hz]
+constexpr double kShortest = 10e-6;    // [s] a motion's or an amplifier's time constant: its steps are half of it
+constexpr double kFarthest = 10.0;     // [m] of `at`
+constexpr double kHardest = 1000.0;    // [N] of `push`
 
 struct NumberKey {
   const char* name;
@@ -58,6 +61,10 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
     } else if (option.key == "at" || option.key == "push") {
       const std::optional<dvec3> v = vector_of(option.value);
       if (!v) return wrong(fmt::format("{} must be three numbers X:Y:Z; got '{}'", option.key, option.value));
+      const double most = option.key == "push" ? kHardest : kFarthest;
+      if (!(length(*v) <= most))
+        return wrong(fmt::format("{} must be at most {:g} {}; got '{}'", option.key, most,
+                                 option.key == "push" ? "N" : "m from the middle", option.value));
       if (option.key == "push")
         options.will.push = *v;
       else
@@ -77,6 +84,11 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
     }
     first = false;
   }
+  const DeviceProfile& profile = options.profile;
+  if (profile.lag > 0.0 && profile.lag < kShortest)
+    return Error{where, "lag must be 0 or at least 10us, or simulating it takes too long; give 0"};
+  if (profile.damping * kShortest > profile.mass)
+    return Error{where, "mass over damping is below 10us, and simulating it takes too long; give more mass"};
   return options;
 }
 

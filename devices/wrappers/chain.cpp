@@ -13,6 +13,7 @@
 #include "devices/wrappers/jitter.h"
 #include "devices/wrappers/quantise.h"
 #include "devices/wrappers/record.h"
+#include "devices/wrappers/refound.h"
 #include "devices/wrappers/replay.h"
 #include "devices/wrappers/workspace.h"
 
@@ -184,7 +185,8 @@ Result<DeviceChain> make_device(const std::string& words) {
   const std::size_t colon = device.find(':');
   auto driver = make_driver(device.substr(0, colon));
   if (!driver) return driver.error();
-  auto chain = wrap(std::move(driver).value(), bar == std::string::npos ? std::string() : words.substr(bar + 1));
+  auto chain = wrap(std::make_unique<Refound>(std::move(driver).value()),
+                    bar == std::string::npos ? std::string() : words.substr(bar + 1));
   if (!chain) return chain;
   if (colon != std::string::npos) chain->id = device.substr(colon + 1);
   return chain;

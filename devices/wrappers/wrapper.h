@@ -29,6 +29,7 @@ class Wrapper : public Driver {
   Status run(std::function<void()> tick) override { return inner_->run(std::move(tick)); }
   void make_safe() noexcept override { inner_->make_safe(); }
   bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
+  bool gone() const override { return inner_->gone(); }
 
  protected:
   // The device inside is open: its capabilities are known.

@@ -183,6 +183,12 @@ std::string App::keys_of(const Action& action) const {
   return bound == settings.keys.end() ? action.keys : bound->second;
 }
 
+std::string App::keys_of(const std::string& id) const {
+  for (const Action& each : actions_)
+    if (each.id == id) return keys_of(each);
+  return {};
+}
+
 void App::do_action(const std::string& id) {
   for (const Action& each : actions_)
     if (each.id == id && each.enabled(editor)) {
@@ -227,6 +233,13 @@ void App::keys(std::span<const InputEvent> events) {
     ViewTool* const t = tool();
     const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    const auto urgent = std::find_if(actions_.begin(), actions_.end(), [&](const Action& each) {
+      return each.always && !pressed.empty() && keys_of(each) == pressed && each.enabled(editor);
+    });
+    if (urgent != actions_.end()) {
+      urgent->run(editor);
+      continue;
+    }
     if (!rebinding.empty()) {
       if (!pressed.empty()) rebound = pressed;
       continue;
@@ -416,15 +429,35 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
     ImGui::End();
     return;
   }
-  if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) {
+  // As much air in the tabs as lets every name be read.
+  float names = 0, tabs = 0;
+  for (const auto& each : panels_) {
+    if (each->place() != place || !each->shown(editor)) continue;
+    const std::string badge = each->badge(editor);
+    names += ImGui::CalcTextSize((each->name() + (badge.empty() ? "" : "  " + badge)).c_str()).x;
+    ++tabs;
+  }
+  const float air = (ImGui::GetContentRegionAvail().x - names) / std::max(tabs, 1.0f) - ui::px(ui::kGap) - 1;
+  const auto airy = [&] {
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing, ImVec2(ui::px(ui::kGap), ui::px(ui::kGap)));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(std::clamp(0.5f * air, ui::px(2), ui::px(ui::kSpace)), ui::px(ui::kGap)));
+  };
+  airy();
+  const bool bar = ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown);
+  ImGui::PopStyleVar(2);
+  if (bar) {
     for (const auto& each : panels_) {
       if (each->place() != place || !each->shown(editor)) continue;
       const std::string badge = each->badge(editor);
       const std::string tab = std::string(each->name()) + (badge.empty() ? "" : "  " + badge) + "###" + each->name();
+      airy();
       const bool open = ImGui::BeginTabItem(tab.c_str(), nullptr,
                                             wanted_tabs_.contains(each->name()) ? ImGuiTabItemFlags_SetSelected : 0);
+      ImGui::PopStyleVar(2);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
+      ui::underline_item();  // told apart from one under the pointer
       ImGui::BeginChild(each->name());
       {
         const ui::Scope scope(each->name());

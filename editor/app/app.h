@@ -47,6 +47,7 @@ class App {
   bool is_open(const std::string& name) const { return open_.contains(name) && open_.at(name); }  // of a dialog
   void close_panel(const std::string& name) { open_[name] = false; }
   std::string keys_of(const Action& action) const;  // as bound now
+  std::string keys_of(const std::string& id) const;
   void do_action(const std::string& id);
 
   Files& files() { return *files_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "devices/choose.h"
 #include "editor/tools/painting.h"
 #include "editor/viewport/frames.h"
 
@@ -185,6 +186,22 @@ void Editor::paste() {
   const DocumentNode* const active_one = active_node();
   const NodeId parent = active_one ? active_one->parent : kNoNode;
   if (apply("Paste", pasted(state(), clipboard, copied, parent, document.next_id(), &ids))) selected = ids;
+}
+
+void Editor::look_for_devices() {
+  devices_looked_for = true;
+  jobs.start(kDeviceJob, "",
+             [](const Jobs::Stop&) { return [found = list_devices()](Editor& editor) { editor.devices = found; }; });
+}
+
+std::vector<std::string> Editor::device_wishes() const {
+  std::vector<std::string> all{"any-force", "any-force; mouse", "any-pose", "any-pose; mouse", "any"};
+  for (const DeviceInfo& device : devices)
+    if (device.missing.empty() && !device.id.empty()) all.push_back(full_id(device));
+  const std::vector<std::string> drivers = driver_names();
+  for (const std::string& driver : drivers)
+    if (std::find(all.begin(), all.end(), driver) == all.end()) all.push_back(driver);
+  return all;
 }
 
 }  // namespace pliant

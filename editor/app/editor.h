@@ -17,6 +17,7 @@
 #include "editor/paint/paint_surface.h"
 #include "editor/viewport/view_camera.h"
 #include "editor/viewport/view_settings.h"
+#include "pliant/driver.h"
 
 namespace pliant {
 
@@ -105,6 +106,13 @@ class Editor {
   std::size_t path_key = 0;   // that is active
   double path_depth = 0.005;  // [m] of the next key
   double path_speed = 0.02;   // [m/s] on the way to it
+
+  // --- Devices on this machine, as looked for last; in the background
+  static constexpr const char* kDeviceJob = "devices";
+  std::vector<DeviceInfo> devices;
+  bool devices_looked_for = false;
+  void look_for_devices();
+  std::vector<std::string> device_wishes() const;  // what an `id` may say: kinds, then ids that can be opened
 
   Jobs jobs;
   std::string tool = "Select";          // the active one of the viewport

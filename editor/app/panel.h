@@ -80,6 +80,7 @@ struct Action {
   std::function<bool(const Editor&)> checked = nullptr;  // a switch: whether it is on
   bool separator = false;                                // a line above it in the menu
   bool while_typing = false;                             // its keys count in text fields, too
+  bool always = false;                                   // and under dialogs and questions
   bool repeats = false;                                  // its key that is held goes on doing it
 };
 

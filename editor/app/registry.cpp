@@ -7,6 +7,7 @@
 #include "editor/panels/panels.h"
 #include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
+#include "editor/ui/device_list.h"
 
 namespace pliant {
 
@@ -15,6 +16,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_tree_panel());
   panels.push_back(make_inspector_panel(app));
   panels.push_back(make_play_panel(app));
+  panels.push_back(make_device_panel(app));
   panels.push_back(make_soft_panel(app));
   panels.push_back(make_path_panel(app));
   panels.push_back(make_paint_panel(app));
@@ -154,6 +156,15 @@ std::vector<Action> make_actions(App& app) {
   add({"play.step", "Play", "Step 1/60 s", ".", [&app](Editor&) { app.step_play(1.0 / 60.0); }, stands});
   all.back().separator = true;
   add({"play.tick", "Play", "Step a tick", "Shift+.", [&app](Editor&) { app.step_play(0.0); }, stands});
+  add({ui::kStopAction, "Play", "Emergency stop of devices", ui::kStopKeys,
+       [&app](Editor&) {
+         DeviceOrders orders;
+         orders.stop_all = true;
+         app.play().order(orders);
+         if (!app.play().status().devices.devices.empty()) app.show_panel("Devices");
+       },
+       plays});
+  all.back().while_typing = all.back().always = true;
   toggle("play.forces", "Show forces", "", &ViewSettings::forces);
   all.back().group = "Play";
   all.back().separator = true;

@@ -56,6 +56,31 @@ bool node_field(Editor& editor, const Key& key, Json& value) {
   return true;
 }
 
+// The key that says which device: its wishes can be picked from a list.
+const Key* device_id_key() {
+  static const Key* const key = find_key(*find_extension("haptic_device"), "id");
+  return key;
+}
+
+bool pick_device(Editor& editor, std::string& wish) {
+  if (!editor.devices_looked_for) editor.look_for_devices();
+  const bool open = ImGui::BeginCombo("##pick", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft);
+  ui::known_as("Pick device");
+  if (!open) {
+    ui::hint("Kinds of device, and those that are here");
+    return false;
+  }
+  const ui::Scope scope("Pick device");
+  bool picked = false;
+  for (const std::string& each : editor.device_wishes())
+    if (ui::selectable(each.c_str(), each == wish)) {
+      wish = each;
+      picked = true;
+    }
+  ImGui::EndCombo();
+  return picked;
+}
+
 bool box_field(const Key& key, Json& value) {
   const bool has = value.is_object();
   bool changed = false;
@@ -120,7 +145,14 @@ bool key_field(Editor& editor, const Key& key, Json& value) {
     }
     case KeyType::kText: {
       std::string text = value.is_string() ? value.get<std::string>() : "";
-      changed = ui::text_field(key.name.c_str(), text, "none", 0, ImGuiInputTextFlags_EnterReturnsTrue);
+      const bool device = &key == device_id_key();
+      changed = ui::text_field(key.name.c_str(), text, device ? "none: nobody moves it" : "none",
+                               device ? ImGui::GetContentRegionAvail().x / ui::scale() - 30 : 0,
+                               ImGuiInputTextFlags_EnterReturnsTrue);
+      if (device) {
+        ImGui::SameLine(0, ui::px(2));
+        changed |= pick_device(editor, text);
+      }
       if (changed) value = text;
       break;
     }

@@ -114,7 +114,8 @@ class PlayPanel : public Panel {
         if (each->node.probe || each->node.handle) names.push_back(each->node.name);
     }
     std::vector<std::string> choices{kLevel, kMouse, kScript, kOrbit, kNone};
-    for (const std::string& driver : driver_names()) choices.push_back(driver);
+    if (!editor.devices_looked_for) editor.look_for_devices();
+    for (const std::string& wish : editor.device_wishes()) choices.push_back(wish);
     if (names.empty()) ui::dim("The level has no probe and no tool.");
     for (const std::string& name : names) {
       PlaySource source = play.sources.contains(name) ? play.sources.at(name) : PlaySource{};

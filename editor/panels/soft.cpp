@@ -155,38 +155,40 @@ class SoftPanel : public Panel {
     ImGui::SameLine(ui::px(100));
     if (ui::number("cell", cell, 0.0, 1e5, "mm"))
       editor.apply("Cell", with_value(editor.state(), ids, "soft_body", "cell", cell * 1e-3), "cell");
-    if (preview_ && preview_->cell > 0.0) {
-      const auto by = [&](const char* label, double factor, const char* hint) {
-        if (ui::button(label, hint))
-          editor.apply("Cell", with_value(editor.state(), ids, "soft_body", "cell", preview_->cell * factor));
-        ImGui::SameLine();
-      };
-      by("Finer", 0.8, "About twice as many tetrahedra");
-      by("Coarser", 1.25, "About half as many tetrahedra");
-      if (ui::button("Automatic", "About 2,000 tetrahedra"))
-        editor.apply("Cell", with_value(editor.state(), ids, "soft_body", "cell", 0.0));
-    }
+    const bool sized = preview_ && preview_->cell > 0.0;
+    const auto by = [&](const char* label, double factor, const char* hint) {
+      if (ui::button(label, sized ? hint : "Once it is filled", sized))
+        editor.apply("Cell", with_value(editor.state(), ids, "soft_body", "cell", preview_->cell * factor));
+      ImGui::SameLine();
+    };
+    by("Finer", 0.8, "About twice as many tetrahedra");
+    by("Coarser", 1.25, "About half as many tetrahedra");
+    if (ui::button("Automatic", "About 2,000 tetrahedra"))
+      editor.apply("Cell", with_value(editor.state(), ids, "soft_body", "cell", 0.0));
     ask(editor, node);
     if (!trouble_.empty()) {
       ImGui::TextColored(ui::palette().bad, "Cannot be tissue as it is");
       ui::dim(trouble_.c_str());
       offer(editor, node, trouble_);
     }
-    if (editor.jobs.running("preview")) ui::dim("Filling \u2026");
-    if (!preview_) return;
-    const SoftPreview& p = *preview_;
-    figure("Cell", fmt::format("{:.3g} mm", p.cell * 1e3));
-    figure("Tetrahedra", fmt::format("{}", p.tetrahedra));
+    // The rows stand whether their figures are known or not: what is below does not move under a hand.
+    const bool filling = editor.jobs.running("preview");
+    static const SoftPreview kNone;
+    const SoftPreview& p = preview_ ? *preview_ : kNone;
+    const auto known = [&](std::string value) { return preview_ ? value : std::string(filling ? "\u2026" : "\u2013"); };
+    figure("Cell", filling ? "filling \u2026" : known(fmt::format("{:.3g} mm", p.cell * 1e3)));
+    figure("Tetrahedra", known(fmt::format("{}", p.tetrahedra)));
     figure("Worst quality",
-           fmt::format("{:.2f} of 1, angles {:.0f} to {:.0f}\u00b0", p.quality.worst_ratio,
-                       glm::degrees(p.quality.smallest_dihedral), glm::degrees(p.quality.largest_dihedral)));
-    figure("Volume", fmt::format("{:.4g} cm\u00b3", p.volume * 1e6));
-    figure("Pinned, on handle", fmt::format("{}, {} nodes", p.pinned, p.on_handle));
+           known(fmt::format("{:.2f} of 1, angles {:.0f} to {:.0f}\u00b0", p.quality.worst_ratio,
+                             glm::degrees(p.quality.smallest_dihedral), glm::degrees(p.quality.largest_dihedral))));
+    figure("Volume", known(fmt::format("{:.4g} cm\u00b3", p.volume * 1e6)));
+    figure("Pinned, on handle", known(fmt::format("{}, {} nodes", p.pinned, p.on_handle)));
     if (p.wall > 0.0) figure("Wall", fmt::format("{:.2g} mm", p.wall * 1e3));
-    if (p.parts != 1 || p.parts_lost > 0) figure("Parts", fmt::format("{} kept, {} lost", p.parts, p.parts_lost));
+    if (preview_ && (p.parts != 1 || p.parts_lost > 0))
+      figure("Parts", fmt::format("{} kept, {} lost", p.parts, p.parts_lost));
     const bool slow = p.step_ms > 1e3 * editor.state().simulation.soft_step;
     figure("A step takes about",
-           fmt::format("{:.1f} of {:.1f} ms", p.step_ms, 1e3 * editor.state().simulation.soft_step), slow);
+           known(fmt::format("{:.1f} of {:.1f} ms", p.step_ms, 1e3 * editor.state().simulation.soft_step)), slow);
     if (slow) ui::dim("Slower than real time on this machine; a coarser cell is faster.");
     for (const std::string& finding : p.findings) {
       ImGui::TextColored(ui::palette().warning, "Note");

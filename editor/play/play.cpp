@@ -172,6 +172,12 @@ void Play::set_source(const std::string& effector, const PlaySource& source) {
   run_->set_source(effector, sources[effector]);
 }
 
+void Play::order(const DeviceOrders& orders) {
+  if (!run_ || !orders.any()) return;
+  run_->order(orders);
+  if (orders.stop_all) editor_.say("emergency stop: no device has force until it is armed", Severity::kWarning);
+}
+
 double Play::oldest() const {
   double oldest = latest();
   for (const PlayTrace& trace : traces_)
@@ -263,6 +269,7 @@ void Play::update() {
     }
   }
   status_ = run_->status();
+  realtime |= status_.realtime;  // a device of the level asks for it
   for (; said_ < status_.notes.size(); ++said_) editor_.say(status_.notes[said_]);
   take_samples();
   put_on_stage();

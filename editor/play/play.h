@@ -52,6 +52,7 @@ class Play {
   void restart();
   void set_speed(double to);
   void set_source(const std::string& effector, const PlaySource& source);
+  void order(const DeviceOrders& orders);  // of devices
 
   // --- Going back
   double oldest() const;  // [s] that can be gone back to

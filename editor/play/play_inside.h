@@ -1,6 +1,7 @@
 // What a run's thread has to itself (play_run.h): the session, what it has been, and what moves it.
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "editor/play/play_run.h"
@@ -44,17 +45,24 @@ struct PlayRun::Inside {
     DriverKind driver = DriverKind::kNull;
     Handle<Path> path;
     EffectorSource source = EffectorSource::kNone;
+    std::string id;  // which device
   };
-  std::vector<Level> of_level, before_past;  // of each effector
-  std::vector<PlaySource> sources;           // of each effector
-  std::string moved;                         // by the mouse
-  std::string watched;                       // a tool that the mouse may take hold of
-  dquat held{1, 0, 0, 0};                    // as which it is held
+  std::vector<Level> of_level, before_past;                              // of each effector
+  std::vector<PlaySource> sources;                                       // of each effector
+  std::map<std::string, std::pair<std::string, std::string>> connected;  // by effector: a device's id and name
+  std::vector<DeviceInfo> there;                                         // devices, as listed last
+  std::string moved;                                                     // by the mouse
+  std::string watched;                                                   // a tool that the mouse may take hold of
+  dquat held{1, 0, 0, 0};                                                // as which it is held
 
   void say(const std::string& note) { notes.push_back(note); }
   Level remember(const SessionEffector& effector) const;
   void bring_back(SessionEffector& effector, const Level& level);
   void apply(const std::string& name, const PlaySource& source);
+  // A device for it, or what stands for one: the mouse, where nothing else is there.
+  Status connect(const SessionEffector& effector, const std::string& wish, bool& by_mouse);
+  bool feels() const;  // a device that is no simulation, or cannot be stepped
+  void view(DevicesView& out) const;
   void apply_all();
   void begin_past(const PlayPast& of, std::uint64_t until);
   void end_past();

@@ -42,7 +42,7 @@ std::string words_of(const World& world, const SessionEffector& effector, const 
     case PlaySource::Kind::kNone:
       return "none";
     case PlaySource::Kind::kDriver:
-      return source.what;
+      return "device:" + source.what;
   }
   return {};
 }
@@ -59,7 +59,11 @@ bool wants_mouse(const Level& level, const PlayOptions& options) {
   for (const auto& [name, source] : options.sources)
     if (source.kind == PlaySource::Kind::kMouse) return false;
   return std::none_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
-    return node.handle || (node.device && node.device->driver == DriverKind::kMouse);  // a tool it takes hold of
+    if (node.handle) return true;  // it takes hold of it
+    if (!node.device) return false;
+    const HapticDevice& device = *node.device;
+    return device.driver == DriverKind::kMouse ||
+           (device.driver == DriverKind::kExternal && device.id.find("mouse") != std::string::npos);  // may be
   });
 }
 
@@ -132,6 +136,16 @@ void PlayRun::set_source(const std::string& effector, const PlaySource& source) 
       in.say("what moves a probe can change in lockstep only; it takes effect at the next Play");
     else if (!in.again)
       in.apply(effector, source);
+  });
+}
+
+void PlayRun::order(const DeviceOrders& orders) {
+  post([orders](Inside& in) {
+    if (orders.stop_all) in.session->emergency_stop();
+    for (const std::string& name : orders.arm) static_cast<void>(in.session->arm(name));
+    for (const std::string& name : orders.disarm) static_cast<void>(in.session->disarm(name));
+    for (const std::string& name : orders.stop)
+      if (SessionEffector* const effector = in.parts->find_effector(name)) effector->link.stop();
   });
 }
 
@@ -278,6 +292,11 @@ Status PlayRun::open(Inside& in) {
   in.speed = options_.speed;
   for (const SessionEffector& effector : in.parts->effectors) in.of_level.push_back(in.remember(effector));
   in.apply_all();
+  if (!options_.past && !in.realtime && in.feels()) {
+    in.realtime = true;
+    in.watch();
+    in.say("a device feels in real time only, so the level plays in real time");
+  }
   if (options_.past) in.begin_past(*options_.past, options_.until);
   {
     std::unique_lock lock(mutex_);
@@ -455,10 +474,15 @@ void PlayRun::show(Inside& in) {
     each.limited = in.limited[i];
     next.effectors.push_back(std::move(each));
   }
+  DevicesView devices;
+  in.view(devices);
+  devices.late_ticks = next.figures.overruns;
   const SoftFigures* const soft = !p.soft->any() ? nullptr : p.clock ? &in.parts->soft->latest() : &p.soft->figures();
   const std::lock_guard lock(mutex_);
   if (figures) status_.figures = next.figures;
   status_.effectors = std::move(next.effectors);
+  if (!figures) devices.late_ticks = status_.devices.late_ticks;
+  status_.devices = std::move(devices);
   status_.surfaces.clear();
   for (const auto& [name, surface] : p.surfaces) status_.surfaces.emplace(name, surface);
   status_.phase = opening_                         ? PlayPhase::kOpening

@@ -19,6 +19,7 @@
 #include "content/level/level.h"
 #include "editor/play/play_hand.h"
 #include "editor/play/play_past.h"
+#include "engine/device_view.h"
 #include "engine/soft_clock.h"
 #include "pliant/session.h"
 
@@ -28,7 +29,7 @@ namespace pliant {
 struct PlaySource {
   enum class Kind : std::uint8_t { kLevel, kMouse, kScript, kOrbit, kNone, kDriver };
   Kind kind = Kind::kLevel;
-  std::string what;                  // file of a script, name of a driver
+  std::string what;                  // file of a script, which device (devices/choose.h)
   std::shared_ptr<const Path> path;  // of a script that is in no file yet
   double from = 0.0;                 // [s] of the run: where a script begins
   bool operator==(const PlaySource&) const = default;
@@ -36,13 +37,13 @@ struct PlaySource {
 struct PlayOptions {
   std::function<Result<Level>()> level;                     // called on the run's thread
   std::vector<std::pair<std::string, PlaySource>> sources;  // by name; others have the level's
-  bool mouse_probe = false;  // a probe `mouse` is added where nothing is moved by the mouse
-  bool realtime = false, paused = false;
-  double speed = 1.0;                    // [1] of the wall clock, in lockstep
-  bool shown = false;                    // ticks wait until a picture has been made of it
-  Viewpoint view;                        // that it is looked at from at first
-  std::shared_ptr<const PlayPast> past;  // is had again, as far as `until`, before anything else
-  std::uint64_t until = 0;               // [ticks]
+  bool mouse_probe = false;               // a probe `mouse` is added where nothing is moved by the mouse
+  bool realtime = false, paused = false;  // where the level itself asks for a device, it is felt in real time
+  double speed = 1.0;                     // [1] of the wall clock, in lockstep
+  bool shown = false;                     // ticks wait until a picture has been made of it
+  Viewpoint view;                         // that it is looked at from at first
+  std::shared_ptr<const PlayPast> past;   // is had again, as far as `until`, before anything else
+  std::uint64_t until = 0;                // [ticks]
 };
 
 enum class PlayPhase : std::uint8_t { kOpening, kReplaying, kPaused, kPlaying, kEnded };
@@ -75,6 +76,7 @@ struct PlayStatus {
   std::map<std::string, Deformable> surfaces;  // as they are set now
   std::string hash;  // of forces and state, in lockstep while it stands still: as `pliant run` says it
   std::vector<std::string> findings;
+  DevicesView devices;
 };
 
 class PlayRun {
@@ -94,6 +96,7 @@ class PlayRun {
   void set_speed(double speed);
   void set(const std::string& object, const std::string& key, double value);
   void set_source(const std::string& effector, const PlaySource& source);  // lockstep
+  void order(const DeviceOrders& orders);                                  // of devices
   void go_to(std::uint64_t tick);                                          // forward, in a past that is being had again
   void go_on();  // from there: the past ends here, sources move again
   void end();    // devices are let go at once; does not wait

@@ -4,13 +4,15 @@
 #include <algorithm>
 
 #include "content/level/script.h"
+#include "devices/choose.h"
+#include "devices/wrappers/chain.h"
 #include "editor/play/play_inside.h"
 
 namespace pliant {
 
 PlayRun::Inside::Level PlayRun::Inside::remember(const SessionEffector& effector) const {
   const HapticDevice& device = parts->world.registry.get<HapticDevice>(effector.device);
-  return {device.driver, device.path, effector.source};
+  return {device.driver, device.path, effector.source, device.id};
 }
 
 void PlayRun::Inside::bring_back(SessionEffector& effector, const Level& level) {
@@ -18,6 +20,7 @@ void PlayRun::Inside::bring_back(SessionEffector& effector, const Level& level) 
   device.driver = level.driver;
   device.path = level.path;
   device.status = level.path.valid() ? DeviceStatus::kReady : DeviceStatus::kLost;
+  device.id = level.id;
   effector.source = level.source;
   effector.placed = false;
 }
@@ -28,7 +31,13 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   if (!effector) return;
   const auto index = static_cast<std::size_t>(effector - parts->effectors.data());
   PlaySource::Kind kind = source.kind;
+  std::string wish = source.what;
   if (kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kMouse) kind = PlaySource::Kind::kMouse;
+  if (kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kExternal &&
+      !of_level[index].id.empty()) {
+    kind = PlaySource::Kind::kDriver;
+    wish = of_level[index].id;
+  }
   if (moved == name) {
     moved.clear();
     run.hand.let_go();
@@ -38,6 +47,23 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   const dquat rotation = device.rotation;
   if (effector->source != EffectorSource::kNone && effector->source != EffectorSource::kLevel)
     static_cast<void>(session->release(name));
+  connected.erase(name);
+  if (kind == PlaySource::Kind::kDriver && (run.options_.past || parts->ticks > 0)) {
+    say(fmt::format("the device of `{}` takes over at the next Play", name));  // it is felt in real time
+    static_cast<void>(session->release(name));
+    return;
+  }
+  if (kind == PlaySource::Kind::kDriver) {
+    bool by_mouse = false;
+    if (const Status done = connect(*effector, wish, by_mouse); !done) {
+      say(fmt::format("`{}`: {}", name, done.error().message()));
+      sources[index] = {PlaySource::Kind::kNone, {}};
+      static_cast<void>(session->release(name));
+      return;
+    }
+    if (!by_mouse) return;
+    kind = PlaySource::Kind::kMouse;
+  }
   Status done = Done{};
   switch (kind) {
     case PlaySource::Kind::kLevel:
@@ -49,8 +75,7 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
     case PlaySource::Kind::kOrbit:
       done = session->orbit(name);
       break;
-    case PlaySource::Kind::kDriver:
-      done = session->connect(name, source.what);
+    case PlaySource::Kind::kDriver:  // above
       break;
     case PlaySource::Kind::kScript: {
       Result<Path> path = source.path ? Result<Path>(*source.path) : load_script(source.what);
@@ -91,6 +116,38 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   say(done.error().message());
   sources[index] = {PlaySource::Kind::kNone, {}};
   if (kind != PlaySource::Kind::kNone) static_cast<void>(session->release(name));
+}
+
+Status PlayRun::Inside::connect(const SessionEffector& effector, const std::string& wish, bool& by_mouse) {
+  if (there.empty()) there = list_devices();
+  auto chosen = choose_device(wish, there);
+  if (!chosen) return chosen.error();
+  for (const std::string& note : chosen->notes) say(fmt::format("`{}`: {}", effector.name, note));
+  by_mouse = chosen->id.empty();
+  if (by_mouse) return Done{};
+  auto made = make_device(chosen->id);
+  if (!made) return made.error();
+  for (const std::string& note : made->notes) say(fmt::format("`{}`: {}", effector.name, note));
+  if (Status s = parts->connect(effector.name, std::move(made->driver), made->id, chosen->id); !s) return s;
+  if (Servo* const servo = effector.link.servo(); servo && !servo->note().empty())
+    say(fmt::format("`{}`: {}", effector.name, servo->note()));
+  connected[effector.name] = {chosen->id, chosen->name};
+  return Done{};
+}
+
+bool PlayRun::Inside::feels() const {
+  return std::any_of(parts->effectors.begin(), parts->effectors.end(),
+                     [](const SessionEffector& each) { return each.link.connected(); });
+}
+
+void PlayRun::Inside::view(DevicesView& out) const {
+  for (SessionEffector& each : parts->effectors) {
+    const auto of = connected.find(each.name);
+    if (each.link && of != connected.end())
+      out.devices.push_back({each.name, of->second.first, of->second.second, each.link.can(), each.link.report()});
+  }
+  for (const DeviceInfo& device : there)
+    if (!device.missing.empty()) out.unusable.push_back(device);
 }
 
 void PlayRun::Inside::apply_all() {

@@ -118,6 +118,7 @@ void Host::begin(std::span<const InputEvent> events, double dt) {
         break;
       case InputKind::kDrop:
       case InputKind::kClose:
+      case InputKind::kWidget:
         break;
     }
   }

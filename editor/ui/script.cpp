@@ -23,17 +23,18 @@ struct NamedKey {
   const char* name;
   int key;
 };
-constexpr NamedKey kNamed[] = {{"Tab", GLFW_KEY_TAB},        {"Esc", GLFW_KEY_ESCAPE},
-                               {"Space", GLFW_KEY_SPACE},    {"Home", GLFW_KEY_HOME},
-                               {"End", GLFW_KEY_END},        {"Enter", GLFW_KEY_ENTER},
-                               {"Delete", GLFW_KEY_DELETE},  {"Backspace", GLFW_KEY_BACKSPACE},
-                               {"Left", GLFW_KEY_LEFT},      {"Right", GLFW_KEY_RIGHT},
-                               {"Up", GLFW_KEY_UP},          {"Down", GLFW_KEY_DOWN},
-                               {"PageUp", GLFW_KEY_PAGE_UP}, {"PageDown", GLFW_KEY_PAGE_DOWN},
-                               {".", GLFW_KEY_PERIOD},       {",", GLFW_KEY_COMMA},
-                               {"/", GLFW_KEY_SLASH},        {"-", GLFW_KEY_MINUS},
-                               {"=", GLFW_KEY_EQUAL},        {"[", GLFW_KEY_LEFT_BRACKET},
-                               {"]", GLFW_KEY_RIGHT_BRACKET}};
+constexpr NamedKey kNamed[] = {
+    {"Tab", GLFW_KEY_TAB},         {"Esc", GLFW_KEY_ESCAPE},
+    {"Space", GLFW_KEY_SPACE},     {"Home", GLFW_KEY_HOME},
+    {"End", GLFW_KEY_END},         {"Enter", GLFW_KEY_ENTER},
+    {"Delete", GLFW_KEY_DELETE},   {"Backspace", GLFW_KEY_BACKSPACE},
+    {"Left", GLFW_KEY_LEFT},       {"Right", GLFW_KEY_RIGHT},
+    {"Up", GLFW_KEY_UP},           {"Down", GLFW_KEY_DOWN},
+    {"PageUp", GLFW_KEY_PAGE_UP},  {"PageDown", GLFW_KEY_PAGE_DOWN},
+    {".", GLFW_KEY_PERIOD},        {",", GLFW_KEY_COMMA},
+    {"/", GLFW_KEY_SLASH},         {"-", GLFW_KEY_MINUS},
+    {"=", GLFW_KEY_EQUAL},         {"[", GLFW_KEY_LEFT_BRACKET},
+    {"]", GLFW_KEY_RIGHT_BRACKET}, {"Escape", GLFW_KEY_ESCAPE}};  // the first of two names is written
 
 std::optional<double> number_of(const std::string& text) {
   double value = 0;
@@ -186,8 +187,15 @@ Result<std::pair<double, double>> Script::place(const std::string& text, bool& t
       if (like.size() < 600) like += (like.empty() ? "" : ", ") + each;
     return Error{"", "there is no single widget '" + address + "' now; there are: " + like};
   }
-  return std::pair{static_cast<double>(found->low.x) + fx * static_cast<double>(found->high.x - found->low.x),
-                   static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y)};
+  const double x = static_cast<double>(found->low.x) + fx * static_cast<double>(found->high.x - found->low.x),
+               y = static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y);
+  const auto within = [](double at, float low, float high) {
+    return at >= static_cast<double>(low) && at <= static_cast<double>(high);
+  };
+  if (within(fx, 0, 1) && within(fy, 0, 1) &&
+      (!within(x, found->seen_low.x, found->seen_high.x) || !within(y, found->seen_low.y, found->seen_high.y)))
+    return Error{"", "'" + address + "' is scrolled out of sight; turn the wheel over its panel first"};
+  return std::pair{x, y};
 }
 
 void Script::key_events(const std::string& keys, bool) {
@@ -212,7 +220,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   bool there = true;
   if (step.verb == "click" || step.verb == "press" || step.verb == "move" || step.verb == "drag") {
     const auto from = place(address_of(step.words, i), there);
-    waits = !from && !there && rest_ < kLateFrames;
+    waits = !from && rest_ < kLateFrames;
     if (waits) return Done{};
     if (!from) return wrong(from.error().what);
     std::pair<double, double> to = *from;

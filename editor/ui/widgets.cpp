@@ -34,12 +34,22 @@ void end_widgets() {
   std::erase_if(g_before, [](const Place& each) { return each.low.x == each.high.x && each.low.y == each.high.y; });
 }
 
+void underline_item() {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y - px(2)}, high, color(palette().accent));
+}
+
 void known_at(std::string_view label, ImVec2 low, ImVec2 high) {
-  g_now.push_back({address_of(label), low, high, true});
+  g_now.push_back({address_of(label), low, high, low, high, true});
 }
 
 void known_as(std::string_view label) {
-  known_at(label, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  known_at(label, low, high);
+  const ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 from = list.GetClipRectMin(), to = list.GetClipRectMax();
+  g_now.back().seen_low = {std::max(low.x, from.x), std::max(low.y, from.y)};
+  g_now.back().seen_high = {std::min(high.x, to.x), std::min(high.y, to.y)};
 }
 
 std::optional<Place> find_widget(std::string_view address) {
@@ -59,6 +69,10 @@ std::vector<std::string> widget_addresses() {
   std::vector<std::string> all;
   for (const Place& each : g_before) all.push_back(each.address);
   return all;
+}
+
+const std::vector<Place>& widgets() {
+  return g_before;
 }
 
 void hint(const char* text) {

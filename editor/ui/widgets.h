@@ -20,7 +20,8 @@ namespace pliant::ui {
 // Where a widget was in the frame before.
 struct Place {
   std::string address;
-  ImVec2 low{0, 0}, high{0, 0};  // [pixel]
+  ImVec2 low{0, 0}, high{0, 0};            // [pixel]
+  ImVec2 seen_low{0, 0}, seen_high{0, 0};  // what its panel shows of it
   bool enabled = true;
 };
 class Scope {  // names what is drawn while it lives
@@ -33,9 +34,11 @@ class Scope {  // names what is drawn while it lives
 void end_widgets();                                              // of a frame
 void known_as(std::string_view label);                           // the item that was drawn last
 void known_at(std::string_view label, ImVec2 low, ImVec2 high);  // something that is drawn by hand
+void underline_item();                                           // the same, in the accent: it is the open one
 // By its address, or by its label where only one has it.
 std::optional<Place> find_widget(std::string_view address);
 std::vector<std::string> widget_addresses();
+const std::vector<Place>& widgets();  // of the frame before
 
 // `hint` is what a tooltip says; where the widget is off, why.
 void hint(const char* text);

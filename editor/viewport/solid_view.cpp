@@ -388,14 +388,16 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
         base = glm::max(encoded(vec3(materials[static_cast<std::size_t>(material)].base_color)), vec3(0.18f));
       glUniform3fv(3, 1, &base.x);
       glBindVertexArray(primitive.layout.id());
-      if (order.settings.wireframe) {
+      // Behind its edges; what is selected before another surface in the same place, or its outline would be specks.
+      const bool moved = order.settings.wireframe || selected[i];
+      if (moved) {
         glEnable(GL_POLYGON_OFFSET_FILL);
-        glPolygonOffset(1, 1);
+        order.settings.wireframe ? glPolygonOffset(1, 1) : glPolygonOffset(-2, -8);
       }
       glDrawElements(GL_TRIANGLES, primitive.index_count, GL_UNSIGNED_INT, nullptr);
       triangles_ += static_cast<std::size_t>(primitive.index_count) / 3;
+      if (moved) glDisable(GL_POLYGON_OFFSET_FILL);
       if (order.settings.wireframe) {
-        glDisable(GL_POLYGON_OFFSET_FILL);
         add_edges(mesh.primitives[p], mesh.of->primitives[p]);
         // Edges as dense as pixels would hide the surface.
         const double depth = std::max(dot(middle - order.view.eye, forward), 1e-3 * away),

@@ -118,8 +118,11 @@ void ViewBar::draw_over(const Editor& editor, const ViewportInput& in, ImDrawLis
   if (editor.view.names) draw_names(editor, in, list);
   if (editor.view.grid) {
     const std::string text = "Grid  " + length_text(grid_step(in.view, in.orthographic));
-    text_at(list, {in.corner.x + ui::px(ui::kPad), in.corner.y + static_cast<float>(in.height) - ui::px(26)},
-            ui::color(p.dim), text);
+    const ImVec2 at(in.corner.x + ui::px(ui::kPad), in.corner.y + static_cast<float>(in.height) - ui::px(26));
+    const ImVec2 size = size_of(text), around(ui::px(ui::kGap), ui::px(2));
+    list.AddRectFilled({at.x - around.x, at.y - around.y}, {at.x + size.x + around.x, at.y + size.y + around.y},
+                       ui::color(p.panel, 0.8f), ui::px(4));  // legible over any picture
+    text_at(list, at, ui::color(p.dim), text);
   }
   if (editor.view.channel && editor.view.shading == Shading::kSolid && editor.tool != kPaintTool)
     draw_legend(editor.view, in, list);
@@ -327,10 +330,12 @@ void ViewBar::draw_cross(Editor& editor) {
   ImGui::PushFont(ui::font(ui::Type::kSmall));
   const float wide = ImGui::CalcTextSize("Orthographic").x + ui::px(2 * ui::kSpace);
   ImGui::SetCursorScreenPos({middle.x + half - wide, low.y + 2 * half + ui::px(ui::kGap)});
+  ImGui::PushStyleColor(ImGuiCol_Button, ui::palette().field);
   if (ui::button(fmt::format("{}###projection", name).c_str(),
                  "Changes between a picture with perspective and one without (5)", true, wide / ui::scale()))
     editor.view.orthographic = !editor.view.orthographic;
   ui::known_as("Projection");
+  ImGui::PopStyleColor();
   ImGui::PopFont();
 }
 

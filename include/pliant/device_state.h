@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <string>
 
+#include "pliant/driver.h"
+
 namespace pliant {
 
 enum class DeviceState : std::uint8_t {
@@ -61,6 +63,8 @@ struct DeviceTransition {
 };
 
 const char* name_of(DeviceState state);
+// "no sample for 100 ms; check cable and power, then arm it again".
+std::string describe(DeviceCause cause);
 // "active -> tripped at 12.345 s from 1.20 N: no sample for 100 ms; check cable and power, then arm it again".
 std::string describe(const DeviceTransition& transition);
 
@@ -93,17 +97,25 @@ struct ServoFigures {
   double jitter = 0.0;                                // [us] |period - wanted|, 99 of 100 stay below it
   double round_trip_p50 = 0.0, round_trip_max = 0.0;  // [us] from a write to the sample that answers it, if told
   double oldest_model = 0.0;                          // [us] that a force was made from
+  std::uint64_t late_models = 0;                      // periods whose model was older than two ticks of 1 ms
+  double read_p50 = 0.0, read_max = 0.0;              // [us] from sensing to reading, if the driver tells when
   bool has_priority = false;                          // SCHED_FIFO was granted
 };
 
-// All that a person wants to know about a device.
+// All that a person wants to know about a device. Of a driver without a rate, which has no servo: state, cause, sample,
+// forces and how often it is read; its force comes back through the gate of the touch tick.
 struct DeviceReport {
   static constexpr std::size_t kKept = 32;
   DeviceState state = DeviceState::kDisconnected;
   DeviceCause cause = DeviceCause::kNone;  // of the last transition
   double force = 0.0;                      // [N] as written last
   double heat = 0.0;                       // [1] 1: its force is lowered to what it bears for ever
-  std::uint64_t transitions = 0;           // since the start; the last kKept of them are in `kept`
+  DeviceSample sample;                     // the newest, as the device says it
+  double sample_age = -1.0;                // [s] since it came; below 0: there was none
+  DeviceWrench wanted, sent;               // by the newest model where the device is; as written last
+  double max_force = 0.0;         // [N] that may leave now: the least of device, level, parameters and heat; 0:
+                                  // nobody says one
+  std::uint64_t transitions = 0;  // since the start; the last kKept of them are in `kept`
   std::array<DeviceTransition, kKept> kept{};
   ServoFigures figures;
 

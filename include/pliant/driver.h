@@ -28,6 +28,8 @@ struct DeviceSample {
   std::uint32_t buttons = 0;   // those that are down, bit by bit, as the driver numbers them
   double time = 0.0;           // [s] when it was sensed, of the monotonic clock; 0: when it was read
   std::uint32_t warnings = 0;  // bits of DeviceWarning
+  double battery = -1.0;       // [1] 0 to 1; below 0: it does not say
+  bool charging = false;
 };
 
 // What a device says of itself. Warm: its force is lowered. Battery low: its force fades, and it is to be armed again.
@@ -127,6 +129,9 @@ class Driver {
   virtual void make_safe() noexcept;
   // True where there is such a line, after open(): a process of its own watches this one and uses it.
   virtual bool safe_line(SafeLine& line) const;
+  // True: its line is dead, so that read() has nothing any more; from the thread that reads. One that was made by its
+  // name is then closed, and opened until it is there again, on another thread and while no other function is called.
+  virtual bool gone() const;
 };
 
 using DriverFactory = std::function<std::unique_ptr<Driver>()>;
@@ -137,6 +142,10 @@ struct DeviceInfo {
   std::string name;        // as people call it
   std::string missing;     // why it cannot be opened now, and the cure, as one sentence; "": it can
   DeviceCapabilities can;
+  // Which piece of hardware, "VENDOR:PRODUCT:SERIAL", where several drivers may find the same; "": not known.
+  std::string hardware;
+  bool general = false;  // its driver takes whatever is of its kind: one that is made for the hardware goes before it
+  std::string also;      // "driver:id" of such a one that takes it, too: "" in what a lister returns
 };
 using DeviceLister = std::function<std::vector<DeviceInfo>()>;
 
@@ -147,7 +156,7 @@ Status register_driver(const std::string& name, DriverFactory factory, DeviceLis
 std::vector<std::string> driver_names();
 // A new one, not opened. The error lists the names there are.
 Result<std::unique_ptr<Driver>> make_driver(const std::string& name);
-// What every registered driver finds now, in the order of their names.
+// What every registered driver finds now, in the order of their names, each piece of hardware once.
 std::vector<DeviceInfo> list_devices();
 
 }  // namespace pliant

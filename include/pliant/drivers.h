@@ -1,4 +1,5 @@
-// The drivers that ship, of the package's component `devices` (docs/devices.md): SpaceMouse, pads, Falcon, Haply and on.
+// The drivers that ship, of the package's component `devices` (docs/devices.md): SpaceMouse, pads, Falcon, Haply and
+// on.
 #pragma once
 
 namespace pliant {

@@ -116,10 +116,10 @@ class Session {
   Status connect(const std::string& effector, std::unique_ptr<Driver> driver, const std::string& id = {});
   Status release(const std::string& effector);  // nobody moves it: no force
 
-  // --- What stands between the session and a hand (pliant/device_state.h): of drivers that say a rate, each of which
-  // has a servo. In real time it runs on a thread of its own; in lockstep in step(), in virtual time, the same periods
-  // for the same ticks, and a device that is run by its answers or by its maker's library is refused.
-  // How the next driver that is connected to it is guarded.
+  // --- What stands between the session and a hand (pliant/device_state.h). Drivers that say a rate and render anything
+  // have a servo each. In real time it runs on a thread of its own; in lockstep in step(), in virtual time, the same
+  // periods for the same ticks, and a device that is run by its answers or by its maker's library is refused. How the
+  // next driver that is connected to it is guarded.
   Status guard(const std::string& effector, const GuardParameters& parameters);
   Result<DeviceReport> device_state(const std::string& effector) const;
   Status arm(const std::string& effector);     // after a trip, or where it does not arm itself

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "devices/choose.h"
-#include "pliant/drivers.h"
 #include "devices/wrappers/chain.h"
 #include "engine/sources.h"
+#include "pliant/drivers.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 
@@ -40,7 +40,7 @@ Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed
     auto made = make_device(chosen->id);
     if (!made) return made.error();
     for (const std::string& sentence : made->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
-    Held opened{name, hand, device_of(world, hand), {}};
+    Held opened{name, hand, device_of(world, hand), {}, chosen->id, chosen->name};
     if (Status s = opened.link.connect(std::move(made->driver), made->id, "device `" + chosen->id + "`", chosen->id);
         !s)
       return s;
@@ -53,6 +53,12 @@ Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed
       notes.push_back(fmt::format("`{}`: {}", name, opened.link.servo()->note()));
     links_.push_back(std::move(opened));
   }
+  for (const Entity hand : hands(world)) {
+    const Name* const named = world.registry.find<Name>(hand);
+    if (!moves(hand)) others_.push_back({named ? named->value : std::string(), describe_source(world, hand)});
+  }
+  for (DeviceInfo& device : there)
+    if (!device.missing.empty()) unusable_.push_back(std::move(device));
   return Done{};
 }
 
@@ -107,12 +113,33 @@ void DeviceLinks::halt() noexcept {
   for (Held& held : links_) held.link.halt();
 }
 
+void DeviceLinks::view(DevicesView& out) {
+  out.devices.resize(links_.size());
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    out.devices[i] = {links_[i].name, links_[i].id, links_[i].called, links_[i].link.can(), links_[i].link.report()};
+  out.others = others_;
+  out.unusable = unusable_;
+}
+
+void DeviceLinks::order(const DeviceOrders& orders) {
+  const auto each = [&](const std::vector<std::string>& names, void (DriverLink::*what)()) {
+    for (Held& held : links_)
+      if (std::find(names.begin(), names.end(), held.name) != names.end()) (held.link.*what)();
+  };
+  each(orders.arm, &DriverLink::arm);
+  each(orders.disarm, &DriverLink::disarm);
+  each(orders.stop, &DriverLink::stop);
+  if (orders.stop_all) stop_all();
+}
+
+void DeviceLinks::stop_all() {
+  for (Held& held : links_) held.link.stop();
+}
+
 std::vector<std::string> DeviceLinks::findings() {
   std::vector<std::string> all;
   for (Held& held : links_) {
-    Servo* const servo = held.link.servo();
-    if (!servo) continue;
-    const DeviceReport& report = servo->report();
+    const DeviceReport& report = held.link.report();
     std::uint64_t worse = 0;
     std::string last;
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(report.transitions, DeviceReport::kKept); ++i) {

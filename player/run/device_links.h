@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "components/world.h"
+#include "engine/device_view.h"
 #include "engine/driver_link.h"
 #include "engine/simulated_hands.h"
 #include "engine/touch_clock.h"
@@ -30,6 +31,11 @@ class DeviceLinks {
   void hook(World& world, TouchHooks& hooks);
   Status start();
   void halt() noexcept;
+  // --- The thread's that started them
+  // What is shown of each, and of the hands that none moves; `late_ticks` is left to the caller.
+  void view(DevicesView& out);
+  void order(const DeviceOrders& orders);
+  void stop_all();  // no force until each is armed; from any thread
   // What became of each: transitions that a person should know of.
   std::vector<std::string> findings();
 
@@ -38,8 +44,11 @@ class DeviceLinks {
     std::string name;
     Entity hand, device;
     DriverLink link;
+    std::string id, called;  // "falcon:0|scale=2"; as people call it
   };
   std::vector<Held> links_;
+  std::vector<DevicesView::Other> others_;
+  std::vector<DeviceInfo> unusable_;
 };
 
 }  // namespace pliant

@@ -14,8 +14,12 @@
   STUDY(hand, "a simulated hand touches the demo levels through every device profile; with and without guard at 1 and 10 ms") \
   STUDY(integrators, "steps of one vertex: eight schemes, every spring law, dt 1e-5 to 1e-1 s: ns against error; stability") \
   STUDY(shapes, "the surface of a press by every shape, against closed forms and blocks of tetrahedra") \
+  STUDY(hardcases, "where haptic engines break: what must hold there, the verdict and the figure") \
+  STUDY(surfaces, "facets, force shading, curved patches against spheres, tori, saddles: ripple, direction, work, us") \
   STUDY(fidelity, "one indentation by P1, every shape and law, and by the FEM at four resolutions: force and surface") \
-  STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes")
+  STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes") \
+  STUDY(collision, "local walks, the tree and brute force, on meshes up to two million triangles: us against misses") \
+  STUDY(scale, "a tick, a frame and a soft step, by vertices, moving vertices, tetrahedra and contacts: fitted powers")
 // clang-format on
 
 namespace pliant {

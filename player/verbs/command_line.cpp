@@ -17,6 +17,9 @@
 #include "content/level_file.h"
 #include "editor/edit.h"
 #include "player/exit.h"
+#include "player/fit/fit.h"
+#include "player/fit/press_model.h"
+#include "player/plot/plot_runs.h"
 #include "player/standard_streams.h"
 #include "player/study/study.h"
 #include "player/sweep/sweep.h"
@@ -24,6 +27,7 @@
 #include "player/verbs/device_test.h"
 #include "player/verbs/verbs.h"
 #include "pliant/content.h"
+#include "pliant/drivers.h"
 
 namespace pliant {
 namespace {
@@ -259,6 +263,75 @@ void add_sweep(CLI::App& app, SweepOptions& options, MergeOptions& merging) {
   merge->footer("Example:\n  pliant sweep merge out/sweep --out out/merged");
 }
 
+void add_fit(CLI::App& app, FitOptions& options) {
+  std::vector<std::string> laws{"auto"}, sides;
+  for (const std::string& law : press_laws()) laws.push_back(law);
+  for (const Side side : {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack})
+    sides.emplace_back(word_of(side));
+  CLI::App* verb = app.add_subcommand("fit", "a surface's keys from measured presses, finite elements or a sweep");
+  verb->add_option("in", options.in, "a level, or measured presses (.csv with columns such as time_s,depth_mm,force_N)")
+      ->check(named());
+  verb->add_option("--object", options.object, "node of the level (its only one with a mesh)")->check(named());
+  verb->add_option("-o,--out", options.out, "the level that is written, .glb or .gltf")
+      ->check(named())
+      ->type_name("FILE");
+  verb->add_option("--report", options.report,
+                   "folder of figures and plots (out/fit); FOLDER-2 and on where one has results")
+      ->check(named());
+  verb->add_flag("--force", options.force, "replace what is there");
+  verb->add_option("--radius", options.radius, "of the indenter [m]; 0: a point (finite elements: two cells)")
+      ->check(within(0, 1));
+  verb->add_option("--level", options.level, "measured: into which level the keys go")->check(named());
+  verb->add_option("--law", options.law, "measured: " + joined(laws) + " (auto)")->check(one_of(laws));
+  verb->add_option("--probe", options.probe, "measured: which probe of a run's forces.csv")->check(named());
+  verb->add_option("--hold-out", options.hold_out, "measured: share of the rows that the fit does not see (0.25)")
+      ->check(within(0, 0.5));
+  verb->add_option("--confidence", options.confidence, "measured: of the intervals (0.95)")->check(within(0.5, 0.9999));
+  verb->add_flag("--damping", options.damping, "measured: fit contact_damping, too");
+  verb->add_flag("--contact", options.contact, "measured: fit the depth at which the indenter met the surface, too");
+  verb->add_option("--young", options.young, "finite elements: Young's modulus [Pa] (the level's)")
+      ->check(within(1e-3, 1e12));
+  verb->add_option("--poisson", options.poisson, "Poisson's ratio (the level's; measured: 0.45)")
+      ->check(within(0, 0.499));
+  verb->add_option("--thickness", options.thickness, "finite elements: of a wall [m] (the level's)")
+      ->check(within(0, 1e3));
+  verb->add_option("--cell", options.cell, "finite elements: of the lattice [m] (some 16000 tetrahedra)")
+      ->check(within(0, 1e3));
+  verb->add_option("--pin", options.pin,
+                   "finite elements: which side is held: " + joined(sides) + " (the level's, else bottom)")
+      ->check(one_of(sides));
+  verb->add_option("--reach", options.reach, "finite elements: reach of the dents [m] (what fits best)")
+      ->check(within(0, 1e3));
+  verb->add_flag("--linear", options.linear,
+                 "finite elements: small strains instead of the co-rotational ones of a run");
+  verb->add_option("--points", options.points, "finite elements: places that law and shape are fitted at (24)")
+      ->check(within(4, 500));
+  verb->add_option("--held", options.held, "finite elements: places that the fit does not see (12)")
+      ->check(within(1, 500));
+  verb->add_option("--sweep", options.sweep, "folder of a sweep: which of its runs comes nearest to --target")
+      ->check(named());
+  verb->add_option("--target", options.target, "measured presses that a sweep's runs are compared with")
+      ->check(named());
+  add_limits(verb);
+  verb->footer(
+      "Examples:\n"
+      "  pliant fit hand --object organ -o organ_surface.glb\n"
+      "  pliant fit indenter.csv --law hertz --radius 0.003 --level level.glb --object organ -o fitted.glb\n"
+      "  pliant fit --sweep out/sweep --target indenter.csv");
+}
+
+void add_plot(CLI::App& app, PlotOptions& options) {
+  CLI::App* verb = app.add_subcommand("plot", "runs over each other: force over depth and time, spectra, a table");
+  verb->add_option("runs", options.runs, "folders of runs, or their forces.csv")->required()->check(named());
+  verb->add_option("--probe", options.probes, "only these probes and tools; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(named());
+  verb->add_option("--out", options.out, "folder (out/plot); FOLDER-2 and on where one has results")->check(named());
+  verb->add_flag("--force", options.force, "replace what an earlier plot wrote there");
+  verb->footer("Example:\n  pliant plot out/soft out/stiff --out out/compared");
+}
+
 void add_edit(CLI::App& app, EditOptions& options, std::string& unit) {
   CLI::App* verb = app.add_subcommand("edit", "the editor: from a mesh to a level that can be touched");
   verb->add_option("file", options.file, "a level, or any mesh; none: the start page");
@@ -348,6 +421,10 @@ int parse_and_run(int argc, const char* const* argv) {
   SweepOptions sweep_options;
   MergeOptions merging;
   add_sweep(app, sweep_options, merging);
+  FitOptions fit_options;
+  add_fit(app, fit_options);
+  PlotOptions plot_options;
+  add_plot(app, plot_options);
   EditOptions edit_options;
   std::string edit_unit = "m";
   add_edit(app, edit_options, edit_unit);
@@ -370,12 +447,15 @@ int parse_and_run(int argc, const char* const* argv) {
   if (name == "validate") return validate(validated);
   if (name == "devices") return device_test.id.empty() ? devices(devices_json) : test_device(device_test);
   if (name == "study") return study(study_options);
+  if (name == "fit") return fit(fit_options);
+  if (name == "plot") return plot_runs(plot_options);
   if (name == "sweep")
     return app.get_subcommand("sweep")->got_subcommand("merge") ? merge_sweep(merging) : sweep(sweep_options);
   const Result<double> unit = parse_unit(edit_unit);
   if (!unit) return fail(kUsage, unit.error());
   edit_options.unit = *unit;
   edit_options.levels = shipped_levels();
+  register_all_drivers();
   const Status edited = edit(edit_options);
   return edited ? kDone : fail(kFailed, edited.error());
 }

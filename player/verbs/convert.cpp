@@ -12,6 +12,7 @@
 #include "player/exit.h"
 #include "player/interrupt.h"
 #include "player/print.h"
+#include "player/verbs/left_behind.h"
 #include "player/verbs/panorama_preview.h"
 #include "player/verbs/verbs.h"
 
@@ -117,27 +118,6 @@ int convert_panorama(const ConvertOptions& options) {
     return fail(kFailed, s.error());
   print("{}: {} x {} pixels, a cross of six faces of {}\n", options.out, image.width, image.height, kPreviewFace);
   return kDone;
-}
-
-// Files that PLIANT extensions name are not copied; where the level moves to another folder it misses them.
-void say_left_behind(const Level& level, const fs::path& out) {
-  std::set<std::string> names;
-  if (level.environment) names.insert(level.environment->panorama);
-  for (const LevelNode& node : level.nodes) {
-    if (node.device && node.device->driver == DriverKind::kScript) names.insert(node.device->file);
-    if (node.motion) names.insert(node.motion->script);
-    if (node.soft_body) names.insert(node.soft_body->mesh);
-  }
-  names.erase("");
-  std::string missing;
-  std::error_code ignored;
-  for (const std::string& name : names) {
-    const Result<fs::path> file = confined_path(out.parent_path(), name);  // else a panorama that all levels share
-    if (!fs::exists(file ? *file : out.parent_path() / name, ignored))
-      missing += (missing.empty() ? "`" : ", `") + name + "`";
-  }
-  if (!missing.empty())
-    note("the level names files that are not beside " + out.string() + ": " + missing + "; copy them there");
 }
 
 }  // namespace

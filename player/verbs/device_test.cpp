@@ -11,12 +11,12 @@
 #include <thread>
 
 #include "devices/choose.h"
-#include "pliant/drivers.h"
 #include "devices/servo/servo.h"
 #include "devices/wrappers/chain.h"
 #include "player/exit.h"
 #include "player/interrupt.h"
 #include "player/print.h"
+#include "pliant/drivers.h"
 #include "runtime/clock.h"
 
 namespace pliant {
@@ -98,6 +98,10 @@ std::string told(const DeviceSample& sample, const DeviceCapabilities& can, doub
   }
   if (can.senses_grip) line += fmt::format("  grip {:3.0f} %", 100 * sample.grip);
   line += fmt::format("  buttons {:x}  {:.0f} samples/s", sample.buttons, rate);
+  if (sample.battery >= 0.0)
+    line += fmt::format("  battery {:.0f} %{}", 100 * sample.battery, sample.charging ? ", charging" : "");
+  if (sample.warnings & kDeviceBatteryLow) line += "  battery low";
+  if (sample.warnings & kDeviceWarm) line += "  warm";
   if (servo) {
     const DeviceReport& report = servo->report();
     line += fmt::format("  {}  {:.2f} N", name_of(report.state), report.force);

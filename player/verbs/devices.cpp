@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "pliant/drivers.h"
+#include "devices/choose.h"
 #include "player/print.h"
 #include "player/verbs/verbs.h"
 #include "pliant/driver.h"
+#include "pliant/drivers.h"
 #include "runtime/printable.h"
 
 namespace pliant {
@@ -27,10 +28,6 @@ constexpr BuiltIn kBuiltIn[] = {
     {"mouse", "moves in the plane of the picture", "in a window: `pliant run LEVEL --probe finger=mouse`"},
     {"null", "stays where the level put it", "\"driver\": \"null\" in the level's PLIANT_haptic_device"},
 };
-
-std::string full_id(const DeviceInfo& device) {
-  return device.id.empty() ? device.driver : device.driver + ":" + device.id;
-}
 
 // "senses position and rotation; pushes up to 8 N (2.5 N for long)"
 std::string describe(const DeviceCapabilities& can) {
@@ -56,7 +53,8 @@ std::string describe(const DeviceCapabilities& can) {
 
 std::string how_to_use(const DeviceInfo& device) {
   if (!device.missing.empty()) return device.missing;
-  return fmt::format("--probe NAME=device:{}; try it: pliant devices --test {}", full_id(device), full_id(device));
+  return fmt::format("--probe NAME=device:{}; try it: pliant devices --test {}{}", full_id(device), full_id(device),
+                     device.also.empty() ? std::string() : "; the general driver takes it as " + device.also);
 }
 
 void print_as_json(const std::vector<DeviceInfo>& found) {

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "content/files/file_io.h"
+#include "editor/app/settings.h"
+#include "editor/ui/device_list.h"
 #include "engine/body_journal.h"
 #include "engine/driver_limits.h"
 #include "engine/journal.h"
@@ -138,7 +140,8 @@ bool is_moved(const RunFigures& figures, std::size_t hand) {
   if (driver == DriverKind::kMouse) return figures.mode == "window";
   if (driver == DriverKind::kExternal) {
     const std::string& source = figures.keeper.summaries()[hand].source;
-    return source.starts_with("replay:") || source.starts_with("hand:");
+    return source == "hand" || source.starts_with("hand:") || source.starts_with("replay:") ||
+           (source.starts_with("device:") && source != "device:");
   }
   return driver != DriverKind::kNull;
 }
@@ -241,6 +244,11 @@ Ran run_shown(const RunOptions& options, const RunOptions& asked, Shown& shown, 
   session.hands = loop.hands;
   session.devices = loop.devices;
   session.level = options.level;
+  std::string unread;
+  const Settings settings = Settings::load({}, unread);
+  if (!unread.empty()) note(unread);
+  const auto keys = settings.keys.find(ui::kStopAction);
+  session.stop_keys = keys == settings.keys.end() || keys->second.empty() ? ui::kStopKeys : keys->second;
   session.rate = loop.rate;
   session.ticks = loop.ticks;
   session.frame_width = options.width;

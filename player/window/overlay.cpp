@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
+#include "editor/ui/device_list.h"
 #include "systems/safety/safety.h"
 
 namespace pliant {
@@ -28,31 +28,28 @@ constexpr const char* kKeys[][2] = {
     {"Wheel", "nearer or farther"},
     {"F, Home", "see everything; the first view"},
     {"1, 3, 7", "from the front, the right, above"},
-    {"Space, R", "pause; start anew"},
+    {"Space, R", "pause, which lets devices go; start anew"},
     {"W, Z, H", "wireframe, zones, height as colour"},
     {"C, A, S", "contact frames, force arrows, shadows"},
     {"T, K, G", "tetrahedra, contacts of soft bodies, handles of tools"},
     {"F12", "screenshot into the run's folder"},
     {"Tab, F1", "hide or show figures; this page"},
+    {"D", "devices: state, axes, forces, arming"},
     {"Drop a file", "open it"},
     {"Esc", "close"},
 };
 
+// The editor's type and spaces, on panels that let the scene through.
 void style(float scale) {
-  ImGui::StyleColorsDark();
+  static_cast<void>(ui::set_theme(ui::Theme::kDark, scale));
   ImGuiStyle& s = ImGui::GetStyle();
-  s.WindowRounding = 8;
-  s.FrameRounding = 4;
-  s.WindowBorderSize = 0;
-  s.WindowPadding = {14, 12};
-  s.ItemSpacing = {8, 5};
+  s.WindowRounding = 8 * scale;
+  s.WindowPadding = {14 * scale, 12 * scale};
+  s.ItemSpacing = {8 * scale, 5 * scale};
   s.Colors[ImGuiCol_WindowBg] = {0.055f, 0.065f, 0.08f, 0.82f};
-  s.Colors[ImGuiCol_Text] = {0.93f, 0.94f, 0.95f, 1.0f};
   s.Colors[ImGuiCol_FrameBg] = {1, 1, 1, 0.09f};
   s.Colors[ImGuiCol_FrameBgHovered] = {1, 1, 1, 0.18f};
-  s.Colors[ImGuiCol_CheckMark] = {1.0f, 0.62f, 0.34f, 1.0f};
   s.Colors[ImGuiCol_Separator] = {1, 1, 1, 0.10f};
-  s.ScaleAllSizes(scale);
 }
 
 // A row: what at the left, its figure at the right.
@@ -199,7 +196,7 @@ void draw_switches(RenderOptions& options, float tint, float scale) {
   options.tint_height = height ? (options.tint_height > 0 ? options.tint_height : tint) : 0.0f;
 }
 
-void draw_help(float scale) {
+void draw_help(const OverlayState& state, float scale) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowBgAlpha(0.93f);
@@ -207,11 +204,14 @@ void draw_help(float scale) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
   ImGui::Text("Mouse and keys");
   ImGui::Separator();
-  for (const auto& key : kKeys) {
-    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", key[0]);
+  const auto row = [&](const char* key, const char* what, const ImVec4& color) {
+    ImGui::TextColored(color, "%s", key);
     ImGui::SameLine(250 * scale);
-    ImGui::Text("%s", key[1]);
-  }
+    ImGui::Text("%s", what);
+  };
+  if (!state.stop_keys.empty())
+    row(state.stop_keys.c_str(), "emergency stop: no device has force until it is armed", kBad);
+  for (const auto& key : kKeys) row(key[0], key[1], ImGui::ColorConvertU32ToFloat4(kForceColor));
   ImGui::End();
 }
 
@@ -276,10 +276,6 @@ Overlay::Overlay(float scale) : scale_(scale) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // leaves nothing behind
   io.LogFilename = nullptr;
-  const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
-  std::error_code missing;
-  if (!std::filesystem::exists(font, missing) || !io.Fonts->AddFontFromFileTTF(font, std::round(14 * scale)))
-    io.Fonts->AddFontDefault();
   style(scale);
   ImGui_ImplOpenGL3_Init("#version 450 core");
 }
@@ -324,6 +320,19 @@ void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, floa
   ImGui::End();
 }
 
+void Overlay::draw_devices(const OverlayState& state) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float wide = 304 * scale_, edge = 12 * scale_;
+  ImGui::SetNextWindowPos({size.x - edge, edge}, ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, std::max(size.y - 2 * edge, 1.0f)});
+  ImGui::Begin("devices", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  const ui::Scope scope("Devices");
+  ui::device_list(state.devices, state.stop_keys, orders_);
+  ImGui::End();
+}
+
 void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint, const OverlayMouse& mouse, int width,
                    int height, double dt) {
   ImGuiIO& io = ImGui::GetIO();
@@ -335,9 +344,11 @@ void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
   if (state.figures) draw_panel(state, options, tint);
-  if (state.help) draw_help(scale_);
+  if (state.figures && state.show_devices) draw_devices(state);
+  if (state.help) draw_help(state, scale_);
   if (!state.message.empty()) draw_message(state, scale_);
   if (state.cursor && !io.WantCaptureMouse) draw_cursor(state, scale_);
+  ui::end_widgets();
   ImGui::Render();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glDisable(GL_FRAMEBUFFER_SRGB);  // its colours are encoded already

@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "components/math.h"
+#include "editor/ui/widgets.h"
+#include "engine/device_view.h"
 #include "engine/journal.h"
 #include "engine/soft_clock.h"
 #include "engine/touch_clock.h"
@@ -61,6 +64,9 @@ struct OverlayState {
   std::string message;  // a sentence for a while; empty: none
   bool message_is_error = false;
   std::vector<ProbeLine> probes;
+  bool show_devices = false;
+  DevicesView devices;
+  std::string stop_keys;  // of the emergency stop
   // The cursor, where a probe is driven by the mouse. [pixel]
   bool cursor = false, pressing = false;
   double cursor_x = 0, cursor_y = 0;
@@ -86,11 +92,15 @@ class Overlay {
   // Draws over framebuffer 0. Switches change `options`; `tint` [m] is what the heights' colours then mean.
   void draw(const OverlayState& state, RenderOptions& options, float tint, const OverlayMouse& mouse, int width,
             int height, double dt);
+  // What was pressed in the panel of devices since the last call.
+  DeviceOrders take_orders() { return std::exchange(orders_, {}); }
 
  private:
   void draw_panel(const OverlayState& state, RenderOptions& options, float tint);
+  void draw_devices(const OverlayState& state);
   float scale_;
   bool large_ = false;
+  DeviceOrders orders_;
 };
 
 }  // namespace pliant

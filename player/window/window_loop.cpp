@@ -75,6 +75,8 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     if (summary.source == "mouse") mouse_probe_ = i;
     if (carrier_ && session.journal.probes()[i] == carrier_->tool()) carried_ = i;
   }
+  state_.stop_keys = session.devices || session.hands ? session.stop_keys : std::string();
+  state_.show_devices = session.devices != nullptr;
   mouse_.x = 0.5 * session.window.width();
   mouse_.y = 0.5 * session.window.height();
   probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
@@ -141,6 +143,10 @@ PictureOrder WindowLoop::order(bool shown) {
     state_.paused = touch_->paused();
     if (s_.soft) state_.soft = s_.soft->latest();
   }
+  if (s_.devices) {
+    s_.devices->view(state_.devices);
+    state_.devices.late_ticks = state_.touch.overruns;
+  }
   if (seconds_ - said_at_ > kMessageTime) state_.message.clear();
   PictureOrder next;
   next.view = camera_.viewpoint();
@@ -186,6 +192,9 @@ Status WindowLoop::learn(const PictureDone& done) {
   state_.frames_per_second = frame_time_ > 0 ? 1 / frame_time_ : 0;
   if (done.options != ordered_options_) options_ = done.options;
   wants_mouse_ = done.wants_mouse;
+  widgets_ = done.widgets;
+  press_widgets();
+  if (s_.devices && done.orders.any()) s_.devices->order(done.orders);
   if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
     ++screenshots_;  // another window took the name meanwhile
   else if (!shooting_.empty())
@@ -241,7 +250,10 @@ WindowFigures WindowLoop::run() {
   }
   TouchHooks hooks;
   hooks.after = [this](Tick tick) {
-    if (s_.hands) s_.hands->write(s_.world);
+    if (s_.hands && hands_stopped_)
+      s_.hands->let_go(s_.world);
+    else if (s_.hands)
+      s_.hands->write(s_.world);
     s_.journal.note(s_.world, tick);
   };
   if (s_.hands) {

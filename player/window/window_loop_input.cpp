@@ -5,13 +5,15 @@
 
 #include <cmath>
 
+#include "editor/ui/script.h"
 #include "player/exit.h"
 #include "runtime/printable.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kSamePlace = 2.0;  // [pixel]
+constexpr double kSamePlace = 2.0;    // [pixel]
+constexpr double kPressWithin = 3.0;  // [s] that a script waits for what it presses
 
 std::size_t imgui_button(MouseButton button) {
   return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
@@ -109,6 +111,33 @@ void WindowLoop::wheel(const InputEvent& event) {
   }
 }
 
+void WindowLoop::emergency_stop() {
+  if (!s_.devices && !s_.hands) return;
+  if (s_.devices) s_.devices->stop_all();
+  hands_stopped_ = true;
+  state_.figures = true;
+  state_.show_devices = s_.devices != nullptr;
+  say(s_.devices ? "emergency stop: no device has force until it is armed in the panel"
+                 : "emergency stop: the simulated hands feel nothing until the level is started anew (R)",
+      false);
+}
+
+// As a hand would: once a picture shows it, the button is down for a picture.
+void WindowLoop::press_widgets() {
+  if (wanted_widget_.empty()) return;
+  for (const ui::Place& place : widgets_) {
+    if (place.address != wanted_widget_) continue;
+    mouse_.x = 0.5 * static_cast<double>(place.low.x + place.high.x);
+    mouse_.y = 0.5 * static_cast<double>(place.low.y + place.high.y);
+    mouse_.down[0] = true;
+    wanted_widget_.clear();
+    return;
+  }
+  if (seconds_ - wanted_since_ < kPressWithin) return;
+  note("the script presses `" + wanted_widget_ + "`, which is not there");
+  wanted_widget_.clear();
+}
+
 void WindowLoop::key(int key) {
   RenderOptions& options = options_;
   switch (key) {
@@ -121,6 +150,10 @@ void WindowLoop::key(int key) {
       break;
     case GLFW_KEY_TAB:
       state_.figures = !state_.figures;
+      break;
+    case GLFW_KEY_D:
+      state_.show_devices = !state_.show_devices;
+      state_.figures |= state_.show_devices;
       break;
     case GLFW_KEY_F12:
       ++screenshots_;
@@ -198,7 +231,15 @@ void WindowLoop::handle(const InputEvent& event) {
       wheel(event);
       break;
     case InputKind::kKey:
-      if (!event.repeated) key(event.key);
+      if (event.repeated) break;
+      if (!s_.stop_keys.empty() && ui::keys_text(event.key, event.modifiers) == s_.stop_keys)
+        emergency_stop();
+      else
+        key(event.key);
+      break;
+    case InputKind::kWidget:
+      wanted_widget_ = event.file;
+      wanted_since_ = seconds_;
       break;
     case InputKind::kKeyUp:
     case InputKind::kText:

@@ -186,6 +186,8 @@ void WindowPictures::draw() {
     overlay_->draw(order_.overlay, renderer_.options(), order_.tint, order_.mouse, order_.width, order_.height,
                    order_.dt);
     done_.wants_mouse = overlay_->wants_mouse();
+    done_.orders = overlay_->take_orders();
+    done_.widgets = ui::widgets();
     if (stays) {
       const Image image = read_back(order_.width, order_.height);
       done_.screenshot =

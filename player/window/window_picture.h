@@ -37,6 +37,8 @@ struct PictureDone {
   FrameStats stats;
   RenderOptions options;     // as the overlay's switches left them
   bool wants_mouse = false;  // the mouse is over a panel: it is not for the scene
+  DeviceOrders orders;       // what was pressed in the panel of devices
+  std::vector<ui::Place> widgets;
   std::optional<PickAnswer> answer;
   std::uint64_t awake_vertices = 0;
   double resolution = 1.0;  // [1] of the window's, each way

@@ -33,6 +33,7 @@ struct WindowSession {
   SimulatedHands* hands = nullptr;            // none: no simulated hand
   DeviceLinks* devices = nullptr;             // none: no device
   std::string level;                          // what `R` opens again
+  std::string stop_keys;                      // of the emergency stop, "F9"
   double rate = 1000.0;                       // [Hz]
   std::uint64_t ticks = 0;                    // at most
   std::vector<std::uint64_t> frame_ticks;     // after which pictures are staged, ascending

@@ -36,6 +36,12 @@ double room(Place at, double du, double dv) {
   return t;
 }
 
+// Whether a part t of a step (du, dv) leads nowhere: t is none, and what is left of it is shorter than what counts as
+// being on an edge. By t alone a foot a hair beside a corner would stay there.
+bool nowhere(double du, double dv, double t) {
+  return t < 1e-9 && t * std::max({std::abs(du), std::abs(dv), std::abs(du + dv)}) <= kOnEdge;
+}
+
 Place moved(Place at, double du, double dv, double t) {
   Place to{at.u + t * du, at.v + t * dv};
   // On an edge exactly, so that the next step knows it.
@@ -92,7 +98,7 @@ Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
       dv = -(H.uu * gv - H.uv * gu) / det;
     }
     double t = room(at, du, dv);
-    if (t < 1e-9) {  // the step leads out: along an edge instead, the one that leads down most
+    if (nowhere(du, dv, t)) {  // the step leads out: along an edge instead, the one that leads down most
       double best = 0.0;
       const unsigned on = zeros(at);
       for (int i = 0; i < 3; ++i) {
@@ -104,7 +110,7 @@ Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
         if (!(bend > 0)) continue;
         const double s = -slope / bend, open = room(at, s * eu, s * ev);
         const double gain = slope * slope / bend * open;
-        if (open < 1e-9 || gain <= best) continue;
+        if (nowhere(s * eu, s * ev, open) || gain <= best) continue;
         best = gain;
         du = s * eu;
         dv = s * ev;

@@ -68,8 +68,8 @@ TEST(Extension, YoungsModulusBecomesTheStiffnessOfAPointContact) {
   const Result<Level> liver = deformable({{"young", 5400}, {"poisson", 0.5}}).load();
   ASSERT_TRUE(liver.ok());
   EXPECT_DOUBLE_EQ(liver->nodes[0].deformable->stiffness, 57.6);
-  EXPECT_DOUBLE_EQ(calibrated_stiffness(5400, 0.5, 0.002), 28.8);  // a layer of 2 mm lends its thickness
-  EXPECT_DOUBLE_EQ(calibrated_stiffness(5400, 0.5, 0.100), 57.6);
+  EXPECT_NEAR(calibrated_stiffness(5400, 0.5, 0.004), 57.6 * 3.609, 0.6);  // a layer as thick as the contact's radius
+  EXPECT_NEAR(calibrated_stiffness(5400, 0.5, 10.0), 57.6, 0.1);
   EXPECT_NE(deformable({{"young", 5400}, {"stiffness", 300}}).refusal().find("both young and stiffness"),
             std::string::npos);
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "pliant/drivers.h"
 #include "pliant/driver.h"
+#include "pliant/drivers.h"
 
 namespace pliant {
 namespace {

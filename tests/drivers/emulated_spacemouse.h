@@ -8,7 +8,9 @@ namespace pliant {
 
 inline std::vector<std::uint8_t> spacemouse_descriptor(bool six_in_one) {
   std::vector<std::uint8_t> bytes{0x05, 0x01, 0x09, 0x08, 0xa1, 0x01};  // generic desktop, multi-axis
-  const auto add = [&](std::initializer_list<std::uint8_t> more) { bytes.insert(bytes.end(), more); };
+  const auto add = [&](std::initializer_list<std::uint8_t> more) {
+    for (const std::uint8_t byte : more) bytes.push_back(byte);
+  };
   add({0xa1, 0x00, 0x85, 0x01, 0x16, 0xa2, 0xfe, 0x26, 0x5e, 0x01});  // report 1, -350 to 350
   add({0x36, 0x88, 0xfa, 0x46, 0x78, 0x05, 0x55, 0x0c, 0x65, 0x11});  // physical range, unit
   add({0x09, 0x30, 0x09, 0x31, 0x09, 0x32});                          // X Y Z

@@ -218,16 +218,56 @@ TEST(SessionServo, ADeviceThatAnswersInItsOwnTimeIsRefusedInLockstep) {
   EXPECT_THAT(stepped.error().message(), HasSubstr("call Session::start()"));
 }
 
-TEST(SessionServo, WhatHasNoServoSaysSoAndAGuardOfNonsenseIsRefused) {
+TEST(SessionServo, WhatHasNoDriverSaysSoAndAGuardOfNonsenseIsRefused) {
   Log log;
   Session session = opened(press_scene());
   EXPECT_THAT(session.device_state("finger").error().message(), HasSubstr("has no driver"));
   ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
-  EXPECT_THAT(session.arm("finger").error().message(), HasSubstr("says no rate"));
   EXPECT_FALSE(session.disarm("thumb"));
   EXPECT_FALSE(session.guard("finger", {.max_force = -1.0}));
   EXPECT_FALSE(session.guard("finger", {.slew = 0.0}));
   EXPECT_TRUE(session.guard("finger", {.arming = Arming::kByHand}));
+}
+
+TEST(SessionServo, TheEmergencyStopLatchesADeviceWithoutAServoUntilItIsArmed) {
+  Log log;
+  log.can = {.max_force = 5.0};
+  Session session = opened(press_scene());
+  ASSERT_TRUE(session.connect("finger", std::make_unique<LoggedDevice>(log)));
+  ASSERT_TRUE(session.step(5));
+  EXPECT_EQ(session.device_state("finger")->state, DeviceState::kActive);
+  lower(session, log, -0.004);
+  ASSERT_TRUE(session.step(20));
+  ASSERT_GT(log.last, 0.5);
+  session.emergency_stop();
+  ASSERT_TRUE(session.step());
+  EXPECT_EQ(log.last, 0.0);
+  EXPECT_EQ(length(session.reading("finger")->force), 0.0) << "no reading says what nobody feels";
+  ASSERT_TRUE(session.step(300));
+  EXPECT_EQ(log.last, 0.0) << "it is latched";
+  const DeviceReport stopped = *session.device_state("finger");
+  EXPECT_EQ(stopped.state, DeviceState::kTripped);
+  EXPECT_EQ(stopped.cause, DeviceCause::kEmergencyStop);
+  EXPECT_GT(length(stopped.wanted.force), 0.5);
+  EXPECT_EQ(length(stopped.sent.force), 0.0);
+  EXPECT_NEAR(stopped.sample.position.y, -0.004, 1e-9);
+  ASSERT_TRUE(session.arm("finger"));
+  ASSERT_TRUE(session.step(300));
+  EXPECT_EQ(session.device_state("finger")->state, DeviceState::kActive);
+  EXPECT_EQ(log.last, 0.0) << "deep in the sheet the gate is closed";
+  log.height = 0.01;
+  ASSERT_TRUE(session.step(5));
+  lower(session, log, -0.004);
+  ASSERT_TRUE(session.step(20));
+  EXPECT_GT(log.last, 0.5);
+  ASSERT_TRUE(session.disarm("finger"));
+  ASSERT_TRUE(session.step());
+  EXPECT_EQ(log.last, 0.0);
+  EXPECT_EQ(session.device_state("finger")->state, DeviceState::kIdle);
+  log.silent = true;
+  ASSERT_TRUE(session.arm("finger"));
+  ASSERT_TRUE(session.step(300));
+  EXPECT_EQ(session.device_state("finger")->state, DeviceState::kDisconnected);
 }
 
 TEST(SessionServo, InRealTimeItRunsBesideTheTouchClockAndEndsAtZero) {

@@ -15,9 +15,9 @@
 #include <string>
 #include <thread>
 
-#include "pliant/drivers.h"
 #include "devices/ports/hid_port.h"
 #include "pliant/driver.h"
+#include "pliant/drivers.h"
 #include "tests/drivers/emulated_spacemouse.h"
 
 namespace pliant {

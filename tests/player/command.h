@@ -54,10 +54,11 @@ class CommandTest : public ::testing::Test {
   }
 
   // In this test's folder. `before` goes in front of the command, for the shell.
-  Said pliant(const std::vector<std::string>& arguments, const std::string& before = {}) const {
+  Said pliant(const std::vector<std::string>& arguments, const std::string& before = {},
+              const std::string& program = PLIANT_BINARY) const {
     // Without a display, lest a window opens on somebody's desktop; `before` may bring one of its own.
-    std::string line = "cd " + quoted(folder.string()) + " && env -u DISPLAY -u WAYLAND_DISPLAY " + before + " " +
-                       quoted(PLIANT_BINARY);
+    std::string line =
+        "cd " + quoted(folder.string()) + " && env -u DISPLAY -u WAYLAND_DISPLAY " + before + " " + quoted(program);
     for (const std::string& argument : arguments) line += " " + quoted(argument);
     line += " >.out 2>.err";
     const int status = std::system(line.c_str());

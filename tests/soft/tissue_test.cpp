@@ -1,4 +1,5 @@
-// Co-rotational tetrahedra by themselves: what every elastic solid must obey, and what broken elements must survive.
+// Co-rotational tetrahedra by themselves: what every elastic solid must obey. What broken
+// elements must survive is among the hard cases (player/study/hard).
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -345,69 +346,6 @@ TEST(Tissue, EulerNeverGainsEnergyInTenThousandSteps) {
     EXPECT_LT(once.step, 1e-7) << T;
     EXPECT_LT(once.total, 0) << T;
   }
-}
-
-struct Wreck {
-  const char* name;
-  std::function<dvec3(std::uint32_t, dvec3)> place;
-};
-
-TEST(Tissue, InvertedFlatAndCollapsedTissueStaysFiniteAndUninverts) {
-  TetMesh mesh = tets::box(3, 2, 2, dvec3(0), dvec3(0.15, 0.1, 0.1));
-  tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
-  const std::array<Wreck, 6> wrecks{
-      {{"one node through the other side",
-        [](std::uint32_t n, dvec3 p) { return n == 5 ? p + dvec3(-0.12, 0.02, 0.01) : p; }},
-       {"flat", [](std::uint32_t, dvec3 p) { return dvec3(p.x, 0.05, p.z); }},
-       {"a line", [](std::uint32_t, dvec3 p) { return dvec3(p.x, 0.05, 0.05); }},
-       {"a point", [](std::uint32_t, dvec3) { return dvec3(0.0, 0.05, 0.05); }},
-       {"inside out", [](std::uint32_t, dvec3 p) { return dvec3(-p.x, p.y, p.z); }},
-       {"anything", [](std::uint32_t n, dvec3) { return 0.2 * tets::scatter(n); }}}};
-  for (const Wreck& wreck : wrecks) {
-    Tissue tissue(mesh, kTissue, mesh.free_count);
-    auto solver = solver_for(tissue);
-    for (std::uint32_t i = 0; i < mesh.free_count; ++i) tissue.position()[i] = wreck.place(i, mesh.nodes[i]);
-    const double start = energy(tissue);
-    for (int i = 0; i < 1000; ++i) {
-      ASSERT_TRUE(step_tissue(tissue, *solver, 5e-3, kNoGravity).solved) << wreck.name;
-      ASSERT_TRUE(std::isfinite(energy(tissue))) << wreck.name;
-      ASSERT_LE(energy(tissue), 1.5 * start) << wreck.name << ' ' << i;
-    }
-    int inverted = 0;
-    for (const Tet& t : mesh.tets) {
-      const auto& x = tissue.position();
-      inverted += dot(cross(x[t[1]] - x[t[0]], x[t[2]] - x[t[0]]), x[t[3]] - x[t[0]]) <= 0;
-    }
-    EXPECT_EQ(inverted, 0) << wreck.name;
-  }
-}
-
-// What a careless file holds: elements listed inside out, without volume, almost without, nodes that nothing holds.
-// The sound part must move as if they were not there.
-TEST(Tissue, BrokenRestShapesSurviveAThousandStepsAndDisturbNobody) {
-  TetMesh sound = tets::box(2, 2, 2, dvec3(0), dvec3(0.1));
-  tets::hold(sound, [](dvec3 p) { return p.y < 1e-9; });
-  TetMesh broken = sound;
-  const std::uint32_t loose = sound.free_count, twin = loose + 1;  // new nodes; pinned ones move up by two
-  for (Tet& t : broken.tets)
-    for (std::uint32_t& n : t) n += n >= loose ? 2 : 0;
-  broken.nodes.insert(broken.nodes.begin() + loose, {dvec3(0.05, 0.2, 0.05), sound.nodes[0] + 1e-7 * dvec3(1, 1, 1)});
-  broken.free_count += 2;
-  std::swap(broken.tets[3][0], broken.tets[3][1]);  // inside out
-  broken.tets.push_back({0, 1, 2, 2});              // a triangle
-  broken.tets.push_back({3, 3, 3, 3});              // a point
-  broken.tets.push_back({0, 1, 4, twin});           // a sliver
-  broken.tets.push_back({loose, 0, 1, 1});
-  Tissue tissue(broken, kTissue, broken.free_count), truth(sound, kTissue, sound.free_count);
-  auto solver = solver_for(tissue), true_solver = solver_for(truth);
-  for (int i = 0; i < 1000; ++i) {
-    ASSERT_TRUE(step_tissue(tissue, *solver, 5e-3, {0, -9.81, 0}).solved);
-    ASSERT_TRUE(step_tissue(truth, *true_solver, 5e-3, {0, -9.81, 0}).solved);
-    ASSERT_TRUE(std::isfinite(energy(tissue))) << i;
-    for (std::uint32_t n = 0; n < loose; ++n)
-      ASSERT_LT(length(tissue.position()[n] - truth.position()[n]), 1e-5) << i << ' ' << n;
-  }
-  EXPECT_LT(length(tissue.position()[twin] - tissue.position()[0]), 1e-3);
 }
 
 TEST(Tissue, FallsFreelyUnderGravity) {

@@ -13,7 +13,7 @@
 #include "systems/touch/touch_state.h"
 #include "tests/scenes/count_allocations.h"
 #include "tests/scenes/scenes.h"
-#include "tests/touch/touch_laws.h"
+#include "tests/scenes/touch_laws.h"
 
 namespace pliant {
 namespace {

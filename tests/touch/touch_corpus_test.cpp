@@ -9,7 +9,7 @@
 
 #include "content/level_file.h"
 #include "systems/touch/surface_query.h"
-#include "tests/touch/touch_raw.h"
+#include "tests/scenes/touch_raw.h"
 
 namespace pliant {
 namespace {

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <utility>
 #include <vector>
 
-#include "tests/touch/touch_laws.h"
-#include "tests/touch/touch_raw.h"
+#include "tests/scenes/touch_laws.h"
+#include "tests/scenes/touch_raw.h"
 
 namespace pliant {
 namespace {
@@ -82,118 +81,6 @@ TEST(TouchEnergy, ForceIsMinusTheGradientOfTheStoredEnergyForAnyProbesLawAndSurf
         }
         EXPECT_GT(largest, 0.5);
       }
-    }
-  }
-}
-
-// Press, go along a closed path, lift.
-struct Loop {
-  double work = 0.0, most = 0.0, largest = 0.0;
-};
-Loop closed_loop(Stage& stage, Entity probe, const std::vector<dvec3>& path, double speed) {
-  RawMeter meter;
-  Loop loop;
-  dvec3 at = path.front();
-  stage.place(probe, at);
-  for (int i = 0; i < 3; ++i) stage.tick();
-  for (const dvec3& to : path) {
-    const int steps = std::max(1, static_cast<int>(std::ceil(length(to - at) / (speed * stage.dt()))));
-    const dvec3 from = at;
-    for (int i = 1; i <= steps; ++i) {
-      at = from + (to - from) * (double(i) / steps);
-      stage.place(probe, at);
-      stage.tick();
-      meter.add(stage, probe, at);
-      loop.largest = std::max(loop.largest, length(raw_force(stage, probe)));
-    }
-  }
-  loop.work = meter.work;
-  loop.most = meter.most;
-  return loop;
-}
-
-TEST(TouchEnergy, ClosedLoopsOnBoxesAndCoarseSpheresGiveOutNothingInBothDirections) {
-  for (const int cells : {1, 4, 10}) {  // 12, 192, 1,200 triangles
-    for (const bool back : {false, true}) {
-      Stage stage;
-      stage.add(scenes::slab(cells, 0.08, 0.08), frictionless());
-      const Entity probe = stage.add_probe({0, 0.02, 0});
-      stage.prepare();
-      // Over the top, out over an edge, down beside the wall, in through it, out again, and home.
-      std::vector<dvec3> path{{0, 0.02, 0},
-                              {0.005, -0.003, 0.004},
-                              {0.03, -0.006, 0.011},
-                              {0.0385, -0.006, 0.02},
-                              {0.0385, -0.02, 0.01},
-                              {0.034, -0.03, -0.013},
-                              {0.037, -0.004, -0.03},
-                              {0.035, -0.003, -0.036},
-                              {0.01, -0.005, -0.037},
-                              {-0.01, -0.005, 0.003},
-                              {0, 0.02, 0}};
-      if (back) std::reverse(path.begin(), path.end());
-      const Loop loop = closed_loop(stage, probe, path, 0.05);
-      EXPECT_GT(loop.largest, 1.0);
-      EXPECT_LT(loop.work, 1e-3 * loop.most) << cells << back;
-      EXPECT_GT(loop.work, -1e-2 * loop.most) << cells << back;
-    }
-  }
-  for (const int n : {2, 4}) {  // 48, 192 triangles
-    for (const bool back : {false, true}) {
-      Stage stage;
-      stage.add(scenes::sphere(n, 0.1), frictionless());
-      const Entity probe = stage.add_probe({0, 0.12, 0});
-      stage.prepare();
-      std::vector<dvec3> path{{0, 0.12, 0}};
-      for (int i = 0; i <= 60; ++i) {
-        const double a = 2 * M_PI * i / 60;
-        path.push_back((0.094 - 0.002 * std::sin(3 * a)) *
-                       normalize(dvec3(std::sin(a), std::cos(a), 0.4 * std::sin(2 * a))));
-      }
-      path.push_back({0, 0.12, 0});
-      if (back) std::reverse(path.begin(), path.end());
-      const Loop loop = closed_loop(stage, probe, path, 0.05);
-      EXPECT_GT(loop.largest, 1.0);
-      EXPECT_LT(loop.work, 1e-3 * loop.most) << n << back;
-      EXPECT_GT(loop.work, -1e-2 * loop.most) << n << back;
-    }
-  }
-}
-
-TEST(TouchEnergy, AProbeInAnothersDentFeelsASteadyForceAndLiftsAlongTheSameCurve) {
-  for (const Shape shape : {Shape::kVolume, Shape::kWendland, Shape::kHertz}) {
-    Stage stage;
-    Deformable d = frictionless();
-    d.shape = shape;
-    stage.add(scenes::sheet(60, 0.2), d);
-    const Entity a = stage.add_probe({0, 0.001, 0}), b = stage.add_probe({0.006, 0.004, 0});
-    stage.prepare();
-    stage.move(a, {0, -0.006, 0}, 0.3);
-    // Down until it meets the dent, and 0.1 mm more.
-    std::vector<std::pair<double, dvec3>> down;
-    double y = 0.004;
-    int more = -1;
-    while (y > -0.006 && more != 0) {
-      y -= 2e-5;
-      stage.place(b, {0.006, y, 0});
-      stage.tick();
-      const dvec3 f = raw_force(stage, b);
-      down.push_back({y, f});
-      if (more > 0) --more;
-      if (more < 0 && length(f) > 0) more = 5;
-    }
-    ASSERT_LT(y, -0.0005) << "the dent is there before the probe";
-    const dvec3 at_rest = raw_force(stage, b);
-    ASSERT_GT(length(at_rest), 0.01) << int(shape) << y;
-    for (int i = 0; i < 500; ++i) {
-      stage.tick();
-      ASSERT_LT(length(raw_force(stage, b) - at_rest), 1e-9);
-    }
-    while (down.size() > 1) {
-      down.pop_back();
-      stage.place(b, {0.006, down.back().first, 0});
-      stage.tick();
-      ASSERT_LT(length(raw_force(stage, b) - down.back().second), 1e-9);
     }
   }
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/scenes/scenes.h"
-#include "tests/touch/touch_laws.h"
+#include "tests/scenes/touch_laws.h"
 
 namespace pliant {
 namespace {
@@ -65,34 +65,6 @@ TEST(Touch, ASphereTouchesWithItsLowestPointAndFeelsTheLaw) {
     if (std::abs(depth) > 1e-9) ASSERT_EQ(r.in_contact, depth > 0) << depth;
     if (depth > 1e-4) ASSERT_NEAR(r.normal_force, d.stiffness * depth, 0.01 * d.stiffness * depth);
   });
-}
-
-// Two fingers on one dent hold it up together: the tissue pushes back as hard as against one.
-TEST(Touch, CoincidentProbesShareTheDentAndItsForce) {
-  Stage stage;
-  const Deformable d = frictionless();
-  stage.add(scenes::sheet(40, 0.2), d);
-  const Entity a = stage.add_probe({0.01, 0.001, 0}), b = stage.add_probe({0.01, 0.001, 0});
-  stage.prepare();
-  stage.move(a, {0.01, -0.005, 0}, 0.2);
-  stage.move(b, {0.01, -0.005, 0}, 0.2);
-  stage.wait(0.5);
-  EXPECT_NEAR(stage.read(a).normal_force, 0.5 * law(d, 0.005), 1e-5);
-  EXPECT_NEAR(stage.read(b).normal_force, 0.5 * law(d, 0.005), 1e-5);
-  EXPECT_NEAR(stage.read(a).height, -0.005, 1e-6);
-}
-
-TEST(Touch, OpposedProbesOnAThinSlabEachFeelTheirOwnSide) {
-  Stage stage;
-  const Deformable d = frictionless();
-  stage.add(scenes::slab(40, 0.2, 0.004), d);
-  const Entity top = stage.add_probe({0.003, 0.01, 0.002}), bottom = stage.add_probe({0.003, -0.014, 0.002});
-  stage.prepare();
-  stage.tick();
-  stage.move(top, {0.003, -0.003, 0.002}, 0.2);
-  stage.move(bottom, {0.003, -0.001, 0.002}, 0.2);
-  EXPECT_NEAR(stage.read(top).force.y, d.stiffness * 0.003, 1e-4);
-  EXPECT_NEAR(stage.read(bottom).force.y, -d.stiffness * 0.003, 1e-4);
 }
 
 TEST(Touch, AProbeFarAwayFeelsNothingOfAnotherOnesContact) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/scenes/scenes.h"
-#include "tests/touch/touch_laws.h"
+#include "tests/scenes/touch_laws.h"
 
 namespace pliant {
 namespace {

@@ -6,133 +6,27 @@
 #include <map>
 
 #include "systems/touch/publish.h"
-#include "tests/touch/touch_laws.h"
-#include "tests/touch/touch_raw.h"
+#include "tests/scenes/touch_laws.h"
+#include "tests/scenes/touch_raw.h"
 
 namespace pliant {
 namespace {
 
-TEST(TouchSurface, AFlatFaceGivesTheLawUpToItsEdge) {
-  for (const int cells : {1, 4, 10}) {
-    Stage stage;
-    const Deformable d = frictionless();
-    stage.add(scenes::slab(cells, 0.08, 0.08), d);
-    const Entity probe = stage.add_probe({0, 0.001, 0});
-    stage.prepare();
-    stage.move(probe, {0, -0.003, 0}, 0.1);
-    stage.move(probe, {0.035, -0.003, 0.01}, 0.7, [&](const ProbeReading&) {
-      const dvec3 f = raw_force(stage, probe);
-      ASSERT_NEAR(f.y, law(d, 0.003), 0.01 * law(d, 0.003));
-      ASSERT_LT(std::hypot(f.x, f.z), 0.01 * law(d, 0.003));
-    });
-  }
-}
-
-TEST(TouchSurface, ACoarseSphereFeelsRoundAlongAnyGreatCircle) {
+// What it feels there is a hard case (player/study/hard).
+TEST(TouchSurface, ASphereInAGrooveShowsAnArrowForEachWall) {
   Stage stage;
-  const Deformable d = frictionless();
-  stage.add(scenes::sphere(20, 0.1), d);  // 4,800 triangles
-  const Entity probe = stage.add_probe({0, 0.11, 0});
-  stage.prepare();
-  for (const dvec3 axis : {dvec3(0, 0, 1), dvec3(1, 0, 0.3), dvec3(0.5, 0.1, -1)}) {
-    const dvec3 u = normalize(cross(axis, dvec3(0.3, -1, 0.2))), v = cross(normalize(axis), u);
-    stage.place(probe, 0.12 * u);
-    stage.wait(0.2);
-    double low = 1e9, high = 0, turned = 0;
-    for (int i = 0; i < 4000; ++i) {
-      const double a = 2 * M_PI * i / 4000, r = i < 100 ? 0.1 - 3e-5 * i : 0.097;
-      const dvec3 out = std::cos(a) * u + std::sin(a) * v;
-      stage.place(probe, (i == 0 ? 0.1001 : r) * out);
-      stage.tick();
-      if (i < 120) continue;
-      const dvec3 f = raw_force(stage, probe);
-      low = std::min(low, length(f));
-      high = std::max(high, length(f));
-      turned = std::max(turned, std::acos(std::min(1.0, dot(normalize(f), out))) * 180 / M_PI);
-    }
-    EXPECT_LT((high - low) / (300 * 0.003), 1e-3);
-    EXPECT_LT(turned, 0.2);
-    stage.place(probe, 0.12 * u);
-    stage.tick();
-  }
-}
-
-TEST(TouchSurface, ASharpRidgeIsCrossedWithoutAStep) {
-  for (const double degrees : {30.0, 42.0, 60.0}) {  // normals turn by twice as much
-    Stage stage;
-    stage.add(scenes::valley(20, 0.2, -degrees * M_PI / 180), frictionless());
-    const double slope = std::tan(degrees * M_PI / 180);
-    const Entity probe = stage.add_probe({-0.02, 0.03, 0.003});
-    stage.prepare();
-    stage.move(probe, {-0.02, -0.02 * slope - 0.006 / std::cos(degrees * M_PI / 180), 0.003}, 1.0);
-    dvec3 before = raw_force(stage, probe);
-    EXPECT_NEAR(length(before), 1.8, 0.02);
-    double worst = 0;
-    // 6 mm below the ridge's line and on, at 50 mm/s.
-    for (const dvec3 to :
-         {dvec3(0, -0.006, 0.003), dvec3(0.02, -0.02 * slope - 0.006, 0.003), dvec3(-0.01, -0.015, 0.003)}) {
-      const dvec3 from = stage.read(probe).position;
-      stage.move(probe, to, length(to - from) / 0.05, [&](const ProbeReading&) {
-        worst = std::max(worst, length(raw_force(stage, probe) - before));
-        before = raw_force(stage, probe);
-      });
-    }
-    EXPECT_LT(worst, 0.3) << degrees;
-  }
-}
-
-TEST(TouchSurface, ASphereInAGrooveTouchesBothWalls) {
-  Stage stage;
-  const Deformable d = frictionless();
-  stage.add(scenes::valley(40, 0.2, M_PI / 4), d);
-  const double r = 0.02, press = 0.0031;
-  const Entity probe = stage.add_probe({0, 0.06, 0}, r);
+  stage.add(scenes::valley(40, 0.2, M_PI / 4), frictionless());
+  const Entity probe = stage.add_probe({0, 0.06, 0}, 0.02);
   stage.prepare();
   for (const double aside : {0.0, 0.0039}) {
-    const dvec3 at(aside, r * std::sqrt(2.0) - press * std::sqrt(2.0), 0);
-    stage.move(probe, at, 1.0);
+    stage.move(probe, {aside, (0.02 - 0.0031) * std::sqrt(2.0), 0}, 1.0);
     stage.wait(0.3);
-    // Distances to the two walls y = |x|.
-    const double left = r - (at.x + at.y) / std::sqrt(2.0), right = r - (at.y - at.x) / std::sqrt(2.0);
-    const dvec3 want =
-        d.stiffness / std::sqrt(2.0) * (std::max(0.0, left) * dvec3(1, 1, 0) + std::max(0.0, right) * dvec3(-1, 1, 0));
-    const dvec3 f = raw_force(stage, probe);
     publish(stage.world, {});
     ASSERT_TRUE(stage.world.snapshots->acquire());
-    const ProbeSnapshot& shown = stage.world.snapshots->read().probes[0];  // an arrow each in the picture
+    const ProbeSnapshot& shown = stage.world.snapshots->read().probes[0];
     ASSERT_EQ(shown.contact_count, 2u);
-    EXPECT_LT(length(shown.contacts[0].force + shown.contacts[1].force - f), 1e-12);
-    EXPECT_LT(length(f - want), 0.02 * length(want))
-        << aside << ' ' << f.x << ' ' << f.y << " want " << want.x << ' ' << want.y;
+    EXPECT_LT(length(shown.contacts[0].force + shown.contacts[1].force - raw_force(stage, probe)), 1e-12);
     stage.move(probe, {0, 0.06, 0}, 0.5);
-  }
-}
-
-// Two boxes side by side, their tops level: one surface to a probe.
-TEST(TouchSurface, SlidingOverASeamOfTwoFlushNodesChangesNothing) {
-  for (const double mu : {0.0, 0.3}) {
-    for (const double radius : {0.0, 0.008}) {
-      Stage stage;
-      Deformable d = frictionless();
-      d.friction_static = d.friction_sliding = mu;
-      stage.add(scenes::slab(8, 0.08, 0.06), d, Pose{{-0.04, 0, 0}});
-      stage.add(scenes::slab(8, 0.08, 0.06), d, Pose{{0.04, 0, 0}});
-      const double y = radius - 0.003;
-      const Entity probe = stage.add_probe({-0.03, radius + 0.002, 0.0037}, radius);
-      stage.prepare();
-      stage.move(probe, {-0.03, y, 0.0037}, 0.2);
-      stage.move(probe, {-0.025, y, 0.0037}, 0.1);  // the bristle is loaded
-      for (const double to : {0.025, -0.025}) {
-        const dvec3 before = raw_force(stage, probe);
-        stage.move(probe, {to, y, 0.0037}, 1.0, [&](const ProbeReading& r) {
-          const dvec3 f = raw_force(stage, probe);
-          ASSERT_NEAR(f.y, law(d, 0.003), 0.01 * law(d, 0.003)) << mu << ' ' << radius << " at " << r.position.x;
-          if (mu == 0.0) ASSERT_LT(std::hypot(f.x, f.z), 0.01 * law(d, 0.003)) << radius << " at " << r.position.x;
-          if (mu > 0 && r.position.x * to > 0) ASSERT_NEAR(std::abs(f.x), mu * f.y, 0.01 * f.y) << radius;
-        });
-        if (mu == 0.0) EXPECT_LT(length(raw_force(stage, probe) - before), 0.01 * law(d, 0.003));
-      }
-    }
   }
 }
 

@@ -5,29 +5,11 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/touch/touch_laws.h"
-#include "tests/touch/touch_raw.h"
+#include "tests/scenes/touch_laws.h"
+#include "tests/scenes/touch_raw.h"
 
 namespace pliant {
 namespace {
-
-TEST(TouchTissue, ThreeSpheresOfKnownModulusFeelHertz) {
-  for (const double radius : {0.001, 0.004, 0.02}) {
-    Stage stage;
-    Deformable d = frictionless();
-    d.young = 5400;
-    d.poisson = 0.5;
-    stage.add(scenes::sheet(40, 0.2), d);
-    const Entity probe = stage.add_probe({0.003, radius + 0.002, 0.001}, radius);
-    stage.prepare();
-    stage.move(probe, {0.003, radius - 0.5 * radius, 0.001}, 1.0, [&](const ProbeReading& r) {
-      const double depth = radius - r.position.y;
-      if (depth < 0.01 * radius) return;
-      const double hertz = 4.0 / 3 * 5400 / 0.75 * std::sqrt(radius) * std::pow(depth, 1.5);
-      ASSERT_NEAR(raw_force(stage, probe).y, hertz, 0.05 * hertz) << radius << ' ' << depth;
-    });
-  }
-}
 
 TEST(TouchTissue, TheTissueRemembersWhereItWasPressed) {
   Stage stage;
@@ -100,31 +82,6 @@ TEST(TouchTissue, ASlowSurfaceCreepsAndIsNotThrown) {
     }
     EXPECT_GT(deepest, -0.0062) << settling;
   }
-}
-
-TEST(TouchTissue, PressedSoftSlidStiffAndLiftedFeelsTheStiffLawAllTheWayUp) {
-  Stage stage;
-  Deformable d = frictionless();
-  d.stiffness = 100;
-  stage.add(painted_sheet(100, 0.2), d);
-  const Entity probe = stage.add_probe({-0.02, 0.001, 0});
-  stage.prepare();
-  RawMeter meter;
-  const auto go = [&](dvec3 to, double seconds, const std::function<void()>& each = {}) {
-    stage.move(probe, to, seconds, [&](const ProbeReading& r) {
-      meter.add(stage, probe, r.position);
-      if (each) each();
-    });
-  };
-  go({-0.02, -0.004, 0}, 0.1);
-  double sideways = 0;
-  go({0.02, -0.004, 0}, 0.8, [&] { sideways = std::max(sideways, std::abs(raw_force(stage, probe).x)); });
-  EXPECT_NEAR(sideways, 0.5 * 0.004 * 0.004 * 500 / 0.016, 0.01);  // 0.25 N: -d^2/2 grad k
-  go({0.02, 0.001, 0}, 0.1, [&] {
-    const double depth = -stage.read(probe).position.y;
-    if (depth > 0) EXPECT_NEAR(stage.read(probe).normal_force, 600 * depth, 1e-3 * 600 * 0.004);  // sent, not only raw
-  });
-  EXPECT_NEAR(meter.work, 0.0, 1e-3 * meter.most);
 }
 
 // The material that one paint all over a surface of `d` means: the same mass, other springs and dampers.

@@ -1,15 +1,15 @@
 // Two devices in real time, each with a servo of its own, under one touch clock, with orders from a third thread: for
-// the thread sanitizer. PLIANT_DEVICE_SECONDS says how long (3).
+// the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstdlib>
 #include <mutex>
 #include <thread>
 
 #include "devices/servo/servo.h"
+#include "tests/two_devices/seconds_to_run.h"
 
 namespace pliant {
 namespace {
@@ -72,11 +72,6 @@ class TimedDriver : public Driver {
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
-
-double seconds_to_run() {
-  const char* const given = std::getenv("PLIANT_DEVICE_SECONDS");
-  return given ? std::atof(given) : 3.0;
-}
 
 void run_two(DeviceLoop first, DeviceLoop second, double seconds) {
   using clock = std::chrono::steady_clock;

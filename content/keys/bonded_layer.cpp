@@ -1,0 +1,77 @@
+#include "content/keys/bonded_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pliant {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kEnd = 24.0;  // of z, where 1 - L is rounding
+
+struct Rule {
+  std::vector<double> at, weight;
+};
+// Gauss and Legendre's on [0, 1]: roots of the polynomial by Newton.
+Rule gauss(int n) {
+  Rule out{std::vector<double>(static_cast<std::size_t>(n)), std::vector<double>(static_cast<std::size_t>(n))};
+  for (int i = 0; i < n; ++i) {
+    double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), slope = 0.0;
+    for (int k = 0; k < 50; ++k) {
+      double p = 1.0, before = 0.0;
+      for (int j = 1; j <= n; ++j) {
+        const double next = ((2 * j - 1) * x * p - (j - 1) * before) / j;
+        before = p;
+        p = next;
+      }
+      slope = n * (x * p - before) / (x * x - 1);
+      const double step = p / slope;
+      x -= step;
+      if (std::abs(step) < 1e-15) break;
+    }
+    out.at[static_cast<std::size_t>(i)] = 0.5 * (1 - x);
+    out.weight[static_cast<std::size_t>(i)] = 1 / ((1 - x * x) * slope * slope);
+  }
+  return out;
+}
+
+double missing(double z, double k) {  // 1 - L(z), by e^(-2z) so that nothing overflows
+  const double e = std::exp(-2 * z), sinh2 = (1 - e * e) / 2, cosh2 = (1 + e * e) / 2;
+  const double below = 2 * k * cosh2 + (1 + k * k + 4 * z * z) * e;
+  return (2 * k * (cosh2 - sinh2) + (1 + k * k + 4 * z * z + 4 * z) * e) / below;
+}
+
+}  // namespace
+
+double bonded_layer_factor(double radius_over_thickness, double poisson) {
+  const double ratio = std::min(radius_over_thickness, kThinnest), k = 3 - 4 * poisson;
+  if (!(ratio > 0)) return 1.0;
+  const Rule t = gauss(12 + static_cast<int>(2 * ratio)), z = gauss(60 + static_cast<int>(8 * ratio));
+  const std::size_t n = t.at.size();
+  std::vector<double> system(n * n, 0.0), phi(n, 1.0), cosine(n);
+  for (std::size_t q = 0; q < z.at.size(); ++q) {
+    const double at = kEnd * z.at[q];  // z = x h / a
+    const double weight = 2 / kPi * ratio * kEnd * z.weight[q] * missing(at, k);
+    for (std::size_t i = 0; i < n; ++i) cosine[i] = std::cos(at * ratio * t.at[i]);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight * cosine[i] * cosine[j] * t.weight[j];
+  }
+  for (std::size_t i = 0; i < n; ++i) system[i * n + i] += 1.0;
+  // Elimination; the kernel is a contraction, so that no pivot is small.
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const double share = system[j * n + i] / system[i * n + i];
+      for (std::size_t c = i; c < n; ++c) system[j * n + c] -= share * system[i * n + c];
+      phi[j] -= share * phi[i];
+    }
+  double sum = 0.0;
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t c = i + 1; c < n; ++c) phi[i] -= system[i * n + c] * phi[c];
+    phi[i] /= system[i * n + i];
+    sum += t.weight[i] * phi[i];
+  }
+  return sum;
+}
+
+}  // namespace pliant

@@ -1,0 +1,18 @@
+// How much stiffer an elastic layer that is bonded to something rigid is under a flat punch than a deep body of the
+// same modulus: Hayes, Keer, Herrmann & Mockros, "A mathematical analysis for indentation tests of articular
+// cartilage", J. Biomechanics 5 (1972), their kappa; small strains, no friction under the punch.
+//
+// Legend: a radius of the punch, h thickness, nu Poisson's ratio, F = 2 E* a kappa d. With pressures
+//   A(x) = int_0^1 phi(t) cos(x t) dt,   x in 1/a,
+// which leave nothing outside of the punch, phi solves Fredholm's equation of the second kind
+//   phi(t) - int_0^1 phi(s) K(t, s) ds = 1,   K(t, s) = (2 / pi) int_0^inf (1 - L(x h / a)) cos(x t) cos(x s) dx,
+//   L(z) = (2 k sinh 2z - 4 z) / (2 k cosh 2z + 1 + k^2 + 4 z^2),   k = 3 - 4 nu,   and   kappa = int_0^1 phi dt.
+#pragma once
+
+namespace pliant {
+
+// [1] of a / h, from 0 (deep: 1) on; beyond kThinnest radii the layer counts as that thin. nu from 0 to 0.5.
+inline constexpr double kThinnest = 20.0;
+double bonded_layer_factor(double radius_over_thickness, double poisson);
+
+}  // namespace pliant

@@ -1,0 +1,51 @@
+// A device that was unplugged is found again: as soon as the driver inside says that its line is gone (Driver::gone), a
+// thread closes it and opens it anew, every kLookEvery, until it is there. Meanwhile nothing is read, and what is
+// written goes nowhere. Innermost of every device that was made by its words (chain.h).
+//
+// The driver inside belongs to one side at a time, and the phase says to which: `kHeld`, whoever calls these functions;
+// `kGone`, the thread. Neither waits for the other, but close() waits until the thread has ended.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "pliant/driver.h"
+
+namespace pliant {
+
+class Refound final : public Driver {
+ public:
+  static constexpr double kLookEvery = 0.25;  // [s]
+
+  explicit Refound(std::unique_ptr<Driver> inner) : inner_(std::move(inner)) {}
+  ~Refound() override { end(); }
+
+  Status open(const std::string& id) override;
+  DeviceCapabilities capabilities() const override { return can_; }
+  bool read(DeviceSample& sample) override;
+  void write(const DeviceWrench& wrench) override;
+  void close() override;
+  void wait(double seconds) override;
+  Status run(std::function<void()> tick) override { return inner_->run(std::move(tick)); }
+  bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
+  void make_safe() noexcept override;
+  bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
+  bool gone() const override { return phase_ == Phase::kGone; }
+
+ private:
+  enum class Phase : std::uint8_t { kHeld, kGone };
+  bool held() const { return phase_.load(std::memory_order_acquire) == Phase::kHeld; }
+  void look(const std::stop_token& end);
+  bool open_again();
+  void end();
+
+  std::unique_ptr<Driver> inner_;
+  std::string id_;
+  DeviceCapabilities can_;
+  std::atomic<Phase> phase_{Phase::kHeld};
+  std::jthread thread_;
+};
+
+}  // namespace pliant

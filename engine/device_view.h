@@ -1,0 +1,39 @@
+// What is shown of the devices of a run, as values: a panel draws it (editor/ui/device_list.h) in the window of a run
+// and in the editor.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pliant/device_state.h"
+#include "pliant/driver.h"
+
+namespace pliant {
+
+struct DeviceView {
+  std::string effector;  // the probe or tool that it moves
+  std::string id;        // "falcon:0|scale=2"
+  std::string name;      // as people call it
+  DeviceCapabilities can;
+  DeviceReport report;
+};
+
+struct DevicesView {
+  std::vector<DeviceView> devices;
+  struct Other {
+    std::string effector, source;  // "probe_b", "orbit"
+  };
+  std::vector<Other> others;         // that no device moves
+  std::vector<DeviceInfo> unusable;  // that are there, and cannot be opened
+  std::uint64_t late_ticks = 0;      // of the touch clock
+};
+
+// What a person pressed.
+struct DeviceOrders {
+  std::vector<std::string> arm, disarm, stop;  // by effector
+  bool stop_all = false;
+  bool any() const { return stop_all || !arm.empty() || !disarm.empty() || !stop.empty(); }
+};
+
+}  // namespace pliant

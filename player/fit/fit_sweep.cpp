@@ -1,0 +1,90 @@
+// pliant fit --sweep DIR --target CSV: which of a sweep's runs comes nearest to measured presses. A sweep keeps figures
+// of its runs and no curves, so it is these that are compared.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "player/exit.h"
+#include "player/fit/fit.h"
+#include "player/fit/press_record.h"
+#include "player/fit/sweep_nearest.h"
+#include "player/print.h"
+#include "player/record/csv.h"
+#include "player/record/output_folder.h"
+#include "player/study/pareto.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string words_of(const SweepTable& table, const SweepRow& row) {
+  std::string out;
+  for (std::size_t a = 0; a < table.axes.size(); ++a)
+    out += fmt::format("{}{} = {}", a ? ", " : "", table.axes[a].name, text_of(row.values[a]));
+  return out;
+}
+
+}  // namespace
+
+int fit_sweep(const FitOptions& options) {
+  if (options.target.empty())
+    return fail(kUsage, {"--sweep " + options.sweep, "name what was measured with --target CSV"});
+  if (!options.out.empty())
+    return fail(kUsage,
+                {"-o " + options.out,
+                 "is not for --sweep: it says a setting and no level; use the setting with `pliant run --set`"});
+  const Result<SweepTable> table = read_table({options.sweep});
+  if (!table) return fail(kFailed, table.error());
+  Result<PressRecord> target = read_press(options.target, options.probe, true);
+  if (!target && !options.probe.empty())  // the sweep's probe; what was measured may have no such column
+    if (Result<PressRecord> plain = read_press(options.target, {}, true); plain) target = std::move(plain);
+  if (!target) return fail(kFailed, target.error());
+  const Result<Nearest> nearest = nearest_run(*table, *target, options.probe);
+  if (!nearest) return fail(kFailed, nearest.error());
+  const SweepRow& best = table->rows[nearest->order[0]];
+
+  Json figures = Json::object();
+  for (const auto& [name, value] : nearest->target) figures[name] = value;
+  Json between = Json::array();
+  for (const BetweenRuns& it : nearest->between)
+    between.push_back({{"axis", table->axes[it.axis].name}, {"value", it.value}, {"distance", it.distance}});
+  const Json report{{"sweep", options.sweep},  {"target", options.target},
+                    {"probe", nearest->probe}, {"target_figures", figures},
+                    {"nearest", best.id},      {"distance", nearest->distance[nearest->order[0]]},
+                    {"between", between}};
+  std::string csv = "id";
+  for (const SweepAxis& axis : table->axes) csv += "," + csv_text(axis.name);
+  csv += ",distance\n";
+  for (const std::size_t row : nearest->order) {
+    csv += table->rows[row].id;
+    for (const PlanJson& value : table->rows[row].values) csv += "," + csv_text(text_of(value));
+    put(csv, nearest->distance[row]);
+    csv += "\n";
+  }
+  auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
+  if (!out) return fail(kFailed, out.error());
+  Status done = write_text(*out, "fit.json", report.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+  if (done) done = write_text(*out, "fit_runs.csv", csv);
+  if (done) done = out->commit();
+  if (!done) return fail(kFailed, done.error());
+  print("{}: {} of {} runs compared by {} figures of `{}`\n", options.sweep, nearest->order.size(), table->rows.size(),
+        nearest->target.size(), nearest->probe);
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, nearest->order.size()); ++i)
+    print("  {:.2f} % off: {} ({})\n", 100 * nearest->distance[nearest->order[i]],
+          words_of(*table, table->rows[nearest->order[i]]), table->rows[nearest->order[i]].id);
+  for (const BetweenRuns& it : nearest->between)
+    print(
+        "  between runs: {} = {:.6g}, about {:.2f} % off (a parabola through three runs: check it with one of its "
+        "own)\n",
+        table->axes[it.axis].name, it.value, 100 * it.distance);
+  for (const std::string& sentence : nearest->notes) note(sentence);
+  print("{}: {} files{}\n", out->shown().string(), out->written().size(),
+        out->moved() ? " (the folder that was meant has results already, which stay; --force replaces them)" : "");
+  return kDone;
+}
+
+}  // namespace pliant

@@ -1,0 +1,156 @@
+#include "player/fit/press_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/keys/extensions.h"
+#include "systems/touch/contact_law.h"
+
+namespace pliant {
+namespace {
+
+using R = DeformableRange;
+constexpr double kSteepest = 50.0;  // [1] exponent at the deepest place: beyond it a double overflows soon
+
+struct Sizes {
+  double depth = 0.0, force = 0.0, span = 0.0, least_step = 0.0;  // [m] [N] [s] [s]
+  double slope = 0.0;                                             // [N/m] of a line through zero
+};
+
+Sizes sizes_of(const PressRecord& record) {
+  Sizes out;
+  double fd = 0.0, dd = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double d = std::max(record.depth[i], 0.0);
+    out.depth = std::max(out.depth, d);
+    out.force = std::max(out.force, std::abs(record.force[i]));
+    fd += record.force[i] * d;
+    dd += d * d;
+  }
+  out.slope = fd / dd;
+  if (record.time.empty()) return out;
+  out.span = record.time.back() - record.time.front();
+  out.least_step = out.span;
+  for (std::size_t i = 1; i < record.size(); ++i)
+    out.least_step = std::min(out.least_step, record.time[i] - record.time[i - 1]);
+  return out;
+}
+
+ModelParameter parameter(const char* key, const char* unit, Range range, double scale) {
+  return {key, unit, {scale, range.min, range.max, scale}};
+}
+
+}  // namespace
+
+const std::vector<std::string>& press_laws() {
+  static const std::vector<std::string> laws{"linear", "cubic", "exponential", "sls", "hertz"};
+  return laws;
+}
+
+std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const ModelWish& wish,
+                                      std::string& why) {
+  const Sizes size = sizes_of(record);
+  if (law == "sls" && record.time.empty()) {
+    why = "the law sls needs a column of time";
+    return std::nullopt;
+  }
+  if (wish.damping && record.time.empty()) {
+    why = "damping needs a column of time";
+    return std::nullopt;
+  }
+  if (law == "hertz" && !(wish.radius > 0)) {
+    why = "the law hertz needs the radius of a spherical indenter; say --radius";
+    return std::nullopt;
+  }
+  PressModel model;
+  model.law = law;
+  model.wish = wish;
+  auto& list = model.parameters;
+  const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max);
+  std::vector<std::vector<double>> starts;
+  if (law == "hertz") {
+    const double plane = size.force / (4.0 / 3.0 * std::sqrt(wish.radius) * std::pow(size.depth, 1.5));
+    list.push_back(parameter("young", "Pa", {1e-3, 1e12}, plane * (1 - wish.poisson * wish.poisson)));
+    starts = {{list[0].box.scale}};
+  } else {
+    list.push_back(parameter("stiffness", "N/m", R::kStiffness, k));
+    starts = {{k}};
+  }
+  if (law == "cubic") {
+    list.push_back(parameter("cubic", "N/m3", R::kCubic, k / (size.depth * size.depth)));
+    starts = {{0.9 * k, 0.1 * list[1].box.scale}, {0.3 * k, list[1].box.scale}};
+  } else if (law == "exponential") {
+    list.push_back(parameter("stiffening", "1/m",
+                             {R::kStiffening.min, std::min(R::kStiffening.max, kSteepest / size.depth)},
+                             1.0 / size.depth));
+    starts = {{0.9 * k, 0.3 / size.depth}, {0.2 * k, 3.0 / size.depth}};
+  } else if (law == "sls") {
+    list.push_back(parameter("relaxation.stiffness", "N/m", R::kRelaxationStiffness, k));
+    list.push_back(parameter(
+        "relaxation.time", "s",
+        {std::max(R::kRelaxationTime.min, 0.2 * size.least_step), std::min(R::kRelaxationTime.max, 20 * size.span)},
+        0.1 * size.span));
+    for (const double share : {0.01, 0.05, 0.25, 1.0}) starts.push_back({0.6 * k, 0.4 * k, share * size.span});
+    starts.erase(starts.begin());
+  }
+  if (wish.damping) list.push_back(parameter("contact_damping", "N s/m", R::kContactDamping, 0.01 * k * size.span));
+  if (wish.contact) {
+    const double least = *std::min_element(record.depth.begin(), record.depth.end());
+    list.push_back(parameter("contact", "m", {least, 0.9 * size.depth}, 0.1 * size.depth));
+  }
+  for (std::vector<double>& start : starts) {
+    if (wish.damping) start.push_back(0.1 * list[start.size()].box.scale);
+    if (wish.contact) start.push_back(std::clamp(0.0, list[start.size()].box.low, list[start.size()].box.high));
+    model.starts.push_back(Eigen::Map<Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size())));
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].box.start = model.starts[0][static_cast<Eigen::Index>(i)];
+  return model;
+}
+
+Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
+  Deformable out;
+  out.poisson = wish.poisson;
+  if (law == "cubic") out.spring = SpringLaw::kCubic;
+  if (law == "exponential") out.spring = SpringLaw::kExponential;
+  if (law == "sls") out.spring = SpringLaw::kStandardLinearSolid;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string& key = parameters[i].key;
+    const double value = p[static_cast<Eigen::Index>(i)];
+    if (key == "stiffness") out.stiffness = value;
+    if (key == "cubic") out.cubic = value;
+    if (key == "stiffening") out.stiffening = value;
+    if (key == "relaxation.stiffness") out.relaxation_stiffness = value;
+    if (key == "relaxation.time") out.relaxation_time = value;
+    if (key == "contact_damping") out.contact_damping = value;
+    if (key == "young") {
+      out.young = value;
+      out.stiffness = calibrated_stiffness(value, wish.poisson, 0.0);
+    }
+  }
+  return out;
+}
+
+void PressModel::predict(const PressRecord& record, const Eigen::VectorXd& p, std::vector<double>& force) const {
+  const Deformable surface = deformable(p);
+  const double met = wish.contact ? p[p.size() - 1] : 0.0;
+  ContactLaw contact = contact_law(surface, motion(surface, 1e-3), 1.0, wish.radius);
+  force.resize(record.size());
+  double before = 0.0, q = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double depth = std::max(0.0, record.depth[i] - met);
+    const double dt = i > 0 && !record.time.empty() ? record.time[i] - record.time[i - 1] : 0.0;
+    if (contact.arm > 0 && dt > 0) {
+      // q' = (d - q) / tau, exact for a depth that changes evenly (field_kernels.cpp: step_relaxed).
+      const double over = dt / surface.relaxation_time, left = std::exp(-over), ramp = -std::expm1(-over) / over;
+      q = depth - (left * (before - q) + ramp * (depth - before));
+      contact.relaxed_depth = std::max(q, 0.0);
+    }
+    double newton = contact.stored(depth).force;
+    if (surface.contact_damping > 0 && dt > 0 && depth > 0)
+      newton = std::max(0.0, newton + surface.contact_damping * (depth - before) / dt);
+    force[i] = newton;
+    before = depth;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,76 @@
+#include "player/fit/surface_check.h"
+
+#include <algorithm>
+
+#include "pliant/session.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kParts = 10;       // a depth is gone to in so many ticks, so that the contact's foot stays with it
+constexpr int kRecover = 400;    // [ticks] until the last dent has gone
+constexpr double kAbove = 0.02;  // [m] where the probe waits
+
+MeshData data_of(const std::vector<Primitive>& primitives) {
+  MeshData out;
+  for (const Primitive& p : primitives) {
+    const auto first = static_cast<std::uint32_t>(out.position.size());
+    out.position.insert(out.position.end(), p.position.begin(), p.position.end());
+    for (const std::uint32_t i : p.index) out.index.push_back(first + i);
+    out.stiffness.resize(first, 1.0f);
+    out.stiffness.insert(out.stiffness.end(), p.stiffness.begin(), p.stiffness.end());
+    out.stiffness.resize(out.position.size(), 1.0f);
+    out.normal.resize(first, vec3(0));
+    out.normal.insert(out.normal.end(), p.normal.begin(), p.normal.end());
+    if (p.normal.size() != p.position.size()) out.normal.clear();
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<std::vector<PressState>>> press_surface(const std::vector<Primitive>& primitives,
+                                                           const DeformableParameters& surface,
+                                                           const std::vector<PressPlace>& places,
+                                                           const std::vector<std::vector<double>>& depths) {
+  Scene scene;
+  DeformableParameters smooth = surface;
+  smooth.friction_static = smooth.friction_sliding = 0.0;
+  scene.add_surface("surface", data_of(primitives), smooth);
+  DeviceParameters device;
+  device.max_force = 1e3;
+  scene.add_probe("probe", {}, device);
+  Result<Session> session = Session::open(scene);
+  if (!session) return session.error();
+  std::vector<std::vector<PressState>> out(places.size());
+  std::vector<vec4> stream;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto to = [&](double depth) { return session->move("probe", places[i].position - depth * places[i].normal); };
+    Status done = to(-kAbove);
+    if (done) done = session->step(kRecover);
+    double at = 0.0;
+    for (const double depth : depths[i]) {
+      for (int k = 1; k <= kParts && done; ++k) {
+        done = to(at + (depth - at) * k / kParts);
+        if (done) done = session->step();
+      }
+      at = depth;
+      if (done) done = session->step(3);
+      if (!done) return done.error();
+      const Result<Reading> reading = session->reading("probe");
+      if (!reading) return reading.error();
+      dvec3 force(0);
+      for (std::uint32_t c = 0; c < reading->contacts; ++c) force += reading->contact[c].force;
+      PressState& state = out[i].emplace_back();
+      state.depth = depth;
+      state.force = dot(force, places[i].normal);
+      if (const Status told = session->stream("surface", stream); !told) return told.error();
+      for (const vec4& value : stream) state.height.push_back(value.w);
+    }
+    if (done) done = to(-kAbove);
+    if (!done) return done.error();
+  }
+  return out;
+}
+
+}  // namespace pliant

@@ -1,0 +1,221 @@
+#include "player/fit/surface_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "player/fit/least_squares.h"
+#include "systems/touch/local_model.h"
+#include "systems/touch/shape.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kInner = 0.2;  // [1] of the reach: what force_field.cpp gives a point probe
+constexpr double kFacing = 0.0;
+constexpr double kLeastReach = 1.5, kMostReach = 4.0;  // [1] radii of the indenter
+constexpr std::size_t kNearest = 10;                   // painted places that a vertex takes its value from
+
+FieldSource source_of(const PressPlace& place, Shape shape, double reach, double volume) {
+  FieldSource source;
+  source.center = vec3(place.position);
+  source.normal = vec3(place.normal);
+  source.amplitude = 1.0f;
+  source.inv_reach2 = static_cast<float>(1 / (reach * reach));
+  source.shape = shape;
+  source.parameter = shape == Shape::kKelvinlet ? static_cast<float>(kInner * reach)
+                     : shape == Shape::kVolume  ? static_cast<float>(5 * volume)
+                                                : static_cast<float>(kInner * kInner);
+  return source;
+}
+
+std::uint64_t next_random(std::uint64_t& state) {  // splitmix64 (Steele, Lea & Flood 2014)
+  std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+double next_share(std::uint64_t& state) {
+  return static_cast<double>(next_random(state) >> 11) * 0x1p-53;
+}
+
+// What the shapes are compared with, gathered once.
+struct Sample {
+  vec3 position, normal;
+  double area = 0.0, share = 0.0;
+};
+
+}  // namespace
+
+SurfaceDifference surface_difference(const Mesh& mesh, const PressPlace& place, double around,
+                                     const std::vector<float>& heights, const std::vector<float>& truth) {
+  SurfaceDifference out;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const dvec3 away = dvec3(mesh.position(v)) - place.position;
+    if (dot(away, away) > around * around || dot(dvec3(mesh.normal(v)), place.normal) <= kFacing) continue;
+    const double d = static_cast<double>(heights[v]) - static_cast<double>(truth[v]), t = static_cast<double>(truth[v]),
+                 area = static_cast<double>(mesh.area[v]);
+    out.off += area * d * d;
+    out.size += area * t * t;
+    out.area += area;
+    out.largest = std::max(out.largest, std::abs(d));
+  }
+  return out;
+}
+
+ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, double radius, double reach) {
+  std::vector<std::vector<Sample>> samples;
+  for (const PressedPlace& each : places) {
+    if (each.presses.empty()) continue;
+    const PressState& press = each.presses[each.presses.size() / 2];
+    std::vector<Sample>& of = samples.emplace_back();
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+      const dvec3 away = dvec3(mesh.position(v)) - each.place.position;
+      if (length(away) > kAroundPress * radius || dot(dvec3(mesh.normal(v)), each.place.normal) <= kFacing) continue;
+      of.push_back({mesh.position(v), mesh.normal(v), static_cast<double>(mesh.area[v]),
+                    -static_cast<double>(press.height[v]) / press.depth});
+    }
+  }
+  ShapeFit best;
+  best.error = 1e30;
+  const auto attempt = [&](Shape shape, double volume, double over) {
+    double sum = 0.0;
+    std::size_t at = 0;
+    for (const PressedPlace& each : places) {
+      if (each.presses.empty()) continue;
+      const FieldSource source = source_of(each.place, shape, over, volume);
+      double off = 0.0, size = 0.0;
+      for (const Sample& s : samples[at]) {
+        const vec3 away = s.position - source.center;
+        const double f = dot(away, away) * source.inv_reach2 < 1.0f
+                             ? static_cast<double>(share_at(source, s.position, s.normal))
+                             : 0.0;
+        off += s.area * (f - s.share) * (f - s.share);
+        size += s.area * s.share * s.share;
+      }
+      sum += size > 0 ? off / size : 0.0;
+      ++at;
+    }
+    const double error = at ? std::sqrt(sum / static_cast<double>(at)) : 0.0;
+    if (error < best.error) best = {shape, over, volume, error};
+  };
+  for (const Shape shape :
+       {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet})
+    for (double volume = shape == Shape::kVolume ? 0.0 : 1.0; volume < 1.01; volume += 0.1) {
+      if (reach > 0) {
+        attempt(shape, volume, reach);
+        continue;
+      }
+      for (double over = kLeastReach; over <= kMostReach * 1.0001; over *= 1.04) attempt(shape, volume, over * radius);
+    }
+  return best;
+}
+
+ForceFit fit_force(const std::vector<PressedPlace>& places) {
+  Eigen::Index count = 0;
+  double deepest = 0.0;
+  for (const PressedPlace& each : places)
+    for (const PressState& press : each.presses) {
+      ++count;
+      deepest = std::max(deepest, press.depth);
+    }
+  ForceFit best;
+  best.error = 1e30;
+  if (count == 0) return best;
+  for (const SpringLaw spring : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential}) {
+    std::vector<FitParameter> boxes{{1.0, 0.1, 10.0, 1.0}};
+    const double scale = spring == SpringLaw::kCubic ? 1 / (deepest * deepest) : 1 / deepest;
+    if (spring == SpringLaw::kCubic) boxes.push_back({0.1 * scale, 0.0, 100 * scale, scale});
+    if (spring == SpringLaw::kExponential) boxes.push_back({0.1 * scale, 1e-6, 20 * scale, scale});
+    const LeastSquares fit = least_squares(boxes, count, [&](const Eigen::VectorXd& p, Eigen::VectorXd& r) {
+      RestoringLaw law;
+      law.kind = spring;
+      if (spring == SpringLaw::kCubic) law.cubic = p[1];
+      if (spring == SpringLaw::kExponential) law.stiffening = p[1];
+      Eigen::Index k = 0;
+      for (const PressedPlace& each : places)
+        for (const PressState& press : each.presses)
+          r[k++] = p[0] * each.stiffness * -law.force(-press.depth) / press.force - 1;
+    });
+    const double error = std::sqrt(fit.sum / static_cast<double>(count));
+    if (error < 0.98 * best.error) best = {spring, fit.p[0], fit.p.size() > 1 ? fit.p[1] : 0.0, error};
+  }
+  return best;
+}
+
+std::vector<PressPlace> scatter(const Mesh& mesh, std::size_t count, std::uint64_t seed,
+                                const std::vector<std::uint8_t>& allowed) {
+  std::vector<double> sum;
+  double total = 0.0;
+  for (const uvec3& t : mesh.triangles) {
+    const dvec3 p = dvec3(mesh.position(t.x));
+    const bool good = allowed[t.x] && allowed[t.y] && allowed[t.z];
+    total += good ? 0.5 * length(cross(dvec3(mesh.position(t.y)) - p, dvec3(mesh.position(t.z)) - p)) : 0.0;
+    sum.push_back(total);
+  }
+  std::vector<PressPlace> out;
+  if (!(total > 0)) return out;
+  for (std::size_t i = 0; i < count; ++i) {
+    // One in each equal part of the area, which the mesh's order (a space-filling curve) spreads over the surface.
+    const double at = total * (static_cast<double>(i) + next_share(seed)) / static_cast<double>(count);
+    const auto triangle = static_cast<std::uint32_t>(std::upper_bound(sum.begin(), sum.end(), at) - sum.begin());
+    double b1 = next_share(seed), b2 = next_share(seed);
+    if (b1 + b2 > 1) b1 = 1 - b1, b2 = 1 - b2;
+    out.push_back(place_at(mesh, std::min<std::uint32_t>(triangle, static_cast<std::uint32_t>(sum.size()) - 1),
+                           {1 - b1 - b2, b1, b2}));
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> farthest_vertices(const Mesh& mesh, std::size_t count) {
+  std::vector<std::uint32_t> out;
+  std::vector<double> distance(mesh.vertex_count, 1e300);
+  std::uint32_t next = 0;
+  while (out.size() < std::min<std::size_t>(count, mesh.vertex_count)) {
+    out.push_back(next);
+    double most = -1.0;
+    std::uint32_t then = 0;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+      const dvec3 away = dvec3(mesh.position(v)) - dvec3(mesh.position(out.back()));
+      distance[v] = std::min(distance[v], dot(away, away));
+      if (distance[v] > most) most = distance[v], then = v;
+    }
+    if (!(most > 0)) break;
+    next = then;
+  }
+  return out;
+}
+
+std::vector<double> spread(const Mesh& mesh, const std::vector<std::uint32_t>& at, const std::vector<double>& value) {
+  std::vector<double> out(mesh.vertex_count);
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    near.clear();
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const dvec3 away = dvec3(mesh.position(v)) - dvec3(mesh.position(at[i]));
+      const double turned = 1 - dot(dvec3(mesh.normal(v)), dvec3(mesh.normal(at[i])));
+      near.emplace_back(dot(away, away) * (1 + 4 * turned), i);
+    }
+    const std::size_t count = std::min(kNearest, near.size());
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+    // A plane through the logarithms, in the distances' own size; a little of what keeps it from tilting without need.
+    const double size = std::sqrt(near[count - 1].first) + 1e-12;
+    Eigen::Matrix4d normal = Eigen::Vector4d(1e-9, 0.02, 0.02, 0.02).asDiagonal();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    double least = 1e300, most = -1e300;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& [distance, k] = near[i];
+      const dvec3 away = (dvec3(mesh.position(at[k])) - dvec3(mesh.position(v))) / size;
+      const Eigen::Vector4d row(1.0, away.x, away.y, away.z);
+      const double weight = 1 / (distance / (size * size) + 1e-4), y = std::log(value[k]);
+      normal += weight * row * row.transpose();
+      right += weight * y * row;
+      least = std::min(least, y);
+      most = std::max(most, y);
+    }
+    out[v] = std::exp(std::clamp(normal.ldlt().solve(right)[0], least, most));
+  }
+  return out;
+}
+
+}  // namespace pliant

@@ -1,0 +1,57 @@
+// Keys of a deformable surface (P1) from presses into its tissue: a law and a map of its stiffness, and the shape and
+// reach of its dents.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "components/deformable.h"
+#include "player/fit/tissue_press.h"
+
+namespace pliant {
+
+// One place with its presses, the deepest last.
+struct PressedPlace {
+  PressPlace place;
+  double stiffness = 0.0;  // [N/m] of a small press
+  std::vector<PressState> presses;
+};
+
+struct ShapeFit {
+  Shape shape = Shape::kVolume;
+  double reach = 0.0;   // [m]
+  double volume = 1.0;  // [1]
+  double error = 0.0;   // [1] RMS difference over RMS of the dents, by area, within kAround radii
+};
+inline constexpr double kAroundPress = 3.0;  // [1] radii of the indenter that a dent is compared within
+
+// Difference of two sets of heights around a place, and the size of the second: squares times area.
+struct SurfaceDifference {
+  double off = 0.0, size = 0.0;  // [m4]
+  double area = 0.0;             // [m2]
+  double largest = 0.0;          // [m]
+};
+SurfaceDifference surface_difference(const Mesh& mesh, const PressPlace& place, double around,
+                                     const std::vector<float>& heights, const std::vector<float>& truth);
+
+// `reach`: 0, or the one that is wanted.
+ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, double radius, double reach);
+
+struct ForceFit {
+  SpringLaw spring = SpringLaw::kLinear;
+  double factor = 1.0;     // [1] on the stiffness of a small press
+  double curvature = 0.0;  // stiffening [1/m], or cubic over stiffness [1/m2]
+  double error = 0.0;      // [1] RMS of relative errors
+};
+ForceFit fit_force(const std::vector<PressedPlace>& places);
+
+// Places all over the surface, by area and this seed; none where `allowed` says no.
+std::vector<PressPlace> scatter(const Mesh& mesh, std::size_t count, std::uint64_t seed,
+                                const std::vector<std::uint8_t>& allowed);
+// Vertices that lie as far from each other as so many can, the first being 0.
+std::vector<std::uint32_t> farthest_vertices(const Mesh& mesh, std::size_t count);
+// A value > 0 of each vertex from those of some: moving least squares through the logarithms of the nearest ones, those
+// that face the same way first.
+std::vector<double> spread(const Mesh& mesh, const std::vector<std::uint32_t>& at, const std::vector<double>& value);
+
+}  // namespace pliant

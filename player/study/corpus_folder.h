@@ -1,0 +1,11 @@
+// Where the corpus of meshes lies.
+#pragma once
+
+#include <filesystem>
+
+namespace pliant {
+
+// PLIANT_CORPUS from the environment, else beside the source tree. It need not be there.
+std::filesystem::path corpus_folder();
+
+}  // namespace pliant

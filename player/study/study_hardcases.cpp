@@ -1,0 +1,113 @@
+#include "player/study/study_hardcases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "player/print.h"
+#include "player/progress.h"
+#include "player/record/csv.h"
+#include "player/study/corpus_folder.h"
+#include "player/study/pareto.h"
+#include "player/study/studies.h"
+
+namespace pliant {
+namespace {
+
+std::string shown(double figure) {
+  return std::isfinite(figure) ? fmt::format("{:.3g}", figure) : "failed";
+}
+
+std::vector<std::string> sentences_of(const std::vector<JudgedCase>& cases) {
+  std::size_t yes = 0, no = 0, unknown = 0;
+  std::string failing, nearest;
+  double share = -1.0;
+  for (const JudgedCase& each : cases) {
+    const HardVerdict verdict = each.verdict();
+    (verdict == HardVerdict::kYes ? yes : verdict == HardVerdict::kNo ? no : unknown) += 1;
+    if (verdict == HardVerdict::kNo)
+      failing += fmt::format("{}{} ({} {}, at most {:g})", failing.empty() ? "" : "; ", words_of(each.hard.name),
+                             shown(each.figure.value()), each.hard.unit, each.hard.bound);
+    // Where a figure may not be above one, being near it is no sign.
+    if (verdict != HardVerdict::kYes || !(each.hard.bound > 0.0) || std::abs(each.hard.bound - 1.0) < 1e-6) continue;
+    if (each.figure.value() / each.hard.bound > share) {
+      share = each.figure.value() / each.hard.bound;
+      nearest = words_of(each.hard.name);
+    }
+  }
+  std::string first = fmt::format("{} of {} hard cases hold", yes, cases.size());
+  if (unknown > 0) first += fmt::format(", {} were not judged because what they need is absent", unknown);
+  first += no > 0 ? fmt::format("; these do not: {}.", failing) : ".";
+  if (share < 0.0) return {first};
+  return {first,
+          fmt::format("The nearest to its bound of those that hold: {}, at {:.0f} % of it.", nearest, 100 * share)};
+}
+
+nlohmann::ordered_json to_json(const std::vector<JudgedCase>& cases, const std::vector<std::string>& sentences) {
+  nlohmann::ordered_json json;
+  json["study"] = "hardcases";
+  for (const JudgedCase& each : cases) {
+    nlohmann::ordered_json row{{"case", each.hard.name},      {"entry", each.hard.entry},
+                               {"must_hold", each.hard.must}, {"verdict", name_of(each.verdict())},
+                               {"figure", nullptr},           {"bound", each.hard.bound},
+                               {"unit", each.hard.unit},      {"where", each.figure.where()}};
+    if (std::isfinite(each.figure.value())) row["figure"] = each.figure.value();
+    if (*each.hard.defect) row["known_defect"] = each.hard.defect;
+    if (each.hard.timed) row["timed"] = true;
+    json["cases"].push_back(std::move(row));
+  }
+  json["shows"] = sentences;
+  return json;
+}
+
+}  // namespace
+
+const char* name_of(HardVerdict verdict) {
+  constexpr const char* kNames[] = {"yes", "no", "not judged"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+std::string words_of(const std::string& name) {
+  std::string words;
+  for (const char c : name) {
+    if (std::isupper(static_cast<unsigned char>(c)) && !words.empty()) words += ' ';
+    words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return words;
+}
+
+std::string to_csv(const std::vector<JudgedCase>& cases) {
+  std::string csv = "entry,case,must_hold,verdict,figure,bound,unit,where,known_defect\n";
+  for (const JudgedCase& each : cases)
+    csv += fmt::format(
+        "{},{},{},{},{},{:g},{},{},{}\n", csv_text(each.hard.entry), each.hard.name, csv_text(each.hard.must),
+        name_of(each.verdict()), std::isfinite(each.figure.value()) ? fmt::format("{:.9g}", each.figure.value()) : "",
+        each.hard.bound, csv_text(each.hard.unit), csv_text(each.figure.where()), csv_text(each.hard.defect));
+  return csv;
+}
+
+Status study_hardcases(OutputFolder& out, bool quick, const Interrupt& interrupt) {
+  Progress progress("study hardcases");
+  const HardSetting setting{corpus_folder(), quick};
+  std::vector<JudgedCase> cases;
+  for (const HardCase& hard : hard_cases()) {
+    if (interrupt.requested()) return interrupted();
+    cases.push_back({hard, hard.measure(setting)});
+    progress.update(static_cast<double>(cases.size()) / static_cast<double>(hard_cases().size()));
+  }
+  const std::vector<std::string> sentences = sentences_of(cases);
+  for (const JudgedCase& each : cases)
+    print("{:>10}  {:>9}, at most {:<6g} {:<26} {}\n", name_of(each.verdict()),
+          each.figure.is_absent() ? "-" : shown(each.figure.value()), each.hard.bound, each.hard.unit,
+          words_of(each.hard.name));
+  for (const std::string& sentence : sentences) print("hardcases: {}\n", sentence);
+  if (const Status done = write_text(out, "hardcases.csv", to_csv(cases)); !done) return done;
+  if (const Status done = write_text(out, "hardcases.json", to_json(cases, sentences).dump(2, ' ', true) + "\n"); !done)
+    return done;
+  return plot_hardcases(out, cases, sentences);
+}
+
+}  // namespace pliant

@@ -1,0 +1,27 @@
+// The hard cases (hard/hard_case.h) judged, one after the other: a table of verdicts and figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "player/record/output_folder.h"
+#include "player/study/hard/hard_case.h"
+
+namespace pliant {
+
+struct JudgedCase {
+  HardCase hard;
+  HardFigure figure;
+  HardVerdict verdict() const { return verdict_of(hard, figure); }
+};
+
+const char* name_of(HardVerdict verdict);  // yes, no, not judged
+// "ASliverDisturbsNobody" as "a sliver disturbs nobody".
+std::string words_of(const std::string& name);
+std::string to_csv(const std::vector<JudgedCase>& cases);
+
+// hardcases.svg and hardcases.png: each figure as a share of what it may be.
+Status plot_hardcases(OutputFolder& out, const std::vector<JudgedCase>& cases,
+                      const std::vector<std::string>& sentences);
+
+}  // namespace pliant
