@@ -62,16 +62,17 @@ void add_text(Hash& hash, const std::string& text) {
   hash.add_bytes(text.data(), text.size());
 }
 
-// A probe that a window adds for its mouse has a colour of its own, and a replay of it has not.
-bool is_seen_only(const Extension& extension, const Key& key) {
-  return extension.name == "probe" && key.name == "color";
+// A probe that a window adds for its mouse has a colour of its own, and a replay of it has not. An error budget is felt
+// by what was chosen for it, in other keys.
+bool is_not_felt(const Extension& extension, const Key& key) {
+  return (extension.name == "probe" && key.name == "color") || key.name == "error";
 }
 
 void add_keys(Hash& hash, const Extension& extension, const void* owner) {
   if (!extension.present(owner)) return;
   add_text(hash, extension.name);
   for (const Key& key : extension.keys)
-    if (!key.alias && !is_seen_only(extension, key))
+    if (!key.alias && !is_not_felt(extension, key))
       add_text(hash, key.get(owner).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "components/soft_body.h"
+#include "engine/choice/model_choice.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "systems/device/devices.h"
@@ -78,8 +79,14 @@ Status Session::Parts::prepare() {
 }
 
 Status Session::Parts::remake(std::vector<SessionEffector>& before) {
-  notes = scene.level().notes;
   if (Status s = check_scene(scene.level()); !s) return s;
+  if (!chosen) {
+    auto choices = choose_models(scene.level());
+    if (!choices) return choices.error();
+    for (const ModelChoice& choice : *choices) scene.level().notes.push_back(choice.sentence());
+    chosen = true;
+  }
+  notes = scene.level().notes;
   auto spawned = spawn_level(scene.level(), &notes);
   if (!spawned) return spawned.error();
   clock.reset();

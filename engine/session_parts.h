@@ -103,6 +103,7 @@ struct Edit {
 
 struct Session::Parts {
   Scene scene;
+  bool chosen = false;  // the models of objects with an error budget: once, in `scene`
   World world;
   std::vector<std::string> notes, objects;
   std::vector<Entity> object_entities;

@@ -177,6 +177,9 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
   keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
                         "thickness of the layer, which is bonded to something rigid, with `young`; 0: deep"));
+  keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
+                        "error budget: the cheapest shape and distance whose measured error on this surface is within "
+                        "it, where no key says them; 0: none"));
   return keys;
 }
 
@@ -283,6 +286,9 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(
       number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(choice("solver", s(&S::solver), "what solves the linear systems; `auto` by size, as measured"));
+  keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
+                        "error budget: the cheapest cell and soft step whose measured error on this body is within "
+                        "it, where no key says them; 0: none"));
   return keys;
 }
 
@@ -448,6 +454,12 @@ const Extension* find_extension(const std::string& name) {
   for (const Extension& each : extension_table())
     if (each.name == name) return &each;
   return nullptr;
+}
+
+void note_stated(const Extension& extension, const Key& key, void* owner) {
+  std::set<std::string>& stated =
+      extension.on_scene ? static_cast<Level*>(owner)->stated : static_cast<LevelNode*>(owner)->stated;
+  stated.insert(extension.name + "." + key.name);
 }
 
 const Key* find_key(const Extension& extension, const std::string& name) {

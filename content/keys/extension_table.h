@@ -40,6 +40,8 @@ struct Extension {
 
 const std::vector<Extension>& extension_table();
 const Extension* find_extension(const std::string& name);
+// That its author has said a key: into LevelNode::stated or Level::stated.
+void note_stated(const Extension& extension, const Key& key, void* owner);
 const Key* find_key(const Extension& extension, const std::string& name);
 
 // "" or what is wrong with the value.

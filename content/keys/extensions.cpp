@@ -63,6 +63,7 @@ class Reader {
     if (!wrong.empty()) return report_(pointer, wrong);
     if (const std::string found = doubt(key, value); !found.empty()) report_.doubt(pointer, found);
     key.set(owner_, value);
+    note_stated(extension_, key, owner_);
     given_.push_back(key.name);
   }
 

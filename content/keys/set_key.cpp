@@ -65,6 +65,7 @@ void assign(const Extension& extension, const Key& key, const Json& value, void*
   if (extension.name == "deformable" && key.name == "stiffness")
     static_cast<LevelNode*>(owner)->deformable->young = 0.0;
   key.set(owner, value);
+  note_stated(extension, key, owner);
   for (Touched& each : touched)
     if (each.extension == &extension && each.owner == owner) {
       each.where = where;
@@ -132,6 +133,7 @@ Status set_keys(Level& level, const std::vector<std::string>& assignments) {
   changed.environment = level.environment;
   changed.simulation = level.simulation;
   changed.source = level.source;
+  changed.stated = level.stated;
   std::vector<Touched> touched;
   for (const std::string& assignment : assignments)
     if (const Status status = set_one(changed, assignment, touched); !status) return status;
@@ -140,6 +142,7 @@ Status set_keys(Level& level, const std::vector<std::string>& assignments) {
   level.nodes = std::move(changed.nodes);
   level.environment = std::move(changed.environment);
   level.simulation = changed.simulation;
+  level.stated = std::move(changed.stated);
   return Done{};
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,7 @@ struct LevelNode {
   std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
   std::optional<NodeMotion> motion;      // PLIANT_motion
   std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, as a copy of a node is
+  std::set<std::string> stated;          // keys that a file or --set has said, at their default too: deformable.shape
 
   bool has_pliant() const;  // any of those
 };
@@ -106,7 +108,8 @@ struct Level {
   std::vector<Image> images;
   std::vector<LevelAnimation> animations;
   std::optional<LevelEnvironment> environment;
-  Simulation simulation;  // PLIANT_simulation
+  Simulation simulation;         // PLIANT_simulation
+  std::set<std::string> stated;  // its keys that a file or --set has said: simulation.soft_step
   std::vector<std::string>
       notes;  // what was read differently than a user might expect (collision meshes, skipped points...)
   std::size_t document_notes = 0;  // of these, the first are warnings of the document (open_gltf)

@@ -47,6 +47,7 @@ struct DeformableParameters {
   double young = 0.0;             // [Pa] with thickness: calibrates stiffness instead of `stiffness`; 0: not given
   double poisson = 0.45;          // [1]
   double thickness = 0.0;         // [m] 0: deep
+  double error = 0.0;             // [1] budget: shape and distance that are not said are chosen by it; 0: none
 };
 
 // What solves a soft body's linear systems (P2: black boxes).
@@ -79,6 +80,7 @@ struct SoftBodyParameters {
   double friction_static = 0.4;          // [1]
   double friction_sliding = 0.3;         // [1]
   SolverKind solver = SolverKind::kAuto;
+  double error = 0.0;  // [1] budget: cell and soft step that are not said are chosen by it; 0: none
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };

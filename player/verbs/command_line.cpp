@@ -125,6 +125,8 @@ void add_run(CLI::App& app, RunOptions& run) {
       ->check(one_of(words_of<ToolForce>()));
   verb->add_option("--max-force", run.max_force, "the most that the level may ask of a device [N] (10)")
       ->check(within(1e-3, DeviceRange::kMaxForce.max));
+  verb->add_option("--error", run.error, "error budget of every surface and soft body: the cheapest models within it")
+      ->check(within(1e-6, 10.0));
   add_limits(verb);
   verb->add_option("--out", run.out,
                    "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results")
@@ -159,13 +161,16 @@ void add_run(CLI::App& app, RunOptions& run) {
       "  pliant run level.gltf --probe tip=script:press.csv --record press.pose --out out/press");
 }
 
-void add_files(CLI::App& app, std::string& inspected, bool& inspect_json, ConvertOptions& conversion,
-               std::string& validated) {
+void add_files(CLI::App& app, InspectOptions& inspection, ConvertOptions& conversion, std::string& validated) {
   CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
-  verb->add_option("file", inspected, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
-  verb->add_flag("--json", inspect_json, "as JSON");
+  verb->add_option("file", inspection.file, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
+  verb->add_flag("--json", inspection.json, "as JSON");
+  CLI::Option* fit = verb->add_flag("--fit", inspection.fit, "which models error budgets choose, and the evidence");
+  verb->add_option("--error", inspection.error, "with --fit: error budget of every surface and soft body")
+      ->check(within(1e-6, 10.0))
+      ->needs(fit);
   add_limits(verb);
-  verb->footer("Example:\n  pliant inspect organ.glb");
+  verb->footer("Examples:\n  pliant inspect organ.glb\n  pliant inspect organ.glb --fit --error 0.3");
 
   verb = app.add_subcommand("convert", "any mesh format to glTF or GLB; an EXR panorama to a cube map preview (PNG)");
   verb->add_option("in", conversion.in, "what to read")->required()->check(named());
@@ -393,12 +398,13 @@ int parse_and_run(int argc, const char* const* argv) {
 
   RunOptions run_options;
   ConvertOptions conversion;
-  std::string inspected, validated;
-  bool inspect_json = false, devices_json = false;
+  std::string validated;
+  InspectOptions inspection;
+  bool devices_json = false;
   AuthorOptions authoring;
   add_run(app, run_options);
   add_author(app, authoring);
-  add_files(app, inspected, inspect_json, conversion, validated);
+  add_files(app, inspection, conversion, validated);
   CLI::App* verb = app.add_subcommand("devices", "haptic and pointing devices found, and how to use each");
   verb->add_flag("--json", devices_json, "as JSON");
   DeviceTestOptions device_test;
@@ -435,7 +441,7 @@ int parse_and_run(int argc, const char* const* argv) {
   }
   const std::string name = app.get_subcommands().front()->get_name();
   if (name == "run") return run_options.list ? list_levels() : run(run_options);
-  if (name == "inspect") return inspect(inspected, inspect_json);
+  if (name == "inspect") return inspect(inspection);
   if (name == "convert") return convert(conversion);
   if (name == "author") return author(authoring);
   if (name == "validate") return validate(validated);

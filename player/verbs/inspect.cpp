@@ -22,6 +22,7 @@
 #include "player/print.h"
 #include "player/run/tool_words.h"
 #include "player/verbs/content_folder.h"
+#include "player/verbs/inspect_fit.h"
 #include "player/verbs/inspect_panorama.h"
 #include "player/verbs/inspect_tets.h"
 #include "player/verbs/verbs.h"
@@ -264,22 +265,30 @@ void print_text(const Json& json, const Box& box) {
 
 }  // namespace
 
-int inspect(const std::string& file, bool as_json) {
-  const auto path = find_level(file);
+int inspect(const InspectOptions& options) {
+  const auto path = find_level(options.file);
   if (!path) return fail(kFailed, path.error());
-  if (is_tet_file(*path)) return inspect_tets(*path, as_json);
-  if (is_panorama_file(*path)) return inspect_panorama(*path, as_json);
-  const auto level = load_level(*path);
+  if (options.fit && (is_tet_file(*path) || is_panorama_file(*path)))
+    return fail(kUsage, {"--fit", "is for levels and meshes that are touched; leave it out"});
+  if (is_tet_file(*path)) return inspect_tets(*path, options.json);
+  if (is_panorama_file(*path)) return inspect_panorama(*path, options.json);
+  auto level = load_level(*path);
   if (!level) return fail(kFailed, level.error());
   const std::vector<ObjectReport> objects = inspect_objects(*level);
-  const Json json = describe(*level, objects);
-  if (as_json) {
+  Json json = describe(*level, objects);
+  if (options.fit) {
+    auto fit = describe_fit(*level, options.error);
+    if (!fit) return fail(kFailed, fit.error());
+    json["fit"] = std::move(*fit);
+  }
+  if (options.json) {
     print_json(json);
     return kDone;
   }
   Box box;
   for (const ObjectReport& object : objects) box.add(object.box);
   print_text(json, box);
+  if (options.fit) print_fit(json["fit"]);
   return kDone;
 }
 

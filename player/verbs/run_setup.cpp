@@ -11,6 +11,7 @@
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/safety_cap.h"
+#include "engine/choice/model_choice.h"
 #include "engine/driver_limits.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
@@ -226,6 +227,11 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (options.max_force > 0.0) cap.max_force = options.max_force;
   for (const std::string& sentence : cap_safety(level, cap)) say(run, sentence);
   if (Outcome wrong = apply_settings(options, *unit, level, run)) return wrong;
+  if (options.error > 0.0)
+    if (const Status set = set_error_budget(level, options.error); !set) return wrong_arguments(set.error());
+  const auto choices = choose_models(level);
+  if (!choices) return failed(choices.error());
+  for (const ModelChoice& choice : *choices) say(run, choice.sentence());
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
 

@@ -20,6 +20,7 @@ struct RunOptions {
   bool window = false, headless = false;  // forced, forbidden; else a window where there is a display
   std::string field = "auto";
   std::string tool_force;         // held, linear, contacts; empty: each tool's key
+  double error = 0.0;             // [1] budget of every surface and soft body; 0: their own
   double max_force = 0.0;         // [N] the most that the level may ask of a device; 0: the usual cap
   std::string out;                // folder; empty: out/<level name>
   int frames = -1;                // -1: not said
@@ -34,7 +35,13 @@ struct RunOptions {
 int run(const RunOptions& options);
 int list_levels();
 
-int inspect(const std::string& file, bool json);
+struct InspectOptions {
+  std::string file;
+  bool json = false;
+  bool fit = false;    // also which models error budgets choose, and why
+  double error = 0.0;  // [1] budget of every surface and soft body; 0: their own
+};
+int inspect(const InspectOptions& options);
 
 struct ConvertOptions {
   std::string in, out;
