@@ -2,7 +2,6 @@
 // (window_loop.cpp). It hears the hand some 250 times a second; pictures are made meanwhile (window_picture.h).
 #pragma once
 
-#include <atomic>
 #include <future>
 #include <optional>
 
