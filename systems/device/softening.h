@@ -1,7 +1,7 @@
 // What a device renders stably is limited (DeviceCapabilities::max_stiffness), and what is touched may be stiffer. Then
 // the hand gets as much less of the whole force as that is too stiff. To lower the slope between two ticks alone is not
 // enough: at 1 kHz the ticks' forces themselves follow the stiff surface. To let the force rise slowly and fall fast,
-// as the limit of systems/safety does, is passive in the tick and still shakes a device with a delay.
+// as a level's max_stiffness does (systems/safety), is passive in the tick and still shakes a device with a delay.
 //
 // A share of a passive force is passive while the share does not grow: it falls at once, and begins anew at 1 only
 // where nothing is touched.

@@ -106,8 +106,7 @@ SafetyLimits force_limits(const HapticDevice& device) {
   SafetyLimits limits;
   limits.scale = device.workspace;
   limits.force = can.renders_force ? smaller(device.max_force, can.max_force) : 0.0;
-  limits.stiffness =
-      device.max_stiffness > 0.0 ? smaller(device.max_stiffness * limits.scale, can.max_stiffness) : can.max_stiffness;
+  limits.stiffness = device.max_stiffness * limits.scale;  // the driver's: systems/device/softening.h
   limits.slew = device.max_slew;
   return limits;
 }
