@@ -1,9 +1,13 @@
 #include "engine/driver_link.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include "systems/device/device_model.h"
+#include "systems/device/softening.h"
 #include "systems/safety/safety.h"
 
 namespace pliant {
@@ -16,6 +20,9 @@ DriverLink& DriverLink::operator=(DriverLink&& other) noexcept {
   servo_ = std::exchange(other.servo_, nullptr);
   can_ = std::exchange(other.can_, {});
   placed_rotation_ = other.placed_rotation_;
+  written_at_ = other.written_at_;
+  late_ = other.late_;
+  longest_ = other.longest_;
   ready_ = other.ready_;
   state_ = std::move(other.state_);
   return *this;
@@ -86,6 +93,8 @@ void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 middle) {
   device.origin = driver_ && can_.workspace != dvec3(0) ? middle : dvec3(0);
   device.force_sent = device.torque_sent = dvec3(0);
   placed_rotation_ = placed;
+  written_at_ = late_ = 0;
+  longest_ = 0.0;
   ready_ = false;
 }
 
@@ -112,6 +121,13 @@ void DriverLink::read(HapticDevice& device, Tick tick) {
 void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(entity);
   const DeviceWrench wrench{device.force_sent, device.torque_sent};
+  if (!can_.simulated && !(servo_ && servo_->runs())) {
+    const std::uint64_t now = now_ns();
+    const double since = written_at_ > 0 ? static_cast<double>(now - written_at_) * 1e-9 : 0.0;
+    written_at_ = now;
+    longest_ = std::max(longest_, since);
+    late_ += since > kForceHolds;
+  }
   if (!servo_) {
     if (!state_->may_leave(wrench, tick.time)) device.force_sent = device.torque_sent = dvec3(0);
     driver_->write({device.force_sent, device.torque_sent});
@@ -121,10 +137,23 @@ void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) 
     servo_->write({});
   else
     servo_->write_model(device_model(world, effector, entity, tick), wrench);
-  if (!servo_->felt()) device.force_sent = device.torque_sent = dvec3(0);
+  const bool felt = servo_->felt();
+  if (SafetyState* const safety = safety_of(world, effector)) safety->felt = felt;
+  if (!felt) device.force_sent = device.torque_sent = dvec3(0);
+}
+
+std::string DriverLink::late_note(const std::string& name) const {
+  if (late_ == 0) return {};
+  return fmt::format(
+      "device of `{}`: {} times more than {:.0f} ms went by between two ticks ({:.0f} ms at most), and a device lets "
+      "go "
+      "of a force that is not renewed by then: there nothing was felt; run in real time (without --lockstep, or with "
+      "Session::start()), or have less in the scene",
+      name, late_, 1e3 * kForceHolds, 1e3 * longest_);
 }
 
 void DriverLink::idle() {
+  written_at_ = 0;  // a pause is none
   DeviceSample sample;
   const bool fresh = driver_->read(sample);
   if (state_) state_->rest(fresh ? &sample : nullptr);

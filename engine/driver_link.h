@@ -14,6 +14,8 @@
 
 namespace pliant {
 
+inline constexpr double kForceHolds = 0.020;  // [s] that devices and their drivers' threads go on with a force
+
 class DriverLink {
  public:
   DriverLink() = default;
@@ -47,6 +49,8 @@ class DriverLink {
   void read(HapticDevice& device, Tick tick);
   // Where the device's guard lets nothing leave, the device's force_sent is zero afterwards.
   void write(World& world, Entity effector, Entity device, Tick tick);
+  // What a person should know after a run: a device lets go of a force that nobody renews. One sentence, or none.
+  std::string late_note(const std::string& name) const;
   void idle();  // instead of both, while a loop is paused
   void zero() noexcept;
 
@@ -61,8 +65,10 @@ class DriverLink {
   Servo* servo_ = nullptr;
   DeviceCapabilities can_;
   dquat placed_rotation_{1, 0, 0, 0};
-  bool ready_ = false;                // as it said last, since a pause
-  std::unique_ptr<LinkState> state_;  // of a driver without a servo
+  std::uint64_t written_at_ = 0, late_ = 0;  // [ns]; writes later than kForceHolds after the one before
+  double longest_ = 0.0;                     // [s] between two writes
+  bool ready_ = false;                       // as it said last, since a pause
+  std::unique_ptr<LinkState> state_;         // of a driver without a servo
 };
 
 }  // namespace pliant

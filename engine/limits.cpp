@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "components/soft_body.h"
+#include "engine/stiffness_note.h"
 #include "runtime/assert.h"
 #include "systems/device/hands.h"
 #include "systems/tool/tool_touch_state.h"
@@ -84,6 +85,8 @@ std::vector<std::string> explain_limits(const World& world, Entity hand, const s
   const std::string who = (safety.torque ? "tool `" : "probe `") + name + "`";
   explain(safety.force->tally, who,
           {"force", "max_force", "N", force.force, force.slew, force.stiffness / force.scale, "0.2 N"}, sentences);
+  if (std::string softened = softened_note(world, hand, name, safety.force->least_share); !softened.empty())
+    sentences.push_back(std::move(softened));
   if (!safety.torque) return sentences;
   const SafetyLimits torque = torque_limits(*device, world.registry.get<Handle6>(hand));
   explain(safety.torque->tally, who, {"torque", "max_torque", "N m", torque.force, torque.slew, 0.0, "0.2 N m"},

@@ -119,7 +119,9 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
       for (double* value : {&pose.position.x, &pose.position.y, &pose.position.z, &pose.rotation.w, &pose.rotation.x,
                             &pose.rotation.y, &pose.rotation.z})
         *value = in.get<double>();
-      pose.ready = in.get<std::uint8_t>() == 1;
+      const auto state = in.get<std::uint8_t>();
+      pose.ready = state == 1 || state == 2;
+      pose.felt = state != 2;
       if (!sound(pose))
         return Error{name, "has a pose at tick " + std::to_string(index) +
                                " that is not finite or not a unit quaternion; record it again"};
@@ -218,7 +220,7 @@ void RecordingWriter::pose(const RecordedPose& pose) {
   for (double value : {pose.position.x, pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x,
                        pose.rotation.y, pose.rotation.z})
     put(value);
-  put(static_cast<std::uint8_t>(pose.ready ? 1 : 0));
+  put(static_cast<std::uint8_t>(!pose.ready ? 0 : pose.felt ? 1 : 2));
   if (++poses_ == probes_) add_record();
 }
 

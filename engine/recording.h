@@ -2,8 +2,9 @@
 //
 // The file, little-endian: 8 bytes "pliantrc", u32 version, u32 probes, f64 rate [Hz], level name, a name per probe
 // (u32 length and bytes each), u64 scene_hash() of the scene it was made with, u32 settings and a text for each; then
-// per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the device was ready); last a u64
-// hash of all before it. Format 1, which is read as well, has neither scene nor settings.
+// per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the device was ready; 2: it was,
+// and its guard let nothing leave); last a u64 hash of all before it. Format 1, which is read as well, has neither
+// scene nor settings.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,7 @@ struct RecordedPose {
   dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
   bool ready = true;
+  bool felt = true;  // false: its guard let nothing leave
 };
 
 struct RecordingHeader {

@@ -52,9 +52,11 @@ Result<std::vector<std::string>> Session::findings() const {
   const Parts& p = *parts_;
   if (Status s = p.stand_still("Session::findings"); !s) return s.error();
   std::vector<std::string> sentences = explain_dropped(p.world.dropped | (p.world.soft ? p.world.soft->dropped : 0));
-  for (const SessionEffector& effector : p.effectors)
+  for (const SessionEffector& effector : p.effectors) {
     for (std::string& sentence : explain_limits(p.world, effector.entity, effector.name))
       sentences.push_back(std::move(sentence));
+    if (std::string late = effector.link.late_note(effector.name); !late.empty()) sentences.push_back(std::move(late));
+  }
   return sentences;
 }
 

@@ -75,7 +75,8 @@ class SessionRecorder {
  public:
   SessionRecorder(RecordingWriter writer, std::size_t effectors);
   // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh.
-  void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready);
+  // `felt`: its guard let the force leave.
+  void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready, bool felt);
   void drain();
   std::size_t room() const { return room_; }  // [ticks] that may wait
   void start();                               // a thread drains from now on

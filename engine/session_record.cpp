@@ -12,6 +12,7 @@
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "runtime/printable.h"
+#include "systems/device/softening.h"
 #include "systems/safety/safety.h"
 
 namespace pliant {
@@ -42,11 +43,13 @@ Status apply_setting(Session& session, const std::string& setting) {
 SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
     : writer_(std::move(writer)), room_(room_for(effectors)), last_(effectors), rows_(room_ * effectors) {}
 
-void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready) {
+void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready,
+                           bool felt) {
   RecordedPose& last = last_[effector];
   const bool sound = plausible_position(device.position) && plausible_rotation(device.rotation);
   if (sound) last = {device.position, device.rotation / glm::length(device.rotation), ready};
   last.ready = sound && ready;
+  last.felt = felt;
   rows_.record({tick, effector, last});
 }
 
@@ -159,6 +162,7 @@ Tick Session::Parts::replayed_tick() {
     device.position = pose.position;
     device.rotation = pose.rotation;
     device.status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
+    if (SafetyState* const safety = safety_of(world, effectors[i].entity)) safety->felt = pose.felt;
     device.sensed_at = tick.time;
   }
   return tick;

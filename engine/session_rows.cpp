@@ -4,6 +4,7 @@
 
 #include "engine/session_parts.h"
 #include "systems/device/reading.h"
+#include "systems/device/softening.h"
 #include "systems/safety/safety.h"
 #include "systems/touch/contacts_of.h"
 #include "systems/touch/local_model.h"
@@ -37,14 +38,18 @@ void Session::Parts::after(Tick tick) {
   for (std::size_t i = 0; i < effectors.size(); ++i) {
     SessionEffector& effector = effectors[i];
     if (effector.link) effector.link.write(world, effector.entity, effector.device, tick);
-    const HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+    HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
+    const SafetyState* const safety = safety_of(world, effector.entity);
+    const bool felt = !safety || safety->felt;
+    if (replayed && !felt) device.force_sent = device.torque_sent = dvec3(0);
     const DeviceWrench wrench{device.force_sent, device.torque_sent};
     EffectorRow& row = out[i];
     const ProbeReading read = pliant::reading(world, effector.entity);
     row.reading.tick = tick.index;
     row.reading.time = tick.time;
     row.reading.ready = device.status == DeviceStatus::kReady && tick.time - device.sensed_at <= kStaleAfter;
-    if (recorder) recorder->note(tick.index, static_cast<std::uint32_t>(i), device, row.reading.ready && !after_pause);
+    if (recorder)
+      recorder->note(tick.index, static_cast<std::uint32_t>(i), device, row.reading.ready && !after_pause, felt);
     row.reading.touching = read.in_contact;
     row.reading.position = read.position;
     row.reading.force = wrench.force;

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "devices/guard/guard.h"
 #include "devices/spec.h"
 #include "devices/wrappers/chain.h"
 #include "systems/device/hands.h"
@@ -33,77 +33,69 @@ HandWords hand_words(const std::string& words) {
 
 namespace {
 
-// The stiffest surface, before vertices and depth make it stiffer.
-std::pair<double, std::string> stiffest_surface(const World& world) {
-  std::pair<double, std::string> stiffest{0.0, ""};
-  for (auto [entity, surface] : world.registry.view<const Deformable>()) {
-    if (!(surface.stiffness > stiffest.first)) continue;
-    const Name* name = world.registry.find<Name>(entity);
-    stiffest = {surface.stiffness, name ? name->value : std::string()};
+// In the metres of a device whose workspace has its middle there.
+Path local(Path path, dvec3 middle, double scale) {
+  for (PathRow& row : path.rows) row.position = (row.position - middle) / scale;
+  return path;
+}
+
+// Whoever sets a device up puts the middle of its workspace into the middle of what is to be reached.
+dvec3 middle_of(const Path& path) {
+  dvec3 low = path.rows.front().position, high = low;
+  for (const PathRow& row : path.rows) low = glm::min(low, row.position), high = glm::max(high, row.position);
+  return 0.5 * (low + high);
+}
+
+// A path that a workspace does not hold: one sentence, or none.
+std::string beyond_stops(const World& world, Entity hand, const SimulatedOptions& options) {
+  dvec3 farthest(0);
+  for (const PathRow& row : options.will.path.rows) farthest = glm::max(farthest, glm::abs(row.position));
+  for (int i = 0; i < 3; ++i) {
+    const double reach = options.profile.workspace[i];
+    if (!(farthest[i] > reach)) continue;
+    const Name* const name = world.registry.find<Name>(hand);
+    return fmt::format(
+        "the path of `{}` goes {:.0f} mm from its middle along {}, and the workspace of `{}` ends at {:.0f} mm: its "
+        "end "
+        "stops hold it there; set PLIANT_haptic_device.scale to {:.2g}, or take a larger device",
+        name ? name->value : std::string(), 1e3 * farthest[i], "xyz"[i], options.profile.name, 1e3 * reach,
+        std::ceil(10.0 * farthest[i] / reach) / 10.0);
   }
-  return stiffest;
+  return {};
 }
 
 }  // namespace
 
-double softening(const World& world, const DeviceCapabilities& can) {
-  const double stiffest = stiffest_surface(world).first;
-  return can.max_stiffness > 0.0 && stiffest > can.max_stiffness ? can.max_stiffness / stiffest : 1.0;
-}
-
-DeviceCapabilities before_softening(DeviceCapabilities can, double share) {
-  can.max_stiffness /= share;
-  can.max_force /= share;
-  return can;
-}
-
-std::string stiffness_note(const World& world, const std::string& hand, const DeviceCapabilities& can) {
-  const double share = softening(world, can);
-  if (share == 1.0) return {};
-  const auto [stiffest, its] = stiffest_surface(world);
-  return fmt::format(
-      "`{}` has {:g} N/m, and the device of `{}` renders at most {:.3g} N/m stably: it gets {:.0f} % of the force; "
-      "give "
-      "the surface less stiffness, or take a stiffer or faster device",
-      its, stiffest, hand, can.max_stiffness, 100.0 * share);
-}
-
-Status SimulatedHands::add(World& world, Entity hand, const std::string& name, const std::string& words,
-                           bool lockstep) {
+Status SimulatedHands::add(World& world, Entity hand, const std::string& words) {
   const HandWords parts = hand_words(words);
   auto options = parse_simulated(parts.device);
   if (!options) return options.error();
-  const Entity entity = device_of(world, hand);
-  HapticDevice& device = world.registry.get<HapticDevice>(entity);
+  HapticDevice& device = world.registry.get<HapticDevice>(device_of(world, hand));
   Held held;
-  held.device = entity;
   held.hand = hand;
-  if (device.path.valid()) {
-    options->will.path = world.paths[device.path];
-    if (!options->will.path.repeats && !options->will.path.rows.empty())
-      held.seconds = options->will.path.rows.back().time;
+  held.middle = device.position;
+  if (device.path.valid() && !world.paths[device.path].rows.empty()) {
+    const Path& path = world.paths[device.path];
+    held.middle = middle_of(path);
+    options->will.path = local(path, held.middle, device.scale);
+    if (!path.repeats) held.seconds = path.rows.back().time;
   } else if (options->will.path.rows.empty()) {
-    options->will.path.rows = {{0.0, device.position, device.rotation}};
+    options->will.path.rows = {{0.0, dvec3(0), device.rotation}};
   }
-  options->clock = lockstep ? DeviceClock::kTick : DeviceClock::kWall;
-  if (lockstep) options->profile.rate = world.simulation.touch_rate;
-  auto chain = wrap(std::make_unique<SimulatedDevice>(std::move(options).value()), parts.wrappers);
+  if (parts.wrappers.empty() && options->stops)
+    if (std::string sentence = beyond_stops(world, hand, *options); !sentence.empty())
+      notes_.push_back(std::move(sentence));
+  auto simulated = std::make_unique<SimulatedDevice>(std::move(options).value());
+  held.device = simulated.get();
+  auto chain = wrap(std::move(simulated), parts.wrappers);
   if (!chain) return chain.error();
   held.driver = std::move(chain->driver);
   for (std::string& sentence : chain->notes) notes_.push_back(std::move(sentence));
-
   device.driver = DriverKind::kExternal;
   device.path = {};
   device.file.clear();
   device.id = std::string(kHandId) + words;
-  device.can = held.driver->capabilities();
-  device.can.max_stiffness = stable_stiffness(device.can, device.can.rate);
-  device.workspace = 1.0;  // paths are in metres of the world
   device.status = DeviceStatus::kLost;
-  held.share = softening(world, device.can);
-  if (std::string sentence = stiffness_note(world, name, device.can); !sentence.empty())
-    notes_.push_back(std::move(sentence));
-  device.can = before_softening(device.can, held.share);
   hands_.push_back(std::move(held));
   return Done{};
 }
@@ -116,64 +108,6 @@ double SimulatedHands::seconds() const {
   double longest = 0.0;
   for (const Held& held : hands_) longest = std::max(longest, held.seconds);
   return longest;
-}
-
-Status SimulatedHands::open() {
-  open_ = true;
-  for (Held& held : hands_) {
-    held.ready = false;
-    if (const Status opened = held.driver->open(""); !opened) return opened;
-  }
-  return Done{};
-}
-
-void SimulatedHands::read(World& world, Tick tick) {
-  for (Held& held : hands_) {
-    HapticDevice& device = world.registry.get<HapticDevice>(held.device);
-    DeviceSample sample;
-    if (held.driver->read(sample)) {
-      device.position = sample.position;
-      device.rotation = sample.rotation;
-      device.sensed_at = tick.time;
-      held.ready = sample.ready;
-    }
-    device.status = held.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
-  }
-}
-
-void SimulatedHands::write(World& world) {
-  for (Held& held : hands_) {
-    const HapticDevice& device = world.registry.get<HapticDevice>(held.device);
-    held.driver->write({held.share * device.force_sent, held.share * device.torque_sent, 0.0});
-  }
-}
-
-void SimulatedHands::let_go(World& world) {
-  for (Held& held : hands_) {
-    HapticDevice& device = world.registry.get<HapticDevice>(held.device);
-    device.force_sent = device.torque_sent = dvec3(0);
-    held.driver->write({});
-  }
-}
-
-void SimulatedHands::idle() {
-  DeviceSample sample;
-  for (Held& held : hands_) {
-    held.driver->read(sample);
-    held.driver->write({});
-  }
-}
-
-void SimulatedHands::close() noexcept {
-  if (!open_) return;
-  open_ = false;
-  for (Held& held : hands_) {
-    try {
-      held.driver->write({});
-      held.driver->close();
-    } catch (...) {  // gone all the same
-    }
-  }
 }
 
 }  // namespace pliant

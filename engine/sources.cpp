@@ -154,12 +154,11 @@ std::vector<std::string> make_orbits(World& world) {
   return held;
 }
 
-Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources, bool lockstep) {
+Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources) {
   SimulatedHands made;
   for (const ProbeSource& source : sources) {
     if (!source.held) continue;
-    if (const Status added = made.add(world, find_hand(world, source.name), source.name, source.words, lockstep);
-        !added)
+    if (const Status added = made.add(world, find_hand(world, source.name), source.words); !added)
       return Error{"--probe " + source.name, added.error().message()};
   }
   return made;

@@ -44,7 +44,7 @@ Path orbit_of(const World& world, Entity hand, unsigned index);
 std::vector<std::string> make_orbits(World& world);
 
 // The simulated hands of --probe NAME=hand. Call after make_orbits.
-Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources, bool lockstep);
+Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources);
 
 // "script:press.csv", "orbit", "mouse", "null": what moves this probe or tool.
 std::string describe_source(const World& world, Entity hand);

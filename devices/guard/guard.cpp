@@ -197,8 +197,15 @@ void Guard::watch(double now) {
   double fastest = lowest(can_.max_velocity, parameters_.max_velocity);
   if (!(fastest > 0.0)) fastest = kDefaultVelocity;
   if (length(velocity_) > fastest) trip(DeviceCause::kTooFast, now);
-  // A device that nobody holds may stand still as well: it loses its force, and no harm is done.
-  if (now - changed_at_ > kFrozenAfter && length(last_.force) > kGateForce) lose(DeviceCause::kFrozen, now);
+  // A hand that holds quite still looks the same, and is asked: its force fades, and whatever moves by that, if only by
+  // one count, has it back.
+  const double still = now - changed_at_;
+  if (still > kFrozenAfter && fade_ <= 0.0)
+    lose(DeviceCause::kFrozen, now);
+  else if (still > kFrozenAfter - kFadeTime && (fade_ < 1.0 || length(last_.force) > kGateForce))
+    fade_ = std::max(0.0, fade_ - dt_ / kFadeTime);
+  else if (!(warnings_ & kDeviceBatteryLow))
+    fade_ = parameters_.ramp > 0.0 ? std::min(1.0, fade_ + dt_ / parameters_.ramp) : 1.0;
 }
 
 void Guard::follow_orders(const GuardOrders& orders, double now) {
@@ -352,7 +359,7 @@ DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders
   }
   last_ = report_.sent = wrench;
   report_.force = length(wrench.force);
-  if (fade_ <= 0.0) {
+  if (fade_ <= 0.0 && (warnings_ & kDeviceBatteryLow)) {
     trip(DeviceCause::kBatteryLow, now);
     return {};
   }

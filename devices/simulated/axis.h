@@ -2,10 +2,11 @@
 //   m x'' = F - b x' - c sign(x') + k_g (y - x) + b_g (y' - x')                the device; F what its motor gives
 //   m_h y'' = k_g (x - y) + b_g (x' - y') + k_a (w - y) + b_a (w' - y') + p    the hand; w, p what it wants
 //   tau F' = u - F                                                             the amplifier; u constant between calls
+// At an end stop, |x| > l, a spring and a damper push the device back, and never pull: k_s (|x| - l) + b_s |x|' > 0.
 // Between events this is linear. Its exact solution is summed as a Taylor series over sub-steps, to rounding. Coulomb
 // friction switches it: an event is where the device comes to a halt, or what pulls at a device that stands still
-// exceeds c. Events are found by bisection to a nanosecond, so that stiction is exact and not a steep viscous law: a
-// smoothed sign creeps where a device stands still, and hides limit cycles.
+// exceeds c, and where a stop begins or ceases to push. Events are found by bisection to a nanosecond, so that stiction
+// is exact and not a steep viscous law: a smoothed sign creeps where a device stands still, and hides limit cycles.
 #pragma once
 
 #include <array>
@@ -15,10 +16,12 @@
 namespace pliant {
 
 struct AxisParameters {
-  double mass = 0.1;      // [kg] of the effector, reflected
-  double damping = 0.0;   // [N s/m] its own
-  double friction = 0.0;  // [N] Coulomb's, kinetic = static
-  double lag = 0.0;       // [s] time constant of the amplifier; 0: none
+  double mass = 0.1;                                // [kg] of the effector, reflected
+  double damping = 0.0;                             // [N s/m] its own
+  double friction = 0.0;                            // [N] Coulomb's, kinetic = static
+  double lag = 0.0;                                 // [s] time constant of the amplifier; 0: none
+  double reach = 0.0;                               // [m] l: it stops there on both sides of zero; 0: no stops
+  double stop_stiffness = 0.0, stop_damping = 0.0;  // [N/m], [N s/m]
   HandImpedance hand;
 };
 
@@ -34,7 +37,7 @@ class Axis {
 
   // At rest at `position`, hand and all; no force.
   void place(double position);
-  void kick(double velocity) { state_[1] = velocity, sliding_ = side(velocity); }
+  void kick(double velocity);
   // `force` [N] is the motor's from now on, through the amplifier.
   void command(double force);
   void advance(double dt, const AxisWill& will = {});
@@ -42,7 +45,8 @@ class Axis {
   double position() const { return state_[0]; }
   double velocity() const { return state_[1]; }
   double hand_position() const { return state_[2]; }
-  double motor() const { return state_[4]; }  // [N] that it gives now
+  double motor() const { return state_[4]; }   // [N] that it gives now
+  bool stopped() const { return stop_ != 0; }  // an end stop pushes it
   bool sticks() const { return has_friction() && sliding_ == 0; }
   double energy() const;  // [J] kinetic and of the grip's spring
 
@@ -60,12 +64,15 @@ class Axis {
   // > 0: the mode has ended before this state.
   double past(const State& s) const;
   void settle_mode();
+  int stop_of(const State& s) const;  // the side whose stop pushes; 0: none
+  bool event(const State& s) const;   // a mode has ended before this state
 
   AxisParameters parameters_;
   double sub_step_;  // [s] short against every time constant
   State state_{};
   double command_ = 0.0;  // [N]
   double push_ = 0.0;     // [N] while it advances
+  int stop_ = 0;          // the side whose stop pushes; 0: none
   int sliding_ = 0;       // sign of the velocity; 0: it stands still, or nothing rubs
 };
 

@@ -24,6 +24,14 @@ const HandImpedance* find_hand_impedance(std::string_view name) {
   return nullptr;
 }
 
+HandImpedance turning(const HandImpedance& hand) {
+  constexpr double kSquare = kHandLever * kHandLever;
+  HandImpedance out = hand;
+  for (double* value : {&out.mass, &out.arm_stiffness, &out.arm_damping, &out.grip_stiffness, &out.grip_damping})
+    *value *= kSquare;
+  return out;
+}
+
 PathRow PathCursor::at(double time) {
   const auto& rows = path_->rows;
   const double first = rows.front().time, last = rows.back().time;

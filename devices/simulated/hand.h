@@ -25,6 +25,11 @@ struct HandImpedance {
   bool holds() const { return mass > 0.0; }
 };
 
+// [m] The lever between a grip and what it turns about: the same five numbers times its square are those of a turn, of
+// the order that is published of the wrist (2e-3 kg m2, 0.5 to 3 N m/rad, 0.03 to 0.1 N m s/rad).
+inline constexpr double kHandLever = 0.05;
+HandImpedance turning(const HandImpedance& hand);  // [kg m2], [N m/rad], [N m s/rad]
+
 // `none`, `finger`, `relaxed`, `firm`. Values are rounded and of the order that the sources publish; people differ by a
 // factor of two and more, and stiffen with the force they press with.
 const std::array<HandImpedance, 4>& hand_impedances();

@@ -61,7 +61,11 @@ class Loop {
 
  private:
   static AxisParameters parameters(const WallLoop& loop) {
-    return {loop.plant.mass, loop.plant.damping, loop.plant.friction, loop.lag, loop.hand};
+    return {.mass = loop.plant.mass,
+            .damping = loop.plant.damping,
+            .friction = loop.plant.friction,
+            .lag = loop.lag,
+            .hand = loop.hand};
   }
   // Work of the motor: exact where its force is constant, trapezoidal where the amplifier lags.
   void advance(double dt) {

@@ -29,6 +29,7 @@ constexpr NumberKey kNumbers[] = {
     {"friction", &DeviceProfile::friction, newtons_of, 0.0, 100.0, "a force from 0 to 100 N"},
     {"encoder", &DeviceProfile::encoder, metres_of, 0.0, 0.1, "a length up to 0.1 m, as 0.05mm"},
     {"force_step", &DeviceProfile::force_step, newtons_of, 0.0, 10.0, "a force from 0 to 10 N, as 5mN"},
+    {"max_torque", &DeviceProfile::max_torque, plain_number, 0.0, 10.0, "a torque from 0 to 10 N m"},
     {"max_force", &DeviceProfile::max_force, newtons_of, 0.0, 1e3, "a force from 0 to 1000 N"},
 };
 
@@ -54,6 +55,10 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
       if (option.value != "wall" && option.value != "tick")
         return wrong(fmt::format("clock must be one of wall, tick; got '{}'", option.value));
       options.clock = option.value == "tick" ? DeviceClock::kTick : DeviceClock::kWall;
+    } else if (option.key == "stops") {
+      if (option.value != "on" && option.value != "off")
+        return wrong(fmt::format("stops must be one of on, off; got '{}'", option.value));
+      options.stops = option.value == "on";
     } else if (option.key == "path") {
       auto rows = read_poses(option.value);
       if (!rows) return rows.error();
@@ -71,7 +76,7 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
         options.will.path.rows = {{0.0, *v, {1, 0, 0, 0}}};
     } else {
       const NumberKey* known = nullptr;
-      std::string names = "hand, clock, path, at, push";
+      std::string names = "hand, clock, stops, path, at, push";
       for (const NumberKey& key : kNumbers) {
         names += std::string(", ") + key.name;
         if (option.key == key.name) known = &key;
@@ -89,6 +94,8 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
     return Error{where, "lag must be 0 or at least 10us, or simulating it takes too long; give 0"};
   if (profile.damping * kShortest > profile.mass)
     return Error{where, "mass over damping is below 10us, and simulating it takes too long; give more mass"};
+  if (profile.max_torque > 0.0 && !(profile.inertia > 0.0))
+    return Error{where, "this profile turns no motors about its axes; leave max_torque out, or take sigma.7"};
   return options;
 }
 

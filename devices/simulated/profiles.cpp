@@ -94,7 +94,14 @@ const std::array<DeviceProfile, kDeviceProfiles>& device_profiles() {
        30,
        {0.095, 0.095, 0.065},
        0,
-       "encoder, workspace, rate: maker; force, K, B: CHAI3D; mass, damping, friction, lag, delay: assumed"},
+       "encoder, workspace, rate, torque: maker; force, K, B: CHAI3D; mass, damping, friction, lag, delay and all else "
+       "of "
+       "its turns: assumed",
+       0.2,
+       5e-4,
+       2e-3,
+       5e-3,
+       2.3e-4},
       {"delta.3",
        "Force Dimension delta.3",
        0.40,
@@ -167,6 +174,8 @@ DeviceCapabilities capabilities_of(const DeviceProfile& profile) {
   DeviceCapabilities can;
   can.simulated = true;
   can.senses_rotation = true;
+  can.renders_torque = profile.max_torque > 0.0;
+  can.max_torque = profile.max_torque;
   can.max_force = profile.max_force;
   can.max_stiffness = profile.stiffness;
   can.continuous_force = profile.continuous;

@@ -2,8 +2,9 @@
 // friction, encoder and force counts, saturation, the amplifier's lag, transport delay, samples of its own clock.
 //
 // World axes are its own; three axes that do not couple, each with its friction, as each joint of a real one has. The
-// rotation of its sample is the will's: only translation has dynamics. There are no end stops: the workspace is said,
-// and not enforced.
+// workspace ends in stops. Where a profile renders torque, three more axes turn the grip beside where the hand wants to
+// turn it, by a rotation vector that the hand's own stiffness keeps small: they do not couple either, and the turn that
+// the hand wants costs nothing. Elsewhere the rotation of its sample is the will's.
 #pragma once
 
 #include <array>
@@ -18,7 +19,8 @@
 namespace pliant {
 
 enum class DeviceClock : std::uint8_t {
-  kWall,  // samples when their time has come: another thread's clock, as of a real device
+  kWall,  // samples when their time has come, from the first that is asked for: another thread's clock, as of a real
+          // device
   kTick   // a sample a read(): lockstep, the same bits every time
 };
 
@@ -27,11 +29,12 @@ struct SimulatedOptions {
   HandImpedance hand = hand_impedances()[3];
   Will will;
   DeviceClock clock = DeviceClock::kWall;
+  bool stops = true;  // at the ends of the profile's workspace
 };
 
 // PROFILE[,KEY=VALUE...]: keys are hand, path, push (X Y Z with ':' between), at (the same), clock (wall or tick), rate
-// [Hz], delay, lag (with ms, us or s), friction [N], damping [N s/m], mass [kg], encoder, force_step, max_force. An
-// empty id is the first profile.
+// [Hz], delay, lag (with ms, us or s), friction [N], damping [N s/m], mass [kg], encoder, force_step, max_force,
+// max_torque [N m], stops (on or off). An empty id is the first profile.
 Result<SimulatedOptions> parse_simulated(const std::string& id);
 
 class SimulatedDevice : public Driver {
@@ -41,6 +44,7 @@ class SimulatedDevice : public Driver {
   SimulatedDevice(const SimulatedDevice&) = delete;
   SimulatedDevice& operator=(const SimulatedDevice&) = delete;
   Status open(const std::string& id) override;
+  void use_clock(DeviceClock clock) { options_.clock = clock; }  // before its first sample
   DeviceCapabilities capabilities() const override { return capabilities_of(options_.profile); }
   bool read(DeviceSample& sample) override;
   void write(const DeviceWrench& wrench) override;
@@ -50,6 +54,8 @@ class SimulatedDevice : public Driver {
   dvec3 true_position() const;
   dvec3 true_velocity() const;
   dvec3 motor_force() const;
+  dvec3 true_turn() const;  // [rad] beside where the hand wants it
+  dvec3 motor_torque() const;
   double time() const { return time_; }  // [s] of its own clock
   const SimulatedOptions& options() const { return options_; }
 
@@ -57,6 +63,7 @@ class SimulatedDevice : public Driver {
   struct Command {
     double from = 0.0;  // [s] of its clock
     dvec3 force{0};     // [N]
+    dvec3 torque{0};    // [N m]
   };
   void begin();
   void advance_to(double time);
@@ -65,8 +72,8 @@ class SimulatedDevice : public Driver {
 
   SimulatedOptions options_;
   bool configured_ = false, open_ = false;
-  std::vector<Axis> axes_;
-  std::vector<Command> line_;  // a ring: transport
+  std::vector<Axis> axes_, turns_;  // turns_: none, or three
+  std::vector<Command> line_;       // a ring: transport
   std::size_t first_ = 0, waiting_ = 0;
   std::optional<PathCursor> cursor_;
   dvec3 start_{0}, wanted_{0};

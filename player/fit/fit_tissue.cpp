@@ -317,8 +317,7 @@ void draw(Pen& pen, const Fitted& f) {
   draw_keys(pen, left.x, 138, left.x + left.w + 60,
             {{kInk, "dots: finite elements", true}, {kInk, "lines: the fitted surface, in the engine", false}});
   draw_keys(pen, right.x, 138, 1590,
-            {{kVermilion, "force, RMS over four depths (band: 5 %)", true},
-             {kBlue, "dent at the deepest, of the depth (band: 10 %)", true}});
+            {{kVermilion, "force, RMS (band: 5 %)", true}, {kBlue, "deepest dent, of the depth (band: 10 %)", true}});
 }
 
 // All but files.

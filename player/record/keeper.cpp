@@ -119,7 +119,7 @@ void Keeper::record(const TickRow& row) {
     pending_tick_ = row.tick;
   }
   if (row.tick != pending_tick_ || row.probe != pending_.size()) return;
-  pending_.push_back({row.device_position, row.device_rotation, row.device_ready});
+  pending_.push_back({row.device_position, row.device_rotation, row.device_ready, row.device_felt});
   if (pending_.size() < names_.size()) return;
   recording_->tick(row.tick);
   for (const RecordedPose& pose : pending_) recording_->pose(pose);

@@ -7,13 +7,43 @@
 #include "devices/choose.h"
 #include "devices/wrappers/chain.h"
 #include "engine/sources.h"
+#include "engine/stiffness_note.h"
 #include "pliant/drivers.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 
 namespace pliant {
 
-Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed, std::vector<std::string>& notes) {
+namespace {
+
+std::string name_in(const World& world, Entity hand) {
+  const Name* const named = world.registry.find<Name>(hand);
+  return named ? named->value : std::string();
+}
+
+}  // namespace
+
+void DeviceLinks::begin(World& world, Held opened, dvec3 middle, std::vector<std::string>& notes) {
+  HapticDevice& device = world.registry.get<HapticDevice>(opened.device);
+  device.path = {};
+  device.status = DeviceStatus::kLost;
+  opened.link.begin(device, device.rotation, middle);
+  begin_anew(world, opened.hand);
+  if (std::string sentence = stiffness_note(world, opened.hand, opened.name); !sentence.empty())
+    notes.push_back(std::move(sentence));
+  if (opened.link.servo() && !opened.link.servo()->note().empty())
+    notes.push_back(fmt::format("`{}`: {}", opened.name, opened.link.servo()->note()));
+  links_.push_back(std::move(opened));
+}
+
+Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, std::vector<std::string>& notes) {
+  for (SimulatedHands::Held& one : held.held()) {
+    const Entity device = device_of(world, one.hand);
+    Held opened{name_in(world, one.hand), one.hand,  device, {}, world.registry.get<HapticDevice>(device).id,
+                "a simulated hand",       one.device};
+    if (Status s = opened.link.connect(std::move(one.driver), "", "--probe " + opened.name); !s) return s;
+    begin(world, std::move(opened), one.middle, notes);
+  }
   std::vector<DeviceInfo> there;
   bool listed = false;
   for (const Entity hand : hands(world)) {
@@ -25,8 +55,7 @@ Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed
       there = list_devices();
       listed = true;
     }
-    const Name* const named = world.registry.find<Name>(hand);
-    const std::string name = named ? named->value : std::string();
+    const std::string name = name_in(world, hand);
     auto chosen = choose_device(device.id, there);
     if (!chosen) return Error{"probe `" + name + "`", chosen.error().message()};
     for (const std::string& sentence : chosen->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
@@ -40,18 +69,12 @@ Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed
     auto made = make_device(chosen->id);
     if (!made) return made.error();
     for (const std::string& sentence : made->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
-    Held opened{name, hand, device_of(world, hand), {}, chosen->id, chosen->name};
+    Held opened{name, hand, device_of(world, hand), {}, chosen->id, chosen->name, nullptr};
     if (Status s = opened.link.connect(std::move(made->driver), made->id, "device `" + chosen->id + "`", chosen->id);
         !s)
       return s;
     device.id = chosen->id;
-    device.path = {};
-    device.status = DeviceStatus::kLost;
-    opened.link.begin(device, device.rotation, place_of(world, hand));
-    begin_anew(world, hand);
-    if (opened.link.servo() && !opened.link.servo()->note().empty())
-      notes.push_back(fmt::format("`{}`: {}", name, opened.link.servo()->note()));
-    links_.push_back(std::move(opened));
+    begin(world, std::move(opened), place_of(world, hand), notes);
   }
   for (const Entity hand : hands(world)) {
     const Name* const named = world.registry.find<Name>(hand);
@@ -60,6 +83,15 @@ Status DeviceLinks::open(World& world, const SimulatedHands& held, bool windowed
   for (DeviceInfo& device : there)
     if (!device.missing.empty()) unusable_.push_back(std::move(device));
   return Done{};
+}
+
+bool DeviceLinks::any_real() const {
+  return std::any_of(links_.begin(), links_.end(), [](const Held& held) { return !held.simulated; });
+}
+
+void DeviceLinks::use_clock(DeviceClock clock) {
+  for (Held& held : links_)
+    if (held.simulated) held.simulated->use_clock(clock);
 }
 
 bool DeviceLinks::moves(Entity hand) const {
@@ -139,6 +171,7 @@ void DeviceLinks::stop_all() {
 std::vector<std::string> DeviceLinks::findings() {
   std::vector<std::string> all;
   for (Held& held : links_) {
+    if (std::string late = held.link.late_note(held.name); !late.empty()) all.push_back(std::move(late));
     const DeviceReport& report = held.link.report();
     std::uint64_t worse = 0;
     std::string last;

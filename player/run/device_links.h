@@ -15,11 +15,14 @@ namespace pliant {
 
 class DeviceLinks {
  public:
-  // Opens what each hand with the driver `external` asks for by its `id`; one without an id is moved by nobody, and
-  // one in `held` by a simulated hand. Where
-  // the mouse is an alternative, it takes its place. `notes`: what is not as one might expect.
-  Status open(World& world, const SimulatedHands& held, bool windowed, std::vector<std::string>& notes);
+  // Opens what each hand with the driver `external` asks for by its `id`, and takes those of `held`; one without an id
+  // is moved by nobody. Where the mouse is an alternative, it takes its place. `notes`: what is not as one might
+  // expect.
+  Status open(World& world, SimulatedHands& held, bool windowed, std::vector<std::string>& notes);
   bool any() const { return !links_.empty(); }
+  bool any_real() const;  // and not only simulated hands
+  // Before the run: whether simulated hands go by the wall's clock, or by the servo's periods.
+  void use_clock(DeviceClock clock);
   bool moves(Entity hand) const;
   // Why they cannot run in virtual time, if one cannot.
   Status may_step() const;
@@ -44,8 +47,10 @@ class DeviceLinks {
     std::string name;
     Entity hand, device;
     DriverLink link;
-    std::string id, called;  // "falcon:0|scale=2"; as people call it
+    std::string id, called;                // "falcon:0|scale=2"; as people call it
+    SimulatedDevice* simulated = nullptr;  // in a simulated hand
   };
+  void begin(World& world, Held opened, dvec3 middle, std::vector<std::string>& notes);
   std::vector<Held> links_;
   std::vector<DevicesView::Other> others_;
   std::vector<DeviceInfo> unusable_;

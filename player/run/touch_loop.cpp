@@ -8,6 +8,7 @@
 #include "player/progress.h"
 #include "runtime/clock.h"
 #include "systems/device/hands.h"
+#include "systems/device/softening.h"
 
 namespace pliant {
 namespace {
@@ -27,9 +28,20 @@ Tick replayed_tick(TouchLoop& loop, std::uint64_t n) {
     device->position = pose.position;
     device->rotation = pose.rotation;
     device->status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
+    if (SafetyState* const safety = safety_of(loop.world, probes[i])) safety->felt = pose.felt;
     device->sensed_at = tick.time;
   }
   return tick;
+}
+
+// What a guard did not let leave when it was recorded.
+void withhold(TouchLoop& loop) {
+  for (const Entity probe : loop.journal.probes()) {
+    const SafetyState* const safety = safety_of(loop.world, probe);
+    if (!safety || safety->felt) continue;
+    HapticDevice& device = loop.world.registry.get<HapticDevice>(device_of(loop.world, probe));
+    device.force_sent = device.torque_sent = dvec3(0);
+  }
 }
 
 }  // namespace
@@ -42,10 +54,9 @@ Status run_lockstep(TouchLoop& loop) {
     const Tick tick = loop.replay ? replayed_tick(loop, n) : clock.next();
     if (loop.soft) loop.soft->reach(tick.time);
     if (loop.devices) loop.devices->before(loop.world, tick);
-    if (loop.hands) loop.hands->read(loop.world, tick);
     loop.schedule.run(loop.world, tick);
+    if (loop.replay) withhold(loop);
     if (loop.devices) loop.devices->after(loop.world, tick);
-    if (loop.hands) loop.hands->write(loop.world);
     loop.journal.note(loop.world, tick);
     loop.keeper.keep(loop.journal);
     for (; loop.frames && frame != loop.frame_ticks.end() && *frame == n; ++frame) {
@@ -83,11 +94,7 @@ Status run_beside(TouchLoop& loop, TouchClock& touch) {
 
 Status run_realtime(TouchLoop& loop, std::uint64_t& overruns) {
   TouchHooks hooks;
-  hooks.after = [&](Tick tick) {
-    if (loop.hands) loop.hands->write(loop.world);
-    loop.journal.note(loop.world, tick);
-  };
-  if (loop.hands) hooks.before = [&](Tick tick) { loop.hands->read(loop.world, tick); };
+  hooks.after = [&](Tick tick) { loop.journal.note(loop.world, tick); };
   if (loop.devices) loop.devices->hook(loop.world, hooks);
   TouchClock touch(loop.world, loop.schedule, loop.soft, loop.rate, loop.ticks, hooks);
   Status status = Done{};

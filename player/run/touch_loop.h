@@ -7,7 +7,6 @@
 #include "components/world.h"
 #include "engine/journal.h"
 #include "engine/recording.h"
-#include "engine/simulated_hands.h"
 #include "engine/soft_clock.h"
 #include "player/interrupt.h"
 #include "player/record/keeper.h"
@@ -34,7 +33,6 @@ struct TouchLoop {
   std::vector<std::uint64_t> frame_ticks;  // after which ticks a picture is taken, ascending
   const Recording* replay = nullptr;       // poses for every tick, lockstep only
   SoftClock* soft = nullptr;               // none: nothing soft
-  SimulatedHands* hands = nullptr;         // none: no simulated hand
   DeviceLinks* devices = nullptr;          // none: no device
 };
 

@@ -9,6 +9,7 @@
 #include "content/files/file_io.h"
 #include "content/level_file.h"
 #include "devices/guard/guard.h"
+#include "engine/driver_link.h"
 #include "engine/simulated_hands.h"
 #include "player/print.h"
 #include "player/progress.h"
@@ -16,6 +17,7 @@
 #include "player/record/plot.h"
 #include "player/study/studies.h"
 #include "player/verbs/content_folder.h"
+#include "systems/device/hands.h"
 #include "systems/device/reading.h"
 #include "systems/schedule.h"
 #include "systems/touch/prepare.h"
@@ -32,9 +34,12 @@ constexpr double kGrows = 2.0;                            // [1] of the buzz at 
 // A probe, the device in its hand, and what both did.
 struct Held {
   Entity probe, device;
-  std::unique_ptr<SimulatedDevice> driver;
-  std::vector<dvec3> way;     // [m] true
-  std::vector<bool> touches;  // in contact
+  SimulatedDevice* simulated = nullptr;
+  dvec3 middle{0};                 // [m] world: of its workspace
+  DriverLink link;                 // guarded: as in a run
+  std::unique_ptr<Driver> driver;  // else
+  std::vector<dvec3> way;          // [m] true
+  std::vector<bool> touches;       // in contact
   dvec3 last_motor{0}, last_at{0};
 };
 
@@ -89,47 +94,58 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
   auto world = open_level(level, stiffness);
   if (!world) return world.error();
   HandRun run{level, profile, delay, guarded, {}};
-  auto options = parse_simulated(profile + ",clock=tick");
+  auto options = parse_simulated(profile);
   if (!options) return options.error();
   const double rate = world->simulation.touch_rate;
-  options->profile.rate = rate;
-  options->profile.delay += delay;
-  DeviceCapabilities can = capabilities_of(options->profile);
-  run.limit = can.max_stiffness = stable_stiffness(can, rate);
+  std::string words = fmt::format("{},delay={}s", profile, options->profile.delay + delay);
+  if (!guarded) words += fmt::format(",rate={}", rate);  // called by the touch clock
   for (auto [entity, surface] : world->registry.view<const Deformable>())
     run.stiffest = std::max(run.stiffest, surface.stiffness);
-  const double share = softening(*world, can);
+  SimulatedHands hands;
+  for (auto [entity, probe] : world->registry.view<const Probe>())
+    if (world->registry.get<HapticDevice>(probe.device).path.valid())
+      if (const Status added = hands.add(*world, entity, words); !added) return added.error();
+  if (hands.empty()) return Error{level, "has no probe on a script; choose a level with PLIANT_probe"};
   std::vector<Held> held;
-  for (auto [entity, probe] : world->registry.view<const Probe>()) {
-    HapticDevice& device = world->registry.get<HapticDevice>(probe.device);
-    if (!device.path.valid()) continue;
-    SimulatedOptions its = *options;
-    its.will.path = world->paths[device.path];
-    device.path = {};
-    device.driver = DriverKind::kExternal;
-    if (guarded) device.can = before_softening(can, share);
-    held.push_back({entity, probe.device, std::make_unique<SimulatedDevice>(std::move(its)), {}, {}});
-    if (const Status opened = held.back().driver->open(""); !opened) return opened.error();
+  for (SimulatedHands::Held& one : hands.held()) {
+    Held h{one.hand, device_of(*world, one.hand), one.device, one.middle, {}, nullptr, {}, {}};
+    HapticDevice& device = world->registry.get<HapticDevice>(h.device);
+    one.device->use_clock(DeviceClock::kTick);
+    const DeviceCapabilities can = one.driver->capabilities();
+    run.limit = stable_stiffness(can, can.rate);
+    if (guarded) {
+      if (const Status s = h.link.connect(std::move(one.driver), "", level); !s) return s.error();
+      h.link.begin(device, device.rotation, h.middle);
+    } else {
+      h.driver = std::move(one.driver);
+      if (const Status s = h.driver->open(""); !s) return s.error();
+    }
+    held.push_back(std::move(h));
   }
-  if (held.empty()) return Error{level, "has no probe on a script; choose a level with PLIANT_probe"};
   Schedule<World> schedule(touch_schedule());
   const auto ticks = static_cast<std::uint64_t>(seconds * rate);
   for (std::uint64_t n = 0; n < ticks; ++n) {
     const Tick tick{n, 1.0 / rate, static_cast<double>(n) / rate};
     for (Held& h : held) {
       HapticDevice& device = world->registry.get<HapticDevice>(h.device);
+      if (guarded) {
+        h.link.read(device, tick);
+        continue;
+      }
       DeviceSample sample;
       h.driver->read(sample);
-      device.position = sample.position;
+      device.position = h.middle + device.scale * sample.position;
       device.rotation = sample.rotation;
       device.sensed_at = tick.time;
       device.status = DeviceStatus::kReady;
     }
     schedule.run(*world, tick);
     for (Held& h : held) {
-      const dvec3 safe = share * world->registry.get<HapticDevice>(h.device).force_sent;
-      h.driver->write({guarded ? safe : world->registry.get<Probe>(h.probe).force, dvec3(0), 0.0});
-      const dvec3 at = h.driver->true_position(), motor = h.driver->motor_force();
+      if (guarded)
+        h.link.write(*world, h.probe, h.device, tick);
+      else
+        h.driver->write({world->registry.get<Probe>(h.probe).force, dvec3(0), 0.0});
+      const dvec3 at = h.simulated->true_position(), motor = h.simulated->motor_force();
       if (n > 0) run.work += 0.5 * dot(motor + h.last_motor, at - h.last_at);
       h.last_motor = motor, h.last_at = at;
       const ProbeReading said = reading(*world, h.probe);

@@ -113,7 +113,7 @@ Status study_scale(OutputFolder& out, bool quick, const Interrupt& interrupt) {
   std::vector<StepCost> by_tets, by_contacts;
   double done = 0.0;
   // `weight`: about how long a piece takes beside others.
-  const auto measured = [&](double weight) { progress.update((done += weight) / (quick ? 14.0 : 48.0)); };
+  const auto measured = [&](double weight) { progress.update((done += weight) / (quick ? 13.0 : 50.0)); };
   for (const std::uint32_t size : vertices) {
     if (interrupt.requested()) return interrupted();
     by_size.push_back(measure_tick(size, kAwake, ticks));

@@ -8,7 +8,7 @@ namespace pliant {
 struct TickCost {
   std::uint32_t vertices = 0, triangles = 0;
   double awake = 0.0;                 // vertices, mean
-  double p50_us = 0.0, p99_us = 0.0;  // of a tick, processor time
+  double p50_us = 0.0, p99_us = 0.0;  // of a tick, processor time, the least of four batches
   double frame_us = 0.0;              // of what is told to the picture, every 16 ticks, median
   double bytes = 0.0;                 // touch state, a vertex
 };

@@ -241,7 +241,6 @@ Ran run_shown(const RunOptions& options, const RunOptions& asked, Shown& shown, 
   WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
                         loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
   session.soft = loop.soft;
-  session.hands = loop.hands;
   session.devices = loop.devices;
   session.level = options.level;
   std::string unread;
@@ -298,11 +297,9 @@ Outcome open_devices(RunOptions& options, bool windowed, Prepared& run, DeviceLi
   const Status opened = devices.open(run.world, run.hands, windowed, notes);
   for (const std::string& sentence : notes) say(run, sentence);
   if (!opened) return wrong_arguments(opened.error());
+  if (!options.realtime && !windowed && devices.any_real() && !options.lockstep) options.realtime = true;
+  devices.use_clock(windowed || options.realtime ? DeviceClock::kWall : DeviceClock::kTick);
   if (!devices.any() || windowed || options.realtime) return {};
-  if (!options.lockstep) {
-    options.realtime = true;
-    return {};
-  }
   const Status may = devices.may_step();
   return may ? Outcome() : wrong_arguments({"--lockstep", may.error().message()});
 }
@@ -351,7 +348,7 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
     for (std::size_t i = 0; i < journal.probes().size(); ++i) {
       header.probes.push_back(keeper->summaries()[i].name);
       const Entity hand = journal.probes()[i];
-      if (!run.hands.moves(hand) && !devices.moves(hand)) continue;
+      if (!devices.moves(hand)) continue;
       for (std::string& limit :
            driver_settings(header.probes.back(), world.registry.get<HapticDevice>(device_of(world, hand))))
         header.settings.push_back(std::move(limit));
@@ -368,10 +365,6 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
   Schedule<World> schedule(touch_schedule());
   TouchLoop loop{world, schedule, journal, *keeper, *out, interrupt, rate, ticks, frames.get(), {}, nullptr};
   loop.replay = run.replay ? &*run.replay : nullptr;
-  if (!run.hands.empty()) {
-    loop.hands = &run.hands;
-    if (const Status opened = run.hands.open(); !opened) return failed(opened.error());
-  }
   if (devices.any()) loop.devices = &devices;
   if (options.realtime || shown) limit_tool_ticks(world);
   SoftClock soft(world);
@@ -389,7 +382,6 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
   Prepared other;
   const Ran ran = shown ? run_shown(options, run.asked, *shown, loop, other) : run_headless(options, loop);
   soft.stop();  // where an exception left it running
-  run.hands.close();
   if (ran.opened) next = std::move(other);
   if (soft.any()) world.dropped |= world.soft->dropped;
   Hash hash = journal.hash();

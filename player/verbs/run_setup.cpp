@@ -252,7 +252,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (const Status status = prepare_system(run.world); !status) return failed(status.error());
   for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);
-  auto held = make_hands(run.world, sources, !windowed && !options.realtime);
+  auto held = make_hands(run.world, sources);
   if (!held) return wrong_arguments(held.error());
   run.hands = std::move(held).value();
   for (const std::string& sentence : run.hands.notes()) say(run, sentence);

@@ -35,7 +35,7 @@ struct Prepared {
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
-  SimulatedHands hands;               // not opened
+  SimulatedHands hands;               // not connected
   std::uint64_t scene = 0;            // scene_hash() of the level that runs
   std::vector<std::string> settings;  // for a recording: --set, --unit and --tool-force, those of a replay before them
 };

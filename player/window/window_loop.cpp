@@ -75,7 +75,7 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     if (summary.source == "mouse") mouse_probe_ = i;
     if (carrier_ && session.journal.probes()[i] == carrier_->tool()) carried_ = i;
   }
-  state_.stop_keys = session.devices || session.hands ? session.stop_keys : std::string();
+  state_.stop_keys = session.devices ? session.stop_keys : std::string();
   state_.show_devices = session.devices != nullptr;
   mouse_.x = 0.5 * session.window.width();
   mouse_.y = 0.5 * session.window.height();
@@ -249,17 +249,7 @@ WindowFigures WindowLoop::run() {
     return std::move(figures_);
   }
   TouchHooks hooks;
-  hooks.after = [this](Tick tick) {
-    if (s_.hands && hands_stopped_)
-      s_.hands->let_go(s_.world);
-    else if (s_.hands)
-      s_.hands->write(s_.world);
-    s_.journal.note(s_.world, tick);
-  };
-  if (s_.hands) {
-    hooks.before = [this](Tick tick) { s_.hands->read(s_.world, tick); };
-    hooks.idle = [this](Tick) { s_.hands->idle(); };
-  }
+  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
   if (s_.devices) s_.devices->hook(s_.world, hooks);
   touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
   Status status = Done{};

@@ -2,7 +2,6 @@
 // (window_loop.cpp). It hears the hand some 250 times a second; pictures are made meanwhile (window_picture.h).
 #pragma once
 
-#include <atomic>
 #include <future>
 #include <optional>
 
@@ -66,10 +65,9 @@ class WindowLoop {
   dvec3 tool_at_{0};                                  // [m] world, where the device of the carried tool was last
   std::optional<std::size_t> mouse_probe_, carried_;  // numbers in the journal
   std::optional<TouchClock> touch_;
-  std::atomic<bool> hands_stopped_{false};  // no force for a simulated hand any more
-  std::vector<ui::Place> widgets_;          // of the last picture
-  std::string wanted_widget_;               // that a script presses once it is there
-  double wanted_since_ = 0.0;               // [s]
+  std::vector<ui::Place> widgets_;  // of the last picture
+  std::string wanted_widget_;       // that a script presses once it is there
+  double wanted_since_ = 0.0;       // [s]
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
   double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed

@@ -112,25 +112,24 @@ void WindowLoop::wheel(const InputEvent& event) {
 }
 
 void WindowLoop::emergency_stop() {
-  if (!s_.devices && !s_.hands) return;
-  if (s_.devices) s_.devices->stop_all();
-  hands_stopped_ = true;
+  if (!s_.devices) return;
+  s_.devices->stop_all();
   state_.figures = true;
-  state_.show_devices = s_.devices != nullptr;
-  say(s_.devices ? "emergency stop: no device has force until it is armed in the panel"
-                 : "emergency stop: the simulated hands feel nothing until the level is started anew (R)",
-      false);
+  state_.show_devices = true;
+  say("emergency stop: no device has force until it is armed in the panel", false);
 }
 
-// As a hand would: once a picture shows it, the button is down for a picture.
+// As a hand would: once a picture shows it, the mouse goes there for a picture, and its button is down for the next.
 void WindowLoop::press_widgets() {
   if (wanted_widget_.empty()) return;
   for (const ui::Place& place : widgets_) {
     if (place.address != wanted_widget_) continue;
-    mouse_.x = 0.5 * static_cast<double>(place.low.x + place.high.x);
-    mouse_.y = 0.5 * static_cast<double>(place.low.y + place.high.y);
-    mouse_.down[0] = true;
-    wanted_widget_.clear();
+    const double x = 0.5 * static_cast<double>(place.low.x + place.high.x),
+                 y = 0.5 * static_cast<double>(place.low.y + place.high.y);
+    mouse_.down[0] = std::hypot(mouse_.x - x, mouse_.y - y) < kSamePlace && wants_mouse_;
+    mouse_.x = x;
+    mouse_.y = y;
+    if (mouse_.down[0]) wanted_widget_.clear();
     return;
   }
   if (seconds_ - wanted_since_ < kPressWithin) return;

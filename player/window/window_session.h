@@ -9,7 +9,6 @@
 
 #include "components/world.h"
 #include "engine/journal.h"
-#include "engine/simulated_hands.h"
 #include "engine/touch_clock.h"
 #include "player/interrupt.h"
 #include "player/record/keeper.h"
@@ -30,7 +29,6 @@ struct WindowSession {
   OutputFolder& out;
   const Interrupt& interrupt;
   SoftClock* soft = nullptr;                  // none: nothing soft
-  SimulatedHands* hands = nullptr;            // none: no simulated hand
   DeviceLinks* devices = nullptr;             // none: no device
   std::string level;                          // what `R` opens again
   std::string stop_keys;                      // of the emergency stop, "F9"

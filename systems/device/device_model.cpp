@@ -121,6 +121,11 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
     model.max_torque = torque_limits(device, settings_of(world, *tool)).force;
   }
   if (!pushing) return model;
+  for (dmat3* slope : {&slopes.stiffness, &slopes.damping, &slopes.lever_stiffness, &slopes.turning_stiffness,
+                       &slopes.turning_damping})
+    *slope *= pushing->share;
+  slopes.wanted_force *= pushing->share;
+  slopes.wanted_torque *= pushing->share;
 
   const Passed push = passed(slopes.wanted_force, device.force_sent, *pushing, limits.force);
   const Passed turn =

@@ -6,6 +6,7 @@
 #include "components/soft_body.h"
 #include "systems/device/mouse.h"
 #include "systems/device/path.h"
+#include "systems/device/softening.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/contacts_of.h"
 
@@ -36,14 +37,17 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // Ready without a pose: no pose at all
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
+  soften(world, tool.entity, device, tool.force_safety);
   SafetyLimits limits = force_limits(device), turning = torque_limits(device, handle);
-  limits.weight = tool.weight;
-  turning.weight = cross(tool.sensed.pose.rotation * tool.balance, tool.weight);
+  limits.weight = tool.force_safety.share * tool.weight;
+  turning.weight = cross(tool.sensed.pose.rotation * tool.balance, limits.weight);
   limits.jumped = turning.jumped = jumps(tool.force_safety, device, limits, device.position, tick.dt) ||
                                    jumps(tool.torque_safety, device, turning, tool.turned, tick.dt);
   tool.force_safety.work = tool.torque_safety.work;
-  const dvec3 push = known ? rendered(linear(tool.device_wrench), device.can.renders_force) : unknown;
-  const dvec3 turn = known ? rendered(angular(tool.device_wrench), device.can.renders_torque) : unknown;
+  const dvec3 push =
+      known ? rendered(tool.force_safety.share * linear(tool.device_wrench), device.can.renders_force) : unknown;
+  const dvec3 turn =
+      known ? rendered(tool.force_safety.share * angular(tool.device_wrench), device.can.renders_torque) : unknown;
   const SafetyResult force = make_safe(tool.force_safety, device, limits, push, device.position, tick.time, tick.dt);
   tool.torque_safety.work = tool.force_safety.work;
   const SafetyResult torque = make_safe(tool.torque_safety, device, turning, turn, tool.turned, tick.time, tick.dt);
@@ -100,10 +104,12 @@ void write_devices(World& world, Tick tick) {
   for (ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
+    soften(world, state.entity, device, state.safety);
     SafetyLimits limits = force_limits(device);
     limits.carried = surface_displacement(world, state.entity, tick.dt);
     const ToolTouchState* const among_bodies = find_tool(world, state.entity);
-    const dvec3 pressed = probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0));
+    const dvec3 pressed =
+        state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0)));
     const dvec3 wanted = plausible_rotation(device.rotation) ? rendered(pressed, device.can.renders_force)
                                                              : dvec3(std::numeric_limits<double>::quiet_NaN());
     const SafetyResult safe = make_safe(state.safety, device, limits, wanted, device.position, tick.time, tick.dt);
@@ -121,6 +127,7 @@ void begin_anew(World& world, Entity hand) {
   const auto anew = [](SafetyState& safety) {
     SafetyState next;
     next.tally = safety.tally;
+    next.least_share = safety.least_share;
     safety = next;
   };
   for (ProbeState& state : world.touch->probes)

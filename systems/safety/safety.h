@@ -88,16 +88,19 @@ constexpr std::uint8_t bit(SafetyLimit limit) {
 }
 
 struct SafetyState {
-  bool engaged = false;    // gate: closed at start and after every loss, opens on a small computed force
-  double hidden = 0.0;     // [1] share of the weight that is not felt yet
-  dvec3 weight{0};         // [N] last tick's, as felt
-  bool placed = false;     // `position` means something
-  double sensed_at = 0.0;  // [s] last tick's pose's
-  dvec3 position{0};       // [m] last tick's, in the hand's metres
-  dvec3 force{0};          // [N] last tick's, as sent
-  dvec3 wanted{0};         // [N] last tick's beside the weight, clamped to the device's limit
-  double work = 0.0;       // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
-  double stored = 0.0;     // [J] the largest that -work has been
+  double share = 1.0;  // [1] of what is felt that may leave: its device renders no stiffer (systems/device/softening.h)
+  double least_share = 1.0;  // [1] that it ever was
+  bool felt = true;          // false: the guard behind let nothing leave after this tick (engine/driver_link.h)
+  bool engaged = false;      // gate: closed at start and after every loss, opens on a small computed force
+  double hidden = 0.0;       // [1] share of the weight that is not felt yet
+  dvec3 weight{0};           // [N] last tick's, as felt
+  bool placed = false;       // `position` means something
+  double sensed_at = 0.0;    // [s] last tick's pose's
+  dvec3 position{0};         // [m] last tick's, in the hand's metres
+  dvec3 force{0};            // [N] last tick's, as sent
+  dvec3 wanted{0};           // [N] last tick's beside the weight, clamped to the device's limit
+  double work = 0.0;         // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
+  double stored = 0.0;       // [J] the largest that -work has been
   SafetyTally tally;
 };
 

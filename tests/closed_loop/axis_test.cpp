@@ -90,6 +90,43 @@ TEST(Axis, BreaksLooseInTheMiddleOfAStep) {
   EXPECT_NEAR(axis.position(), x, 1e-10);
 }
 
+// Kelvin and Voigt: from the stop's surface the mass is a damped oscillator, until the stop would have to pull.
+TEST(Axis, EndStopThrowsBackAsADampedSpringAndNeverPulls) {
+  const double m = 0.1, k = 2e4, reach = 0.05, v0 = 0.8;
+  for (const double ratio : {0.0, 0.1, 0.5}) {
+    const double natural = std::sqrt(k / m), damped = natural * std::sqrt(1 - ratio * ratio);
+    const double t = 2.0 * std::acos(ratio) / damped;  // k d + b d' = 0
+    const double x = v0 / damped * std::exp(-ratio * natural * t) * std::sin(damped * t);
+    const double v =
+        v0 * std::exp(-ratio * natural * t) * (std::cos(damped * t) - ratio * natural / damped * std::sin(damped * t));
+    for (const double side : {1.0, -1.0}) {
+      Axis axis({.mass = m, .reach = reach, .stop_stiffness = k, .stop_damping = 2.0 * ratio * std::sqrt(k * m)});
+      axis.place(side * (reach - 0.5e-3 * v0));  // half a millisecond before the stop
+      axis.kick(side * v0);
+      bool pushed = false;
+      for (int i = 0; i < 30; ++i) {
+        axis.advance(1e-3);
+        pushed = pushed || axis.stopped();
+      }
+      EXPECT_TRUE(pushed);
+      EXPECT_FALSE(axis.stopped());
+      EXPECT_NEAR(side * axis.velocity(), v, 1e-6) << ratio;
+      EXPECT_NEAR(side * axis.position(), reach + x + v * (0.03 - 0.5e-3 - t), 1e-7) << ratio;
+    }
+  }
+}
+
+TEST(Axis, AgainstItsEndStopItRestsWhereTheSpringBearsTheForce) {
+  Axis axis({.mass = 0.1, .damping = 1.0, .reach = 0.05, .stop_stiffness = 2e4, .stop_damping = 20.0});
+  axis.command(3.0);
+  for (int i = 0; i < 2000; ++i) axis.advance(1e-3);
+  EXPECT_NEAR(axis.position(), 0.05 + 3.0 / 2e4, 1e-9);
+  EXPECT_TRUE(axis.stopped());
+  axis.command(-0.5);
+  for (int i = 0; i < 2; ++i) axis.advance(1e-3);
+  EXPECT_LT(axis.velocity(), 0.0) << "nothing holds it";
+}
+
 TEST(Axis, NothingMovesByItselfAndNoEnergyComesFromNowhere) {
   for (const HandImpedance& hand : hand_impedances()) {
     Axis axis({.mass = 0.1, .damping = 0.1, .friction = 0.05, .hand = hand});

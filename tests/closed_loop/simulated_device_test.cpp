@@ -119,6 +119,64 @@ TEST(SimulatedDevice, OnTheWallClockSamplesComeAtItsRateHoweverOftenItIsAsked) {
   EXPECT_EQ(came, 20);
 }
 
+TEST(SimulatedDevice, WorkspaceEndsInStopsWhereItSaysSo) {
+  for (const bool stops : {true, false}) {
+    SimulatedDevice device;
+    ASSERT_TRUE(
+        device.open(std::string("falcon,hand=none,clock=tick,friction=0,push=0:4:0,stops=") + (stops ? "on" : "off")));
+    DeviceSample sample;
+    for (int i = 0; i < 1500; ++i) ASSERT_TRUE(device.read(sample));
+    if (stops)
+      EXPECT_NEAR(device.true_position().y, 0.05 + 4.0 / kStopStiffness, 1e-6);
+    else
+      EXPECT_GT(device.true_position().y, 1.0);
+  }
+}
+
+TEST(SimulatedDevice, TorqueTurnsItsGripByItsInertiaAlone) {
+  SimulatedOptions options = *parse_simulated("sigma.7,hand=none,clock=tick,delay=0,lag=0");
+  options.profile.turn_damping = options.profile.turn_friction = options.profile.turn_encoder = 0.0;
+  SimulatedDevice device(options);
+  ASSERT_TRUE(device.open(""));
+  DeviceSample sample;
+  const dvec3 torque(0, 0, 0.01);
+  for (int i = 0; i <= 100; ++i) {
+    ASSERT_TRUE(device.read(sample));
+    device.write({dvec3(0), torque, 0.0});
+  }
+  const double t = 100.0 / options.profile.rate, angle = 0.5 * torque.z / options.profile.inertia * t * t;
+  EXPECT_NEAR(device.true_turn().z, angle, 1e-12);
+  EXPECT_NEAR(2.0 * std::atan2(sample.rotation.z, sample.rotation.w), angle, 1e-12) << "about world z, right-handed";
+  EXPECT_NEAR(length(device.true_position()), 0.0, 1e-15);
+  device.write({dvec3(0), dvec3(3, 4, 0), 0.0});
+  EXPECT_NEAR(length(device.motor_torque() - dvec3(0.12, 0.16, 0)), 0.0, 1e-15) << "0.2 N m, by the norm";
+}
+
+TEST(SimulatedDevice, HandHoldsATurnAgainstATorqueByGripAndWristInSeries) {
+  for (const char* name : {"finger", "relaxed", "firm"}) {
+    SimulatedOptions options = *parse_simulated(std::string("sigma.7,clock=tick,hand=") + name);
+    options.profile.turn_friction = 0.0;
+    options.will.path.rows = {{0.0, dvec3(0), glm::angleAxis(1.0, dvec3(1, 0, 0))}};
+    SimulatedDevice device(options);
+    ASSERT_TRUE(device.open(""));
+    EXPECT_TRUE(device.capabilities().renders_torque);
+    DeviceSample sample;
+    const dvec3 torque(0, 0.02, 0);
+    for (int i = 0; i < 4 * 12000; ++i) {
+      ASSERT_TRUE(device.read(sample));
+      device.write({dvec3(0), torque, 0.0});
+    }
+    const HandImpedance wrist = turning(options.hand);
+    const double angle = torque.y * (1.0 / wrist.arm_stiffness + 1.0 / wrist.grip_stiffness);
+    EXPECT_NEAR(device.true_turn().y, angle, 1e-6) << name;
+    const dquat expected = glm::angleAxis(angle, dvec3(0, 1, 0)) * glm::angleAxis(1.0, dvec3(1, 0, 0));
+    EXPECT_NEAR(std::abs(glm::dot(sample.rotation, expected)), 1.0, 1e-7) << name;
+  }
+  SimulatedDevice without;
+  ASSERT_TRUE(without.open("touch"));
+  EXPECT_FALSE(without.capabilities().renders_torque);
+}
+
 TEST(SimulatedDevice, BadWordsGetOneSentence) {
   const struct {
     const char* id;
@@ -134,6 +192,8 @@ TEST(SimulatedDevice, BadWordsGetOneSentence) {
              {"touch,mass=0.001,damping=1000", "give more mass"},
              {"touch,push=0:2e3:0", "at most 1000 N"},
              {"touch,at=1e300:0:0", "at most 10 m"},
+             {"touch,stops=maybe", "on, off"},
+             {"touch,max_torque=0.1", "take sigma.7"},
              {"touch,weight=3", "unknown key 'weight'"},
              {"touch,omni", "unknown profile 'omni'"},
              {"touch,push=1:2", "three numbers"},

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <thread>
 
 #include "tests/engine/session_rig.h"
 
@@ -208,6 +210,36 @@ TEST(SessionDevice, TheDriversStiffnessIsOfItsOwnWorkspace) {
     // In the hand's metres the sheet has 2000 scale: softer than the limit where the workspace is large.
     EXPECT_NEAR(steepest, std::min(500.0, 2000.0 * scale), 1.0) << scale;
   }
+}
+
+TEST(SessionDevice, AStifferSurfaceIsAsStiffAsTheDeviceRendersIntoItAndOutOfIt) {
+  Held held{.can = {.max_stiffness = 500.0}, .position = {0, 0.001, 0}};
+  Session session = opened(stiff_scene({.max_force = 50.0, .max_slew = 1e6}, 2000.0));
+  connect(session, held);
+  for (int turn = 0; turn < 3; ++turn)  // what comes in slowly and leaves fast would be softer from turn to turn
+    for (int i = -300; i <= 300; ++i) {
+      held.position.y = -0.002 + 1e-5 * std::abs(i);
+      ASSERT_TRUE(session.step());
+      const double depth = std::max(0.0, -held.position.y);
+      if (depth > 1e-3) EXPECT_NEAR(held.force.y, 500.0 * depth, 0.05 * 500.0 * depth) << turn << ' ' << i;
+    }
+  EXPECT_THAT(*session.findings(),
+              Contains(HasSubstr("renders at most 500 N/m stably: there it got 25 % of the force")));
+}
+
+TEST(SessionDevice, ADeviceThatIsSteppedTooSlowlyToBeFeltIsNamedOnce) {
+  Held held{.position = {0, 0.001, 0}};
+  Session session = opened(stiff_scene());
+  connect(session, held);
+  ASSERT_TRUE(session.step());
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  ASSERT_TRUE(session.step());
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  ASSERT_TRUE(session.step());
+  const auto findings = *session.findings();
+  EXPECT_EQ(std::count_if(findings.begin(), findings.end(),
+                          [](const std::string& one) { return one.find("Session::start()") != std::string::npos; }),
+            1);
 }
 
 TEST(SessionDevice, AHandIsFastInItsOwnWorkspace) {

@@ -206,6 +206,25 @@ std::vector<Fault> faults() {
                    };
                  },
                  {}});
+  all.push_back({"unplug, and replug at once where it was",
+                 [](WallRig& rig) {
+                   rig.device.sensing = [calls = 0](DeviceSample& s) mutable {
+                     s.ready = ++calls > 20;
+                     return true;
+                   };
+                 },
+                 {}});
+  all.push_back({"duplicate device: two answer to one name, by turns",
+                 [](WallRig& rig) {
+                   rig.device.sensing = [calls = 0](DeviceSample& s) mutable {
+                     if (++calls % 2 == 0) s.position = {0.03, 0.05, -0.02};
+                     return true;
+                   };
+                 },
+                 {}});
+  all.push_back({"two writers: somebody else's 2 N on the motor",
+                 [](WallRig& rig) { rig.device.acting = [](double f) { return f + 2.0; }; },
+                 {}});
   all.push_back({"time going back: of the samples",
                  sensing([](DeviceSample& s) {
                    s.time = 1.0 - 0.1 * s.time;
@@ -214,6 +233,12 @@ std::vector<Fault> faults() {
                  {}});
   all.push_back({"exception in the tick: the driver throws",
                  [](WallRig& rig) { rig.device.calling = [] { throw std::runtime_error("bus off"); }; },
+                 {}});
+  all.push_back({"exception in the tick: a law of the level throws, and the run ends",
+                 [](WallRig& rig) {
+                   rig.touch_runs = false;
+                   rig.servo.write({});  // what a session does then
+                 },
                  {}});
   all.push_back({"process paused for 200 ms", [](WallRig& rig) { rig.stall(0.2); }, {}});
   all.push_back({"clock slower: the device's, by 5 %",
@@ -226,6 +251,15 @@ std::vector<Fault> faults() {
                  },
                  {}});
   all.push_back({"clock slower: the servo's, every period 4 ms", [](WallRig& rig) { rig.every = 4; }, {}});
+  all.push_back({"clock faster: the device's, by 5 %",
+                 [](WallRig& rig) {
+                   const double from = rig.time;
+                   rig.device.sensing = [from](DeviceSample& s) {
+                     s.time += 0.05 * (s.time - from);
+                     return true;
+                   };
+                 },
+                 {}});
   all.push_back({"model stale: the touch clock stops", [](WallRig& rig) { rig.touch_runs = false; }, {}});
   all.push_back({"model late: the touch clock stalls for 5 ms of every 20",
                  {[](WallRig&) {}},
@@ -306,6 +340,30 @@ TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) 
   ASSERT_NE(from, std::string::npos) << path << " has no table; write it with PLIANT_WRITE_FAULTS=1";
   EXPECT_EQ(text.substr(from + begin.size(), to - from - begin.size()), table)
       << "run with PLIANT_WRITE_FAULTS=1 and look at what changed";
+}
+
+// A device that sticks says the very same pose for as long as the force stays: the force fades, the hand gives, the
+// pose changes, and the force is back. A frozen sensor says nothing then, and has none (the table).
+TEST(FaultTable, AHandThatHoldsQuiteStillKeepsItsForce) {
+  WallRig rig;
+  rig.press();
+  const std::uint64_t before = rig.servo.report().transitions;
+  int moved = 0;  // by one count, whenever the force has given way by 0.2 N: friction holds it until then
+  rig.device.sensing = [&moved, &rig, most = 0.0, held = rig.device.hand.y](DeviceSample& s) mutable {
+    most = std::max(most, rig.device.written);
+    if (rig.device.written < most - 0.2) held += ++moved % 2 ? -5e-5 : 5e-5, most = 0.0;
+    s.position.y = held;
+    return true;
+  };
+  double least = 1e9;
+  for (int i = 0; i < 10000; ++i) {
+    rig.tick();
+    least = std::min(least, rig.device.written);
+  }
+  EXPECT_EQ(rig.servo.report().transitions, before) << describe(rig.servo.report().transition(before));
+  EXPECT_GT(moved, 3) << "nothing was held still";
+  EXPECT_LT(moved, 60) << "it was never still for half a second";
+  EXPECT_GT(least, 0.4) << "[N]";
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+#include "systems/device/softening.h"
+
+#include <algorithm>
+
+#include "components/soft_body.h"
+#include "systems/tool/tool_touch_state.h"
+#include "systems/touch/contacts_of.h"
+
+namespace pliant {
+namespace {
+
+// Of a symmetric matrix, at least its largest eigenvalue: its largest row sum.
+double at_least_largest(const dmat3& m) {
+  double most = 0.0;
+  for (int i = 0; i < 3; ++i) most = std::max(most, std::abs(m[0][i]) + std::abs(m[1][i]) + std::abs(m[2][i]));
+  return most;
+}
+
+}  // namespace
+
+double felt_stiffness(const World& world, Entity effector) {
+  double stiffness = 0.0;
+  if (const ToolTouchState* const tool = find_tool(world, effector); tool && tool->placed && tool->sensing)
+    stiffness += settings_of(world, *tool).translation[0];
+  if (!world.registry.has<Probe>(effector)) return stiffness;
+  dmat3 sum(0.0);
+  for_contacts_of(world, effector, [&](const Contact& contact) {
+    if (contact.state == ContactState::kTouching)
+      sum += contact.stiffness * glm::outerProduct(contact.gradient, contact.gradient);
+  });
+  return stiffness + at_least_largest(sum);
+}
+
+void soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state) {
+  const double most = device.can.max_stiffness;
+  const double felt = most > 0.0 ? felt_stiffness(world, effector) * device.workspace : 0.0;
+  if (!(felt > 0.0))
+    state.share = 1.0;
+  else if (felt * state.share > most)
+    state.share = most / felt;
+  state.least_share = std::min(state.least_share, state.share);
+}
+
+SafetyState* safety_of(World& world, Entity hand) {
+  if (world.touch)
+    for (ProbeState& probe : world.touch->probes)
+      if (probe.entity == hand) return &probe.safety;
+  ToolTouchState* const tool = find_tool(world, hand);
+  return tool ? &tool->force_safety : nullptr;
+}
+
+}  // namespace pliant
