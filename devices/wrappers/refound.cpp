@@ -1,7 +1,6 @@
 #include "devices/wrappers/refound.h"
 
 #include <chrono>
-#include <condition_variable>
 #include <mutex>
 
 namespace pliant {
@@ -66,10 +65,9 @@ void Refound::end() {
 
 void Refound::look(const std::stop_token& end) {
   std::mutex mutex;
-  std::condition_variable_any asked;
   std::unique_lock lock(mutex);
   while (!end.stop_requested()) {
-    asked.wait_for(lock, end, std::chrono::duration<double>(kLookEvery), [] { return false; });
+    asked_.wait_for(lock, end, std::chrono::duration<double>(kLookEvery), [] { return false; });
     if (end.stop_requested() || held()) continue;
     if (open_again()) phase_.store(Phase::kHeld, std::memory_order_release);
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <memory>
 #include <string>
 #include <thread>
@@ -45,6 +46,7 @@ class Refound final : public Driver {
   std::string id_;
   DeviceCapabilities can_;
   std::atomic<Phase> phase_{Phase::kHeld};
+  std::condition_variable_any asked_;  // of the thread alone: it waits without allocating
   std::jthread thread_;
 };
 
