@@ -270,7 +270,7 @@ TEST(SessionEnd, ASolverThatHangsKeepsNoDeviceDriven) {
   EXPECT_TRUE(within_five_seconds([&] { return log.last > 0.1; }));
   does = Does::kHangs;
   EXPECT_TRUE(within_five_seconds([&] { return hanging == 1; }));
-  EXPECT_GT(log.last, 0.1) << "the touch clock goes on";
+  EXPECT_TRUE(within_five_seconds([&] { return log.last > 0.1; })) << "the touch clock goes on";
   std::atomic<bool> stopped{false};
   std::thread stopping([&] {
     EXPECT_TRUE(session.stop());
