@@ -136,7 +136,8 @@ Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std
       return Error{"study", "the block of tetrahedra could not be solved; this is a defect of the study"};
     out.solves = report.iterations;
     tissue.assemble(1.0, dvec3(0));
-    for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) out.force += tissue.elastic_force()[3 * i + 1];
+    for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i)
+      out.force += tissue.elastic_force()[3 * i + 1];
     out.ms = static_cast<double>(processor_ns() - begin) * 1e-6;
     read_top(mesh, tissue, press.radius, out);
     all.push_back(std::move(out));
