@@ -44,7 +44,7 @@ Box FillRegion::box() const {
 }
 
 bool FillRegion::behind_sheet(dvec3 p) const {
-  const SurfacePoint foot = closest_of(surface_, p, thickness_);
+  const RayPoint foot = closest_of(surface_, p, thickness_);
   if (foot.triangle == kBorder) return false;
   const uvec3 t = surface_.triangles[foot.triangle];
   const dvec3 a(surface_.position(t.x));
@@ -97,10 +97,10 @@ double FillRegion::thickness_at(const ThicknessSample& sample) const {
   if (sample.in_cavity) return diagonal;  // tissue on both sides
   double reached = 0.0;
   for (int n = 0; n < kStretches; ++n) {
-    const SurfaceHit hit = first_hit(surface_, sample.place, sample.inward, reached + kOwn * diagonal);
+    const RayHit hit = first_hit(surface_, sample.place, sample.inward, reached + kOwn * diagonal);
     if (!hit.met()) break;
     reached = hit.share;
-    const SurfaceHit next = first_hit(surface_, sample.place, sample.inward, reached + kOwn * diagonal);
+    const RayHit next = first_hit(surface_, sample.place, sample.inward, reached + kOwn * diagonal);
     const double middle = next.met() ? 0.5 * (reached + next.share) : reached + kOwn * diagonal;
     if (!(*this)(sample.place + middle * sample.inward)) break;
   }

@@ -63,7 +63,7 @@ double distance(const Box& box, dvec3 p) {
   return length(glm::max(glm::max(dvec3(box.min) - p, p - dvec3(box.max)), dvec3(0)));
 }
 
-void find_closest(const Mesh& surface, dvec3 p, Visit at, SurfacePoint& best) {
+void find_closest(const Mesh& surface, dvec3 p, Visit at, RayPoint& best) {
   const auto& boxes = surface.tree.levels;
   if (at.level == 0) {
     const auto end = std::min<std::size_t>((at.box + 1) * kLeafSize, surface.triangles.size());
@@ -98,8 +98,8 @@ void find_hits(const Mesh& surface, dvec3 from, dvec3 along, std::vector<double>
   });
 }
 
-SurfaceHit first_hit(const Mesh& surface, dvec3 from, dvec3 along, double after) {
-  SurfaceHit first;
+RayHit first_hit(const Mesh& surface, dvec3 from, dvec3 along, double after) {
+  RayHit first;
   cast(surface, from, along, first.share, [&](std::uint32_t triangle, double share) {
     if (share > after && share < first.share) first = {share, triangle};
     return false;
@@ -165,8 +165,8 @@ double enclosed_share(const Mesh& surface, dvec3 p, double thickest) {
   return static_cast<double>(odd) / static_cast<double>(asked);
 }
 
-SurfacePoint closest_of(const Mesh& surface, dvec3 p, double reach) {
-  SurfacePoint best;
+RayPoint closest_of(const Mesh& surface, dvec3 p, double reach) {
+  RayPoint best;
   best.distance = reach;
   find_closest(surface, p, {static_cast<std::uint32_t>(surface.tree.levels.size() - 1), 0}, best);
   return best;

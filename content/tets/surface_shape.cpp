@@ -52,7 +52,7 @@ SurfaceShape measure_shape(const Mesh& surface, std::size_t samples) {
   parallel_for(shape.samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       ThicknessSample& s = shape.samples[i];
-      const SurfaceHit behind = first_hit(surface, s.place, s.inward, kOwn * diagonal);
+      const RayHit behind = first_hit(surface, s.place, s.inward, kOwn * diagonal);
       if (behind.met()) s.thickness = behind.share;
     }
   });

@@ -105,7 +105,7 @@ Result<Body> make_body(const Level& level, std::int32_t number, const FitOptions
 struct Held {
   PressPlace place;
   Side side = Side::kTop;
-  std::vector<PressState> truth, model;
+  std::vector<PressedTissue> truth, model;
   double force_error = 0.0, force_worst = 0.0;  // [1] RMS and largest of the relative differences
   double surface_error = 0.0;                   // [1] RMS difference over RMS of the dent, at the deepest
   double surface_of_depth = 0.0;                // [1] RMS difference over the depth
@@ -146,7 +146,7 @@ void compare(Held& held, const Mesh& mesh, double radius) {
   }
   if (count == 0) return;
   held.force_error = std::sqrt(sum / static_cast<double>(count));
-  const PressState &truth = held.truth[count - 1], &model = held.model[count - 1];
+  const PressedTissue &truth = held.truth[count - 1], &model = held.model[count - 1];
   const SurfaceDifference d = surface_difference(mesh, held.place, kAroundPress * radius, model.height, truth.height);
   held.surface_error = d.size > 0 ? std::sqrt(d.off / d.size) : 0.0;
   held.surface_of_depth = d.area > 0 ? std::sqrt(d.off / d.area) / truth.depth : 0.0;
@@ -441,7 +441,7 @@ Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& o
     held.truth = tissue->press_to(place, out.radius, kDeepest * reach, kDepths);
     unseen.push_back(place);
     std::vector<double>& its = depths.emplace_back();
-    for (const PressState& press : held.truth) its.push_back(press.depth);
+    for (const PressedTissue& press : held.truth) its.push_back(press.depth);
     out.held.push_back(std::move(held));
     progress.update(0.7 + 0.3 * static_cast<double>(out.held.size()) / options.held);
   }

@@ -29,10 +29,10 @@ MeshData data_of(const std::vector<Primitive>& primitives) {
 
 }  // namespace
 
-Result<std::vector<std::vector<PressState>>> press_surface(const std::vector<Primitive>& primitives,
-                                                           const DeformableParameters& surface,
-                                                           const std::vector<PressPlace>& places,
-                                                           const std::vector<std::vector<double>>& depths) {
+Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<Primitive>& primitives,
+                                                              const DeformableParameters& surface,
+                                                              const std::vector<PressPlace>& places,
+                                                              const std::vector<std::vector<double>>& depths) {
   Scene scene;
   DeformableParameters smooth = surface;
   smooth.friction_static = smooth.friction_sliding = 0.0;
@@ -42,7 +42,7 @@ Result<std::vector<std::vector<PressState>>> press_surface(const std::vector<Pri
   scene.add_probe("probe", {}, device);
   Result<Session> session = Session::open(scene);
   if (!session) return session.error();
-  std::vector<std::vector<PressState>> out(places.size());
+  std::vector<std::vector<PressedTissue>> out(places.size());
   std::vector<vec4> stream;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto to = [&](double depth) { return session->move("probe", places[i].position - depth * places[i].normal); };
@@ -61,7 +61,7 @@ Result<std::vector<std::vector<PressState>>> press_surface(const std::vector<Pri
       if (!reading) return reading.error();
       dvec3 force(0);
       for (std::uint32_t c = 0; c < reading->contacts; ++c) force += reading->contact[c].force;
-      PressState& state = out[i].emplace_back();
+      PressedTissue& state = out[i].emplace_back();
       state.depth = depth;
       state.force = dot(force, places[i].normal);
       if (const Status told = session->stream("surface", stream); !told) return told.error();

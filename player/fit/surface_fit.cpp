@@ -67,7 +67,7 @@ ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, do
   std::vector<std::vector<Sample>> samples;
   for (const PressedPlace& each : places) {
     if (each.presses.empty()) continue;
-    const PressState& press = each.presses[each.presses.size() / 2];
+    const PressedTissue& press = each.presses[each.presses.size() / 2];
     std::vector<Sample>& of = samples.emplace_back();
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
       const dvec3 away = dvec3(mesh.position(v)) - each.place.position;
@@ -115,7 +115,7 @@ ForceFit fit_force(const std::vector<PressedPlace>& places) {
   Eigen::Index count = 0;
   double deepest = 0.0;
   for (const PressedPlace& each : places)
-    for (const PressState& press : each.presses) {
+    for (const PressedTissue& press : each.presses) {
       ++count;
       deepest = std::max(deepest, press.depth);
     }
@@ -134,7 +134,7 @@ ForceFit fit_force(const std::vector<PressedPlace>& places) {
       if (spring == SpringLaw::kExponential) law.stiffening = p[1];
       Eigen::Index k = 0;
       for (const PressedPlace& each : places)
-        for (const PressState& press : each.presses)
+        for (const PressedTissue& press : each.presses)
           r[k++] = p[0] * each.stiffness * -law.force(-press.depth) / press.force - 1;
     });
     const double error = std::sqrt(fit.sum / static_cast<double>(count));

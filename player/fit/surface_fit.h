@@ -14,7 +14,7 @@ namespace pliant {
 struct PressedPlace {
   PressPlace place;
   double stiffness = 0.0;  // [N/m] of a small press
-  std::vector<PressState> presses;
+  std::vector<PressedTissue> presses;
 };
 
 struct ShapeFit {

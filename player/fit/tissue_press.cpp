@@ -173,9 +173,9 @@ double TissuePress::settle(const Punch& punch, double depth, Vector& u) {
   return 0.0;
 }
 
-std::vector<PressState> TissuePress::press_to(const PressPlace& place, double radius, double depth, int steps) {
+std::vector<PressedTissue> TissuePress::press_to(const PressPlace& place, double radius, double depth, int steps) {
   const Punch it = punch(place, radius);
-  std::vector<PressState> out;
+  std::vector<PressedTissue> out;
   const Vector one = it.yields * (it.inverse * it.whole);  // moved by a small press, over its depth
   Vector u = Vector::Zero(one.size()), before = u;
   for (int i = 1; i <= steps; ++i) {

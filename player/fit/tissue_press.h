@@ -32,7 +32,7 @@ struct PressPlace {
 PressPlace place_at(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
 
 // What one press did. Heights are of the surface's vertices, along their normals, < 0: pushed in.
-struct PressState {
+struct PressedTissue {
   double force = 0.0;         // [N]
   double depth = 0.0;         // [m]
   std::vector<float> height;  // [m]
@@ -50,7 +50,7 @@ class TissuePress {
   // [N/m] Force over depth of a small press.
   double stiffness(const PressPlace& place, double radius) const;
   // Presses to `steps` equal parts of this depth [m], ascending; ends early where the iteration does not come to rest.
-  std::vector<PressState> press_to(const PressPlace& place, double radius, double depth, int steps);
+  std::vector<PressedTissue> press_to(const PressPlace& place, double radius, double depth, int steps);
 
   std::size_t iterations() const { return iterations_; }
 

@@ -130,7 +130,7 @@ Result<Indentation> press_surface(const Indented& what, const DeformableParamete
   return out;
 }
 
-Result<Indentation> press_tissue(const Indented& what, TissuePress& wish) {
+Result<Indentation> press_tissue(const Indented& what, PressWish& wish) {
   Scene scene("press");
   scene.simulation().gravity = dvec3(0);
   scene.simulation().soft_step = kSoftStep;

@@ -125,7 +125,7 @@ class Fidelity {
         quick_ ? std::vector<double>{0.008, 0.006} : std::vector<double>{0.008, 0.006, 0.004, 0.003};
     double done = 0.0;
     for (const double cell : cells) {
-      TissuePress press{cell, quick_ ? 0.1 : 0.25};
+      PressWish press{cell, quick_ ? 0.1 : 0.25};
       auto model = press_tissue(what_, press);
       if (!model) return model.error();
       rows_.push_back({"FEM, in a level", fmt::format("level, cell {:g} mm, {} tets", 1000 * cell, press.tets),

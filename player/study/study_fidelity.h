@@ -32,12 +32,12 @@ struct Indentation {
 // A P1 surface under a probe, in a session.
 Result<Indentation> press_surface(const Indented& what, const DeformableParameters& parameters);
 // A soft body of lattice cell [m] under a rigid punch that a device leads, in a session.
-struct TissuePress {
+struct PressWish {
   double cell = 0.004;    // [m]
   double seconds = 0.25;  // [s] that each depth takes, half of it held still
   std::size_t tets = 0;   // written: of the lattice
 };
-Result<Indentation> press_tissue(const Indented& what, TissuePress& press);
+Result<Indentation> press_tissue(const Indented& what, PressWish& press);
 // Blocks of ascending depth, solved anew in every soft step of 1/60 s: force and cost.
 Indentation as_indentation(const std::vector<PressedBlock>& blocks);
 

@@ -54,7 +54,7 @@ TEST(StudyFidelity, AFittedLawIsFoundAgainWhereTheTruthIsOne) {
 TEST(StudyFidelity, ErrorsAreTheSameBitsInEveryRun) {
   Indented what;
   what.depths = {0.001};
-  TissuePress coarse{0.012, 0.05};
+  PressWish coarse{0.012, 0.05};
   const auto first = press_tissue(what, coarse), second = press_tissue(what, coarse);
   ASSERT_TRUE(first && second);
   EXPECT_GT(first->force[0], 0.0);
