@@ -59,7 +59,8 @@ TEST_F(DeviceWindowTest, TheInspectorPicksWhichDeviceFromTheListAndThePlayPanelO
       "click Scene/tip/row\nawait Pick device\nclick Pick device\nawait Pick device/any-pose; mouse\n"
       "screenshot pick.png\nclick Pick device/any-pose; mouse\nclick Tab/Play\n"
       "click source/tip\nawait source/tip/any-force\nwait 0.3\nscreenshot sources.png\n"
-      "wheel source/tip/any-force -10\nclick source/tip/simulated\nwait 0.3\nclick Viewport@0.9,0.9\nkey Ctrl+S\nsay "
+      "await source/tip/simulated 20\nwheel source/tip/any-force -10\nwait 0.3\nclick source/tip/simulated\nwait "
+      "0.3\nclick Viewport@0.9,0.9\nkey Ctrl+S\nsay "
       "Saved\nclose\n");
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_NE(read_text(folder / "minimal.gltf").find("any-pose; mouse"), std::string::npos);
