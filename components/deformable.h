@@ -19,7 +19,7 @@ struct Deformable : DeformableParameters {
 struct DeformableRange {
   static constexpr Range kStiffness{1e-6, 1e7};           // [N/m]
   static constexpr Range kCubic{0.0, 1e15};               // [N/m3]
-  static constexpr Range kStiffening{1e-6, 1e5};          // [1/m]
+  static constexpr Range kStiffening{-1e5, 1e5};          // [1/m] < 0: softens
   static constexpr Range kRelaxationStiffness{0.0, 1e7};  // [N/m]
   static constexpr Range kRelaxationTime{1e-6, 1e6};      // [s]
   static constexpr Range kDampingRatio{0.0, 100.0};       // [1]
@@ -27,9 +27,16 @@ struct DeformableRange {
   static constexpr Range kContactDamping{0.0, 1e6};       // [N s/m]
   static constexpr Range kReach{0.0, 1e6};                // [m]
   static constexpr Range kVolume{0.0, 1.0};               // [1]
+  static constexpr Range kContactRadius{0.0, 1e6};        // [m]
 };
 
-inline constexpr double kDefaultReach = 0.08;  // [1] of the diagonal of the object's box
+// Whether a shape is of an indenter on a half-space, so that `contact_radius` says something.
+inline bool depends_on_contact(Shape shape) {
+  return shape == Shape::kPunch || shape == Shape::kHertz || shape == Shape::kKelvinlet;
+}
+
+inline constexpr double kMostContactShare = 0.95;  // [1] of the reach: what contact_radius may be
+inline constexpr double kDefaultReach = 0.08;      // [1] of the diagonal of the object's box
 // [m] The reach of a deformable that says none.
 double default_reach(const Mesh& mesh);
 

@@ -29,7 +29,7 @@ struct DeformableParameters {
   SpringLaw spring = SpringLaw::kLinear;
   double stiffness = 300.0;               // [N/m] slope of the normal force against depth at depth 0
   double cubic = 3e6;                     // [N/m3] k3 of the cubic law
-  double stiffening = 100.0;              // [1/m] alpha of the exponential law
+  double stiffening = 100.0;              // [1/m] alpha of the exponential law; < 0: it softens
   double relaxation_stiffness = 300.0;    // [N/m] the arm of the standard linear solid
   double relaxation_time = 0.5;           // [s] tau of that arm
   double damping_ratio = 1.0;             // [1] zeta of the free surface
@@ -41,13 +41,14 @@ struct DeformableParameters {
   Distance distance = Distance::kChord;
   double reach = 0.0;             // [m] radius R of the field; 0: 0.08 of the object's diagonal
   double volume = 1.0;            // [1] chi: share of the volume that the shape `volume` conserves
+  double contact_radius = 0.0;    // [m] a of the shapes punch, hertz, kelvinlet; 0: a fifth of the reach
   double friction_static = 0.4;   // [1] mu_s
   double friction_sliding = 0.3;  // [1] mu_d <= mu_s
   double crease_angle = 0.0;      // [rad] edges that turn by more are creases; 0: the file's normals, else 0.7
   double young = 0.0;             // [Pa] with thickness: calibrates stiffness instead of `stiffness`; 0: not given
   double poisson = 0.45;          // [1]
   double thickness = 0.0;         // [m] 0: deep
-  double error = 0.0;             // [1] budget: shape and distance that are not said are chosen by it; 0: none
+  double error = 0.0;             // [1] budget: what is not said of the model is chosen by it; 0: none
 };
 
 // What solves a soft body's linear systems (P2: black boxes).
@@ -80,7 +81,7 @@ struct SoftBodyParameters {
   double friction_static = 0.4;          // [1]
   double friction_sliding = 0.3;         // [1]
   SolverKind solver = SolverKind::kAuto;
-  double error = 0.0;  // [1] budget: cell and soft step that are not said are chosen by it; 0: none
+  double error = 0.0;  // [1] budget: what is not said of the model is chosen by it; 0: none
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };
