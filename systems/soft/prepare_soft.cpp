@@ -18,7 +18,7 @@
 namespace pliant {
 namespace {
 
-std::string name_of(const World& world, Entity entity) {
+std::string soft_name(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
   return "body `" + (name ? name->value : fmt::format("entity {}", entity.index)) + "`";
 }
@@ -37,7 +37,7 @@ void add(SoftState& soft, Entity entity, std::unique_ptr<Body> body) {
 Status add_soft(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<SoftBody>()) {
     if (!make_solver(body.solver, 1))
-      return Error{name_of(world, entity), "its solver is not in this build, or its factory makes none; use `auto`"};
+      return Error{soft_name(world, entity), "its solver is not in this build, or its factory makes none; use `auto`"};
     const Handle6* handle = world.registry.find<Handle6>(entity);
     auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.collision_mesh], body,
                                                  handle, pose_of(world, entity), body.solver);
@@ -56,7 +56,7 @@ Result<RigidMass> mass_of(const World& world, Entity entity, const RigidBody& bo
   const double density = mass / shape.volume;
   const dmat3 inertia = density * shape.inertia;
   if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
-    return Error{name_of(world, entity),
+    return Error{soft_name(world, entity),
                  "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
   return RigidMass{mass, shape.centre, inertia};
 }

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-std::string name_of(const World& world, Entity entity) {
+std::string tool_name(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
   return name ? name->value : fmt::format("entity {}", entity.index);
 }
@@ -72,9 +72,9 @@ void find_weight(const World& world, ToolTouchState& tool) {
 // Two things on one device would each be told that the whole of its force is theirs.
 Status check_free(const World& world, Entity tool, Entity device) {
   const auto moves = [&](Entity other) {
-    return Error{"tool `" + name_of(world, tool) + "`",
-                 fmt::format("its device `{}` already moves `{}`; give each its own", name_of(world, device),
-                             name_of(world, other))};
+    return Error{"tool `" + tool_name(world, tool) + "`",
+                 fmt::format("its device `{}` already moves `{}`; give each its own", tool_name(world, device),
+                             tool_name(world, other))};
   };
   for (auto [entity, probe] : world.registry.view<Probe>())
     if (probe.device == device) return moves(entity);
@@ -104,7 +104,7 @@ Status add_tool(World& world, Entity entity) {
   const std::string& wanted = world.registry.get<Handle6>(entity).device;
   const Entity named = wanted.empty() ? kNoEntity : find_by_name(world, wanted);
   if (!wanted.empty() && (named == kNoEntity || !world.registry.has<HapticDevice>(named)))
-    return Error{"tool `" + name_of(world, entity) + "`",
+    return Error{"tool `" + tool_name(world, entity) + "`",
                  "its device `" + wanted + "` has no PLIANT_haptic_device; name a node that has one"};
   const Entity device = wanted.empty() ? resting_device(world, entity) : named;
   if (Status status = check_free(world, entity, device); !status) return status.error();

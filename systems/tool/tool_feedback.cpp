@@ -166,7 +166,7 @@ void pull_device(ToolTouchState& tool, const HandleModel& model, const Handle6& 
   tool.device_wrench = join(linear(wrench), angular(wrench) + cross(arm, linear(wrench)));
 }
 
-bool finite(const RigidMotion& motion) {
+bool motion_is_finite(const RigidMotion& motion) {
   const dvec3 x = motion.pose.position;
   const dquat q = motion.pose.rotation;
   return std::isfinite(dot(x, x)) && std::isfinite(glm::dot(q, q)) && motion.velocity.allFinite();
@@ -214,7 +214,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (tool.placed && sensing) {
     pull_device(tool, model, settings);
     step(tool, model, settings, tick);
-    if (!finite(tool.handle)) {
+    if (!motion_is_finite(tool.handle)) {
       world.dropped |= kDroppedNonFinite;
       forget(tool);
     } else if (got_away(tool, model)) {

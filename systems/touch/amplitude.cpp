@@ -14,11 +14,11 @@ constexpr double kTolerance = 1e-7;  // [1] of the largest depth: far below what
 constexpr std::size_t kMost = 64;    // contacts: the working memory is on the stack
 
 // Which entries of each row of A are not zero: dents far apart do not meet.
-struct Rows {
+struct AmplitudeRows {
   std::array<std::uint8_t, kMost * kMost> column;
   std::array<std::size_t, kMost + 1> first;
 
-  Rows(std::span<const double> A, std::size_t n) {
+  AmplitudeRows(std::span<const double> A, std::size_t n) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < n; ++i) {
       first[i] = count;
@@ -30,15 +30,15 @@ struct Rows {
 };
 
 // One row of a solve: how far the field at contact i falls short of its depth. [m]
-double shortfall(std::span<const double> A, const Rows& rows, std::span<const double> d, std::span<const double> alpha,
-                 std::size_t i) {
+double shortfall(std::span<const double> A, const AmplitudeRows& rows, std::span<const double> d,
+                 std::span<const double> alpha, std::size_t i) {
   double r = d[i];
   for (std::size_t k = rows.first[i]; k < rows.first[i + 1]; ++k)
     r -= A[i * d.size() + rows.column[k]] * alpha[rows.column[k]];
   return r;
 }
 
-double worst_violation(std::span<const double> A, const Rows& rows, std::span<const double> d,
+double worst_violation(std::span<const double> A, const AmplitudeRows& rows, std::span<const double> d,
                        std::span<const double> alpha) {
   double worst = 0.0;
   for (std::size_t i = 0; i < d.size(); ++i) {
@@ -50,7 +50,7 @@ double worst_violation(std::span<const double> A, const Rows& rows, std::span<co
 
 // Sweeps converge slowly where probes almost coincide: solve for the pressing ones directly (Gauss with partial
 // pivoting) and keep the answer if it is the better one.
-void polish(std::span<const double> A, const Rows& rows, std::span<const double> d, std::span<double> alpha) {
+void polish(std::span<const double> A, const AmplitudeRows& rows, std::span<const double> d, std::span<double> alpha) {
   const std::size_t n = d.size();
   std::array<std::size_t, kMost> pressing;
   std::size_t m = 0;
@@ -90,7 +90,7 @@ void polish(std::span<const double> A, const Rows& rows, std::span<const double>
 
 double solve_amplitudes(std::span<const double> A, std::span<const double> d, std::span<double> alpha) {
   const std::size_t n = d.size();
-  const Rows rows(A, n);
+  const AmplitudeRows rows(A, n);
   double size = 0.0;
   for (const double depth : d) size = std::max(size, std::abs(depth));
   bool converged = false;

@@ -25,7 +25,7 @@ namespace {
 constexpr double kAhead = 0.1;
 // Two feet of a tip are one where they are nearer than this. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
-constexpr std::size_t kMostSeeds = 32;
+constexpr std::size_t kMostFootSeeds = 32;
 // A tip that came to rest within rounding of the surface must not slip through: sweeps begin this much earlier.
 constexpr double kEarly = 1e-6;  // [1] of the object's diagonal
 
@@ -239,7 +239,7 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
 }
 
 // Feet of the walls within `within` of x: triangles that no neighbour is nearer than.
-void find_walls(const Search& s, dvec3 x, double within, std::array<Foot, kMostSeeds>& feet, std::size_t& count) {
+void find_walls(const Search& s, dvec3 x, double within, std::array<Foot, kMostFootSeeds>& feet, std::size_t& count) {
   const Mesh& mesh = s.mesh;
   const double limit = within + static_cast<double>(mesh.tree.bulge);
   const float limit2 = static_cast<float>(limit * limit * 1.0001);
@@ -249,7 +249,7 @@ void find_walls(const Search& s, dvec3 x, double within, std::array<Foot, kMostS
       [&](std::uint32_t first, std::uint32_t run) {
         TriangleDistances distance2;
         triangle_distances2(mesh, first, run, x, distance2);
-        for (std::uint32_t i = 0; i < run && count < kMostSeeds; ++i) {
+        for (std::uint32_t i = 0; i < run && count < kMostFootSeeds; ++i) {
           if (!(distance2[i] <= limit2)) continue;
           const std::uint32_t t = first + i;
           const FlatPoint at = closest_on_triangle(mesh, t, x);
@@ -339,7 +339,7 @@ void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dve
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length(to - from) / radius)), 1, 16);
   for (int i = 1; i <= steps; ++i) {
     const dvec3 x = from + (to - from) * (double(i) / steps);
-    std::array<Foot, kMostSeeds> feet;
+    std::array<Foot, kMostFootSeeds> feet;
     std::size_t count = 0;
     find_walls(s, x, within, feet, count);
     for (std::size_t f = 0; f < count; ++f) {

@@ -8,6 +8,7 @@
 
 #include "components/registered.h"
 #include "runtime/assert.h"
+#include "systems/touch/shape.h"
 
 namespace pliant {
 namespace {
@@ -141,12 +142,13 @@ double ShareKernel::slope(double r2) const {
 
 namespace {
 
-// The mixture that differs least, at its worst, from the positive part of a registered shape.
-ShareKernel fitted_kernel(const ShapeFunction& shape) {
+// The mixture that differs least, at its worst, from the positive part of a shape: its value over u = (r / R)^2 < 1.
+template <class Value>
+ShareKernel fitted_kernel(const Value& value) {
   constexpr int kPlaces = 64;
   std::array<double, kPlaces> wanted;
   const auto rho = [](int i) { return 1.5 * i / kPlaces; };
-  for (int i = 0; i < kPlaces; ++i) wanted[i] = rho(i) < 1.0 ? std::max(0.0, shape.value(rho(i) * rho(i))) : 0.0;
+  for (int i = 0; i < kPlaces; ++i) wanted[i] = rho(i) < 1.0 ? std::max(0.0, value(rho(i) * rho(i))) : 0.0;
   ShareKernel best;
   double least = std::numeric_limits<double>::max();
   for (int a = 6; a <= 20; ++a)
@@ -165,13 +167,23 @@ ShareKernel fitted_kernel(const ShapeFunction& shape) {
 
 // Fitted to the largest difference; what is left of it, as a share of the dent's depth, is in the comment. A punch has
 // a flat bottom, which no positive definite function has.
-ShareKernel share_kernel(Shape shape, double reach, double volume) {
+ShareKernel share_kernel(Shape shape, double reach, double volume, double contact) {
   const auto kernel = [reach](double weight, double inner, double outer) {
     return ShareKernel{weight, inner * reach, outer * reach};
   };
-  if (const ShapeFunction* own = registered_shape(shape)) {
-    const ShareKernel fitted = fitted_kernel(*own);
-    return kernel(fitted.weight, fitted.inner, fitted.outer);
+  const auto fitted = [&kernel](const auto& value) {
+    const ShareKernel found = fitted_kernel(value);
+    return kernel(found.weight, found.inner, found.outer);
+  };
+  if (const ShapeFunction* own = registered_shape(shape)) return fitted([own](double u) { return own->value(u); });
+  if (std::abs(contact - 0.2) > 1e-6 && depends_on_contact(shape)) {
+    FieldSource source;
+    source.amplitude = 1.0f;
+    source.shape = shape;
+    source.parameter = static_cast<float>(shape == Shape::kKelvinlet ? contact : contact * contact);
+    return fitted([&source](double u) {
+      return static_cast<double>(share_at(source, {static_cast<float>(std::sqrt(u)), 0, 0}, source.normal));
+    });
   }
   switch (shape) {
     case Shape::kPunch:

@@ -25,8 +25,8 @@ struct ShareKernel {
   double at(double r2) const;       // [1] of the distance squared [m2]
   double slope(double r2) const;    // [1/m2] (d phi / dr) / r
 };
-// `reach` [m] R; `volume` [1] chi of the shape `volume`.
-ShareKernel share_kernel(Shape shape, double reach, double volume);
+// `reach` [m] R; `volume` [1] chi of the shape `volume`; `contact` [1] a / R of the half-space shapes.
+ShareKernel share_kernel(Shape shape, double reach, double volume, double contact = 0.2);
 
 // One contact with stored energy. Object frame.
 struct LoadedContact {

@@ -15,7 +15,7 @@ constexpr double kThin = -0.82;
 // sharpest that is no thin part, tan a = sin 35 / (1.5 + cos 35) and 1 / sin a = 4.2.
 constexpr double kCreaseReach = 4.2;
 // Two feet are one where they are nearer than this. [1] of the mean edge
-constexpr double kSameFoot = 1e-6;
+constexpr double kSameContact = 1e-6;
 
 // Convex creases of the mesh within `within` of x, as 3 * triangle + edge; every one from both its sides.
 template <class Visit>
@@ -133,7 +133,7 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
     nearest_creases(object, mesh, x, kCreaseReach * -own.height, farthest, creases, near);
   }
   std::uint32_t count = 1;
-  const double same = kSameFoot * static_cast<double>(mesh.mean_edge);
+  const double same = kSameContact * static_cast<double>(mesh.mean_edge);
   std::array<std::uint32_t, kMostCreases> started;
   std::size_t starts = 0;
   for (std::size_t i = 0; i < near; ++i) {

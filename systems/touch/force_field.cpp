@@ -18,8 +18,8 @@
 namespace pliant {
 namespace {
 
-// Half-space shapes have an inner radius: the contact circle of a sphere, and at least this share of the reach.
-constexpr double kInnerShare = 0.2;
+// [1] of the reach: the contact radius of half-space shapes where the author says none.
+constexpr double kContactShare = 0.2;
 // How much of the reach a bulge may count for under a probe.
 constexpr double kMostBulge = 0.25;
 
@@ -100,11 +100,15 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
 
 }  // namespace
 
+double contact_radius(const Deformable& deformable, double reach) {
+  return deformable.contact_radius > 0 ? deformable.contact_radius : kContactShare * reach;
+}
+
 void aim(FieldSource& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, double radius) {
   const double depth = std::max(0.0, -contact.height);
   const double circle = radius > 0 ? std::sqrt(2 * radius * depth) : 0.0;
   const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge) + circle;
-  const double inner = kInnerShare * reach + circle;
+  const double inner = contact_radius(deformable, reach) + circle;
   source.center = vec3(contact.foot);
   source.normal = vec3(contact.normal);
   source.inv_reach2 = static_cast<float>(1 / (reach * reach));

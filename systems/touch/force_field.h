@@ -6,6 +6,10 @@
 
 namespace pliant {
 
+// [m] a of the shapes that are of an indenter on a half-space, for a point on a field of this reach [m]: the author's
+// `contact_radius`, else a fifth of the reach.
+double contact_radius(const Deformable& deformable, double reach);
+
 // A reach below a few edges would fall between the vertices. [1] mean edges
 inline constexpr double kLeastReach = 1.5;
 

@@ -156,7 +156,7 @@ double RestoringLaw::potential(double h) const {
       if (h < 0) {
         const double x = -stiffening * h;
         // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
-        const double d = x < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
+        const double d = std::abs(x) < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
         return d / (stiffening * stiffening);
       }
       break;
@@ -190,10 +190,11 @@ double RestoringLaw::discrete_gradient(double h0, double h1) const {
       if (h0 < 0 || h1 < 0) {
         const double d = h1 - h0;
         if (h0 < 0 && h1 < 0) {
-          // -(1/alpha) (e^(-alpha h0) expm1(-alpha d) / (-alpha d) - 1)
-          const double x = -stiffening * d;
-          const double ratio = std::abs(x) < 1e-5 ? 1 + x / 2 + x * x / 6 : std::expm1(x) / x;
-          return -(std::exp(-stiffening * h0) * ratio - 1) / stiffening;
+          // -(1/alpha) (e^(-alpha h0) (1 + rise) - 1), 1 + rise = expm1(-alpha d) / (-alpha d), without cancellation.
+          const double x = -stiffening * d, em0 = std::expm1(-stiffening * h0);
+          const double rise =
+              std::abs(x) < 1e-3 ? x * (0.5 + x * (1.0 / 6 + x * (1.0 / 24 + x / 120))) : (std::expm1(x) - x) / x;
+          return -(em0 * (1 + rise) + rise) / stiffening;
         }
         if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
         return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
@@ -203,8 +204,13 @@ double RestoringLaw::discrete_gradient(double h0, double h1) const {
   return 0.5 * (h0 + h1);
 }
 
+double exponential_alpha(double stiffening) {
+  constexpr double kLinear = 1e-6;
+  return std::abs(stiffening) < kLinear ? kLinear : stiffening;
+}
+
 RestoringLaw restoring_law(const Deformable& deformable) {
-  return {deformable.spring, deformable.cubic / deformable.stiffness, deformable.stiffening,
+  return {deformable.spring, deformable.cubic / deformable.stiffness, exponential_alpha(deformable.stiffening),
           registered_spring(deformable.spring)};
 }
 
@@ -267,6 +273,7 @@ Status check(const Deformable& d, const std::string& name) {
     const char* key;
     double value;
     Range range;
+    const char* why = "";
   };
   const Bound bounds[] = {
       {"stiffness", d.stiffness, R::kStiffness},
@@ -279,13 +286,15 @@ Status check(const Deformable& d, const std::string& name) {
       {"contact_damping", d.contact_damping, R::kContactDamping},
       {"reach", d.reach, {R::kReach.min, R::kReach.max, /*above_min*/ true}},  // spawn has replaced 0
       {"volume", d.volume, R::kVolume},
+      {"contact_radius", d.contact_radius, {R::kContactRadius.min, kMostContactShare * d.reach}, ", 0.95 of its reach"},
       {"friction_static", d.friction_static, kFrictionRange},
       {"friction_sliding", d.friction_sliding, {kFrictionRange.min, d.friction_static}},
   };
   for (const Bound& bound : bounds) {
     if (bound.range.holds(bound.value)) continue;
-    return Error{name, fmt::format("deformable.{} is {}; give a number {} {} to {}", bound.key, bound.value,
-                                   bound.range.above_min ? "above" : "from", bound.range.min, bound.range.max)};
+    return Error{name,
+                 fmt::format("deformable.{} is {}; give a number {} {} to {}{}", bound.key, bound.value,
+                             bound.range.above_min ? "above" : "from", bound.range.min, bound.range.max, bound.why)};
   }
   return Done{};
 }

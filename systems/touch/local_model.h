@@ -64,6 +64,8 @@ struct RestoringLaw {
   double discrete_gradient(double h0, double h1) const;
 };
 RestoringLaw restoring_law(const Deformable& deformable);
+// [1/m] `stiffening`, but not 0: the exponential law's formulas divide by it.
+double exponential_alpha(double stiffening);
 
 // One passive step of m h'' = -b h' - k F(h) + f by the discrete gradient (energy identity dE = -T b vm^2 + f dh for
 // any T); backward Euler, which does not ring, where the step is long for the spring (w T > 1.5).

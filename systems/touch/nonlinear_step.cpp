@@ -20,7 +20,7 @@ using Lanes = double[kZoneSize];
 
 constexpr int kSteps = 8;
 // A step of Newton's method this small, of |h0| + |d|, was the last: what it leaves is of the size of its square.
-constexpr double kSettled = 1e-7;
+constexpr double kSettledStep = 1e-7;
 
 PLIANT_INLINE double select(bool first, double a, double b) {
   return first ? a : b;
@@ -151,7 +151,7 @@ PLIANT_INLINE void newton(const Law& law, Work& w) {
     // The residual rises with d.
     const double low = select(r < 0, d, w.low[i]), high = select(r > 0, d, w.high[i]);
     const double newton = d - r / slope;
-    const double allowed = kSettled * (std::abs(h0) + std::abs(d));
+    const double allowed = kSettledStep * (std::abs(h0) + std::abs(d));
     double inside = select(newton >= low, newton, low);
     inside = select(inside <= high, inside, high);
     const bool close = std::abs(newton - d) <= allowed;

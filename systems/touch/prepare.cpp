@@ -199,9 +199,8 @@ Status prepare_touch(World& world) {
     }
     object.motion = motion(deformable, touch->dt);
     object.painted = paint_motion(object.motion, mesh);
-    object.kernel =
-        share_kernel(deformable.shape, std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge)),
-                     deformable.volume);
+    const double reach = std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
+    object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact_radius(deformable, reach) / reach);
     object.searched.assign(tip_count, dvec3(std::numeric_limits<double>::max()));
     object.world_box = touch_box(mesh, pose);
     object.zone_sources.assign(mesh.zone_count(), 0);

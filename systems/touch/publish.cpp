@@ -84,6 +84,11 @@ void publish(World& world, Tick tick) {
   }
 }
 
+bool waits_to_be_published(const World& world) {
+  return std::any_of(world.touch->objects.begin(), world.touch->objects.end(),
+                     [](const ObjectState& object) { return !object.dirty.empty(); });
+}
+
 void publish_paced(World& world, Tick tick) {
   const std::uint64_t every =
       std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(1 / (tick.dt * kPublishRate))));

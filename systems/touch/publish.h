@@ -9,6 +9,9 @@ namespace pliant {
 // Publishes now: up to kMaxPublishedZones dirty zones of each object. Snapshot::complete says whether that was all;
 // call again (after the reader acquired) until it is.
 void publish(World& world, Tick tick);
+// Whether there is something that no snapshot has, since the last publish(): zones beyond what one holds, and those of
+// a snapshot that was replaced unseen.
+bool waits_to_be_published(const World& world);
 
 // The schedule's entry: publishes about kPublishRate times a second, so that the touch clock does not copy streams that
 // no display could show.

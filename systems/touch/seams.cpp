@@ -8,10 +8,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kOff = 0.3;     // [1] of that: how far its surface may be from there
-constexpr double kAlong = 0.76;  // [1] cosine of 40 degrees: it goes on in the same direction
+constexpr double kOff = 0.3;         // [1] of that: how far its surface may be from there
+constexpr double kAlongSeam = 0.76;  // [1] cosine of 40 degrees: it goes on in the same direction
 
-struct Place {
+struct SeamPlace {
   dvec3 p, normal;  // world
 };
 
@@ -23,7 +23,7 @@ dvec3 facet_normal(const Mesh& mesh, std::uint32_t t) {
 
 // The triangle of `mesh` that passes within `within` of p and faces as p's surface does, or kBorder. `self`: the
 // triangle that p was taken from, where the mesh is the same.
-std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const Place& at, double within, std::uint32_t self) {
+std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const SeamPlace& at, double within, std::uint32_t self) {
   const dvec3 x = pose.to_local(at.p), n = glm::conjugate(pose.rotation) * at.normal;
   std::uint32_t found = kBorder;
   double nearest = within;
@@ -32,7 +32,7 @@ std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const Place& at, doubl
       [&](std::uint32_t t) {
         if (t == self) return;
         const double d = std::sqrt(closest_on_triangle(mesh, t, x).distance2);
-        if (d > nearest || dot(facet_normal(mesh, t), n) < kAlong) return;
+        if (d > nearest || dot(facet_normal(mesh, t), n) < kAlongSeam) return;
         nearest = d;
         found = t;
       });
@@ -109,7 +109,7 @@ void find_seams(const World& world, TouchState& touch) {
         if (!border && (alone || !mesh.is_crease(t, edge))) continue;
         const uvec3 c = mesh.triangles[t];
         const dvec3 a(mesh.position(c[edge])), b(mesh.position(c[(edge + 1) % 3])), n = facet_normal(mesh, t);
-        const Place at{pose.to_world(0.5 * (a + b) + crack * normalize(cross(b - a, n))), pose.rotation * n};
+        const SeamPlace at{pose.to_world(0.5 * (a + b) + crack * normalize(cross(b - a, n))), pose.rotation * n};
         for (const std::uint32_t j : others) {
           if (j == i && !border) continue;
           const Box& box = touch.objects[j].world_box;

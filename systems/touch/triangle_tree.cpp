@@ -6,16 +6,16 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kLanes = kTreeNodeWidth;
+constexpr std::uint32_t kTreeLanes = kTreeNodeWidth;
 
 // Corners relative to the query point in units of the mesh, so that products of four lengths stay inside single
 // precision; one array a component.
 struct alignas(32) Corners8 {
-  float v[3][3][kLanes];
+  float v[3][3][kTreeLanes];
 };
 
 void gather(const Mesh& mesh, std::uint32_t first, std::uint32_t count, Corners8& out) {
-  for (std::uint32_t l = 0; l < kLanes; ++l) {
+  for (std::uint32_t l = 0; l < kTreeLanes; ++l) {
     const uvec3 t = mesh.triangles[first + std::min(l, count - 1)];
     for (int c = 0; c < 3; ++c) {
       out.v[c][0][l] = mesh.px[t[c]];
@@ -39,7 +39,7 @@ PLIANT_KERNEL void distances2(const Corners8& corners, vec3 x, float scale, floa
   const float* const cy_ = corners.v[2][1];
   const float* const cz_ = corners.v[2][2];
   const float back = 1.0f / (scale * scale);
-  for (std::uint32_t l = 0; l < kLanes; ++l) {
+  for (std::uint32_t l = 0; l < kTreeLanes; ++l) {
     const float ax = (ax_[l] - x.x) * scale, ay = (ay_[l] - x.y) * scale, az = (az_[l] - x.z) * scale;
     const float bx = (bx_[l] - x.x) * scale, by = (by_[l] - x.y) * scale, bz = (bz_[l] - x.z) * scale;
     const float cx = (cx_[l] - x.x) * scale, cy = (cy_[l] - x.y) * scale, cz = (cz_[l] - x.z) * scale;
@@ -86,7 +86,7 @@ void triangle_distances2(const Mesh& mesh, std::uint32_t first, std::uint32_t co
   const vec3 size = mesh.box.size();
   const float most = std::max({size.x, size.y, size.z});
   distances2(corners, vec3(x), most > 0 ? 1.0f / most : 1.0f, out.data());
-  for (std::uint32_t l = count; l < kLanes; ++l) out[l] = std::numeric_limits<float>::infinity();
+  for (std::uint32_t l = count; l < kTreeLanes; ++l) out[l] = std::numeric_limits<float>::infinity();
 }
 
 FlatPoint closest_on_triangle(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
@@ -119,7 +119,7 @@ FlatPoint closest_flat(const Mesh& mesh, dvec3 x, double within, std::uint32_t h
         triangle_distances2(mesh, first, count, x, d2);
         for (;;) {  // the nearest in double, until single precision says that none can be nearer
           std::uint32_t nearest = 0;
-          for (std::uint32_t l = 1; l < kLanes; ++l) nearest = d2[l] < d2[nearest] ? l : nearest;
+          for (std::uint32_t l = 1; l < kTreeLanes; ++l) nearest = d2[l] < d2[nearest] ? l : nearest;
           if (!(d2[nearest] <= limit)) return;
           d2[nearest] = std::numeric_limits<float>::infinity();
           look_at(first + nearest);

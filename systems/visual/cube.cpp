@@ -13,11 +13,11 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr std::uint32_t kSmallestFace = 64, kLargestFace = 256;  // [pixels]
-constexpr std::uint32_t kSamples = 256;                          // directions that a filtered pixel gathers
+constexpr std::uint32_t kCubeSamples = 256;                      // directions that a filtered pixel gathers
 constexpr float kLargestHalf = 65000.0f;
 
 // One level of a cube, in floats.
-struct Level {
+struct CubeLevel {
   std::uint32_t size = 0;
   std::vector<vec3> pixels;
   vec3& at(unsigned face, std::uint32_t x, std::uint32_t y) { return pixels[(face * size + y) * size + x]; }
@@ -40,7 +40,7 @@ vec3 panorama_at(const Panorama& p, vec3 d) {
 }
 
 // Bilinear within a face.
-vec3 cube_at(const Level& level, vec3 d) {
+vec3 cube_at(const CubeLevel& level, vec3 d) {
   const vec3 a = glm::abs(d);
   unsigned face = 0;
   float s = 0, t = 0, m = 1;
@@ -71,8 +71,8 @@ void each_pixel(std::uint32_t size, const Paint& paint) {
 }
 
 // Level 0 from the panorama, four looks a pixel; then each level as the average of the one before.
-std::vector<Level> averaged(const Panorama& panorama, std::uint32_t face) {
-  std::vector<Level> levels{{face, std::vector<vec3>(std::size_t{6} * face * face)}};
+std::vector<CubeLevel> averaged(const Panorama& panorama, std::uint32_t face) {
+  std::vector<CubeLevel> levels{{face, std::vector<vec3>(std::size_t{6} * face * face)}};
   each_pixel(face, [&](unsigned f, std::uint32_t x, std::uint32_t y) {
     vec3 sum(0);
     for (std::uint32_t k = 0; k < 4; ++k)
@@ -80,8 +80,8 @@ std::vector<Level> averaged(const Panorama& panorama, std::uint32_t face) {
     levels[0].at(f, x, y) = 0.25f * sum;
   });
   for (std::uint32_t size = face / 2; size >= 1; size /= 2) {
-    Level level{size, std::vector<vec3>(std::size_t{6} * size * size)};
-    const Level& fine = levels.back();
+    CubeLevel level{size, std::vector<vec3>(std::size_t{6} * size * size)};
+    const CubeLevel& fine = levels.back();
     for (unsigned f = 0; f < 6; ++f)
       for (std::uint32_t y = 0; y < size; ++y)
         for (std::uint32_t x = 0; x < size; ++x)
@@ -105,27 +105,27 @@ std::vector<Sample> gathered(float roughness, std::uint32_t face, std::size_t le
   std::vector<Sample> samples;
   const float alpha2 = std::pow(roughness, 4.0f);
   const float pixel = 4 * kPi / (6.0f * static_cast<float>(face) * static_cast<float>(face));  // [sr]
-  for (std::uint32_t i = 0; i < kSamples; ++i) {
+  for (std::uint32_t i = 0; i < kCubeSamples; ++i) {
     std::uint32_t bits = i;  // van der Corput: the bits of i behind the point, turned round
     float u = 0;
     for (float digit = 0.5f; bits; bits >>= 1, digit *= 0.5f) u += static_cast<float>(bits & 1u) * digit;
-    const float phi = 2 * kPi * (static_cast<float>(i) + 0.5f) / static_cast<float>(kSamples);
+    const float phi = 2 * kPi * (static_cast<float>(i) + 0.5f) / static_cast<float>(kCubeSamples);
     const float cosine = std::sqrt((1 - u) / (1 + (alpha2 - 1) * u)),
                 sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
     const vec3 h(sine * std::cos(phi), sine * std::sin(phi), cosine);
     const vec3 way = 2 * h.z * h - vec3(0, 0, 1);
     if (way.z <= 0) continue;
     const float d = cosine * cosine * (alpha2 - 1) + 1, density = alpha2 / (kPi * d * d) / 4;  // [1/sr]
-    const float share = 1 / (static_cast<float>(kSamples) * density);
+    const float share = 1 / (static_cast<float>(kCubeSamples) * density);
     const float lod = std::round(std::max(0.0f, 0.5f * std::log2(share / pixel)));
     samples.push_back({way, way.z, std::min(static_cast<std::size_t>(lod), levels - 1)});
   }
   return samples;
 }
 
-Level filtered(const std::vector<Level>& levels, std::uint32_t size, float roughness) {
+CubeLevel filtered(const std::vector<CubeLevel>& levels, std::uint32_t size, float roughness) {
   const std::vector<Sample> samples = gathered(roughness, levels[0].size, levels.size());
-  Level out{size, std::vector<vec3>(std::size_t{6} * size * size)};
+  CubeLevel out{size, std::vector<vec3>(std::size_t{6} * size * size)};
   each_pixel(size, [&](unsigned face, std::uint32_t px, std::uint32_t py) {
     const vec3 z = cube_direction(face, px, py, size);
     const vec3 x = normalize(cross(std::abs(z.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0), z)), y = cross(z, x);
@@ -177,10 +177,10 @@ Panorama scaled_down(const Panorama& p, std::uint32_t widest) {
 Cube filtered_cube(const Panorama& panorama) {
   Cube cube;
   cube.face = std::bit_floor(std::clamp(panorama.width / 4, kSmallestFace, kLargestFace));
-  const std::vector<Level> levels = averaged(scaled_down(panorama, 4 * kLargestFace), cube.face);
+  const std::vector<CubeLevel> levels = averaged(scaled_down(panorama, 4 * kLargestFace), cube.face);
   cube.rgb.reserve(cube_size(cube.face));
   for (std::uint32_t k = 0; k < kCubeLevels; ++k) {
-    const Level level = k ? filtered(levels, cube.face >> k, static_cast<float>(k) / (kCubeLevels - 1)) : levels[0];
+    const CubeLevel level = k ? filtered(levels, cube.face >> k, static_cast<float>(k) / (kCubeLevels - 1)) : levels[0];
     for (const vec3& c : level.pixels)
       for (int i = 0; i < 3; ++i) cube.rgb.push_back(glm::packHalf1x16(glm::clamp(c[i], 0.0f, kLargestHalf)));
   }

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kVersion = 2;  // one more whenever filtered_cube gives other numbers
-constexpr std::uint32_t kLargestFace = 4096;
+constexpr std::uint32_t kLargestCachedFace = 4096;
 
 struct Header {
   std::array<char, 8> magic{'P', 'L', 'I', 'A', 'N', 'T', 'C', 'B'};
@@ -56,7 +56,7 @@ std::optional<Cube> read_cube(const fs::path& path, std::uint64_t panorama) {
   const Header expected;
   if (!file.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
   if (header.magic != expected.magic || header.version != kVersion || header.panorama != panorama) return std::nullopt;
-  if (!std::has_single_bit(header.face) || header.face >> (kCubeLevels - 1) == 0 || header.face > kLargestFace)
+  if (!std::has_single_bit(header.face) || header.face >> (kCubeLevels - 1) == 0 || header.face > kLargestCachedFace)
     return std::nullopt;
   std::error_code failed;
   const std::size_t count = cube_size(header.face);

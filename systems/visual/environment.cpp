@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kWidest = 1024;              // [pixels] of the panorama: as sharp as the cube's faces
 constexpr std::uint32_t kWidestForIrradiance = 256;  // [pixels]
 constexpr float kSunClip = 20.0f;  // [1] a sun above this share of the mean would make nine coefficients ring
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kPiOfSky = std::numbers::pi_v<float>;
 
 float luminance(vec3 c) {
   return dot(c, vec3(0.2126f, 0.7152f, 0.0722f));
@@ -28,15 +28,15 @@ vec3 pixel(const Panorama& p, std::uint32_t x, std::uint32_t y) {
 
 // Unit direction through the middle of a pixel.
 vec3 direction(const Panorama& p, std::uint32_t x, std::uint32_t y) {
-  const float azimuth = 2 * kPi * ((static_cast<float>(x) + 0.5f) / static_cast<float>(p.width) - 0.5f);
-  const float polar = kPi * (static_cast<float>(y) + 0.5f) / static_cast<float>(p.height);
+  const float azimuth = 2 * kPiOfSky * ((static_cast<float>(x) + 0.5f) / static_cast<float>(p.width) - 0.5f);
+  const float polar = kPiOfSky * (static_cast<float>(y) + 0.5f) / static_cast<float>(p.height);
   return {std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)};
 }
 
 // [sr] that a pixel of row y covers.
 float solid_angle(const Panorama& p, std::uint32_t y) {
-  const float step = kPi / static_cast<float>(p.height), top = step * static_cast<float>(y);
-  return (std::cos(top) - std::cos(top + step)) * 2 * kPi / static_cast<float>(p.width);
+  const float step = kPiOfSky / static_cast<float>(p.height), top = step * static_cast<float>(y);
+  return (std::cos(top) - std::cos(top + step)) * 2 * kPiOfSky / static_cast<float>(p.width);
 }
 
 // [1] How much of a soft, round-cornered light of angular size `size` [rad] about `center` is seen in direction d.
@@ -173,7 +173,7 @@ Surroundings Surroundings::make(const World& world) {
   const LampConstants& key = frame.lamps[0];
   const vec3 way = vec3(key.place) - (box.empty() ? vec3(0) : box.center());
   const float lux = luminance(vec3(key.color)) / (key.place.w > 0 ? std::max(dot(way, way), 1e-8f) : 1.0f);
-  frame.picture.x = 0.7f * kPi / std::max(lux + ambient, 1e-6f);
+  frame.picture.x = 0.7f * kPiOfSky / std::max(lux + ambient, 1e-6f);
   return made;
 }
 

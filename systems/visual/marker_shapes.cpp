@@ -7,7 +7,7 @@ namespace pliant {
 namespace {
 
 constexpr std::uint32_t kSides = 32, kRows = 16;
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kPiOfMarker = std::numbers::pi_v<float>;
 
 struct ProfilePoint {
   float radius, y;
@@ -19,7 +19,7 @@ void turn(MarkerMesh& mesh, const std::vector<ProfilePoint>& profile) {
   for (std::size_t row = 0; row + 1 < profile.size(); row += 2) {
     const std::uint32_t first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (std::uint32_t side = 0; side <= kSides; ++side) {
-      const float angle = 2 * kPi * static_cast<float>(side) / kSides, c = std::cos(angle), s = std::sin(angle);
+      const float angle = 2 * kPiOfMarker * static_cast<float>(side) / kSides, c = std::cos(angle), s = std::sin(angle);
       for (std::size_t end = row; end < row + 2; ++end) {
         const ProfilePoint& p = profile[end];
         mesh.vertices.push_back({{p.radius * c, p.y, p.radius * s}, {p.normal.x * c, p.normal.y, p.normal.x * s}});
@@ -39,7 +39,7 @@ MarkerMesh make_ball() {
   std::vector<ProfilePoint> profile;
   for (std::uint32_t row = 0; row < kRows; ++row)
     for (std::uint32_t end = row; end < row + 2; ++end) {
-      const float polar = kPi * static_cast<float>(end) / kRows, r = std::sin(polar), y = std::cos(polar);
+      const float polar = kPiOfMarker * static_cast<float>(end) / kRows, r = std::sin(polar), y = std::cos(polar);
       profile.push_back({r, y, {r, y}});
     }
   turn(mesh, profile);

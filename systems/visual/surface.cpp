@@ -23,12 +23,12 @@ struct Vertex {
 };
 
 // Block Placement of shaders/placement.glsl.
-struct Placement {
+struct MapPlacement {
   mat4 to_world, normal_to_world;
   glm::uvec4 object;
 };
 
-Placement placement_block(const mat4& to_world, std::uint32_t number, bool rides) {
+MapPlacement placement_block(const mat4& to_world, std::uint32_t number, bool rides) {
   return {to_world, mat4(glm::transpose(glm::inverse(mat3(to_world)))), {number, rides ? 1u : 0u, 0u, 0u}};
 }
 
@@ -123,7 +123,7 @@ Result<Surfaces> Surfaces::make(const World& world) {
                                item.stream.values().size(), item.replay.bytes() >> 20, largest >> 20)};
     made.boxes_.push_back(world_box(world.draw_meshes[drawable.mesh], item.to_world));
     item.number = static_cast<std::uint32_t>(made.items_.size()) + 1;
-    const Placement block = placement_block(item.to_world, item.number, false);
+    const MapPlacement block = placement_block(item.to_world, item.number, false);
     item.placement = gpu::Buffer::writable(&block, sizeof block);
     for (const Part& part : item.parts)
       made.has_glass_ = made.has_glass_ || made.materials_.transmits(part.run.material);
@@ -224,7 +224,7 @@ std::size_t Surfaces::upload() {
   changed_ = false;
   for (Item& item : items_) {
     if (item.moved) {
-      const Placement block = placement_block(item.to_world, item.number, item.rides);
+      const MapPlacement block = placement_block(item.to_world, item.number, item.rides);
       travelled += item.placement.write(0, &block, sizeof block);
       item.moved = false;
     }

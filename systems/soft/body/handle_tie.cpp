@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNoNode = 0xffffffffu;
 
 Eigen::Vector3d to_eigen(dvec3 v) {
   return {v.x, v.y, v.z};
@@ -16,7 +16,7 @@ Eigen::Vector3d to_eigen(dvec3 v) {
 }  // namespace
 
 HandleTie::HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first)
-    : attachment_(attachment), material_(material), first_(first), row_of_node_(tissue.moving(), kNone) {
+    : attachment_(attachment), material_(material), first_(first), row_of_node_(tissue.moving(), kNoNode) {
   ASSERT(attachment == Attachment::kSlave ? tissue.moving() == first : tissue.moving() > first);
 }
 
@@ -35,7 +35,7 @@ void HandleTie::assemble(Tissue& tissue, const RigidHandle& handle, double T, dv
 void HandleTie::slave(const Tissue& tissue, const RigidHandle& handle) {
   for (HandleRow& row : border_) row.value.setZero();
   for (const Tissue::Entry& entry : tissue.outer()) {
-    if (row_of_node_[entry.row] == kNone) {
+    if (row_of_node_[entry.row] == kNoNode) {
       row_of_node_[entry.row] = static_cast<std::uint32_t>(border_.size());
       border_.push_back({entry.row, Grip::Zero()});
     }

@@ -10,7 +10,7 @@ namespace pliant {
 namespace {
 
 constexpr double kTurnPerPart = 0.1;  // [rad] a free turn is followed in parts no larger than this
-constexpr int kMostParts = 256;
+constexpr int kMostStepParts = 256;
 
 void place_surface(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& surface_position) {
   const dmat3 r = glm::mat3_cast(pose.rotation);
@@ -56,7 +56,7 @@ double RigidState::kinetic_energy() const {
 
 dvec3 RigidState::free_turn(double T) const {
   const double spin = length(inverse_inertia_ * angular_momentum_);
-  const int parts = std::clamp(static_cast<int>(std::ceil(spin * T / kTurnPerPart)), 1, kMostParts);
+  const int parts = std::clamp(static_cast<int>(std::ceil(spin * T / kTurnPerPart)), 1, kMostStepParts);
   const double h = T / parts;
   dquat q = rotation_;
   for (int i = 0; i < parts; ++i) {

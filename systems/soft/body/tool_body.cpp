@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeadMass = 1e4;     // [kg] of what moves a handle that is told where to go: far above any tool's
 constexpr double kLeadInertia = 1e2;  // [kg m2]
 
-bool finite(const RigidMotion& motion) {
+bool all_finite(const RigidMotion& motion) {
   const dvec3 x = motion.pose.position;
   const dquat q = motion.pose.rotation;
   return std::isfinite(dot(x, x)) && std::isfinite(1.0 / glm::dot(q, q)) && motion.velocity.allFinite();
@@ -25,7 +25,7 @@ Vector6 way_between(const RigidMotion& from, const RigidMotion& to) {
 
 void ToolBody::set_device(const Pose& pose, const Vector6& velocity) {
   RigidMotion device{pose, velocity};
-  if (!finite(device)) return release_device();
+  if (!all_finite(device)) return release_device();
   device.pose.rotation = glm::normalize(pose.rotation);
   device_ = device;
 }

@@ -12,9 +12,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kApart = 0.25;      // [1] of the reach: presses are first chosen so far apart, then nearer together,
-constexpr double kAlike = 0.05;      // [1] down to where two of them look like one
-constexpr double kLeastShare = 0.1;  // [1] as in force_field: a reach that hardly meets a vertex still counts
+constexpr double kApart = 0.25;  // [1] of the reach: presses are first chosen so far apart, then nearer together,
+constexpr double kAlikeStiffness = 0.05;  // [1] down to where two of them look like one
+constexpr double kLeastShare = 0.1;       // [1] as in force_field: a reach that hardly meets a vertex still counts
 
 // The law's secant at a depth, its slope at none. [1]
 double secant(const RestoringLaw& law, double depth) {
@@ -190,7 +190,7 @@ void YieldingBody::list_presses(const std::vector<ContactPoint>& contacts,
     if (contacts[dent.contact].impulse.x > 0) deepest.push_back(&dent);
   std::stable_sort(deepest.begin(), deepest.end(), [](const Dent* a, const Dent* b) { return a->depth > b->depth; });
   out.count = 0;
-  for (double apart = kApart; apart > kAlike; apart *= 0.5)
+  for (double apart = kApart; apart > kAlikeStiffness; apart *= 0.5)
     for (const Dent* dent : deepest) {
       if (out.count == kMaxPresses) return;
       const PressPoint point = press_point(*dent, contacts, bodies, T);

@@ -9,12 +9,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kNearEdges = 2.5;  // [mean edges] along the surface: such neighbours never collide
-constexpr double kFlat = 0.05;      // [rad] edges between triangles that are nearer to one plane cannot touch
-constexpr double kHollow = 0.98;    // [1] cosine across a hollow edge: sharper ones are touched on their flanks
-constexpr double kSmooth = 0.8;     // [1] cosine between a vertex's normal and its triangles': else it is sharp
-constexpr int kRigid = 6;           // degrees of freedom
-constexpr float kRounding = 4e-7f;  // [1] of coordinates: boxes are single precision
+constexpr double kNearEdges = 2.5;   // [mean edges] along the surface: such neighbours never collide
+constexpr double kFlatShare = 0.05;  // [rad] edges between triangles that are nearer to one plane cannot touch
+constexpr double kHollow = 0.98;     // [1] cosine across a hollow edge: sharper ones are touched on their flanks
+constexpr double kSmooth = 0.8;      // [1] cosine between a vertex's normal and its triangles': else it is sharp
+constexpr int kRigid = 6;            // degrees of freedom
+constexpr float kRounding = 4e-7f;   // [1] of coordinates: boxes are single precision
 
 Box grown(const Box& box, float by) {
   Box b = box;
@@ -324,11 +324,11 @@ void CollisionMesh::find_rest_bend() {
   for (std::uint32_t v = 0; v < count; ++v) rest_.bend[v] /= weight[v];
 }
 
-// Depth lost to a flat edge that is left out: at most kFlat / 4 of its length.
+// Depth lost to a flat edge that is left out: at most kFlatShare / 4 of its length.
 void CollisionMesh::find_live_edges() {
   live_ = owned_;
   sharp_.assign(live_.size(), 0), supple_.assign(live_.size(), 0);
-  const double flat = std::cos(kFlat);
+  const double flat = std::cos(kFlatShare);
   for (std::uint32_t t = 0; t < live_.size(); ++t)
     for (int i = 0; i < 3; ++i) {
       if (!(owned_[t] & 8u << i)) continue;

@@ -6,16 +6,16 @@
 namespace pliant {
 namespace {
 
-constexpr double kSameSide = 0.7;    // [1] cosine: normals of one and the same contact
-constexpr double kCrease = 0.5;      // [1] cosine between triangles: no contact slides over a sharper edge
-constexpr int kMostTriangles = 8;    // walked over in a step
-constexpr double kParallel = 1e-2;   // [1] sine below which two edges have no normal of their own
-constexpr double kDeepest = 0.25;    // [mean edges] predicted to be deeper than this: it will not go on as it did
-constexpr double kLeast = 5e-3;      // [1] sine: normals that lean less than this are as they were
-constexpr double kDifference = 0.5;  // [mean edges]
-constexpr double kFlat = 0.01;       // [1] of both bends: what is flatter, or hollow, counts as if bent by that
-constexpr double kFlattest = 1e-6;   // [1/m] of flat on flat
-constexpr double kReach = 0.3;       // [mean edges] farther, a turning by differences says nothing
+constexpr double kSameSide = 0.7;        // [1] cosine: normals of one and the same contact
+constexpr double kCrease = 0.5;          // [1] cosine between triangles: no contact slides over a sharper edge
+constexpr int kMostTriangles = 8;        // walked over in a step
+constexpr double kParallelFaces = 1e-2;  // [1] sine below which two edges have no normal of their own
+constexpr double kDeepest = 0.25;        // [mean edges] predicted to be deeper than this: it will not go on as it did
+constexpr double kLeast = 5e-3;          // [1] sine: normals that lean less than this are as they were
+constexpr double kDifference = 0.5;      // [mean edges]
+constexpr double kFlatAngle = 0.01;      // [1] of both bends: what is flatter, or hollow, counts as if bent by that
+constexpr double kFlattest = 1e-6;       // [1/m] of flat on flat
+constexpr double kReach = 0.3;           // [mean edges] farther, a turning by differences says nothing
 
 struct Touch {
   SurfacePoint a, b;
@@ -128,7 +128,7 @@ std::optional<Touch> edge_touch(const FeaturePair& pair, const Surface& of_a, co
   const dvec3 a0 = pair.a.ahead(on_a.from) + offset, b0 = pair.b.ahead(on_b.from);
   const dvec3 e = pair.a.ahead(on_a.to) + offset - a0, f = pair.b.ahead(on_b.to) - b0, r = a0 - b0, n = cross(e, f);
   const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r), det = ee * ff - ef * ef;
-  if (!(det > kParallel * kParallel * ee * ff)) return {};
+  if (!(det > kParallelFaces * kParallelFaces * ee * ff)) return {};
   const double on_e = (ef * fr - er * ff) / det, on_f = (ee * fr - ef * er) / det;
   const double s = std::clamp(on_e, 0.0, 1.0), t = std::clamp(on_f, 0.0, 1.0);
   Touch touch{pair.a.point_on_edge(pair.feature_a, s), pair.b.point_on_edge(pair.feature_b, t)};
@@ -213,7 +213,7 @@ void find_place(const FeaturePair& pair, ContactPoint& contact) {
   } else if (b.sharp) {
     contact.over_a = dmat2(-1.0);
   } else {
-    const double least = std::max(kFlat * (largest(a.form) + largest(b.form)), kFlattest);
+    const double least = std::max(kFlatAngle * (largest(a.form) + largest(b.form)), kFlattest);
     const dmat2 A = raised(a.form, least), B = raised(b.form, least);
     contact.over_b = glm::inverse(A + B) * A;
     contact.over_a = contact.over_b - dmat2(1.0);

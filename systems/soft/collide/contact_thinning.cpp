@@ -7,12 +7,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kAlike = 0.9;    // [1] cosine between normals that push the same way
-constexpr double kGrowth = 1.1;   // [1] of the spacing, where too many are left: regular meshes lose half in one go
-constexpr double kSteady = 0.05;  // [edges] another must be deeper by so much to replace one of the last step
-constexpr double kTouches = 0.1;  // [edges] what is nearer touches already, and its neighbours would sink in unheld:
-constexpr double kDense = 0.5;    // [1] such contacts stand so much nearer together than those that only may touch
-constexpr double kWidest = 1e3;   // [1] spacings grow no further: by then one contact a direction is left
+constexpr double kAlike = 0.9;       // [1] cosine between normals that push the same way
+constexpr double kGrowth = 1.1;      // [1] of the spacing, where too many are left: regular meshes lose half in one go
+constexpr double kSteady = 0.05;     // [edges] another must be deeper by so much to replace one of the last step
+constexpr double kTouches = 0.1;     // [edges] what is nearer touches already, and its neighbours would sink in unheld:
+constexpr double kDenseShare = 0.5;  // [1] such contacts stand so much nearer together than those that only may touch
+constexpr double kWidest = 1e3;      // [1] spacings grow no further: by then one contact a direction is left
 
 using Run = std::vector<Candidate>::iterator;
 
@@ -27,7 +27,7 @@ struct Spacing {
   void widen() { edges *= kGrowth, least *= kGrowth; }
   double between(const Candidate& a, const Candidate& b) const {
     const double edge = std::min(a.edge, b.edge);
-    return std::max(edges * edge, std::max(a.gap, b.gap) < kTouches * edge ? kDense * least : least);
+    return std::max(edges * edge, std::max(a.gap, b.gap) < kTouches * edge ? kDenseShare * least : least);
   }
 };
 

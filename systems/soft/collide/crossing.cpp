@@ -7,20 +7,20 @@
 namespace pliant {
 namespace {
 
-using Cubic = std::array<double, 4>;  // c0 + c1 t + c2 t2 + c3 t3
+using TimeCubic = std::array<double, 4>;  // c0 + c1 t + c2 t2 + c3 t3
 
-double value(const Cubic& c, double t) {
+double value(const TimeCubic& c, double t) {
   return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
 
 // In Bernstein form over [0, 1] a polynomial stays within its coefficients: all positive, and there is no root.
-bool stays_positive(const Cubic& c) {
+bool stays_positive(const TimeCubic& c) {
   return c[0] > 0.0 && c[0] + c[1] / 3.0 > 0.0 && c[0] + (2.0 * c[1] + c[2]) / 3.0 > 0.0 &&
          c[0] + c[1] + c[2] + c[3] > 0.0;
 }
 
 // Where it stops rising or falling inside (0, 1): c1 + 2 c2 t + 3 c3 t2 = 0.
-int turning_points(const Cubic& c, std::array<double, 2>& t) {
+int turning_points(const TimeCubic& c, std::array<double, 2>& t) {
   const double qa = 3.0 * c[3], qb = c[2], qc = c[1];
   int count = 0;
   const auto keep = [&](double x) {
@@ -36,7 +36,7 @@ int turning_points(const Cubic& c, std::array<double, 2>& t) {
 }
 
 // The root of a falling stretch: regula falsi in its Illinois form, which is done at once where the motion is plain.
-double root(const Cubic& c, double lo, double hi) {
+double root(const TimeCubic& c, double lo, double hi) {
   double at_lo = value(c, lo), at_hi = value(c, hi);
   const double enough = 1e-14 * (at_lo - at_hi);
   int side = 0;
@@ -64,7 +64,7 @@ int find_crossings(const Moving& a, const Moving& p, const Moving& q, const Movi
   const dvec3 e = p.x - a.x, f = q.x - a.x, g = r.x - a.x;
   const dvec3 E = p.d - a.d, F = q.d - a.d, G = r.d - a.d;
   const dvec3 n0 = cross(e, f), n1 = cross(E, f) + cross(e, F), n2 = cross(E, F);
-  const Cubic c{dot(n0, g), dot(n0, G) + dot(n1, g), dot(n1, G) + dot(n2, g), dot(n2, G)};
+  const TimeCubic c{dot(n0, g), dot(n0, G) + dot(n1, g), dot(n1, G) + dot(n2, g), dot(n2, G)};
   if (stays_positive(c)) return 0;
   std::array<double, 2> turns{};
   const int turn_count = turning_points(c, turns);

@@ -6,9 +6,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kParallel = 1e-2;  // [1] sine below which two edges have no normal of their own
-constexpr double kLeaning = 0.05;   // [1] sine by which a triangle may lean over its edge
-constexpr double kSlack = 1e-6;     // [1] beyond the ends
+constexpr double kParallel = 1e-2;   // [1] sine below which two edges have no normal of their own
+constexpr double kLeaning = 0.05;    // [1] sine by which a triangle may lean over its edge
+constexpr double kEdgeSlack = 1e-6;  // [1] beyond the ends
 
 struct Feet {
   double a, b;  // [1] along either edge
@@ -20,7 +20,7 @@ std::optional<Feet> feet(dvec3 a0, dvec3 a1, dvec3 b0, dvec3 b1) {
   const double det = ee * ff - ef * ef;
   if (!(det > 0.0)) return {};
   const Feet s{(ef * fr - er * ff) / det, (ee * fr - ef * er) / det};
-  const double lo = -kSlack, hi = 1.0 + kSlack;
+  const double lo = -kEdgeSlack, hi = 1.0 + kEdgeSlack;
   if (s.a < lo || s.a > hi || s.b < lo || s.b > hi) return {};
   return Feet{std::clamp(s.a, 0.0, 1.0), std::clamp(s.b, 0.0, 1.0)};
 }

@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kSameSide = 0.5;   // [1] cosine: a normal that is still the one of the last step
-constexpr double kOtherFace = 0.8;  // [1] cosine below which a vertex has a further contact (in a corner)
+constexpr double kSameMeetingSide = 0.5;  // [1] cosine: a normal that is still the one of the last step
+constexpr double kOtherFace = 0.8;        // [1] cosine below which a vertex has a further contact (in a corner)
 constexpr std::uint32_t kMostOfVertex = 3;
 constexpr double kAtOnce = 4.0;   // [margins] what sinks in farther in one step,
 constexpr double kDeepens = 2.0;  // [1] beyond so many times how deep it was, did not
@@ -21,7 +21,8 @@ struct MeetingFilter {
   std::vector<Found>& out;
   Crossings crossings{};  // of what was missed
 
-  void take_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
+  void take_edges(const MeetingSide& a, std::uint32_t edge_a, const MeetingSide& b, std::uint32_t edge_b,
+                  const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     const ContactPoint* last = pair.memory.find(key);
     const bool met = came_from(pair.sides.find(key), m);
@@ -35,13 +36,13 @@ struct MeetingFilter {
   // Whether the last step saw it on this side. Nothing sinks in deep at once: where it would have, it has gone round a
   // corner, and is deep behind a face that it left.
   bool came_from(const KnownSide* side, const Meeting& m) const {
-    if (!side || dot(side->normal, m.normal) <= kSameSide) return false;
+    if (!side || dot(side->normal, m.normal) <= kSameMeetingSide) return false;
     return -m.gap <= kAtOnce * pair.margin + kDeepens * std::max(0.0, -side->gap);
   }
 
   bool began_inside() const { return pair.way != dvec3(0.0); }
-  bool leads_out(const Side& a, const Side& b, const Meeting& m) const {
-    return dot(a.index < b.index ? pair.way : -pair.way, m.normal) > kSameSide;
+  bool leads_out(const MeetingSide& a, const MeetingSide& b, const Meeting& m) const {
+    return dot(a.index < b.index ? pair.way : -pair.way, m.normal) > kSameMeetingSide;
   }
 
   // Whether what meets an edge of a sheet, pushed along `push` by it, is in front of it.
@@ -55,7 +56,7 @@ struct MeetingFilter {
 
   // Meetings of every vertex of body a with body b. In front, a vertex touches what it meets; behind, it touches what
   // it came from: the side of the last step, or, where there is none, the nearest if it really is inside.
-  void take_vertices(const Side& a, const Side& b, std::vector<VertexMeeting>& met) {
+  void take_vertices(const MeetingSide& a, const MeetingSide& b, std::vector<VertexMeeting>& met) {
     std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
       return x.vertex != y.vertex ? x.vertex < y.vertex : x.triangle < y.triangle;
     });
@@ -66,7 +67,7 @@ struct MeetingFilter {
     }
   }
 
-  void take_vertex(const Side& a, const Side& b, std::span<VertexMeeting> met) {
+  void take_vertex(const MeetingSide& a, const MeetingSide& b, std::span<VertexMeeting> met) {
     const std::uint32_t vertex = met.front().vertex;
     std::array<const ContactPoint*, kMostOfVertex> past;
     for (std::uint32_t k = 0; k < kMostOfVertex; ++k)
@@ -92,7 +93,7 @@ struct MeetingFilter {
     std::array<bool, kMostOfVertex> used{};
     for (std::uint32_t i = 0; i < count; ++i) {
       std::uint32_t best = kMostOfVertex;
-      double alike = kSameSide;
+      double alike = kSameMeetingSide;
       for (std::uint32_t k = 0; k < kMostOfVertex; ++k) {
         if (!past[k] || used[k] || dot(past[k]->normal, kept[i]->meeting.normal) <= alike) continue;
         alike = dot(past[k]->normal, kept[i]->meeting.normal);
@@ -107,7 +108,7 @@ struct MeetingFilter {
   }
 
   // Of the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
-  std::optional<VertexMeeting> side_to_return_to(const Side& a, const Side& b,
+  std::optional<VertexMeeting> side_to_return_to(const MeetingSide& a, const MeetingSide& b,
                                                  std::span<const VertexMeeting> met) const {
     std::array<const KnownSide*, kMostOfVertex> past;
     for (std::uint32_t k = 0; k < kMostOfVertex; ++k)
@@ -131,7 +132,7 @@ struct MeetingFilter {
     return *behind;
   }
 
-  bool inside(const Side& a, const Side& b, const VertexMeeting& m) const {
+  bool inside(const MeetingSide& a, const MeetingSide& b, const VertexMeeting& m) const {
     const double depth = -m.meeting.gap;
     if (a.index == b.index) return depth <= pair.margin && in_front_at_rest(b.collision_mesh.mesh(), m);
     if ((a.sheet() || b.sheet()) && !enters(m.meeting)) return false;
@@ -151,7 +152,8 @@ struct MeetingFilter {
   bool slips(const Meeting& m) const { return m.crosses && m.end_gap < -pair.margin; }
   void count(const Meeting& m) { crossings.add({1, m.when}); }
 
-  void take_missed_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const Meeting& m) {
+  void take_missed_edges(const MeetingSide& a, std::uint32_t edge_a, const MeetingSide& b, std::uint32_t edge_b,
+                         const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     if (!crosses(m)) return;
     if (pair.sides.find(key)) {
@@ -165,7 +167,7 @@ struct MeetingFilter {
   }
 
   // The first triangle that a vertex crosses, under a key that is still free, unless find() saw it on that side.
-  void take_missed_vertices(const Side& a, const Side& b, std::vector<VertexMeeting>& met) {
+  void take_missed_vertices(const MeetingSide& a, const MeetingSide& b, std::vector<VertexMeeting>& met) {
     std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
       if (x.vertex != y.vertex) return x.vertex < y.vertex;
       return x.meeting.gap != y.meeting.gap ? x.meeting.gap < y.meeting.gap : x.triangle < y.triangle;
@@ -181,12 +183,12 @@ struct MeetingFilter {
       out.push_back({a.index, b.index, false, m.vertex, m.triangle, m.meeting, pair.memory.find(*key), *key});
     }
   }
-  std::optional<std::uint64_t> free_key(const Side& a, const Side& b, const VertexMeeting& m) const {
+  std::optional<std::uint64_t> free_key(const MeetingSide& a, const MeetingSide& b, const VertexMeeting& m) const {
     std::optional<std::uint64_t> free;
     for (std::uint32_t k = kMostOfVertex; k-- > 0;) {
       const std::uint64_t key = vertex_key(a.index, b.index, m.vertex, k);
       const KnownSide* side = pair.sides.find(key);
-      if (side && dot(side->normal, m.meeting.normal) > kSameSide) return {};
+      if (side && dot(side->normal, m.meeting.normal) > kSameMeetingSide) return {};
       if (!side) free = key;
     }
     return free;
@@ -195,14 +197,16 @@ struct MeetingFilter {
 
 }  // namespace
 
-void take_contacts(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out) {
+void take_contacts(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
+                   std::vector<Found>& out) {
   MeetingFilter filter{pair, out};
   for (const EdgeMeeting& m : meetings.edges) filter.take_edges(a, m.edge_a, b, m.edge_b, m.meeting);
   filter.take_vertices(a, b, meetings.of_a);
   filter.take_vertices(b, a, meetings.of_b);
 }
 
-Crossings take_missed(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out) {
+Crossings take_missed(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
+                      std::vector<Found>& out) {
   MeetingFilter filter{pair, out};
   for (const EdgeMeeting& m : meetings.edges) filter.take_missed_edges(a, m.edge_a, b, m.edge_b, m.meeting);
   filter.take_missed_vertices(a, b, meetings.of_a);

@@ -30,8 +30,10 @@ struct PairView {
 };
 
 // Append to `out`; sort the meetings on the way.
-void take_contacts(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out);
+void take_contacts(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
+                   std::vector<Found>& out);
 // Of what only a solution brings about: what crosses, and was not seen on that side before.
-Crossings take_missed(const PairView& pair, const Side& a, const Side& b, Meetings& meetings, std::vector<Found>& out);
+Crossings take_missed(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
+                      std::vector<Found>& out);
 
 }  // namespace pliant

@@ -9,7 +9,7 @@ namespace {
 
 // [1] What the normals of a vertex and of the triangle that it touches may have in common at most. A sheet is touched
 // from its front, at its border from the side, too.
-double facing(const Side& a, std::uint32_t vertex) {
+double facing(const MeetingSide& a, std::uint32_t vertex) {
   if (!a.sheet()) return kFacing;
   return a.collision_mesh.at_border(vertex) ? 0.0 : -kFacing;
 }
@@ -18,7 +18,7 @@ struct MeetingSearch {
   Reach reach;
   Meetings& out;
 
-  void try_vertex(const Side& a, std::uint32_t vertex, const Side& b, std::uint32_t triangle,
+  void try_vertex(const MeetingSide& a, std::uint32_t vertex, const MeetingSide& b, std::uint32_t triangle,
                   const RelativeSweep& sweep, std::vector<VertexMeeting>& of_vertices) const {
     if (dot(a.collision_mesh.vertex_normal(vertex), b.collision_mesh.normal(triangle)) > facing(a, vertex)) return;
     if (!sweep.meet(a.collision_mesh.vertex_box(vertex), b.collision_mesh.box(triangle))) return;
@@ -31,7 +31,8 @@ struct MeetingSearch {
       of_vertices.push_back({vertex, triangle, *m});
   }
 
-  void try_edges(const Side& a, std::uint32_t edge_a, const Side& b, std::uint32_t edge_b, const RelativeSweep& sweep) {
+  void try_edges(const MeetingSide& a, std::uint32_t edge_a, const MeetingSide& b, std::uint32_t edge_b,
+                 const RelativeSweep& sweep) {
     if (dot(a.collision_mesh.edge_normal(edge_a), b.collision_mesh.edge_normal(edge_b)) > kFacing) return;
     const CollisionEdge& ea = a.collision_mesh.edges()[edge_a];
     const CollisionEdge& eb = b.collision_mesh.edges()[edge_b];
@@ -49,7 +50,8 @@ struct MeetingSearch {
     if (m) out.edges.push_back({edge_a, edge_b, *m});
   }
 
-  void try_triangles(const Side& a, std::uint32_t s, const Side& b, std::uint32_t t, const RelativeSweep& sweep) {
+  void try_triangles(const MeetingSide& a, std::uint32_t s, const MeetingSide& b, std::uint32_t t,
+                     const RelativeSweep& sweep) {
     const unsigned of_s = a.collision_mesh.live(s), of_t = b.collision_mesh.live(t);
     const RelativeSweep back = sweep.reversed();
     for (int i = 0; i < 3; ++i) {
@@ -73,7 +75,7 @@ struct MeetingSearch {
 
 }  // namespace
 
-void find_meetings(const Side& a, const Side& b, const Reach& reach, float strayed, Meetings& out) {
+void find_meetings(const MeetingSide& a, const MeetingSide& b, const Reach& reach, float strayed, Meetings& out) {
   out.edges.clear(), out.of_a.clear(), out.of_b.clear();
   MeetingSearch search{reach, out};
   const auto box_reach = static_cast<float>(std::max(reach.front, reach.behind));

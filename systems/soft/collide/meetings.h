@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-struct Side {
+struct MeetingSide {
   std::uint32_t index;  // of the body
   const Body& body;
   const CollisionMesh& collision_mesh;
@@ -34,6 +34,6 @@ struct Meetings {
 
 // Fills `out`; a and b may be the same body. Triangles that have strayed by no more than `strayed` [m] together are
 // left out (CollisionMesh::strayed).
-void find_meetings(const Side& a, const Side& b, const Reach& reach, float strayed, Meetings& out);
+void find_meetings(const MeetingSide& a, const MeetingSide& b, const Reach& reach, float strayed, Meetings& out);
 
 }  // namespace pliant

@@ -161,7 +161,7 @@ struct Proximity::Parts {
     PairPast past = known != touching.end() ? known->second : PairPast{};
     if (!late && !(seen[i] && seen[k])) past.deepest = std::numeric_limits<double>::infinity();
     const PairView pair = view_of(i, k, past);
-    const Side a{i, *bodies[i], collision_meshes[i]}, b{k, *bodies[k], collision_meshes[k]};
+    const MeetingSide a{i, *bodies[i], collision_meshes[i]}, b{k, *bodies[k], collision_meshes[k]};
     const std::size_t first = found.size();
     // What find() saw moving within a margin of where it does now it has not missed.
     find_meetings(a, b, pair.reach, late ? static_cast<float>(pair.margin) : -1.0f, meetings);

@@ -6,11 +6,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kBulge = 1e-3;         // [diagonals] a vertex may be so far in front of a face: rounding, flat caps
-constexpr double kMostTests = 5e7;      // faces times vertices; larger meshes count as not convex
-constexpr double kMostEdgePairs = 1e5;  // where there are more, normals are dense
-constexpr double kParallel = 1e-6;      // [1] squared sine below which two edges span no axis
-constexpr double kShorter = 1e-6;       // [1] an axis must be shorter by so much to replace an earlier one
+constexpr double kBulge = 1e-3;          // [diagonals] a vertex may be so far in front of a face: rounding, flat caps
+constexpr double kMostTests = 5e7;       // faces times vertices; larger meshes count as not convex
+constexpr double kMostEdgePairs = 1e5;   // where there are more, normals are dense
+constexpr double kParallelEdges = 1e-6;  // [1] squared sine below which two edges span no axis
+constexpr double kShorter = 1e-6;        // [1] an axis must be shorter by so much to replace an earlier one
 
 struct Extent {
   double low = 1e300, high = -1e300;  // [m]
@@ -59,7 +59,7 @@ void consider_edges(Way& way) {
   for (const CollisionEdge& of_a : way.a.edges())
     for (const CollisionEdge& of_b : way.b.edges()) {
       const dvec3 e = along(way.a, of_a), f = along(way.b, of_b), n = cross(e, f);
-      if (!(dot(n, n) > kParallel * dot(e, e) * dot(f, f))) continue;
+      if (!(dot(n, n) > kParallelEdges * dot(e, e) * dot(f, f))) continue;
       way.consider(normalize(n));
       way.consider(-normalize(n));
     }

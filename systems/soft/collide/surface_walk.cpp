@@ -5,8 +5,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostTriangles = 16;  // gone over; a way of an edge or two needs fewer
-constexpr double kCrease = 0.5;     // [1] cosine between triangles: sharper edges end a surface
+constexpr int kMostWalked = 16;      // gone over; a way of an edge or two needs fewer
+constexpr double kWalkCrease = 0.5;  // [1] cosine between triangles: sharper edges end a surface
 
 struct Facet {
   uvec3 corners;
@@ -30,7 +30,7 @@ dvec3 laid_flat(dvec3 by, const Facet& facet) {
 }  // namespace
 
 std::optional<SurfacePoint> walk(const Body& body, SurfacePoint p, dvec3 by) {
-  for (int gone = 0; gone < kMostTriangles; ++gone) {
+  for (int gone = 0; gone < kMostWalked; ++gone) {
     const Facet facet = facet_at(body, p.triangle);
     const double nn = dot(facet.normal, facet.normal);
     if (!(nn > 0.0)) return {};
@@ -51,7 +51,7 @@ std::optional<SurfacePoint> walk(const Body& body, SurfacePoint p, dvec3 by) {
     const std::uint32_t next = body.collision_mesh->across[p.triangle][(left_behind + 1) % 3];
     if (next == kBorder) return {};
     const Facet beyond = facet_at(body, next);
-    if (!(dot(facet.normal, beyond.normal) > kCrease * length(facet.normal) * length(beyond.normal))) return {};
+    if (!(dot(facet.normal, beyond.normal) > kWalkCrease * length(facet.normal) * length(beyond.normal))) return {};
     dvec3 there(0.0);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)

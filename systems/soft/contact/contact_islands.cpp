@@ -1,36 +1,13 @@
 #include "systems/soft/contact/contact_islands.h"
 
-#include <algorithm>
-#include <numeric>
+#include "runtime/disjoint_sets.h"
 
 namespace pliant {
-namespace {
-
-// Disjoint sets of bodies; a set is known by its lowest member.
-class BodySets {
- public:
-  explicit BodySets(std::size_t bodies) : parent_(bodies) {
-    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-  }
-  std::uint32_t find(std::uint32_t body) {
-    while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
-    return body;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-}  // namespace
 
 void split_contacts(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                     ContactProblem& problem) {
   const auto joins = [&](std::uint32_t b) { return bodies[b]->size() > 0 || bodies[b]->yields(); };
-  BodySets sets(bodies.size());
+  DisjointSets sets(bodies.size());
   for (const ContactPoint& c : contacts)
     if (joins(c.body_a) && joins(c.body_b)) sets.join(c.body_a, c.body_b);
 

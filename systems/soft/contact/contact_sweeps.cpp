@@ -24,7 +24,7 @@ void clamp_to_disc(double& x, double& y, double radius) {
 }
 
 // One contact with all others held: u = w lambda + c.
-struct Local {
+struct LocalSolve {
   dmat3 w;       // symmetric
   dvec3 c;       // [m/s]
   double mu;     // [1]
@@ -157,7 +157,7 @@ void ContactSweeps::end_slips() {
 void ContactSweeps::relax(int i) {
   double* const l = &p_.impulse[3 * i];
   const dvec3 u = velocity(i), before(l[0], l[1], l[2]);
-  Local local;
+  LocalSolve local;
   local.lambda = impulse(i);
   if (local.lambda.x == 0.0 && u.x >= 0.0) return;
   if (!movable(i)) return;

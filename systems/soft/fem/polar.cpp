@@ -8,10 +8,10 @@
 namespace pliant {
 namespace {
 
-constexpr int kNewtonSteps = 6;
-constexpr double kConverged = 1e-6;  // [rad] a step this small leaves an error of its square
-constexpr double kCertain = 1e-7;    // [1] smallest det H over (tr H / 3)^3 that still counts as positive
-constexpr double kTie = 1e-9;        // [1] of the largest eigenvalue: how close eigenvalues must be to count as equal
+constexpr int kPolarSteps = 6;
+constexpr double kPolarConverged = 1e-6;  // [rad] a step this small leaves an error of its square
+constexpr double kCertainPolar = 1e-7;    // [1] smallest det H over (tr H / 3)^3 that still counts as positive
+constexpr double kTie = 1e-9;  // [1] of the largest eigenvalue: how close eigenvalues must be to count as equal
 
 using Matrix4 = std::array<std::array<double, 4>, 4>;
 
@@ -86,7 +86,7 @@ void extract_rotation_globally(const dmat3& F, dquat& q) {
 
 void extract_rotation(const dmat3& F, dquat& q) {
   const dquat guess = q;
-  for (int step = 0; step < kNewtonSteps; ++step) {
+  for (int step = 0; step < kPolarSteps; ++step) {
     const dmat3 B = transpose(mat3_cast(q)) * F;
     const double trace = B[0][0] + B[1][1] + B[2][2];
     const dvec3 a(B[1][2] - B[2][1], B[2][0] - B[0][2], B[0][1] - B[1][0]);
@@ -97,12 +97,12 @@ void extract_rotation(const dmat3& F, dquat& q) {
     const double czz = xx * yy - xy * xy, cyz = xy * xz - xx * yz, cyy = xx * zz - xz * xz;
     const double det = xx * cxx + xy * cxy + xz * cxz;
     const double mean = (xx + yy + zz) / 3;
-    if (!(xx > 0 && czz > 0 && det > kCertain * mean * mean * mean)) break;
+    if (!(xx > 0 && czz > 0 && det > kCertainPolar * mean * mean * mean)) break;
     const dvec3 w =
         dvec3(cxx * a.x + cxy * a.y + cxz * a.z, cxy * a.x + cyy * a.y + cyz * a.z, cxz * a.x + cyz * a.y + czz * a.z) /
         det;
     q = normalize(q * dquat(1, 0.5 * w.x, 0.5 * w.y, 0.5 * w.z));
-    if (dot(w, w) <= kConverged * kConverged) return;
+    if (dot(w, w) <= kPolarConverged * kPolarConverged) return;
   }
   q = guess;
   extract_rotation_globally(F, q);

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNoElement = 0xffffffffu;
 constexpr double kFeather = 1e-6;  // [1] of the mean: mass of a node that only flat elements hold, so that A is regular
 
 // `to` (row major) += p_i c_j^T + q_j c_i^T + d I, with p = V lambda c, q = V mu c, d = V mu b_i . b_j: one K'_ij.
@@ -120,7 +120,7 @@ void Tissue::lay_out() {
     for (int a = 0; a < 4; ++a)
       for (int b = a; b < 4; ++b) {
         const std::uint32_t i = tet[a], j = tet[b];
-        slots[k++] = j >= end      ? kNone
+        slots[k++] = j >= end      ? kNoElement
                      : j < moving_ ? inner_.find(i, j)
                      : i < moving_ ? place(outer, i, j)
                                    : place(corner, i, j);
@@ -130,7 +130,7 @@ void Tissue::lay_out() {
 }
 
 double* Tissue::block(std::uint32_t row, std::uint32_t column, std::uint32_t slot) {
-  if (slot == kNone) return nullptr;
+  if (slot == kNoElement) return nullptr;
   return column < moving_ ? inner_.value[slot].data()
          : row < moving_  ? outer_[slot].value.data()
                           : corner_[slot].value.data();

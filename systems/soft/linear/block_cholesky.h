@@ -44,7 +44,7 @@ class BlockCholesky final : public LinearSolver {
     int rest() const { return strips - columns / kStrip; }  // strips of the update
   };
 
-  Panel panel(const Front& f) const { return {factor_[f.panel].lane, f.columns, f.strips}; }
+  FactorPanel panel(const Front& f) const { return {factor_[f.panel].lane, f.columns, f.strips}; }
   void place_sources(const BlockMatrix& a, const Elimination& e);
   void assemble(const Front& f, const BlockMatrix& a, double* panel) const;
   void add_update(const Front& child, const double* update, const Front& parent, double* panel, double* triangle);

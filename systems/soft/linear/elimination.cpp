@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffff;
+constexpr std::uint32_t kNoParent = 0xffffffff;
 
 std::vector<std::uint32_t> minimum_degree(const BlockMatrix& a) {
   const int n = static_cast<int>(a.size);
@@ -30,14 +30,14 @@ std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t>& order) {
 // Liu's elimination tree with path compression: parent of each column.
 std::vector<std::uint32_t> elimination_tree(const BlockMatrix& a, const std::vector<std::uint32_t>& old_of_new,
                                             const std::vector<std::uint32_t>& new_of_old) {
-  std::vector<std::uint32_t> parent(a.size, kNone), ancestor(a.size, kNone);
+  std::vector<std::uint32_t> parent(a.size, kNoParent), ancestor(a.size, kNoParent);
   for (std::uint32_t row = 0; row < a.size; ++row) {
     const std::uint32_t old = old_of_new[row];
     for (std::uint32_t k = a.first[old]; k < a.first[old + 1]; ++k)
       for (std::uint32_t c = new_of_old[a.column[k]]; c < row;) {
         const std::uint32_t next = ancestor[c];
         ancestor[c] = row;
-        if (next == kNone) {
+        if (next == kNoParent) {
           parent[c] = row;
           break;
         }
@@ -49,9 +49,9 @@ std::vector<std::uint32_t> elimination_tree(const BlockMatrix& a, const std::vec
 
 std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
   const auto n = static_cast<std::uint32_t>(parent.size());
-  std::vector<std::uint32_t> child(n, kNone), sibling(n, kNone), roots, order;
+  std::vector<std::uint32_t> child(n, kNoParent), sibling(n, kNoParent), roots, order;
   for (std::uint32_t c = n; c-- > 0;) {
-    if (parent[c] == kNone) {
+    if (parent[c] == kNoParent) {
       roots.push_back(c);
     } else {
       sibling[c] = child[parent[c]];
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
     path.push_back(root);
     while (!path.empty()) {
       const std::uint32_t top = path.back();
-      if (child[top] != kNone) {
+      if (child[top] != kNoParent) {
         path.push_back(child[top]);
         child[top] = sibling[path.back()];
       } else {
@@ -86,7 +86,7 @@ std::vector<std::vector<std::uint32_t>> column_rows(const BlockMatrix& a, const 
       if (const std::uint32_t r = e.new_of_old[a.column[k]]; r > c) rows[c].push_back(r);
     std::sort(rows[c].begin(), rows[c].end());
     rows[c].erase(std::unique(rows[c].begin(), rows[c].end()), rows[c].end());
-    if (parent[c] == kNone) continue;
+    if (parent[c] == kNoParent) continue;
     auto& up = rows[parent[c]];  // children's rows arrive before the parent's own are thinned out
     up.insert(up.end(), rows[c].begin() + 1, rows[c].end());
   }
@@ -117,7 +117,7 @@ bool worth_merging(const Candidate& s, const Candidate& parent) {
 std::vector<Supernode> merge_columns(std::vector<std::vector<std::uint32_t>> rows) {
   std::vector<Candidate> stack;
   for (std::uint32_t c = 0; c < rows.size(); ++c) {
-    Candidate top{{c, 1, std::move(rows[c]), kNone}, 0};
+    Candidate top{{c, 1, std::move(rows[c]), kNoParent}, 0};
     top.entries = 1.0 + static_cast<double>(top.node.below.size());
     while (!stack.empty()) {
       const Candidate& last = stack.back();

@@ -101,7 +101,7 @@ PLIANT_INLINE bool factorise_tile(double* tile, int width, double* reciprocal) {
 }
 
 template <int kBytes>
-PLIANT_INLINE bool factorise_panel_for(double* data, Panel panel, double* reciprocal) {
+PLIANT_INLINE bool factorise_panel_for(double* data, FactorPanel panel, double* reciprocal) {
   alignas(64) double tile[kStrip * kStrip];
   const int stride = kStrip * panel.columns;
   for (int begin = 0; begin < panel.columns; begin += kStrip) {
@@ -130,7 +130,7 @@ PLIANT_INLINE bool factorise_panel_for(double* data, Panel panel, double* recipr
 }
 
 template <int kBytes>
-PLIANT_INLINE void update_triangle_for(Panel panel, double* triangle) {
+PLIANT_INLINE void update_triangle_for(FactorPanel panel, double* triangle) {
   alignas(64) double tile[kStrip * kStrip];
   const int stride = kStrip * panel.columns, above = panel.columns / kStrip;
   for (int i = above; i < panel.strips; ++i)
@@ -145,7 +145,7 @@ PLIANT_INLINE void update_triangle_for(Panel panel, double* triangle) {
 }
 
 template <int kBytes>
-PLIANT_INLINE void forward_for(Panel panel, const double* reciprocal, double* x) {
+PLIANT_INLINE void forward_for(FactorPanel panel, const double* reciprocal, double* x) {
   const int stride = kStrip * panel.columns;
   for (int i = 0; i < panel.strips; ++i) {
     const double* const strip = panel.data + static_cast<std::ptrdiff_t>(i) * stride;
@@ -161,7 +161,7 @@ PLIANT_INLINE void forward_for(Panel panel, const double* reciprocal, double* x)
 }
 
 template <int kBytes>
-PLIANT_INLINE void backward_for(Panel panel, const double* reciprocal, double* x, double* sums) {
+PLIANT_INLINE void backward_for(FactorPanel panel, const double* reciprocal, double* x, double* sums) {
   const int stride = kStrip * panel.columns;
   std::fill(sums, sums + stride, 0.0);
   for (int i = panel.strips - 1; i >= 0; --i) {
@@ -185,7 +185,7 @@ PLIANT_INLINE void backward_for(Panel panel, const double* reciprocal, double* x
 }
 
 template <int kBytes>
-PLIANT_INLINE void forward_many_for(Panel panel, const double* reciprocal, double* x) {
+PLIANT_INLINE void forward_many_for(FactorPanel panel, const double* reciprocal, double* x) {
   alignas(64) double tile[kStrip * kStrip];
   const int stride = kStrip * panel.columns;
   for (int i = 0; i < panel.strips; ++i) {
@@ -204,7 +204,7 @@ PLIANT_INLINE void forward_many_for(Panel panel, const double* reciprocal, doubl
 }
 
 template <int kBytes>
-PLIANT_INLINE void backward_many_for(Panel panel, const double* reciprocal, double* x) {
+PLIANT_INLINE void backward_many_for(FactorPanel panel, const double* reciprocal, double* x) {
   alignas(64) double tile[kStrip * kStrip];
   const int stride = kStrip * panel.columns;
   for (int begin = (panel.columns - 1) / kStrip * kStrip; begin >= 0; begin -= kStrip) {
@@ -239,15 +239,15 @@ PLIANT_INLINE void add_gram_for(const double* x, int x_step, const double* y, in
 #define GRAM(bytes) add_gram_for<bytes>(x, x_step, y, y_step, rows, tile)
 #define BYTES(bytes) bytes
 
-PLIANT_KERNEL(bool, factorise_panel, (double* data, Panel panel, double* reciprocal), (data, panel, reciprocal),
+PLIANT_KERNEL(bool, factorise_panel, (double* data, FactorPanel panel, double* reciprocal), (data, panel, reciprocal),
               FACTORISE)
-PLIANT_KERNEL(void, update_triangle, (Panel panel, double* triangle), (panel, triangle), UPDATE)
-PLIANT_KERNEL(void, forward, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x), FORWARD)
-PLIANT_KERNEL(void, backward, (Panel panel, const double* reciprocal, double* x, double* sums),
+PLIANT_KERNEL(void, update_triangle, (FactorPanel panel, double* triangle), (panel, triangle), UPDATE)
+PLIANT_KERNEL(void, forward, (FactorPanel panel, const double* reciprocal, double* x), (panel, reciprocal, x), FORWARD)
+PLIANT_KERNEL(void, backward, (FactorPanel panel, const double* reciprocal, double* x, double* sums),
               (panel, reciprocal, x, sums), BACKWARD)
-PLIANT_KERNEL(void, forward_many, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
+PLIANT_KERNEL(void, forward_many, (FactorPanel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
               FORWARD_MANY)
-PLIANT_KERNEL(void, backward_many, (Panel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
+PLIANT_KERNEL(void, backward_many, (FactorPanel panel, const double* reciprocal, double* x), (panel, reciprocal, x),
               BACKWARD_MANY)
 PLIANT_KERNEL(void, add_gram, (const double* x, int x_step, const double* y, int y_step, int rows, double* tile),
               (x, x_step, y, y_step, rows, tile), GRAM)

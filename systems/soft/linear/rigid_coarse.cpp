@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffff;
+constexpr std::uint32_t kNoGroup = 0xffffffff;
 constexpr std::uint32_t kGroupNodes = 40;  // fewer: better corrections, but a coarse system that costs more
 constexpr double kFaintest = 1e-8;         // [1] of a group's stiffness against turning, added to it
 
@@ -26,19 +26,19 @@ std::vector<std::vector<std::uint32_t>> neighbours(const HalfPattern& pattern) {
 // Balls of nodes grown breadth first; what is left over too small joins a neighbour.
 std::vector<std::uint32_t> grow_groups(const HalfPattern& pattern, std::uint32_t& count) {
   const auto next_to = neighbours(pattern);
-  std::vector<std::uint32_t> group(pattern.size(), kNone), ball;
+  std::vector<std::uint32_t> group(pattern.size(), kNoGroup), ball;
   count = 0;
   for (std::uint32_t seed = 0; seed < pattern.size(); ++seed) {
-    if (group[seed] != kNone) continue;
+    if (group[seed] != kNoGroup) continue;
     ball.assign(1, seed);
     group[seed] = count;
-    std::uint32_t other = kNone;
+    std::uint32_t other = kNoGroup;
     for (std::size_t head = 0; head < ball.size(); ++head)
       for (const std::uint32_t j : next_to[ball[head]]) {
-        if (group[j] == kNone && ball.size() < kGroupNodes) group[j] = count, ball.push_back(j);
+        if (group[j] == kNoGroup && ball.size() < kGroupNodes) group[j] = count, ball.push_back(j);
         if (group[j] < count) other = group[j];
       }
-    if (ball.size() < kGroupNodes / 3 && other != kNone)
+    if (ball.size() < kGroupNodes / 3 && other != kNoGroup)
       for (const std::uint32_t i : ball) group[i] = other;
     else
       ++count;

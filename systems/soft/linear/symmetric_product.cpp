@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr Eigen::Index kTogether = 64;  // rows of all columns that stay in the cache while tiles are summed
+constexpr Eigen::Index kColumnsTogether = 64;  // rows of all columns that stay in the cache while tiles are summed
 
 struct alignas(64) Tile {
   double value[kStrip * kStrip] = {};  // column after column
@@ -32,8 +32,8 @@ Eigen::MatrixXd symmetric_product(const Rows& a, const Rows& b) {
     return symmetric_product(padded(a, columns), padded(b, columns)).topLeftCorner(a.cols(), a.cols());
 
   std::vector<Tile> tiles(static_cast<std::size_t>(strips * (strips + 1) / 2));
-  for (Eigen::Index row = 0; row < a.rows(); row += kTogether) {
-    const auto rows = static_cast<int>(std::min(kTogether, a.rows() - row));
+  for (Eigen::Index row = 0; row < a.rows(); row += kColumnsTogether) {
+    const auto rows = static_cast<int>(std::min(kColumnsTogether, a.rows() - row));
     Tile* tile = tiles.data();
     for (Eigen::Index i = 0; i < strips; ++i)
       for (Eigen::Index j = 0; j <= i; ++j, ++tile)

@@ -8,19 +8,19 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kFar = 0xffffffff;
+constexpr std::uint32_t kNotReached = 0xffffffff;
 
 // How many bodies away from the tool; what cannot move passes nothing on.
 std::vector<std::uint32_t> distances(const FinishedStep& step, std::uint32_t tool) {
-  std::vector<std::uint32_t> distance(step.bodies.size(), kFar);
+  std::vector<std::uint32_t> distance(step.bodies.size(), kNotReached);
   distance[tool] = 0;
   for (bool changed = true; changed;) {
     changed = false;
     for (const ContactPoint& c : step.contacts) {
       if (step.bodies[c.body_a]->size() == 0 || step.bodies[c.body_b]->size() == 0) continue;
       std::uint32_t &a = distance[c.body_a], &b = distance[c.body_b];
-      if (a != kFar && a + 1 < b) b = a + 1, changed = true;
-      if (b != kFar && b + 1 < a) a = b + 1, changed = true;
+      if (a != kNotReached && a + 1 < b) b = a + 1, changed = true;
+      if (b != kNotReached && b + 1 < a) a = b + 1, changed = true;
     }
   }
   return distance;
@@ -57,7 +57,7 @@ std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int m
   for (std::size_t i = 0; i < step.contacts.size(); ++i) {
     const ContactPoint& c = step.contacts[i];
     const std::uint32_t nearest = std::min(distance[c.body_a], distance[c.body_b]);
-    if (nearest != kFar && !passed_by(step, i))
+    if (nearest != kNotReached && !passed_by(step, i))
       order.push_back({nearest, length(c.impulse), c.gap, static_cast<int>(i)});
   }
   // What carries force first, wherever it is: what is left out of that could not answer.
