@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "content/keys/stated.h"
+
 namespace pliant {
 
 namespace {
@@ -29,6 +31,7 @@ Status make_touchable_surface(Level& level, std::int32_t node, const DeformableP
   it.soft_body.reset();
   it.rigid_body.reset();
   it.handle.reset();
+  for (const char* gone : {"soft_body", "rigid_body", "handle", "deformable"}) forget_stated(it.stated, gone);
   it.deformable = Deformable{};
   static_cast<DeformableParameters&>(*it.deformable) = parameters;
   return Done{};
@@ -39,6 +42,7 @@ Status make_soft(Level& level, std::int32_t node, const SoftBodyParameters& para
   LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
   it.deformable.reset();
   it.rigid_body.reset();
+  for (const char* gone : {"deformable", "rigid_body", "soft_body"}) forget_stated(it.stated, gone);
   it.soft_body = SoftBody{};
   static_cast<SoftBodyParameters&>(*it.soft_body) = parameters;
   return Done{};

@@ -21,7 +21,7 @@ namespace pliant {
 namespace {
 
 // What the compressions of OpenEXR reach on a flat colour is below this; a file that claims more pixels is damaged.
-constexpr std::int64_t kPixelsPerByte = 256, kFreePixels = 1 << 16;
+constexpr std::int64_t kExrPixelsPerByte = 256, kFreePixels = 1 << 16;
 // The library keeps up to 256 rows of all channels at once.
 constexpr std::int64_t kMaxRowBlock = std::int64_t{256} << 20;  // [byte]
 
@@ -53,7 +53,7 @@ Status check_header(const ExrHeader& header, std::size_t size, const std::string
       static_cast<std::uint64_t>(header.width * header.height) > most(limits::kPanoramaPixels))
     return Error{name, fmt::format("has {} x {} pixels; use at most {} x {}", header.width, header.height,
                                    kMaxPanoramaWidth, most(limits::kPanoramaPixels) / kMaxPanoramaWidth)};
-  if (header.width * header.height > kFreePixels + kPixelsPerByte * static_cast<std::int64_t>(size))
+  if (header.width * header.height > kFreePixels + kExrPixelsPerByte * static_cast<std::int64_t>(size))
     return Error{
         name, fmt::format("claims {} x {} pixels in {} bytes; the file is damaged", header.width, header.height, size)};
   std::int64_t pixel = 0;

@@ -10,9 +10,9 @@ namespace pliant {
 
 namespace {
 
-class Reader {
+class ByteReader {
  public:
-  explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
   bool fits(std::size_t count) const { return count <= bytes_.size() - at_; }
   bool at_end() const { return at_ == bytes_.size(); }
   std::optional<std::int32_t> integer() {
@@ -44,7 +44,7 @@ class Reader {
 
 // chlist: name, type (0 uint, 1 half, 2 float), linear flag and padding, x and y sampling; ended by an empty name.
 bool read_channels(std::span<const std::uint8_t> value, ExrHeader& header) {
-  Reader in(value);
+  ByteReader in(value);
   while (true) {
     const std::optional<std::string> name = in.text();
     if (!name) return false;
@@ -89,7 +89,7 @@ std::optional<std::size_t> size_of(const std::string& type) {
 
 // stringvector: length and characters, again and again.
 bool read_strings(std::span<const std::uint8_t> value) {
-  Reader in(value);
+  ByteReader in(value);
   while (!in.at_end()) {
     const std::optional<std::int32_t> length = in.integer();
     if (!length || *length < 0 || !in.fits(static_cast<std::size_t>(*length))) return false;
@@ -104,7 +104,7 @@ Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std
   const auto damaged = [&](const std::string& what) {
     return Error{name, what + "; the file is damaged, save it again"};
   };
-  Reader in(bytes);
+  ByteReader in(bytes);
   const std::optional<std::int32_t> magic = in.integer(), version = in.integer();
   if (!magic || !version || *magic != 20000630) return Error{name, "is no OpenEXR file; convert the panorama to .exr"};
   ExrHeader header;
@@ -132,7 +132,7 @@ Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std
           return damaged("has a channel list that cannot be read");
         has_channels |= ours;
       }
-      Reader fields(value);
+      ByteReader fields(value);
       if (*type == "preview") {
         const std::optional<std::int32_t> width = fields.integer(), height = fields.integer();
         if (!width || !height || *width < 0 || *height < 0 ||

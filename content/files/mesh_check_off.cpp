@@ -12,7 +12,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-struct Header {
+struct OffHeader {
   bool texture = false, normal = false, homogeneous = false;
   std::int64_t vertices = 0, faces = 0;
 };
@@ -30,8 +30,8 @@ bool row(TetText& text, Words& words) {
   return true;
 }
 
-Result<Header> read_header(TetText& text) {
-  Header header;
+Result<OffHeader> read_off_header(TetText& text) {
+  OffHeader header;
   Words words;
   if (!row(text, words)) return Error{"", "is empty; export it again"};
   std::string_view key = words[0];
@@ -71,7 +71,7 @@ void append(Bytes& out, std::string_view text) {
   out.insert(out.end(), text.begin(), text.end());
 }
 
-Status copy_vertex(const Header& header, const Words& words, std::int64_t v, Bytes& out) {
+Status copy_vertex(const OffHeader& header, const Words& words, std::int64_t v, Bytes& out) {
   const std::size_t normals = header.homogeneous ? 4 : 3, needed = normals + (header.normal ? 3 : 0);
   if (words.size() < needed + (header.texture ? 2 : 0))
     return Error{"", fmt::format("has too few numbers for vertex {}; the file is cut off or damaged", v)};
@@ -92,7 +92,7 @@ Status copy_vertex(const Header& header, const Words& words, std::int64_t v, Byt
   return Done{};
 }
 
-Status copy_face(const Header& header, const Words& words, std::int64_t f, Bytes& out, std::int64_t& written) {
+Status copy_face(const OffHeader& header, const Words& words, std::int64_t f, Bytes& out, std::int64_t& written) {
   std::int64_t corners = 0;
   if (!to_integer(words[0], corners) || corners < 1 || corners >= static_cast<std::int64_t>(words.size()))
     return Error{"", fmt::format("has too few numbers for face {}; the file is cut off or damaged", f)};
@@ -117,7 +117,7 @@ Status copy_face(const Header& header, const Words& words, std::int64_t f, Bytes
 
 Result<Bytes> off_as_ply(const Bytes& bytes) {
   TetText text(bytes, "");
-  const Result<Header> header = read_header(text);
+  const Result<OffHeader> header = read_off_header(text);
   if (!header) return header.error();
   Bytes body;
   body.reserve(bytes.size() + bytes.size() / 4);

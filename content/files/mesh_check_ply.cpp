@@ -24,7 +24,7 @@ struct Element {
   std::int64_t count = 0;
   std::vector<Property> properties;
 };
-struct Header {
+struct PlyHeader {
   std::vector<Element> elements;
   std::int64_t vertices = 0;
 };
@@ -51,8 +51,8 @@ Error damaged(const std::string& what) {
 }
 
 // The header, and whether the body is binary, and turned.
-Result<Header> read_header(TetText& text) {
-  Header header;
+Result<PlyHeader> read_ply_header(TetText& text) {
+  PlyHeader header;
   std::string_view line;
   const std::uint64_t bytes = text.left();
   bool has_format = false;
@@ -97,9 +97,9 @@ Result<Header> read_header(TetText& text) {
 }
 
 // Takes values of one element: from its line, or from the binary body.
-class Row {
+class PlyRow {
  public:
-  Row(TetText& text, std::string_view line) : binary_(text.binary()), body_(text), line_(as_bytes(line), "") {}
+  PlyRow(TetText& text, std::string_view line) : binary_(text.binary()), body_(text), line_(as_bytes(line), "") {}
   // False: there is no more. What is no finite number in text becomes NaN.
   bool value(Kind kind, double& out) {
     if (binary_) return raw(kind, out);
@@ -146,7 +146,7 @@ class Row {
   TetText line_;
 };
 
-Status check_row(Row& row, const Element& element, std::int64_t number, const Header& header) {
+Status check_row(PlyRow& row, const Element& element, std::int64_t number, const PlyHeader& header) {
   const auto cut = [&] { return damaged(fmt::format("has too few numbers for {} {}", element.name, number)); };
   const bool strip = element.name == "tristrips";  // there -1 begins another
   for (const Property& property : element.properties) {
@@ -169,7 +169,7 @@ Status check_row(Row& row, const Element& element, std::int64_t number, const He
   return Done{};
 }
 
-Status check_element(TetText& text, const Element& element, const Header& header) {
+Status check_element(TetText& text, const Element& element, const PlyHeader& header) {
   std::uint64_t size = 0;  // [byte] of one, where none has a list
   bool lists = false;
   for (const Property& property : element.properties) {
@@ -187,7 +187,7 @@ Status check_element(TetText& text, const Element& element, const Header& header
         if (!text.line(line)) return damaged(fmt::format("ends before {} {} of {}", element.name, n, element.count));
       } while (line.empty());
     }
-    Row row(text, line);
+    PlyRow row(text, line);
     if (const Status status = check_row(row, element, n, header); !status) return status;
   }
   return Done{};
@@ -197,7 +197,7 @@ Status check_element(TetText& text, const Element& element, const Header& header
 
 Status check_ply(const Bytes& bytes) {
   TetText text(bytes, "");
-  const Result<Header> header = read_header(text);
+  const Result<PlyHeader> header = read_ply_header(text);
   if (!header) return header.error();
   for (const Element& element : header->elements) {
     if (element.name != "vertex") continue;

@@ -14,7 +14,7 @@ namespace pliant {
 
 namespace {
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 
 void add_bounds(Json& accessor, const std::vector<float>& values, std::size_t width) {
   for (std::size_t c = 0; c < width; ++c) {
@@ -49,7 +49,7 @@ Status decompress_primitive(SourceDocument& document, DracoReader& draco, Json& 
   else
     primitive["indices"] = add_accessor(document, mesh->index, kUnsignedInt, 1, 34963);
   primitive.erase("mode");  // Draco data are triangles
-  primitive["extensions"].erase(kDraco);
+  primitive["extensions"].erase(kDracoExtension);
   if (primitive["extensions"].empty()) primitive.erase("extensions");
   return Done{};
 }
@@ -57,21 +57,21 @@ Status decompress_primitive(SourceDocument& document, DracoReader& draco, Json& 
 void undeclare(Json& json, const char* list) {
   if (!json.contains(list)) return;
   Json& names = json[list];
-  names.erase(std::remove(names.begin(), names.end(), kDraco), names.end());
+  names.erase(std::remove(names.begin(), names.end(), kDracoExtension), names.end());
   if (names.empty()) json.erase(list);
 }
 
 }  // namespace
 
 Status decompress_document(SourceDocument& document, bool all) {
-  if (!extension_is_used(document.json, kDraco) || !document.json.contains("meshes")) return Done{};
+  if (!extension_is_used(document.json, kDracoExtension) || !document.json.contains("meshes")) return Done{};
   bool left = false;
   Json& meshes = document.json["meshes"];
   DracoReader draco(document);
   for (std::size_t m = 0; m < meshes.size(); ++m)
     for (std::size_t p = 0; p < meshes[m]["primitives"].size(); ++p) {
       Json& primitive = meshes[m]["primitives"][p];
-      if (!extension_of(primitive, kDraco)) continue;
+      if (!extension_of(primitive, kDracoExtension)) continue;
       if (!all && primitive.contains("targets")) {
         left = true;
         continue;

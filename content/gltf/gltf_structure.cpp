@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kPliant = "PLIANT_";
 
-struct Range {
+struct ByteRange {
   double min = -INFINITY, max = INFINITY;
   bool open = false;  // min itself is out
   std::string text;
@@ -29,11 +29,11 @@ struct Rule {
   std::vector<std::string> list;
   std::size_t count = 0;
   bool or_more = false;
-  Range range;
+  ByteRange range;
 };
 
-Range parse_range(const std::string& text) {
-  Range range;
+ByteRange parse_range(const std::string& text) {
+  ByteRange range;
   range.text = text;
   const std::size_t dots = text.find("..");
   std::string low = text.substr(0, dots), high = text.substr(dots + 2);
@@ -222,7 +222,7 @@ class Structure {
     if (json.is_number_unsigned() ? json.get<std::uint64_t>() >= count : true)
       error(pointer, fmt::format("refers to element {} of {}, which has {}", json.dump(), collection, count));
   }
-  void check_number(const Json& json, const Range& range, const std::string& pointer) {
+  void check_number(const Json& json, const ByteRange& range, const std::string& pointer) {
     if (!json.is_number()) return mismatch(pointer, json, "a number");
     const double value = json.get<double>();
     // Everything is read into single precision: a number beyond it would become infinite.

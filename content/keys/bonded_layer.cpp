@@ -44,18 +44,18 @@ double missing(double z, double k) {  // 1 - L(z), by e^(-2z) so that nothing ov
 
 }  // namespace
 
-double bonded_layer_factor(double radius_over_thickness, double poisson) {
+BondedLayer::BondedLayer(double radius_over_thickness, double poisson) {
   const double ratio = std::min(radius_over_thickness, kThinnest), k = 3 - 4 * poisson;
-  if (!(ratio > 0)) return 1.0;
-  const Rule t = gauss(12 + static_cast<int>(2 * ratio)), z = gauss(60 + static_cast<int>(8 * ratio));
+  if (!(ratio > 0)) return;
+  const Rule t = gauss(12 + static_cast<int>(2 * ratio)), z = gauss(60 + static_cast<int>(20 * ratio));
   const std::size_t n = t.at.size();
   std::vector<double> system(n * n, 0.0), phi(n, 1.0), cosine(n);
   for (std::size_t q = 0; q < z.at.size(); ++q) {
-    const double at = kEnd * z.at[q];  // z = x h / a
-    const double weight = 2 / kPi * ratio * kEnd * z.weight[q] * missing(at, k);
-    for (std::size_t i = 0; i < n; ++i) cosine[i] = std::cos(at * ratio * t.at[i]);
+    at_.push_back(kEnd * z.at[q] * ratio);
+    weight_.push_back(2 / kPi * ratio * kEnd * z.weight[q] * missing(kEnd * z.at[q], k));
+    for (std::size_t i = 0; i < n; ++i) cosine[i] = std::cos(at_[q] * t.at[i]);
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight * cosine[i] * cosine[j] * t.weight[j];
+      for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight_[q] * cosine[i] * cosine[j] * t.weight[j];
   }
   for (std::size_t i = 0; i < n; ++i) system[i * n + i] += 1.0;
   // Elimination; the kernel is a contraction, so that no pivot is small.
@@ -65,13 +65,35 @@ double bonded_layer_factor(double radius_over_thickness, double poisson) {
       for (std::size_t c = i; c < n; ++c) system[j * n + c] -= share * system[i * n + c];
       phi[j] -= share * phi[i];
     }
-  double sum = 0.0;
+  factor_ = 0.0;
   for (std::size_t i = n; i-- > 0;) {
     for (std::size_t c = i + 1; c < n; ++c) phi[i] -= system[i * n + c] * phi[c];
     phi[i] /= system[i * n + i];
-    sum += t.weight[i] * phi[i];
+    factor_ += t.weight[i] * phi[i];
   }
-  return sum;
+  for (std::size_t q = 0; q < at_.size(); ++q) {
+    double pressure = 0.0;
+    for (std::size_t i = 0; i < n; ++i) pressure += t.weight[i] * phi[i] * std::cos(at_[q] * t.at[i]);
+    weight_[q] *= pressure;
+  }
+}
+
+double BondedLayer::surface(double radii) const {
+  if (radii <= 1.0) return 1.0;
+  static const Rule turn = gauss(24);
+  const double end = std::asin(1 / radii);
+  double u = 2 / kPi * end;
+  for (std::size_t q = 0; q < at_.size(); ++q) {
+    double direct = 0.0;  // of what phi is more than 1
+    for (std::size_t i = 0; i < turn.at.size(); ++i)
+      direct += end * turn.weight[i] * std::cos(at_[q] * radii * std::sin(end * turn.at[i]));
+    u += weight_[q] * (2 / kPi * direct - std::cyl_bessel_j(0.0, at_[q] * radii));
+  }
+  return u;
+}
+
+double bonded_layer_factor(double radius_over_thickness, double poisson) {
+  return BondedLayer(radius_over_thickness, poisson).factor();
 }
 
 }  // namespace pliant

@@ -7,12 +7,30 @@
 // which leave nothing outside of the punch, phi solves Fredholm's equation of the second kind
 //   phi(t) - int_0^1 phi(s) K(t, s) ds = 1,   K(t, s) = (2 / pi) int_0^inf (1 - L(x h / a)) cos(x t) cos(x s) dx,
 //   L(z) = (2 k sinh 2z - 4 z) / (2 k cosh 2z + 1 + k^2 + 4 z^2),   k = 3 - 4 nu,   and   kappa = int_0^1 phi dt.
+//
+// The surface beside the punch, in parts of d, r in a (the Hankel transform of the same pressures, its half-space part
+// in closed form; 1 under the punch):
+//   u(r) = (2 / pi) (int_0^(asin 1/r) phi(r sin s) ds - int_0^inf (1 - L(x h / a)) A(x) J0(x r) dx).
 #pragma once
+
+#include <vector>
 
 namespace pliant {
 
 // [1] of a / h, from 0 (deep: 1) on; beyond kThinnest radii the layer counts as that thin. nu from 0 to 0.5.
 inline constexpr double kThinnest = 20.0;
+
+class BondedLayer {
+ public:
+  BondedLayer(double radius_over_thickness, double poisson);
+  double factor() const { return factor_; }  // [1] kappa
+  double surface(double radii) const;        // [1] u at this distance from the axis, in radii of the punch
+
+ private:
+  std::vector<double> at_, weight_;  // x, and 2 / pi (1 - L) A(x) dx; none where it is deep
+  double factor_ = 1.0;
+};
+
 double bonded_layer_factor(double radius_over_thickness, double poisson);
 
 }  // namespace pliant

@@ -13,9 +13,6 @@ namespace pliant {
 
 namespace {
 
-// What a fingertip or a probe presses with, the radius that tissue stiffnesses are quoted for (methods.md 4).
-constexpr double kContactRadius = 0.004;  // [m]
-
 // A member of a component, or of its authored part, as a function from its owner.
 template <class Owner, class T, class Part, class Member>
 auto at(std::optional<T> Owner::*slot, Member Part::*member) {
@@ -120,8 +117,8 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 1e5}}, d(&D::stiffness),
                         "small-depth slope of normal force against depth at the probe"));
   keys.push_back(number("cubic", "N/m3", R::kCubic, d(&D::cubic), "k3 of the cubic law"));
-  keys.push_back(
-      number("stiffening", "1/m", {R::kStiffening, {1.0, 1e4}}, d(&D::stiffening), "alpha of the exponential law"));
+  keys.push_back(number("stiffening", "1/m", {R::kStiffening, {-1e3, 1e4}}, d(&D::stiffening),
+                        "alpha of the exponential law; below 0 it softens"));
   keys.push_back(number("relaxation.stiffness", "N/m", {R::kRelaxationStiffness, {1.0, 1e5}},
                         d(&D::relaxation_stiffness), "arm of the standard linear solid"));
   keys.push_back(number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time),
@@ -156,6 +153,9 @@ std::vector<Key> deformable_keys() {
              fmt::format("radius R of the field; 0: {} of the diagonal of the object's box", kDefaultReach)));
   keys.push_back(
       number("volume", "1", R::kVolume, d(&D::volume), "share of the volume conserved by the shape `volume`"));
+  keys.push_back(number("contact_radius", "m", {R::kContactRadius, {1e-4, 1.0}}, d(&D::contact_radius),
+                        "radius of the indenter that the shapes punch, hertz and kelvinlet are of, beside a probe's "
+                        "own contact circle; 0: a fifth of `reach`"));
   keys.push_back(number("friction_static", "1", kFrictionRange, d(&D::friction_static),
                         "coefficient of static friction, at least that of sliding"));
   keys.push_back(
@@ -178,8 +178,9 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
                         "thickness of the layer, which is bonded to something rigid, with `young`; 0: deep"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
-                        "error budget: the cheapest shape and distance whose measured error on this surface is within "
-                        "it, where no key says them; 0: none"));
+                        "error budget: the cheapest shape, distance, reach and contact radius whose measured error on "
+                        "this surface is within it, and with `young` the cheapest force law, where no key says them; "
+                        "0: none"));
   return keys;
 }
 
@@ -287,8 +288,8 @@ std::vector<Key> soft_body_keys() {
       number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(choice("solver", s(&S::solver), "what solves the linear systems; `auto` by size, as measured"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
-                        "error budget: the cheapest cell and soft step whose measured error on this body is within "
-                        "it, where no key says them; 0: none"));
+                        "error budget: the cheapest cell, soft step and solver whose measured error on this body is "
+                        "within it, and of a tool the cheapest force, where no key says them; 0: none"));
   return keys;
 }
 
@@ -441,8 +442,8 @@ std::vector<Extension> make_table() {
 }  // namespace
 
 double calibrated_stiffness(double young, double poisson, double thickness) {
-  const double layer = thickness > 0.0 ? bonded_layer_factor(kContactRadius / thickness, poisson) : 1.0;
-  return 2.0 * young / (1.0 - poisson * poisson) * kContactRadius * layer;
+  const double layer = thickness > 0.0 ? bonded_layer_factor(kYoungRadius / thickness, poisson) : 1.0;
+  return 2.0 * young / (1.0 - poisson * poisson) * kYoungRadius * layer;
 }
 
 const std::vector<Extension>& extension_table() {

@@ -152,9 +152,13 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 
 std::string unknown(const std::string& what, const std::string& word, const std::string& in, const std::string& all,
                     const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 40;  // a scene may have a hundred nodes
   const std::string near = suggestion(word, names);
+  const auto last = names.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, names.size()));
   return fmt::format("unknown {} '{}'{}{}", what, cut(word), in.empty() ? "" : " in ", in) +
-         (near.empty() ? fmt::format("; {} are: {}", all, fmt::join(names, ", ")) : near);
+         (near.empty() ? fmt::format("; {} are: {}{}", all, fmt::join(names.begin(), last, ", "),
+                                     names.size() > kNamed ? " and others" : "")
+                       : near);
 }
 
 std::string unknown_key(const Extension& extension, const std::string& word) {

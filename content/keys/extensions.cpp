@@ -14,9 +14,9 @@ namespace {
 
 // Reads one extension object into its owner, telling `report(pointer, message)` of every fault.
 template <class Report>
-class Reader {
+class KeyReader {
  public:
-  Reader(const Extension& extension, void* owner, const std::vector<std::string>& node_names, const Report& report)
+  KeyReader(const Extension& extension, void* owner, const std::vector<std::string>& node_names, const Report& report)
       : extension_(extension), owner_(owner), node_names_(node_names), report_(report) {}
 
   void read(const Json& json, const std::string& pointer) {
@@ -88,7 +88,7 @@ void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
     if (!extension || extension->on_scene != on_scene)
       report(here, unknown("extension", name, "", on_scene ? "extensions of a scene" : "extensions of a node", names));
     else
-      Reader<Report>(*extension, owner, node_names, report).read(json, here);
+      KeyReader<Report>(*extension, owner, node_names, report).read(json, here);
   }
 }
 
@@ -115,24 +115,20 @@ Json& place(Json& json, const std::string& dotted) {
   const std::size_t dot = dotted.find('.');
   return dot == std::string::npos ? json[dotted] : place(json[dotted.substr(0, dot)], dotted.substr(dot + 1));
 }
-bool has(const Json& json, const std::string& dotted) {
-  const std::size_t dot = dotted.find('.');
-  if (!json.is_object() || !json.contains(dotted.substr(0, dot))) return false;
-  return dot == std::string::npos || has(json[dotted.substr(0, dot)], dotted.substr(dot + 1));
-}
 
-Json write(const Extension& extension, const void* owner, const void* defaults, const Json& before) {
+Json write(const Extension& extension, const void* owner, const void* defaults, const std::set<std::string>& stated,
+           const Json& before) {
   Json out = Json::object();
   // A stiffness that was calibrated follows from `young` again.
   const bool young = extension.name == "deformable" && static_cast<const LevelNode*>(owner)->deformable->young > 0.0;
   for (const Key& key : extension.keys) {
     if (key.alias || (young && key.name == "stiffness")) continue;
     const Json value = key.get(owner);
-    if (value.is_null() || (value == key.get(defaults) && !has(before, key.name))) continue;
+    if (value.is_null() || (value == key.get(defaults) && !stated.contains(extension.name + "." + key.name))) continue;
     place(out, key.name) = value;
   }
   for (const char* kept : {"extras", "extensions"})
-    if (has(before, kept)) out[kept] = before[kept];
+    if (before.is_object() && before.contains(kept)) out[kept] = before[kept];
   return out;
 }
 
@@ -145,7 +141,7 @@ Json write_all(bool on_scene, const Owner& owner, const Json& before) {
     extension.add(&defaults);
     const std::string name = "PLIANT_" + extension.name;
     const bool was = before.is_object() && before.contains(name);
-    Json json = write(extension, &owner, &defaults, was ? before[name] : Json());
+    Json json = write(extension, &owner, &defaults, owner.stated, was ? before[name] : Json());
     // PLIANT_simulation is always there in memory; it is written only if it says something.
     if (extension.name == "simulation" && json.empty() && !was) continue;
     out[name] = std::move(json);

@@ -25,12 +25,16 @@ void find_in_scene_extensions(const Json& extensions, const std::string& pointer
 // What must hold across nodes: devices that are named exist and have a PLIANT_haptic_device.
 Status check_references(const Level& level);
 
-// The PLIANT_* extensions of a node or scene as JSON: keys that differ from their default, and those that `before` (the
-// extensions as read, or null) has. Empty if there are none.
+// The PLIANT_* extensions of a node or scene as JSON: keys that differ from their default, and those that are stated.
+// `before` (the extensions as read, or null) gives what else is kept: extras. Empty if there are none.
 Json node_extensions(const LevelNode& node, const Json& before);
 Json scene_extensions(const Level& level, const Json& before);
 
-// Stiffness of a point contact of 4 mm radius on a half-space: 2 E/(1-nu^2) a [N/m] (methods.md 1.3 and 4); a bonded
+// [m] What a fingertip or a probe presses with, the radius that tissue stiffnesses are quoted for (methods.md 4): of
+// the contact of a point, where `young` says the stiffness.
+inline constexpr double kYoungRadius = 0.004;
+
+// Stiffness of a point contact of that radius on a half-space: 2 E/(1-nu^2) a [N/m] (methods.md 1.3 and 4); a bonded
 // layer of this thickness [m] is stiffer by bonded_layer_factor(a / thickness, nu).
 double calibrated_stiffness(double young, double poisson, double thickness);
 

@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 
 // When a key is read by nobody, for those that are not always read. A key without a row is read wherever it stands.
-struct Row {
+struct UnusedRow {
   const char *extension, *key;
   bool (*unused)(const LevelNode&);
   const char* what;
@@ -23,7 +23,7 @@ bool is_law_other_than(SpringLaw law, const LevelNode& node) {
   return node.deformable->spring != law && node.deformable->spring <= SpringLaw::kStandardLinearSolid;
 }
 
-constexpr Row kRows[] = {
+constexpr UnusedRow kRows[] = {
     {"deformable", "cubic", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kCubic, n); },
      "is read with `spring` `cubic` only; set that, or remove the key"},
     {"deformable", "stiffening", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kExponential, n); },
@@ -36,6 +36,8 @@ constexpr Row kRows[] = {
      "is read with `spring` `sls` only; set that, or remove the key"},
     {"deformable", "volume", [](const LevelNode& n) { return n.deformable->shape != Shape::kVolume; },
      "is read with `shape` `volume` only; set that, or remove the key"},
+    {"deformable", "contact_radius", [](const LevelNode& n) { return !depends_on_contact(n.deformable->shape); },
+     "is read with `shape` `punch`, `hertz` and `kelvinlet` only; set one of these, or remove the key"},
     {"deformable", "poisson", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
      "is read with `young` only; give that too, or remove the key"},
     {"deformable", "thickness", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
@@ -70,7 +72,7 @@ bool is_set(const Extension& extension, const Key& key, const Owner& owner) {
 
 void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& found) {
   const LevelNode& node = level.nodes[n];
-  for (const Row& row : kRows) {
+  for (const UnusedRow& row : kRows) {
     const Extension& extension = *find_extension(row.extension);
     if (!extension.present(&node) || !row.unused(node)) continue;
     if (is_set(extension, *find_key(extension, row.key), node))

@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kOff = 0.33;  // [cells] more than the lattice's faces stand off a bent surface
 
-using Corners = std::array<std::uint32_t, 3>;
+using SheetCorners = std::array<std::uint32_t, 3>;
 
-Corners sorted(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  Corners corners{a, b, c};
+SheetCorners sorted(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  SheetCorners corners{a, b, c};
   std::sort(corners.begin(), corners.end());
   return corners;
 }
@@ -28,7 +28,7 @@ bool leave_out_covered(const BuiltMesh& surface, const TetMesh& tissue, std::vec
     off.push_back((a + b + c) / 3.0 + kOff * tissue.report.cell * normalize(cross(b - a, c - a)));
   }
   const std::vector<std::uint8_t> inside = are_inside(off, tissue.nodes, tissue.tets);
-  std::set<Corners> covered;
+  std::set<SheetCorners> covered;
   for (std::size_t t = 0; t < inside.size(); ++t)
     if (inside[t]) covered.insert(sorted(mesh.triangles[t].x, mesh.triangles[t].y, mesh.triangles[t].z));
   if (covered.empty() || covered.size() == mesh.triangles.size()) return false;

@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-class Progress {
+class LongWork {
  public:
   // `doing`: "preparing meshes, now `heart`".
   void say(const std::string& doing) {

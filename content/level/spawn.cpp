@@ -23,7 +23,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFlat = 1e-9;  // [1] of the diagonal cubed: no volume
+constexpr double kFlatScale = 1e-9;  // [1] of the diagonal cubed: no volume
 
 dmat4 inverse(const Pose& pose) {
   const dquat back = glm::conjugate(pose.rotation);
@@ -39,14 +39,14 @@ std::string with_commas(std::size_t number) {
 }
 
 // What nodes have in common that share what was built of a mesh.
-struct Shape {
+struct TouchShape {
   bool touchable;
   double crease_angle;              // [rad]
   std::array<float, 16> to_object;  // the frame that is baked into the mesh
-  auto operator<=>(const Shape&) const = default;
+  auto operator<=>(const TouchShape&) const = default;
 };
 
-mat4 matrix_of(const Shape& shape) {
+mat4 matrix_of(const TouchShape& shape) {
   mat4 m;
   for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = shape.to_object[i];
   return m;
@@ -173,16 +173,16 @@ class Spawner {
     body.collision_mesh = collision_mesh;
     const Mesh& mesh = world_.meshes[collision_mesh];
     const double box = std::pow(static_cast<double>(mesh.box.diagonal()), 3.0);
-    if (body.fixed || mass_properties(mesh).volume > kFlat * box) return Done{};
+    if (body.fixed || mass_properties(mesh).volume > kFlatScale * box) return Done{};
     return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
   }
 
   // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
   bool has_pose(std::size_t n) const { return is_touched(level_.nodes[n]) || !motions_.moves[n]; }
-  Shape shape_of(std::size_t n) const {
+  TouchShape shape_of(std::size_t n) const {
     const LevelNode& node = level_.nodes[n];
     const mat4 m = has_pose(n) ? mat4(inverse(rigid_part(motions_.world[n])) * motions_.world[n]) : mat4(1);
-    Shape shape{is_touched(node), node.deformable ? node.deformable->crease_angle : 0.0, {}};
+    TouchShape shape{is_touched(node), node.deformable ? node.deformable->crease_angle : 0.0, {}};
     for (std::size_t i = 0; i < 16; ++i) shape.to_object[i] = m[static_cast<int>(i / 4)][static_cast<int>(i % 4)];
     return shape;
   }
@@ -214,7 +214,7 @@ class Spawner {
 
   // What the nodes want is counted before the first of it is built.
   Status count() {
-    std::set<std::pair<std::int32_t, Shape>> shapes;
+    std::set<std::pair<std::int32_t, TouchShape>> shapes;
     MeshSize wanted;
     double surfaces = 0.0, soft_bodies = 0.0, hands = 0.0;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n) {
@@ -282,7 +282,7 @@ class Spawner {
 
   Result<Baked> bake(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
-    const Shape shape = shape_of(n);
+    const TouchShape shape = shape_of(n);
     Baked wanted;
     if (node.deformable) wanted.reach = std::max(node.deformable->reach, 0.0);
     std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)][shape];
@@ -378,10 +378,10 @@ class Spawner {
   std::vector<Entity> entities_;  // of each node; kNoEntity: not in the scene
   LevelMotions motions_;
   ScriptLibrary scripts_;
-  std::map<const Path*, Handle<Path>> paths_;               // of the scripts that move devices
-  std::unordered_map<std::string, std::size_t> by_name_;    // first node in the scene with this name
-  std::vector<std::map<Shape, std::vector<Baked>>> baked_;  // of each mesh of the level
-  std::set<std::int32_t> noted_;                            // meshes whose winding a note speaks of
+  std::map<const Path*, Handle<Path>> paths_;                    // of the scripts that move devices
+  std::unordered_map<std::string, std::size_t> by_name_;         // first node in the scene with this name
+  std::vector<std::map<TouchShape, std::vector<Baked>>> baked_;  // of each mesh of the level
+  std::set<std::int32_t> noted_;                                 // meshes whose winding a note speaks of
   const LevelBudget budget_;
   MeshSize built_;           // so far; vertices of deformable surfaces
   double tetrahedra_ = 0.0;  // so far
@@ -392,7 +392,7 @@ class Spawner {
   std::size_t placeholders_ = 0;    // nodes whose mesh has no surface
   std::string placeholder_;         // the first of them
   std::vector<std::string> notes_;  // of tetrahedra and winding, finer meshes
-  Progress progress_;
+  LongWork progress_;
 };
 
 }  // namespace

@@ -11,8 +11,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kEven = 1e-4;     // [1] how far scales may differ and count as one: files are single precision
-constexpr double kFarthest = 1e6;  // [m], [s] of a script
+constexpr double kEven = 1e-4;         // [1] how far scales may differ and count as one: files are single precision
+constexpr double kFarthestMove = 1e6;  // [m], [s] of a script
 
 Track& track_of(PrescribedMotion& motion, NodeProperty property) {
   if (property == NodeProperty::kTranslation) return motion.translation;
@@ -141,9 +141,9 @@ class MotionMaker {
     const Path* script = *read;
     for (const PathRow& row : script->rows) {
       const dvec3 far = glm::abs(row.position);
-      if (row.time < 0.0 || row.time > kFarthest || std::max({far.x, far.y, far.z}) > kFarthest)
+      if (row.time < 0.0 || row.time > kFarthestMove || std::max({far.x, far.y, far.z}) > kFarthestMove)
         return at(n, fmt::format("is moved by {}, which has a time or place outside 0 to {:g} s and {:g} m; correct it",
-                                 file.substr(0, 100), kFarthest, kFarthest));
+                                 file.substr(0, 100), kFarthestMove, kFarthestMove));
       motion.translation.times.push_back(row.time);
       motion.translation.values.emplace_back(row.position, 0.0);
       if (!script->turns) continue;

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kCreaseGrain = 1 << 13;
 
 dvec3 face_normal(const Mesh& mesh, std::uint32_t triangle) {
   const uvec3 t = mesh.triangles[triangle];
@@ -112,7 +112,7 @@ void find_creases(std::span<const Primitive> primitives, const mat4& to_object, 
   std::atomic<bool> any{false};
   // Every edge is decided on both sides, so that no two threads write one byte; both come to the same answer because
   // both look from the lower triangle.
-  parallel_for(mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh.triangles.size(), kCreaseGrain, [&](std::size_t begin, std::size_t end) {
     bool found = false;
     for (std::size_t at = begin; at < end; ++at) {
       const auto t = static_cast<std::uint32_t>(at);
@@ -143,7 +143,7 @@ void find_creases(std::span<const Primitive> primitives, const mat4& to_object, 
 void split_at_creases(const Corners& corners, Mesh& mesh) {
   if (mesh.crease.empty()) return;
   std::vector<std::uint8_t> creased(mesh.vertex_count, 0);
-  parallel_for(mesh.vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) creased[v] = at_crease(mesh, corners, static_cast<std::uint32_t>(v));
   });
 
@@ -155,7 +155,7 @@ void split_at_creases(const Corners& corners, Mesh& mesh) {
     mesh.split_normals[t] = static_cast<std::uint32_t>(mesh.corner_normal.size());
     for (int i = 0; i < 3; ++i) mesh.corner_normal.push_back(mesh.normal(corner[i]));
   }
-  parallel_for(mesh.vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
     Fans fans;
     std::vector<NormalSum> sums;
     for (std::size_t v = begin; v < end; ++v) {

@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostPasses = 20;  // places on a patch stay exact in single precision
-constexpr std::size_t kGrain = 1 << 13;
+constexpr int kMostFinerPasses = 20;  // places on a patch stay exact in single precision
+constexpr std::size_t kFinerGrain = 1 << 13;
 
 // [m2] between the middle of an edge's curve and that of its chord, squared: never less than the patch's own, which
 // limits bad normals and follows creases.
@@ -79,7 +79,7 @@ class Finer {
 
   bool cut() {
     const std::size_t most = place_ ? pieces_.size() + kMostAdded : std::min(pieces_.size() + kMostAdded, kMostFiner);
-    for (int pass = 0; pass < kMostPasses; ++pass) {
+    for (int pass = 0; pass < kMostFinerPasses; ++pass) {
       std::size_t wanted = pieces_.size();
       for (const Piece& piece : pieces_)
         for (std::size_t k = 0; k < 3; ++k) wanted += is_long(piece, k);
@@ -335,9 +335,10 @@ bool is_coarse(const Mesh& mesh, double reach) {
   struct Areas {
     double coarse = 0.0, all = 0.0;
   };
-  std::vector<Areas> runs((mesh.triangles.size() + kGrain - 1) / kGrain);  // summed in order, whatever the threads
-  parallel_for(mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Areas& run = runs[begin / kGrain];
+  std::vector<Areas> runs((mesh.triangles.size() + kFinerGrain - 1) /
+                          kFinerGrain);  // summed in order, whatever the threads
+  parallel_for(mesh.triangles.size(), kFinerGrain, [&](std::size_t begin, std::size_t end) {
+    Areas& run = runs[begin / kFinerGrain];
     for (std::size_t at = begin; at < end; ++at) {
       const auto t = static_cast<std::uint32_t>(at);
       const uvec3 corner = mesh.triangles[t];

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kMostPasses = 40;  // an edge this often halved is below what single precision tells apart
 
-using Corners = std::array<std::uint32_t, 3>;
+using RefinedCorners = std::array<std::uint32_t, 3>;
 
 class Pass {
  public:
@@ -19,7 +19,7 @@ class Pass {
   std::size_t count() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < p_.index.size(); i += 3) {
-      const Corners c{p_.index[i], p_.index[i + 1], p_.index[i + 2]};
+      const RefinedCorners c{p_.index[i], p_.index[i + 1], p_.index[i + 2]};
       ++count;
       for (std::size_t k = 0; k < 3; ++k) count += is_long(c[k], c[(k + 1) % 3]);
     }
@@ -31,7 +31,7 @@ class Pass {
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { finer.insert(finer.end(), {a, b, c}); };
     const std::vector<std::uint32_t> coarse = p_.index;
     for (std::size_t i = 0; i < coarse.size(); i += 3) {
-      Corners c{coarse[i], coarse[i + 1], coarse[i + 2]};
+      RefinedCorners c{coarse[i], coarse[i + 1], coarse[i + 2]};
       std::array<bool, 3> cut{};
       int cuts = 0;
       for (std::size_t k = 0; k < 3; ++k) cuts += cut[k] = is_long(c[k], c[(k + 1) % 3]);

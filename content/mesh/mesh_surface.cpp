@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kGrain = 1 << 12;  // vertices
 
 // A triangle's side as seen from its lower end.
-struct Side {
+struct EdgeSide {
   std::uint32_t far;   // the higher vertex
   std::uint32_t edge;  // 3 * triangle + i, the side from corner i to corner i+1
   bool outgoing;       // runs from the lower to the higher vertex
@@ -82,7 +82,7 @@ std::vector<SideAgainst> connect_triangles(Mesh& mesh, const Corners& corners, M
   std::vector<SideAgainst> against;
   std::mutex against_mutex;
   parallel_for(mesh.vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Side> sides;
+    std::vector<EdgeSide> sides;
     std::uint32_t borders = 0, non_manifolds = 0;
     for (std::size_t v = begin; v < end; ++v) {
       // The sides whose lower end is v: every edge of the mesh is seen from exactly one vertex.
@@ -95,7 +95,7 @@ std::vector<SideAgainst> connect_triangles(Mesh& mesh, const Corners& corners, M
         if (last > v) sides.push_back({last, 3 * t + before, false});
       }
       std::sort(sides.begin(), sides.end(),
-                [](const Side& a, const Side& b) { return a.far != b.far ? a.far < b.far : a.edge < b.edge; });
+                [](const EdgeSide& a, const EdgeSide& b) { return a.far != b.far ? a.far < b.far : a.edge < b.edge; });
 
       for (std::size_t i = 0; i < sides.size();) {
         std::size_t j = i + 1;

@@ -9,14 +9,14 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 14;
+constexpr std::size_t kWeldGrain = 1 << 14;
 constexpr std::size_t kMostVertices = std::size_t{1} << 28, kMostTriangles = std::size_t{1} << 29;
 
-constexpr float kFarthest = 1e9f;  // [m] beyond it, products of lengths leave single precision
+constexpr float kFarthestCell = 1e9f;  // [m] beyond it, products of lengths leave single precision
 
 // False for NaN too.
 bool reasonable(vec3 p) {
-  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+  return std::abs(p.x) <= kFarthestCell && std::abs(p.y) <= kFarthestCell && std::abs(p.z) <= kFarthestCell;
 }
 
 bool before(vec3 a, vec3 b) {
@@ -185,7 +185,7 @@ Result<Gathered> gather(const std::string& name, std::span<const Primitive> prim
   std::size_t first = 0;
   for (std::uint32_t n = 0; n < primitives.size(); ++n) {
     const Primitive& p = primitives[n];
-    parallel_for(p.position.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(p.position.size(), kWeldGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         all.position[first + v] = vec3(m * glm::dvec4(dvec3(p.position[v]), 1.0)) + vec3(0.0f);
     });

@@ -7,11 +7,11 @@
 namespace pliant {
 namespace {
 
-constexpr int kHalvings = 14;      // of the way to where a region ends that no triangle bounds
-constexpr double kSteepest = 0.9;  // [1] cosine: what lies further to the side of a sheet's rim is not behind it
-constexpr double kOwn = 1e-6;      // [1] of the diagonal
-constexpr double kRim = 0.5;       // [1] of the thickest wall
-constexpr int kStretches = 64;     // of a way inward that are looked at
+constexpr int kRegionHalvings = 14;  // of the way to where a region ends that no triangle bounds
+constexpr double kSteepest = 0.9;    // [1] cosine: what lies further to the side of a sheet's rim is not behind it
+constexpr double kOwn = 1e-6;        // [1] of the diagonal
+constexpr double kRim = 0.5;         // [1] of the thickest wall
+constexpr int kStretches = 64;       // of a way inward that are looked at
 
 }  // namespace
 
@@ -80,7 +80,7 @@ double FillRegion::crossing(dvec3 in, dvec3 out) const {
       if (!(*this)(in + 0.5 * (hits[i] + next) * along)) return hits[i];
     }
   }
-  for (int n = 0; n < kHalvings; ++n) {
+  for (int n = 0; n < kRegionHalvings; ++n) {
     const double middle = 0.5 * (first + last);
     ((*this)(in + middle * along) ? first : last) = middle;
   }

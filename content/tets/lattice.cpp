@@ -53,7 +53,7 @@ struct Found {
 // The cell whose stuffing has about kUsualTets tetrahedra: their number goes with the cube of the cell. Begins where a
 // box filled by a third would need no change. What is thinner than its cell makes numbers that jump about: the nearest
 // one of all tries then counts.
-Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, Progress& progress,
+Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, LongWork& progress,
                           const std::stop_token& stop) {
   const Box box = region.box();
   const dvec3 size(box.size());
@@ -80,7 +80,7 @@ Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, Progres
   return best;
 }
 
-Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, double cell, Progress& progress,
+Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, double cell, LongWork& progress,
                          const std::stop_token& stop) {
   const auto too_many = [&](const std::string& how_many) {
     return Error{"mesh `" + surface.name + "`", fmt::format("a cell of {:.3g} m makes {}", cell, how_many)};
@@ -129,7 +129,7 @@ Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish) {
                  "its cell is not a length; give it in metres, or 0 for one sized from the bounds"};
   if (!(wish.thickness >= 0.0) || !std::isfinite(wish.thickness))
     return Error{"mesh `" + surface.name + "`", "its thickness is not a length; give it in metres"};
-  Progress progress;
+  LongWork progress;
   const SurfaceShape shape = measure_shape(surface);
   const Inside inside(surface);
   const FillRegion region(surface, inside, shape, wish.fill, wish.thickness);

@@ -18,7 +18,7 @@ constexpr double kWarpLong = 0.24999, kWarpShort = 0.41189;
 
 constexpr double kBridgeSmallest = 0.26, kBridgeLargest = 2.62;  // [rad] 15 and 150 degrees
 
-enum Side : std::int8_t { kOutside = -1, kOn = 0, kInside = 1 };
+enum CellSide : std::int8_t { kOutside = -1, kOn = 0, kInside = 1 };
 
 // Where the surface cuts the edge from an inside node along a step.
 struct Cut {
@@ -30,7 +30,7 @@ struct Cut {
 
 class Stuffer {
  public:
-  Stuffer(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, Progress& progress,
+  Stuffer(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, LongWork& progress,
           const std::stop_token& stop)
       : grid_(region.box(), cell),
         region_(region),
@@ -273,7 +273,7 @@ class Stuffer {
   const LatticeGrid grid_;
   const FillRegion& region_;
   const std::size_t most_;
-  Progress& progress_;
+  LongWork& progress_;
   const std::stop_token& stop_;
   const std::string name_;
   std::vector<std::int8_t> side_;  // of each lattice node
@@ -285,7 +285,7 @@ class Stuffer {
 
 }  // namespace
 
-Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, Progress& progress,
+Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, LongWork& progress,
                        const std::stop_token& stop) {
   return Stuffer(surface, region, cell, most, progress, stop).run();
 }

@@ -18,7 +18,7 @@ struct Stuffing {
 };
 
 // Empty where no lattice point lies in the region. Error: whoever waits wants no more of it.
-Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, Progress& progress,
+Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, LongWork& progress,
                        const std::stop_token& stop = {});
 
 }  // namespace pliant

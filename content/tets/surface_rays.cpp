@@ -7,11 +7,11 @@
 namespace pliant {
 namespace {
 
-struct Visit {
+struct RayVisit {
   std::uint32_t level, box;
 };
 // Each level leaves at most kTreeWidth - 1 siblings waiting; 32 levels hold any index.
-constexpr std::size_t kDeepest = 32 * kTreeWidth;
+constexpr std::size_t kDeepestRay = 32 * kTreeWidth;
 
 // Whether the way from + s along, s in [0, far], meets the box; `over` is 1 / along.
 bool meets(const Box& box, dvec3 from, dvec3 along, dvec3 over, double far) {
@@ -35,11 +35,11 @@ template <class Hit>
 bool cast(const Mesh& surface, dvec3 from, dvec3 along, const double& far, Hit hit) {
   const auto& boxes = surface.tree.levels;
   const dvec3 over = 1.0 / along;
-  Visit stack[kDeepest];
+  RayVisit stack[kDeepestRay];
   std::size_t depth = 0;
   stack[depth++] = {static_cast<std::uint32_t>(boxes.size() - 1), 0};
   while (depth > 0) {
-    const Visit at = stack[--depth];
+    const RayVisit at = stack[--depth];
     if (!meets(boxes[at.level][at.box], from, along, over, far)) continue;
     if (at.level > 0) {
       const auto end = std::min<std::size_t>((at.box + 1) * kTreeWidth, boxes[at.level - 1].size());
@@ -63,7 +63,7 @@ double distance(const Box& box, dvec3 p) {
   return length(glm::max(glm::max(dvec3(box.min) - p, p - dvec3(box.max)), dvec3(0)));
 }
 
-void find_closest(const Mesh& surface, dvec3 p, Visit at, RayPoint& best) {
+void find_closest(const Mesh& surface, dvec3 p, RayVisit at, RayPoint& best) {
   const auto& boxes = surface.tree.levels;
   if (at.level == 0) {
     const auto end = std::min<std::size_t>((at.box + 1) * kLeafSize, surface.triangles.size());

@@ -8,10 +8,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kOwn = 1e-6;       // [1] of the diagonal: nearer hits are those of the triangle one starts on
-constexpr double kJustOut = 1e-4;   // [1] of the diagonal: how far off the surface one looks around
-constexpr double kEnclosed = 0.6;   // [1] of all directions: above what a plate has on either side
-constexpr std::size_t kGrain = 16;  // samples of one run
+constexpr double kOwnShape = 1e-6;       // [1] of the diagonal: nearer hits are those of the triangle one starts on
+constexpr double kJustOut = 1e-4;        // [1] of the diagonal: how far off the surface one looks around
+constexpr double kEnclosed = 0.6;        // [1] of all directions: above what a plate has on either side
+constexpr std::size_t kShapeGrain = 16;  // samples of one run
 
 // Centres of triangles, one for each equal part of the area in their order, which is Hilbert's.
 std::vector<ThicknessSample> spread(const Mesh& surface, std::size_t samples) {
@@ -49,10 +49,10 @@ SurfaceShape measure_shape(const Mesh& surface, std::size_t samples) {
   SurfaceShape shape;
   shape.samples = spread(surface, samples);
   const double diagonal = static_cast<double>(surface.box.diagonal());
-  parallel_for(shape.samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(shape.samples.size(), kShapeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       ThicknessSample& s = shape.samples[i];
-      const RayHit behind = first_hit(surface, s.place, s.inward, kOwn * diagonal);
+      const RayHit behind = first_hit(surface, s.place, s.inward, kOwnShape * diagonal);
       if (behind.met()) s.thickness = behind.share;
     }
   });
@@ -68,7 +68,7 @@ SurfaceShape measure_shape(const Mesh& surface, std::size_t samples) {
   }
   if (shape.open > kOpen) shape.kind = SurfaceKind::kSheet;
   if (shape.open > kOpen || !(shape.thickness < kThinWall * diagonal)) return shape;
-  parallel_for(shape.samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(shape.samples.size(), kShapeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       ThicknessSample& s = shape.samples[i];
       const dvec3 outside = s.place - kJustOut * diagonal * s.inward;

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFarthest = 1e9;  // [m]
+constexpr double kFarthestNode = 1e9;  // [m]
 // Six volumes over the cube of the longest edge from a corner: below it, an element has no volume worth the name (a
 // regular one has 0.7).
 constexpr double kFlat = 1e-8;
@@ -37,7 +37,7 @@ Result<TetFile> clean(RawTets raw, const std::string& name) {
   if (raw.tets.size() > most(limits::kTets))
     return Error{name, "holds " + beyond(limits::kTets, static_cast<double>(raw.tets.size()), "make a coarser mesh")};
   for (const dvec3& p : raw.nodes)
-    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthest))
+    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestNode))
       return Error{name, "has a node that is not a finite number within 1e9 m; repair it, or scale it down"};
 
   std::size_t flat = 0, turned = 0;

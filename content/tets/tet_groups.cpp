@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr float kPainted = 0.5f;
+constexpr float kPaintedShare = 0.5f;
 constexpr double kRounding = 1e-6;  // [1] of the diagonal: a box drawn through nodes holds them
 
 std::string text(const Box& box) {
@@ -18,7 +18,7 @@ std::string text(const Box& box) {
 }
 
 bool is_painted(const std::vector<float>& paint) {
-  return std::any_of(paint.begin(), paint.end(), [](float value) { return value >= kPainted; });
+  return std::any_of(paint.begin(), paint.end(), [](float value) { return value >= kPaintedShare; });
 }
 
 double distance2(const Box& box, dvec3 p) {
@@ -48,7 +48,7 @@ bool claim(const std::vector<dvec3>& nodes, const BuiltMesh& surface, const Box&
   const dvec3 slack(kRounding * static_cast<double>(surface.mesh.box.diagonal()));
   parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const bool held = box.empty() ? paint[nearest_vertex(surface.mesh, nodes[n])] >= kPainted
+      const bool held = box.empty() ? paint[nearest_vertex(surface.mesh, nodes[n])] >= kPaintedShare
                                     : glm::all(glm::greaterThanEqual(nodes[n], dvec3(box.min) - slack)) &&
                                           glm::all(glm::lessThanEqual(nodes[n], dvec3(box.max) + slack));
       if (held) group[n] = which;

@@ -1,38 +1,16 @@
 #include "content/tets/tet_parts.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "content/tets/tet_boundary.h"
 #include "content/tets/tet_quality.h"
+#include "runtime/disjoint_sets.h"
 
 namespace pliant {
 namespace {
 
-// Disjoint sets with path halving.
-class Sets {
- public:
-  explicit Sets(std::uint32_t size) : parent_(size), count_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a == b) return;
-    parent_[std::max(a, b)] = std::min(a, b);
-    --count_;
-  }
-  std::uint32_t count() const { return count_; }
-  std::uint32_t root(std::uint32_t a) {
-    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
-    return a;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-  std::uint32_t count_;
-};
-
-Sets parts_of(const TetMesh& mesh) {
-  Sets sets(static_cast<std::uint32_t>(mesh.tets.size()));
+DisjointSets parts_of(const TetMesh& mesh) {
+  DisjointSets sets(mesh.tets.size());
   const std::vector<TetFace> faces = sorted_faces(mesh.tets);
   for (std::size_t i = 1; i < faces.size(); ++i)
     if (faces[i].nodes == faces[i - 1].nodes) sets.join(faces[i].number / 4, faces[i - 1].number / 4);
@@ -71,13 +49,13 @@ std::uint32_t count_parts(const TetMesh& mesh) {
 }
 
 std::uint32_t drop_small_parts(TetMesh& mesh, std::vector<NodeGroup>& group) {
-  Sets parts = parts_of(mesh);
+  DisjointSets parts = parts_of(mesh);
   if (parts.count() == 1) return 1;
   std::vector<double> volume(mesh.tets.size(), 0.0);  // of each part, at its root
   std::vector<std::uint8_t> held(mesh.tets.size(), 0);
   double all = 0.0;
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    const std::uint32_t part = parts.root(t);
+    const std::uint32_t part = parts.find(t);
     const double v = tet_volume(mesh.nodes, mesh.tets[t]);
     volume[part] += v;
     all += v;
@@ -88,7 +66,7 @@ std::uint32_t drop_small_parts(TetMesh& mesh, std::vector<NodeGroup>& group) {
   double lost = 0.0;
   std::vector<std::uint8_t> keep(mesh.tets.size(), 0);
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    const std::uint32_t part = parts.root(t);
+    const std::uint32_t part = parts.find(t);
     keep[t] = part == largest || held[part] || volume[part] >= kSmallPart * all;
     if (part != t) continue;
     kept += keep[t];
@@ -102,7 +80,7 @@ std::uint32_t drop_small_parts(TetMesh& mesh, std::vector<NodeGroup>& group) {
 }
 
 std::uint32_t count_parts(const Mesh& mesh) {
-  Sets sets(mesh.vertex_count);
+  DisjointSets sets(mesh.vertex_count);
   for (const uvec3& t : mesh.triangles) {
     sets.join(t.x, t.y);
     sets.join(t.x, t.z);

@@ -7,13 +7,13 @@
 namespace pliant {
 namespace {
 
-struct Shape {
+struct TetShape {
   double smallest = 0.0, largest = 0.0;  // [rad] dihedral
   double ratio = 0.0;                    // [1] 3 r/R
 };
 
 // Faces are numbered by the corner over against them; `normal` points inward and its length is twice the area.
-Shape shape_of(const dvec3 (&p)[4]) {
+TetShape shape_of(const dvec3 (&p)[4]) {
   constexpr int kFace[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
   dvec3 normal[4];
   double areas = 0.0;
@@ -22,7 +22,7 @@ Shape shape_of(const dvec3 (&p)[4]) {
     normal[f] = cross(p[kFace[f][1]] - a, p[kFace[f][2]] - a);
     areas += 0.5 * length(normal[f]);
   }
-  Shape shape{std::numbers::pi, 0.0, 0.0};
+  TetShape shape{std::numbers::pi, 0.0, 0.0};
   for (int i = 0; i < 4; ++i)
     for (int j = i + 1; j < 4; ++j) {
       // Between the outward normals lies pi less the angle inside; atan2 keeps small angles exact.
@@ -59,7 +59,7 @@ TetQuality measure_quality(std::span<const dvec3> nodes, std::span<const Tet> te
   std::vector<double> ratios;
   ratios.reserve(tets.size());
   for (const Tet& t : tets) {
-    const Shape shape = shape_of({nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]]});
+    const TetShape shape = shape_of({nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]]});
     quality.smallest_dihedral = std::min(quality.smallest_dihedral, shape.smallest);
     quality.largest_dihedral = std::max(quality.largest_dihedral, shape.largest);
     ratios.push_back(shape.ratio);
