@@ -6,14 +6,10 @@
 #include <algorithm>
 #include <string_view>
 
+#include "devices/spec.h"
+
 namespace pliant {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
 
 bool pushes(const DeviceInfo& device) {
   return device.can.renders_force && !device.can.resists_only;

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <memory>
 
+#include "devices/spec.h"
+
 namespace pliant {
 namespace {
 
@@ -16,17 +18,11 @@ constexpr std::string_view kPositions = "time_s,x,y,z", kPoses = "time_s,x,y,z,q
 constexpr std::size_t kMostColumns = 18;
 constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 
-std::string_view trim(std::string_view s) {
-  const std::size_t begin = s.find_first_not_of(" \t\r");
-  return begin == std::string_view::npos ? std::string_view{}
-                                         : s.substr(begin, s.find_last_not_of(" \t\r") - begin + 1);
-}
-
 bool parse_row(std::string_view line, double* values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t comma = line.find(',');
     if ((comma == std::string_view::npos) != (i == count - 1)) return false;
-    const std::string_view cell = trim(line.substr(0, comma));
+    const std::string_view cell = trimmed(line.substr(0, comma));
     const std::from_chars_result read = std::from_chars(cell.data(), cell.data() + cell.size(), values[i]);
     if (read.ec != std::errc{} || read.ptr != cell.data() + cell.size() || !std::isfinite(values[i])) return false;
     if (comma != std::string_view::npos) line.remove_prefix(comma + 1);
@@ -50,7 +46,7 @@ Result<std::vector<PoseFileRow>> parse_poses(std::string_view text, const std::s
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
+    const std::string_view line = trimmed(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     const auto error = [&](const std::string& what) { return Error{fmt::format("{}:{}", where, number), what}; };
     if (line.empty() || line.front() == '#') continue;

@@ -5,12 +5,14 @@
 #include <utility>
 
 namespace pliant {
-namespace {
 
-std::string_view trim(std::string_view s) {
-  const std::size_t begin = s.find_first_not_of(" \t");
-  return begin == std::string_view::npos ? std::string_view{} : s.substr(begin, s.find_last_not_of(" \t") - begin + 1);
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  return begin == std::string_view::npos ? std::string_view{}
+                                         : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
+
+namespace {
 
 // Units from the longest, so that "ms" is not "s".
 std::optional<double> with_unit(std::string_view text,
@@ -28,10 +30,10 @@ std::optional<double> with_unit(std::string_view text,
 
 std::vector<std::string> split(std::string_view text, char mark) {
   std::vector<std::string> parts;
-  if (trim(text).empty()) return parts;
+  if (trimmed(text).empty()) return parts;
   for (;;) {
     const std::size_t end = text.find(mark);
-    parts.emplace_back(trim(text.substr(0, end)));
+    parts.emplace_back(trimmed(text.substr(0, end)));
     if (end == std::string_view::npos) return parts;
     text.remove_prefix(end + 1);
   }
@@ -39,12 +41,12 @@ std::vector<std::string> split(std::string_view text, char mark) {
 
 Option option_of(std::string_view text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) return {"", std::string(trim(text))};
-  return {std::string(trim(text.substr(0, equals))), std::string(trim(text.substr(equals + 1)))};
+  if (equals == std::string_view::npos) return {"", std::string(trimmed(text))};
+  return {std::string(trimmed(text.substr(0, equals))), std::string(trimmed(text.substr(equals + 1)))};
 }
 
 std::optional<double> plain_number(std::string_view text) {
-  text = trim(text);
+  text = trimmed(text);
   double value = 0.0;
   const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), value);
   if (read.ec != std::errc{} || read.ptr != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;

@@ -10,6 +10,9 @@
 
 namespace pliant {
 
+// Without the blanks around it.
+std::string_view trimmed(std::string_view text);
+
 // Parts between `mark`s, blanks around them removed. An empty text has no part.
 std::vector<std::string> split(std::string_view text, char mark);
 

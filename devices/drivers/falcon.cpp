@@ -13,11 +13,11 @@ namespace pliant {
 namespace {
 
 constexpr std::uint16_t kVendor = 0x0403, kProduct = 0xcb48;
-constexpr double kPeriod = 1e-3;      // [s] between two exchanges
-constexpr double kRetry = 0.5;        // [s] between two tries to find it again
-constexpr int kSilentUntilLost = 50;  // exchanges without an answer
-constexpr int kTries = 10;            // to load its firmware, which often fails once
-constexpr std::size_t kBlock = 128;   // bytes of firmware that are sent, and come back, at a time
+constexpr double kFalconPeriod = 1e-3;  // [s] between two exchanges
+constexpr double kFalconRetry = 0.5;    // [s] between two tries to find it again
+constexpr int kSilentUntilLost = 50;    // exchanges without an answer
+constexpr int kTries = 10;              // to load its firmware, which often fails once
+constexpr std::size_t kBlock = 128;     // bytes of firmware that are sent, and come back, at a time
 constexpr std::size_t kMostFirmware = 1 << 20;
 constexpr double kCountsPerTorque = 10000.0;  // [1/(N m)] of a motor's number, which turns the other way
 constexpr int kMostTorque = 4095;             // of a motor's number
@@ -25,12 +25,12 @@ constexpr dvec3 kMiddle{0.0, 0.0, 0.125};     // [m] of the workspace
 constexpr unsigned kRed = 2, kGreen = 4, kAllHomed = 7;
 
 // Requests of the FTDI chip.
-enum Request : std::uint8_t { kReset = 0, kModem = 1, kFlow = 2, kBaud = 3, kData = 4, kLatency = 9 };
+enum Request : std::uint8_t { kResetChip = 0, kModem = 1, kFlow = 2, kBaud = 3, kData = 4, kLatency = 9 };
 struct Setting {
   Request request;
   std::uint16_t value;
 };
-constexpr Setting kPurgeIn{kReset, 1}, kPurgeOut{kReset, 2};
+constexpr Setting kPurgeIn{kResetChip, 1}, kPurgeOut{kResetChip, 2};
 constexpr Setting kToBoot[] = {kPurgeIn,   kPurgeOut,        {kLatency, 16},   {kBaud, 0x4138}, {kData, 8},
                                {kFlow, 0}, {kModem, 0x0200}, {kModem, 0x0100}, {kModem, 0x0101}};
 constexpr Setting kToLoad[] = {{kModem, 0x0100}, {kBaud, 0x15}};
@@ -169,7 +169,7 @@ DeviceCapabilities Falcon::capabilities() const {
   return {.max_force = 8.0,
           .max_stiffness = 3000.0,
           .workspace = {0.05, 0.05, 0.05},
-          .rate = 1.0 / kPeriod,
+          .rate = 1.0 / kFalconPeriod,
           .latency = 2e-3};
 }
 
@@ -268,7 +268,7 @@ bool Falcon::talk() {
     sample.buttons = report.buttons;
     sample.ready = known;
     thread_.publish(sample);
-    due = std::max(due + kPeriod, DeviceThread::seconds());
+    due = std::max(due + kFalconPeriod, DeviceThread::seconds());
     DeviceThread::sleep(due - DeviceThread::seconds());
   }
 }
@@ -277,7 +277,7 @@ void Falcon::run() {
   while (!talk()) {
     port_.reset();
     while (!port_ && !thread_.stopping()) {
-      DeviceThread::sleep(kRetry);
+      DeviceThread::sleep(kFalconRetry);
       if (auto port = connect(firmware_)) port_ = std::move(*port);
     }
     if (!port_) return;

@@ -12,7 +12,7 @@ constexpr int kErrorsUntilLost = 20;  // exchanges
 constexpr int kStatusEvery = 16;      // exchanges
 
 // dhdGetStatus
-enum Status : int { kReset = 3, kForceOn = 5, kBraked = 6, kFault = 9 };
+enum DhdStatus : int { kReset = 3, kForceOn = 5, kBraked = 6, kFault = 9 };
 constexpr int kStatuses = 32;  // 17 are written; newer versions may write more
 
 // World axes of a vector in the maker's, and back.

@@ -12,10 +12,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kFullForce = 3.0;    // [N] rendered as all that the device can; what that is, no device says
-constexpr double kSendEvery = 0.005;  // [s]
-constexpr double kRenewAfter = 0.2;   // [s] an effect ends by itself, lest a dead program pushes on
-constexpr int kMostEvents = 256;      // in one tick
+constexpr double kFullForce = 3.0;      // [N] rendered as all that the device can; what that is, no device says
+constexpr double kRumbleEvery = 0.005;  // [s]
+constexpr double kRenewAfter = 0.2;     // [s] an effect ends by itself, lest a dead program pushes on
+constexpr int kMostEvents = 256;        // in one tick
 constexpr const char* kName = "gamepad";
 
 DeviceCapabilities what_it_can(const GamepadTraits& traits) {
@@ -114,7 +114,7 @@ class Gamepad final : public Driver {
     }
     const bool nothing = output == GamepadOutput{};
     if (output == sent_ && (nothing || now - sent_at_ < kRenewAfter)) return;
-    if (!nothing && now - sent_at_ < kSendEvery) return;
+    if (!nothing && now - sent_at_ < kRumbleEvery) return;
     gone_ = !line_->render(output);
     sent_ = output;
     sent_at_ = now;

@@ -13,11 +13,11 @@ namespace {
 using nlohmann::json;
 
 constexpr int kPort = 10001;
-constexpr std::size_t kLongest = 256 * 1024;  // bytes of a message; an inventory of ten devices has 20 KiB
-constexpr double kPeriod = 1e-3;              // [s] between two messages
-constexpr double kAnswer = 0.5;               // [s] without an answer: the service hangs
-constexpr double kRetry = 0.25;               // [s] between two tries to find the service again
-constexpr double kMostMetres = 2.0;           // [m] of an arm of 30 cm
+constexpr std::size_t kLongestMessage = 256 * 1024;  // bytes of a message; an inventory of ten devices has 20 KiB
+constexpr double kHaplyPeriod = 1e-3;                // [s] between two messages
+constexpr double kAnswerTimeout = 0.5;               // [s] without an answer: the service hangs
+constexpr double kHaplyRetry = 0.25;                 // [s] between two tries to find the service again
+constexpr double kMostReach = 2.0;                   // [m] of an arm of 30 cm
 
 const json* find(const json& object, const char* key) {
   if (!object.is_object()) return nullptr;
@@ -67,7 +67,7 @@ const json* entry(const json& message, const char* kind, const std::string& want
 }
 
 Result<std::unique_ptr<PacketPort>> open_service(const std::string&) {
-  auto port = WebSocketPort::connect("localhost", kPort, 2.0, kLongest);
+  auto port = WebSocketPort::connect("localhost", kPort, 2.0, kLongestMessage);
   if (!port)
     return Error{"haply", "the Inverse Service is not there (" + port.error().message() +
                               "); install Haply's Inverse Service or Hub and start it"};
@@ -88,7 +88,7 @@ Result<HaplyState> parse_haply(std::string_view message, const std::string& want
   state.device = text(find(*device, "device_id"));
   const json* of = find(*device, "state");
   if (const json* position = of ? find(*of, "cursor_position") : nullptr) {
-    if (!vector(position, kMostMetres, state.sample.position)) return false_numbers;
+    if (!vector(position, kMostReach, state.sample.position)) return false_numbers;
     state.sample.ready = true;
   }
   if (const json* velocity = of ? find(*of, "cursor_velocity") : nullptr)
@@ -132,15 +132,15 @@ DeviceCapabilities Haply::capabilities() const {
   return {.senses_rotation = has_grip_,
           .max_force = 4.0,
           .max_stiffness = 1000.0,
-          .rate = 1.0 / kPeriod,
-          .latency = 2.0 * kPeriod};
+          .rate = 1.0 / kHaplyPeriod,
+          .latency = 2.0 * kHaplyPeriod};
 }
 
 Status Haply::open(const std::string& id) {
   close();
   auto port = opener_(id);
   if (!port) return port.error();
-  std::vector<std::uint8_t> bytes(kLongest);
+  std::vector<std::uint8_t> bytes(kLongestMessage);
   const auto got = (*port)->receive(bytes, 2.0);  // the inventory, without being asked for
   if (!got) return got.error();
   const auto state = parse_haply({reinterpret_cast<const char*>(bytes.data()), *got}, id);
@@ -158,7 +158,7 @@ Status Haply::open(const std::string& id) {
 
 // Asks and answers until close(), or until the line is lost: then false.
 bool Haply::talk(PacketPort& port) {
-  std::vector<std::uint8_t> bytes(kLongest);
+  std::vector<std::uint8_t> bytes(kLongestMessage);
   bool first = true;
   double due = DeviceThread::seconds();
   for (;;) {
@@ -166,7 +166,7 @@ bool Haply::talk(PacketPort& port) {
     const std::string command = haply_command(wanted_, thread_.wanted().force, first);
     first = false;
     if (!port.send({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()})) return false;
-    const auto got = port.receive(bytes, kAnswer);
+    const auto got = port.receive(bytes, kAnswerTimeout);
     if (last) return true;  // its answer has come, so it has not been lost with the line
     if (!got || *got == 0) return false;
     const auto state = parse_haply({reinterpret_cast<const char*>(bytes.data()), *got}, wanted_);
@@ -175,7 +175,7 @@ bool Haply::talk(PacketPort& port) {
     } else if (!state->device.empty()) {
       thread_.publish(state->sample);
     }
-    due = std::max(due + kPeriod, DeviceThread::seconds());
+    due = std::max(due + kHaplyPeriod, DeviceThread::seconds());
     DeviceThread::sleep(due - DeviceThread::seconds());
   }
 }
@@ -184,7 +184,7 @@ void Haply::run() {
   while (!talk(*port_)) {
     port_.reset();
     while (!port_ && !thread_.stopping()) {
-      DeviceThread::sleep(kRetry);
+      DeviceThread::sleep(kHaplyRetry);
       auto port = opener_(wanted_);
       if (!port) continue;
       std::uint8_t inventory[64];  // is not needed again, and cut off
@@ -210,8 +210,8 @@ void Haply::close() {
 
 std::vector<DeviceInfo> list_haply() {
   DeviceInfo info{.driver = "haply", .name = "Haply Inverse3", .can = Haply().capabilities()};
-  auto port = WebSocketPort::connect("localhost", kPort, 0.2, kLongest);
-  std::vector<std::uint8_t> bytes(kLongest);
+  auto port = WebSocketPort::connect("localhost", kPort, 0.2, kLongestMessage);
+  std::vector<std::uint8_t> bytes(kLongestMessage);
   const auto got = port ? (*port)->receive(bytes, 0.5) : Result<std::size_t>(port.error());
   if (!got) {
     info.missing = "the Inverse Service is not running; install Haply's Inverse Service or Hub and start it";

@@ -8,22 +8,22 @@
 namespace pliant {
 namespace {
 
-constexpr double kGravity = 9.80665;     // [m/s2]
-constexpr double kPull = 0.5;            // [1/s] how fast gravity wins over the gyroscope
-constexpr double kGravityWithin = 0.15;  // [1] of g: beyond, the device is shaken and says nothing of gravity
-constexpr double kStillTurn = 0.03;      // [rad/s] less is rest, once the bias is taken off
-constexpr double kStillFelt = 0.3;       // [m/s2] the same, of the change of what is felt
-constexpr double kStillFor = 0.5;        // [s] of rest before the bias is learned
-constexpr double kLearn = 0.5;           // [1/s] how fast
-constexpr double kMostBias = 0.1;        // [rad/s]
-constexpr double kLongestStep = 0.1;     // [s]
+constexpr double kGravity = 9.80665;        // [m/s2]
+constexpr double kPull = 0.5;               // [1/s] how fast gravity wins over the gyroscope
+constexpr double kGravityWithin = 0.15;     // [1] of g: beyond, the device is shaken and says nothing of gravity
+constexpr double kStillTurn = 0.03;         // [rad/s] less is rest, once the bias is taken off
+constexpr double kStillFelt = 0.3;          // [m/s2] the same, of the change of what is felt
+constexpr double kStillFor = 0.5;           // [s] of rest before the bias is learned
+constexpr double kLearn = 0.5;              // [1/s] how fast
+constexpr double kMostBias = 0.1;           // [rad/s]
+constexpr double kLongestFilterStep = 0.1;  // [s]
 
 }  // namespace
 
 void MotionFilter::step(const dvec3& turning, const dvec3& felt, double dt) {
   const double weight = length(felt);
   if (!std::isfinite(weight) || !std::isfinite(length(turning))) return;
-  dt = std::clamp(dt, 0.0, kLongestStep);
+  dt = std::clamp(dt, 0.0, kLongestFilterStep);
   const bool gravity = std::abs(weight / kGravity - 1.0) < kGravityWithin;
   const dvec3 up(0, 1, 0);
   if (!placed_ && gravity) {  // the shortest turn that puts what is felt upright

@@ -16,7 +16,7 @@ constexpr const char* kHomes[] = {"button", "here", "kept"};
 constexpr int kMostCounts = 400;  // a motor turns in a millisecond: 12,000 rpm at 2000 counts a turn
 constexpr int kNearHome = 100;    // counts that the arm may have been moved while its encoders were set
 constexpr int kAskAgain = 20;     // reports after which the encoders are set again
-const HidMatch kMatches[] = {{0x16c0, {0x0486}}};
+const HidMatch kPolhemMatches[] = {{0x16c0, {0x0486}}};
 
 std::string mechanisms() {
   std::string names;
@@ -192,7 +192,7 @@ class Polhem final : public Driver {
 
 std::vector<DeviceInfo> list_polhems() {
   std::vector<DeviceInfo> infos;
-  for (const HidFound& found : find_hid(kMatches))
+  for (const HidFound& found : find_hid(kPolhemMatches))
     infos.push_back({"polhem", found.id, found.name,
                      !found.missing.empty()
                          ? found.missing
@@ -239,7 +239,8 @@ std::unique_ptr<Driver> make_polhem(PortOpener opener, SecondsClock clock) {
 
 Status register_polhem() {
   return register_driver(
-      "polhem", [] { return make_polhem([](const std::string& id) { return open_hid(kMatches, id); }); }, list_polhems);
+      "polhem", [] { return make_polhem([](const std::string& id) { return open_hid(kPolhemMatches, id); }); },
+      list_polhems);
 }
 
 }  // namespace pliant

@@ -11,10 +11,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kPeriod = 1e-3;  // [s] between two exchanges; the line may make it longer
-constexpr double kAnswer = 0.02;  // [s] that a pose is waited for before the next force
-constexpr double kRetry = 0.5;    // [s] between two tries to find it again
-constexpr int kSilentUntilLost = 100;
+constexpr double kSerialPeriod = 1e-3;  // [s] between two exchanges; the line may make it longer
+constexpr double kSerialAnswer = 0.02;  // [s] that a pose is waited for before the next force
+constexpr double kSerialRetry = 0.5;    // [s] between two tries to find it again
+constexpr int kSerialSilentUntilLost = 100;
 constexpr double kBoot = 4.0;  // [s] an Arduino starts anew when its line is opened
 
 Result<std::unique_ptr<PacketPort>> open_line(const std::string& id) {
@@ -80,7 +80,7 @@ Status SerialDevice::open(const std::string& id) {
           .max_force = identity_.max_force,
           .max_stiffness = 500.0,  // that such boards bear at these rates
           .senses_grip = true,
-          .rate = 1.0 / kPeriod,
+          .rate = 1.0 / kSerialPeriod,
           .latency = 2e-3};
   port_ = std::move(*port);
   thread_.start([this] { run(); });
@@ -102,7 +102,7 @@ bool SerialDevice::talk() {
     if (!send(*port_, {text.data(), length})) return false;
     if (last) return true;
     bool came = false;
-    for (const double end = DeviceThread::seconds() + kAnswer; !came && DeviceThread::seconds() < end;) {
+    for (const double end = DeviceThread::seconds() + kSerialAnswer; !came && DeviceThread::seconds() < end;) {
       if (!hear(*port_, lines, end - DeviceThread::seconds())) return false;
       for (std::string_view line; lines.next(line);)
         if (const auto pose = parse_serial_pose(line)) {
@@ -111,8 +111,8 @@ bool SerialDevice::talk() {
         }
     }
     silent = came ? 0 : silent + 1;
-    if (silent > kSilentUntilLost) return false;
-    due = std::max(due + kPeriod, DeviceThread::seconds());
+    if (silent > kSerialSilentUntilLost) return false;
+    due = std::max(due + kSerialPeriod, DeviceThread::seconds());
     DeviceThread::sleep(due - DeviceThread::seconds());
   }
 }
@@ -121,7 +121,7 @@ void SerialDevice::run() {
   while (!talk()) {
     port_.reset();
     while (!port_ && !thread_.stopping()) {
-      DeviceThread::sleep(kRetry);
+      DeviceThread::sleep(kSerialRetry);
       auto port = opener_(id_);
       if (port && ask(**port, [this] { return thread_.stopping(); })) port_ = std::move(*port);
     }

@@ -8,7 +8,7 @@ namespace pliant {
 namespace {
 
 constexpr std::uint8_t kInputKind = 0xa1, kOutputKind = 0xa2, kFeatureKind = 0xa3;
-constexpr double kGravity = 9.80665;  // [m/s2]
+constexpr double kGravityOfReport = 9.80665;  // [m/s2]
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::uint16_t u16(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -115,7 +115,7 @@ SonyParse parse_sony(SonyModel model, bool bluetooth, std::span<const std::uint8
 SonyCalibration nominal_calibration() {
   SonyCalibration nominal;
   nominal.gyro_scale = dvec3(2000.0 / 32768.0 * kDegree);
-  nominal.acceleration_scale = dvec3(kGravity / 8192.0);
+  nominal.acceleration_scale = dvec3(kGravityOfReport / 8192.0);
   return nominal;
 }
 
@@ -138,7 +138,7 @@ std::optional<SonyCalibration> parse_sony_calibration(SonyModel model, bool blue
     calibration.gyro_scale[axis] = speed / (plus - minus) * kDegree;
     const double up = s16(report, 23 + 4 * i), down = s16(report, 25 + 4 * i);
     calibration.acceleration_bias[axis] = 0.5 * (up + down);
-    calibration.acceleration_scale[axis] = 2.0 * kGravity / (up - down);
+    calibration.acceleration_scale[axis] = 2.0 * kGravityOfReport / (up - down);
   }
   // Within a factor of two of what the parts give: else the report is not believed.
   const SonyCalibration nominal = nominal_calibration();

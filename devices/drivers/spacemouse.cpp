@@ -11,9 +11,9 @@ namespace {
 constexpr double kUsualScale = 350.0;  // counts at full deflection, where the descriptor does not say
 constexpr double kQuiet = 0.25;        // [s] a deflected cap reports every 8 to 16 ms: silent so long, it is let go
 constexpr std::uint32_t kClutch = 2;   // the second button
-constexpr int kMostReports = 64;       // in one tick
+constexpr int kMostSpacemouseReports = 64;  // in one tick
 
-const HidMatch kMatches[] = {
+const HidMatch kSpacemouseMatches[] = {
     {0x046d, {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625, 0xc626, 0xc627, 0xc628, 0xc629, 0xc62b}, 1, 8},
     {0x256f, {0xc62e, 0xc62f, 0xc631, 0xc632, 0xc633, 0xc635, 0xc636, 0xc638, 0xc63a}, 1, 8},
 };
@@ -82,7 +82,7 @@ class SpaceMouse final : public Driver {
     if (!port_ || gone_) return false;
     const double now = clock_();
     std::array<std::uint8_t, 64> packet;
-    for (int i = 0; i < kMostReports; ++i) {
+    for (int i = 0; i < kMostSpacemouseReports; ++i) {
       const Result<std::size_t> length = port_->receive(packet, 0.0);
       gone_ = !length;
       if (gone_) return false;
@@ -120,7 +120,7 @@ class SpaceMouse final : public Driver {
 
 std::vector<DeviceInfo> list_spacemice() {
   std::vector<DeviceInfo> infos;
-  for (const HidFound& found : find_hid(kMatches))
+  for (const HidFound& found : find_hid(kSpacemouseMatches))
     infos.push_back({"spacemouse", found.id, found.name, found.missing, what_it_can(), found.hardware});
   return infos;
 }
@@ -183,7 +183,8 @@ std::unique_ptr<Driver> make_spacemouse(PortOpener opener, SecondsClock clock) {
 
 Status register_spacemouse() {
   return register_driver(
-      "spacemouse", [] { return make_spacemouse([](const std::string& id) { return open_hid(kMatches, id); }); },
+      "spacemouse",
+      [] { return make_spacemouse([](const std::string& id) { return open_hid(kSpacemouseMatches, id); }); },
       list_spacemice);
 }
 

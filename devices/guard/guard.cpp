@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "devices/guard/turn_between.h"
+
 namespace pliant {
 namespace {
 
@@ -35,14 +37,6 @@ dvec3 slewed(dvec3 last, dvec3 wanted, double most) {
   const double size = length(last);
   if (size > 0.0) last *= std::clamp(dot(wanted, last) / (size * size), 0.0, 1.0);
   return last + clamp_norm(wanted - last, most);
-}
-
-dvec3 turn_between(dquat from, dquat to) {
-  dquat turn = to * glm::conjugate(from);
-  if (turn.w < 0.0) turn = -turn;
-  const dvec3 axis(turn.x, turn.y, turn.z);
-  const double sine = length(axis);
-  return sine > 1e-12 ? axis * (2.0 * std::atan2(sine, turn.w) / sine) : 2.0 * axis;
 }
 
 }  // namespace

@@ -3,16 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/guard/turn_between.h"
+
 namespace pliant {
 namespace {
-
-dvec3 turn_between(dquat from, dquat to) {
-  dquat turn = to * glm::conjugate(from);
-  if (turn.w < 0.0) turn = -turn;
-  const dvec3 axis(turn.x, turn.y, turn.z);
-  const double sine = length(axis);
-  return sine > 1e-12 ? axis * (2.0 * std::atan2(sine, turn.w) / sine) : 2.0 * axis;
-}
 
 // The part of `v` against `direction` is left out.
 dvec3 not_against(dvec3 v, dvec3 direction) {

@@ -6,8 +6,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kLongestStep = 1e-4;  // [s] events are looked for at its end: two halts within one are not seen
-constexpr double kEventTime = 1e-9;    // [s]
+constexpr double kLongestAxisStep = 1e-4;  // [s] events are looked for at its end: two halts within one are not seen
+constexpr double kEventTime = 1e-9;        // [s]
 constexpr int kTerms = 30;
 constexpr double kTiny = 1e-17;  // [1] of the state: smaller terms of the series are left out
 
@@ -21,7 +21,7 @@ Axis::Axis(const AxisParameters& parameters) : parameters_(parameters) {
   const double fastest = std::max({(parameters.damping + stop_damping + hand.grip_damping + hand.arm_damping) / lighter,
                                    std::sqrt((stop_stiffness + hand.grip_stiffness + hand.arm_stiffness) / lighter),
                                    parameters.lag > 0.0 ? 1.0 / parameters.lag : 0.0});
-  sub_step_ = fastest > 0.0 ? std::min(kLongestStep, 0.5 / fastest) : kLongestStep;
+  sub_step_ = fastest > 0.0 ? std::min(kLongestAxisStep, 0.5 / fastest) : kLongestAxisStep;
 }
 
 void Axis::place(double position) {

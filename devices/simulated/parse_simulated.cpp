@@ -7,11 +7,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kLongestDelay = 1.0;  // [s]
-constexpr double kFastest = 20000.0;   // [Hz]
-constexpr double kShortest = 10e-6;    // [s] a motion's or an amplifier's time constant: its steps are half of it
-constexpr double kFarthest = 10.0;     // [m] of `at`
-constexpr double kHardest = 1000.0;    // [N] of `push`
+constexpr double kLongestDelay = 1.0;     // [s]
+constexpr double kFastest = 20000.0;      // [Hz]
+constexpr double kShortest = 10e-6;       // [s] a motion's or an amplifier's time constant: its steps are half of it
+constexpr double kFarthestOption = 10.0;  // [m] of `at`
+constexpr double kHardest = 1000.0;       // [N] of `push`
 
 struct NumberKey {
   const char* name;
@@ -66,7 +66,7 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
     } else if (option.key == "at" || option.key == "push") {
       const std::optional<dvec3> v = vector_of(option.value);
       if (!v) return wrong(fmt::format("{} must be three numbers X:Y:Z; got '{}'", option.key, option.value));
-      const double most = option.key == "push" ? kHardest : kFarthest;
+      const double most = option.key == "push" ? kHardest : kFarthestOption;
       if (!(length(*v) <= most))
         return wrong(fmt::format("{} must be at most {:g} {}; got '{}'", option.key, most,
                                  option.key == "push" ? "N" : "m from the middle", option.value));

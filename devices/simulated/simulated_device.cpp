@@ -10,7 +10,7 @@ namespace pliant {
 namespace {
 
 constexpr double kLongestCatchUp = 0.5;  // [s] of motion after a pause of whoever reads; more is left out
-constexpr double kSameTime = 1e-9;       // [s]
+constexpr double kSameInstant = 1e-9;    // [s]
 
 double wall() {
   return static_cast<double>(now_ns()) * 1e-9;
@@ -92,7 +92,7 @@ dvec3 SimulatedDevice::wants(double time, dquat& rotation) {
 
 // Motors get what the line has delivered until then.
 void SimulatedDevice::apply_commands(double until) {
-  while (waiting_ > 0 && line_[first_].from <= until + kSameTime) {
+  while (waiting_ > 0 && line_[first_].from <= until + kSameInstant) {
     for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)].command(line_[first_].force[i]);
     for (std::size_t i = 0; i < turns_.size(); ++i) turns_[i].command(line_[first_].torque[static_cast<int>(i)]);
     first_ = (first_ + 1) % line_.size();
@@ -101,7 +101,7 @@ void SimulatedDevice::apply_commands(double until) {
 }
 
 void SimulatedDevice::advance_to(double time) {
-  while (time_ < time - kSameTime) {
+  while (time_ < time - kSameInstant) {
     apply_commands(time_);
     const double next = waiting_ > 0 ? std::min(time, line_[first_].from) : time;
     const dvec3 to = wants(next, rotation_);

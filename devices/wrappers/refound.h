@@ -1,5 +1,6 @@
 // A device that was unplugged is found again: as soon as the driver inside says that its line is gone (Driver::gone), a
-// thread closes it and opens it anew, every kLookEvery, until it is there. Meanwhile nothing is read, and what is
+// thread closes it and opens it anew, every kLookEvery, until it is there. Not one whose line a guard process holds
+// (Driver::safe_line). Meanwhile nothing is read, and what is
 // written goes nowhere. Innermost of every device that was made by its words (chain.h).
 //
 // The driver inside belongs to one side at a time, and the phase says to which: `kHeld`, whoever calls these functions;
