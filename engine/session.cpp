@@ -18,7 +18,7 @@
 namespace pliant {
 namespace {
 
-bool finite(dvec3 v) {
+bool all_finite(dvec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
@@ -50,7 +50,7 @@ std::vector<std::string> Session::effectors() const {
 Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
   SessionEffector* const effector = parts_->find_effector(name);
   if (!effector) return parts_->unknown_effector(name);
-  if (!finite(position) || !plausible_rotation(rotation))
+  if (!all_finite(position) || !plausible_rotation(rotation))
     return Error{"Session::move `" + name + "`", "the pose is not finite or its rotation is not of unit length"};
   if (effector->source != EffectorSource::kPose) {
     if (Status s = parts_->stand_still("Session::move"); !s)
@@ -69,7 +69,7 @@ Status Session::follow(const std::string& name, Path path) {
   if (path.rows.empty()) return Error{"Session::follow `" + name + "`", "the path has no rows; give it one at least"};
   double before = -std::numeric_limits<double>::infinity();
   for (PathRow& row : path.rows) {
-    if (!finite(row.position) || !(row.time > before) || !std::isfinite(row.time))
+    if (!all_finite(row.position) || !(row.time > before) || !std::isfinite(row.time))
       return Error{"Session::follow `" + name + "`", "times must ascend and positions must be finite"};
     before = row.time;
     if (!path.turns)

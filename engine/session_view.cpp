@@ -51,11 +51,11 @@ void SessionView::take(World& world) {
 }
 
 void SessionView::take_all(World& world, Tick tick) {
-  // A snapshot holds a bounded number of zones. Every turn takes as many as fit, so this ends.
+  // Every turn takes as many zones as fit, and the next sees it, so this ends.
   do {
     publish(world, tick);
     take(world);
-  } while (!world.snapshots->read().complete);
+  } while (waits_to_be_published(world));
 }
 
 const std::vector<vec4>* SessionView::stream(Entity object) const {

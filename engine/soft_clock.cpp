@@ -12,7 +12,7 @@
 namespace pliant {
 
 namespace {
-constexpr const char* kReport = "; please report it with the level";
+constexpr const char* kSoftReport = "; please report it with the level";
 }
 
 SoftClock::SoftClock(World& world) : world_(world), schedule_(soft_schedule()) {
@@ -68,9 +68,9 @@ void SoftClock::run() {
   try {
     loop();
   } catch (const std::exception& thrown) {
-    error_ = Error{"soft clock", std::string("stopped by an exception: ") + thrown.what() + kReport};
+    error_ = Error{"soft clock", std::string("stopped by an exception: ") + thrown.what() + kSoftReport};
   } catch (...) {
-    error_ = Error{"soft clock", std::string("stopped by an exception of an unknown kind") + kReport};
+    error_ = Error{"soft clock", std::string("stopped by an exception of an unknown kind") + kSoftReport};
   }
   failed_ = error_.has_value();
 }

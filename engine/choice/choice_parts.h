@@ -1,31 +1,55 @@
 // The parts of model_choice.h, one a kind of object.
 #pragma once
 
-#include "components/world.h"
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "content/level/progress.h"
+#include "engine/choice/alone.h"
 #include "engine/choice/model_choice.h"
 
 namespace pliant {
 
-// A world of this node alone, at its place, without what moves it; a soft body's lattice of `cell` [m], 0: the usual.
-Result<World> spawn_alone(const Level& level, std::size_t node, double cell = 0.0);
-// Whether a key is the author's: said in the file, by --set, or not at its default.
-bool states(const LevelNode& node, const std::string& extension, const std::string& key);
-bool states_step(const Level& level);
+// Thrown through a choice whose watch has ended it; caught by choose_model.
+struct ChoiceStopped {};
 
-// The half-space's surface under a flat punch of this radius [m]: the share of the depth at distance r [m].
-double punch_share(double r, double radius);
-// One press of the engine's own tick at a vertex of the only surface of `world`, `depth` [m] deep: the RMS difference
-// from the half-space over its RMS within the reach, weighted by area. Empty where the press did not touch.
-struct SurfacePress {
-  double off = 0.0, size = 0.0;  // sums of squares
-  double vertices = 0.0;         // awake
-  double ms = 0.0;               // of the tick
+// Tells the watch, or without one stderr, that the choice goes on.
+class ChoiceProgress {
+ public:
+  explicit ChoiceProgress(const ChoiceWatch& watch = {}) : watch_(watch) {}
+  void say(const std::string& doing) {
+    if (!watch_)
+      work_.say(doing);
+    else if (!watch_(doing))
+      throw ChoiceStopped{};
+  }
+
+ private:
+  ChoiceWatch watch_;
+  LongWork work_;
 };
-Result<SurfacePress> press_vertex(World& world, std::uint32_t vertex, double depth);
-Result<ModelChoice> choose_surface(Level& level, std::size_t node);
 
-// [1] How far the lattice of `cell` [m] is from the finest in answer to the same presses, and the soft step from the
-// midpoint rule in short ones. `step` [s] is what the bodies of the level need.
-Result<ModelChoice> choose_body(Level& level, std::size_t node, double& step);
+// Each sets the keys of the node that are not stated.
+Result<ModelChoice> choose_surface(Level& level, std::size_t node, ChoiceProgress& progress);
+// After the surface, whose choice this is: nothing where nothing says what the force should be, and a remark says why.
+Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t node, ModelChoice& surface,
+                                              ChoiceProgress& progress);
+// `step` [s] is what the bodies of the level need.
+Result<ModelChoice> choose_body(Level& level, std::size_t node, double& step, ChoiceProgress& progress);
+// After all bodies: with the level's soft step. `budget`: [1].
+Result<ModelChoice> choose_tool(Level& level, std::size_t node, double budget, ChoiceProgress& progress);
+
+// What a candidate stands for goes with it while they are sorted: the cheapest first, and the one to take.
+template <class What>
+const What& take_cheapest(ModelChoice& choice, std::vector<std::pair<ModelCandidate, What>>& tried) {
+  std::stable_sort(tried.begin(), tried.end(),
+                   [](const auto& a, const auto& b) { return a.first.cost < b.first.cost; });
+  for (const auto& [candidate, what] : tried) choice.tried.push_back(candidate);
+  choice.chosen = cheapest_within(choice.tried, choice.budget);
+  choice.within = choice.tried[choice.chosen].error <= choice.budget;
+  return tried[choice.chosen].second;
+}
 
 }  // namespace pliant

@@ -3,100 +3,152 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
-#include "content/keys/extension_table.h"
 #include "engine/choice/choice_parts.h"
+#include "engine/choice/surface_truth.h"
 
 namespace pliant {
 
+namespace {
+
+constexpr double kAsNear = 1.01;  // [1] of the least error: what is nearer buys nothing that anybody could tell
+
+std::string cost_words(double us) {
+  return us < 100.0 ? fmt::format("{:.2g} us", us) : fmt::format("{:.0f} us", us);
+}
+
+bool has_surface_budget(const LevelNode& node) {
+  return node.deformable && node.deformable->error > 0.0 && node.mesh >= 0;
+}
+bool has_body_budget(const LevelNode& node) {
+  return node.soft_body && node.soft_body->error > 0.0;
+}
+bool is_tool(const LevelNode& node) {
+  return node.handle && (node.rigid_body || node.soft_body);
+}
+
+// A surface with its law, or a body; of those that have a budget.
+Status choose_object(Level& level, std::size_t index, double& step, ChoiceProgress& progress,
+                     std::vector<ModelChoice>& all) {
+  if (!has_surface_budget(level.nodes[index])) {
+    auto body = choose_body(level, index, step, progress);
+    if (!body) return body.error();
+    all.push_back(std::move(*body));
+    return Done{};
+  }
+  auto surface = choose_surface(level, index, progress);
+  if (!surface) return surface.error();
+  auto law = choose_law(level, index, *surface, progress);
+  if (!law) return law.error();
+  all.push_back(std::move(*surface));
+  if (*law) all.push_back(std::move(**law));
+  return Done{};
+}
+
+// What else there is where no candidate is within the budget.
+const char* cure(const std::string& kind) {
+  if (kind == "surface") return "; for less, make it a soft body (PLIANT_soft_body)";
+  if (kind == "force law") return "; for less, fit a law to measured presses (pliant fit)";
+  if (kind == "tool") return "; for less, name a shorter soft_step";
+  return "; for less, name a smaller `cell` and soft_step";
+}
+
+}  // namespace
+
 std::string ModelChoice::sentence() const {
   const ModelCandidate& it = tried[chosen];
-  std::string out = fmt::format(
-      "`{}`: {} is the cheapest of {} within an error of {:.3g}: measured {:.3g}, about {:.2g} us "
-      "a tick",
-      object, it.label, tried.size(), budget, it.error, it.cost);
+  std::string out =
+      fmt::format("`{}`: {} is the cheapest of {} within an error of {:.3g}: measured {:.3g}, about {} a tick", object,
+                  it.label, tried.size(), budget, it.error, cost_words(it.cost));
   if (!within)
     out = fmt::format(
-        "`{}`: none of {} models is within an error of {:.3g}; {} comes nearest, with {:.3g} and about {:.2g} us a "
-        "tick{}",
-        object, tried.size(), budget, it.label, it.error, it.cost,
-        kind == "surface" ? "; for less, make it a soft body (PLIANT_soft_body)"
-                          : "; for less, name a smaller `cell` and soft_step");
+        "`{}`: none of {} models is within an error of {:.3g}; {} comes nearest, with {:.3g} and about {} a "
+        "tick",
+        object, tried.size(), budget, it.label, it.error, cost_words(it.cost));
+  if (it.cost > kRealTimeUs) out += ", that is slower than real time";
+  if (!within) out += cure(kind);
   for (std::size_t i = 0; i < kept.size(); ++i) out += (i == 0 ? "; the level itself says " : ", ") + kept[i];
   for (const std::string& each : presses) out += "; " + each;
   return out;
 }
 
 std::size_t cheapest_within(const std::vector<ModelCandidate>& tried, double budget) {
-  for (std::size_t i = 0; i < tried.size(); ++i)
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < tried.size(); ++i) {
     if (tried[i].error <= budget) return i;
-  return static_cast<std::size_t>(
-      std::min_element(tried.begin(), tried.end(),
-                       [](const ModelCandidate& a, const ModelCandidate& b) { return a.error < b.error; }) -
-      tried.begin());
-}
-
-bool states(const LevelNode& node, const std::string& extension, const std::string& key) {
-  if (node.stated.contains(extension + "." + key)) return true;
-  const Extension* table = find_extension(extension);
-  LevelNode defaults;
-  table->add(&defaults);
-  const Key* it = find_key(*table, key);
-  return it->get(&node) != it->get(&defaults);
-}
-
-bool states_step(const Level& level) {
-  return level.stated.contains("simulation.soft_step") || level.simulation.soft_step != Simulation{}.soft_step;
-}
-
-Result<World> spawn_alone(const Level& level, std::size_t node, double cell) {
-  Level alone;
-  alone.name = level.name;
-  alone.path = level.path;
-  alone.simulation = level.simulation;
-  alone.nodes = level.nodes;
-  for (std::size_t i = 0; i < alone.nodes.size(); ++i) {
-    LevelNode& each = alone.nodes[i];
-    each.probe.reset();
-    each.device.reset();
-    each.motion.reset();
-    each.rigid_body.reset();
-    each.light.reset();
-    each.camera.reset();
-    if (each.handle) each.handle->device.clear();
-    if (i == node) continue;
-    each.deformable.reset();
-    each.soft_body.reset();
-    each.handle.reset();
-    each.mesh = -1;
+    least = std::min(least, tried[i].error);
   }
-  if (alone.nodes[node].soft_body) alone.nodes[node].soft_body->cell = cell;
-  if (std::int32_t& mesh = alone.nodes[node].mesh; mesh >= 0) {
-    alone.meshes = {level.meshes[static_cast<std::size_t>(mesh)]};
-    for (Primitive& primitive : alone.meshes[0].primitives) primitive.material = -1;
-    mesh = 0;
-  }
-  return spawn_level(alone);
+  std::size_t nearest = 0;
+  while (nearest + 1 < tried.size() && !(tried[nearest].error <= kAsNear * least)) ++nearest;
+  return nearest;
 }
 
 Result<std::vector<ModelChoice>> choose_models(Level& level) {
   std::vector<ModelChoice> all;
-  double step = level.simulation.soft_step;
+  ChoiceProgress progress;
+  double step = 1.0, least = 0.0;  // least: of the budgets, for what has none of its own
   bool any_body = false;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
-    LevelNode& node = level.nodes[i];
-    if (!node.in_scene) continue;
-    const bool surface = node.deformable && node.deformable->error > 0.0 && node.mesh >= 0,
-               body = node.soft_body && node.soft_body->error > 0.0;
-    if (!surface && !body) continue;
-    if (body && !any_body) step = 1.0;
-    auto choice = surface ? choose_surface(level, i) : choose_body(level, i, step);
-    if (!choice) return choice.error();
-    any_body = any_body || body;
-    all.push_back(std::move(*choice));
+    const LevelNode& node = level.nodes[i];
+    if (!node.in_scene || !(has_surface_budget(node) || has_body_budget(node))) continue;
+    if (const Status done = choose_object(level, i, step, progress, all); !done) return done.error();
+    any_body = any_body || !has_surface_budget(node);
+    least = least > 0.0 ? std::min(least, all.back().budget) : all.back().budget;
   }
   if (any_body && !states_step(level)) level.simulation.soft_step = step;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const LevelNode& node = level.nodes[i];
+    if (!node.in_scene || !is_tool(node)) continue;
+    const double budget = has_body_budget(node) ? node.soft_body->error : node.rigid_body ? least : 0.0;
+    if (!(budget > 0.0)) continue;
+    auto choice = choose_tool(level, i, budget, progress);
+    if (!choice) return choice.error();
+    all.push_back(std::move(*choice));
+  }
   return all;
+}
+
+Result<std::vector<ModelChoice>> choose_model(Level& level, std::size_t index, const ChoiceWatch& watch) {
+  const LevelNode& node = level.nodes[index];
+  if (!node.in_scene) return Error{node.name, "is not in the scene that is shown; no model of it is chosen"};
+  if (!has_surface_budget(node) && !has_body_budget(node))
+    return Error{node.name, "has no error budget; give its surface or soft body the key `error`"};
+  ChoiceProgress progress(watch);
+  std::vector<ModelChoice> all;
+  try {
+    double step = 1.0;
+    if (const Status done = choose_object(level, index, step, progress, all); !done) return done.error();
+    if (has_surface_budget(node)) return all;
+    if (!states_step(level)) level.simulation.soft_step = step;
+    if (!is_tool(node)) return all;
+    auto tool = choose_tool(level, index, node.soft_body->error, progress);
+    if (!tool) return tool.error();
+    all.push_back(std::move(*tool));
+    return all;
+  } catch (const ChoiceStopped&) {
+    return Error{node.name, "was not measured to the end"};
+  }
+}
+
+std::vector<ChoosableKey> choosable_keys(const Level& level, std::size_t index) {
+  const LevelNode& node = level.nodes[index];
+  std::vector<ChoosableKey> keys;
+  const auto add = [&](const char* extension, const char* key) {
+    keys.push_back({extension, key, states(node, extension, key)});
+  };
+  if (node.soft_body && !has_surface_budget(node)) {
+    if (node.soft_body->mesh.empty()) add("soft_body", "cell");
+    add("soft_body", "solver");
+    keys.push_back({"simulation", "soft_step", states_step(level)});
+    if (is_tool(node)) add("handle", "force");
+  } else if (node.deformable && node.mesh >= 0) {
+    if (!states(node, "deformable", "volume")) add("deformable", "shape");
+    for (const char* key : {"distance", "reach", "contact_radius"}) add("deformable", key);
+    if (node.deformable->young > 0.0 && least_sphere(level) > 0.0)
+      for (const char* key : {"spring", "stiffening", "cubic"}) add("deformable", key);
+  }
+  return keys;
 }
 
 Status set_error_budget(Level& level, double budget) {

@@ -1,178 +1,155 @@
-// The shape of a surface's dent, and what its distance is, by presses of the touch tick.
+// The shape of a surface's dent, how wide it is, and what its distance is, by presses of the touch tick.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "content/keys/enum_words.h"
-#include "content/level/progress.h"
 #include "engine/choice/choice_parts.h"
-#include "runtime/clock.h"
-#include "systems/schedule.h"
-#include "systems/touch/force_field.h"
-#include "systems/touch/prepare.h"
-#include "systems/touch/surface_distance.h"
+#include "engine/choice/press_bench.h"
+#include "engine/choice/surface_cost.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kPresses = 6;     // places, along the mesh's own order
-constexpr double kInner = 0.2;            // [1] of the reach: the punch, as the engine's shapes have it
-constexpr double kDepths[] = {0.2, 0.5};  // [1] of the punch's radius, in turn
-constexpr Shape kShapes[] = {Shape::kPunch,    Shape::kHertz,  Shape::kGaussian,
-                             Shape::kWendland, Shape::kVolume, Shape::kKelvinlet};
+constexpr double kDepths[] = {0.2, 0.5};              // [1] of the punch's radius, in turn
+constexpr double kReaches[] = {3.0, 5.0, 8.0, 12.0};  // [1] of the punch's radius
+constexpr double kContacts[] = {1.0, 1.5, 2.0};  // [1] the same: a window that takes a shape to zero makes it narrower
+constexpr double kGpuAgrees = 1.9e-7;            // [1] of the largest height, as measured (bench/results/README.md)
+constexpr double kBytes = 16.0;                  // a vertex awake, for a picture of a field on the CPU
 
-// Nanoseconds a vertex in the kernels that ship, measured once (bench/results/studies/shapes.csv): counted with, so
-// that a choice is the same on every machine. The volume shape sums its coefficient first.
-double vertex_ns(Shape shape) {
-  constexpr double kNs[] = {2.6, 3.1, 2.3, 1.0, 2.1, 2.9};
-  return shape <= kLastShape ? kNs[static_cast<std::size_t>(shape)] : 20.0;
-}
-constexpr double kMarchNs = 150.0;  // [ns] a vertex whose distance along the surface is found
-constexpr double kTickUs = 3.0;     // [us] of a tick beside its vertices
-
-struct Only {
-  Entity entity;
-  const Deformable* deformable;
-};
-std::optional<Only> only_surface(World& world) {
-  for (auto [entity, deformable] : world.registry.view<const Deformable>()) return Only{entity, &deformable};
-  return std::nullopt;
-}
-
-Entity probe_of(World& world) {
-  for (auto [entity, probe] : world.registry.view<const Probe>()) return entity;
-  const Entity entity = world.registry.create();
-  Probe probe;
-  probe.device = entity;
-  world.registry.add(entity, Name{"press"});
-  world.registry.add(entity, probe);
-  HapticDevice device;
-  device.driver = DriverKind::kExternal;
-  device.max_force = 1e9;
-  device.max_slew = 1e12;
-  world.registry.add(entity, device);
-  return entity;
-}
-
-// Distances of vertices along the surface from where the probe presses, as far as two reaches.
-std::vector<vec3> distances(const Mesh& mesh, const Contact& contact, double reach) {
-  std::vector<vec3> offset(mesh.px.size(), vec3(kFar));
-  FieldSource source;
-  source.center = vec3(contact.foot);
-  source.normal = vec3(contact.normal);
-  source.inv_reach2 = static_cast<float>(1 / (4 * reach * reach));
-  std::vector<MarchItem> heap;
-  heap.reserve(std::size_t{8} * mesh.vertex_count);
-  march_distance(mesh, contact, source, offset, heap);
-  return offset;
-}
-
-struct Tried {
+struct SurfaceModel {
   Shape shape;
   Distance distance;
+  double reach, contact;  // [m]; contact 0: the shape has none, or a fifth of the reach
+  double bulge;           // [m] of curved patches on the mesh that this reach makes, at most
 };
+
+// What the author leaves open.
+struct OpenKeys {
+  std::vector<Shape> shapes;
+  std::vector<Distance> ways;
+  std::vector<double> reaches, contacts;  // [m]
+};
+
+OpenKeys open_keys(const LevelNode& node, const SurfaceTruth& truth) {
+  const auto said = [&](const char* key) { return states(node, "deformable", key); };
+  const Deformable& its = *node.deformable;
+  OpenKeys open;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(kLastShape); ++i) open.shapes.push_back(static_cast<Shape>(i));
+  if (said("shape") || said("volume"))
+    open.shapes = {its.shape};
+  else if (said("contact_radius"))
+    std::erase_if(open.shapes, [](Shape shape) { return !depends_on_contact(shape); });
+  open.ways = {Distance::kChord, Distance::kSurface};
+  if (said("distance")) open.ways = {its.distance};
+  if (said("reach"))
+    open.reaches = {its.reach};  // 0: the usual one
+  else
+    for (const double share : kReaches) open.reaches.push_back(share * truth.radius());
+  if (said("contact_radius"))
+    open.contacts = {its.contact_radius};
+  else
+    for (const double share : kContacts) open.contacts.push_back(share * truth.radius());
+  return open;
+}
+
+std::string label_of(const SurfaceModel& it) {
+  std::string label =
+      fmt::format("shape {}, distance {}, reach {:.3g} mm", word_of(it.shape), word_of(it.distance), 1e3 * it.reach);
+  if (depends_on_contact(it.shape))
+    label += it.contact > 0.0 ? fmt::format(", contact {:.3g} mm", 1e3 * it.contact) : ", contact a fifth of it";
+  return label;
+}
+
+// Nothing where no place could be pressed.
+std::optional<ModelCandidate> measure(PressBench& bench, const SurfaceModel& model, const SurfaceTruth& truth) {
+  Deformable& its = bench.surface();
+  its.shape = model.shape;
+  its.contact_radius = model.contact;
+  double off = 0.0, vertices = 0.0, ms = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < kPressPlaces; ++k) {
+    const PressBench::Press press = bench.press(k, kDepths[k % 2] * truth.radius(), truth);
+    if (!(press.size > 0.0)) continue;
+    off += press.off / press.size;
+    vertices += press.vertices;
+    ms += press.ms;
+    count += 1.0;
+  }
+  if (count == 0.0) return std::nullopt;
+  const double vertex = shape_ns(model.shape) + (model.distance == Distance::kSurface ? kMarchNs : 0.0);
+  return ModelCandidate{label_of(model), std::sqrt(off / count), kTickUs + 1e-3 * vertices / count * vertex, ms / count,
+                        vertices / count};
+}
+
+// What costs nothing to have, or has no key.
+void remark(double bulge, const SurfaceTruth& truth, ModelChoice& choice) {
+  choice.remarks.push_back("truth: " + truth.words());
+  choice.remarks.push_back(fmt::format(
+      "patches: curved where the normals are not the facets' own, at most {:.2g} mm off them ({:.2g} of the punch's "
+      "radius); flat ones would save less than a tenth of a tick, so there is no key and nothing to choose",
+      1e3 * bulge, bulge / truth.radius()));
+  const ModelCandidate& it = choice.tried[choice.chosen];
+  choice.remarks.push_back(fmt::format(
+      "field back end: the force is the CPU's with either, the heights of the two agree to {:.2g} of the largest, so "
+      "that no budget tells them apart; `run --field gpu` spares {:.2g} KB a picture here",
+      kGpuAgrees, kBytes * 1e-3 * it.vertices));
+}
 
 }  // namespace
 
-double punch_share(double r, double radius) {
-  return r <= radius ? 1.0 : 2 / std::numbers::pi * std::asin(radius / r);
-}
-
-Result<SurfacePress> press_vertex(World& world, std::uint32_t vertex, double depth) {
-  const Entity probe = probe_of(world);
-  const auto only = only_surface(world);
-  const Mesh& mesh = world.meshes[only->deformable->mesh];
-  HeightField& field = world.fields[only->deformable->field];
-  field = {};
-  if (const Status ready = prepare_touch(world); !ready) return ready.error();
-  const Pose& pose = world.registry.get<Pose>(only->entity);
-  HapticDevice& device = world.registry.get<HapticDevice>(probe);
-  Schedule<World> schedule(touch_schedule());
-  SurfacePress out;
-  const double dt = 1 / world.simulation.touch_rate;
-  const dvec3 foot(mesh.position(vertex)), normal(mesh.normal(vertex));
-  for (std::uint64_t n = 0; n < 2; ++n) {
-    device.position = pose.to_world(foot + (n == 0 ? depth : -depth) * normal);
-    device.sensed_at = static_cast<double>(n) * dt;
-    const std::uint64_t begin = now_ns();
-    schedule.run(world, {n, dt, static_cast<double>(n) * dt});
-    out.ms = static_cast<double>(now_ns() - begin) * 1e-6;
-  }
-  const Contact* contact = nullptr;
-  for (auto [entity, each] : world.registry.view<const Contact>())
-    if (each.state != ContactState::kFree && each.height < 0 && (!contact || each.height < contact->height))
-      contact = &each;
-  if (!contact) return out;
-  const double reach = only->deformable->reach, pressed = -contact->height;
-  const std::vector<vec3> way = distances(mesh, *contact, reach);
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    if (length(dvec3(mesh.position(v)) - dvec3(contact->foot)) > reach) continue;
-    const double r = length(dvec3(way[v])), truth = r < 2 * reach ? punch_share(r, kInner * reach) : 0.0,
-                 share = -static_cast<double>(field.stream[v].w) / pressed, area = mesh.area[v];
-    out.off += area * (share - truth) * (share - truth);
-    out.size += area * truth * truth;
-  }
-  out.vertices = field.awake_vertices;
-  return out;
-}
-
-Result<ModelChoice> choose_surface(Level& level, std::size_t index) {
+Result<ModelChoice> choose_surface(Level& level, std::size_t index, ChoiceProgress& progress) {
   LevelNode& node = level.nodes[index];
   ModelChoice choice{node.name, "surface", node.deformable->error, {}, 0, false, {}, {}};
-  auto world = spawn_alone(level, index);
-  if (!world) return world.error();
-  auto only = only_surface(*world);
-  if (!only) return Error{node.name, "has an error budget but no surface to press; leave out `error`"};
-  Deformable& its = world->registry.get<Deformable>(only->entity);
-  its.response = Response::kFollow;
-  its.spring = SpringLaw::kLinear;  // the surface under a press does not depend on the law
-  if (its.reach == 0.0) its.reach = default_reach(world->meshes[its.mesh]);
-
-  std::vector<Shape> shapes(std::begin(kShapes), std::end(kShapes));
-  std::vector<Distance> ways{Distance::kChord, Distance::kSurface};
-  for (const char* key : {"shape", "distance", "spring", "response", "reach"})
+  const auto say = [&] { progress.say("choosing a model for `" + node.name + "`"); };
+  Level alone = level_alone(level, index);
+  // The surface under a press does not depend on the law.
+  alone.nodes[index].deformable->spring = SpringLaw::kLinear;
+  const auto usual = spawn_level(alone);
+  if (!usual) return usual.error();
+  double diagonal = 0.0;
+  for (auto [entity, its] : usual->registry.view<const Deformable>())
+    diagonal = static_cast<double>(usual->meshes[its.mesh].box.diagonal());
+  if (!(diagonal > 0.0)) return Error{node.name, "has an error budget but no surface to press; leave out `error`"};
+  const SurfaceTruth truth(level, index, diagonal);
+  for (const char* key : {"shape", "volume", "distance", "spring", "response", "reach", "contact_radius"})
     if (states(node, "deformable", key)) choice.kept.emplace_back(key);
-  if (states(node, "deformable", "shape") || states(node, "deformable", "volume")) shapes = {its.shape};
-  if (states(node, "deformable", "distance")) ways = {its.distance};
-  Progress progress;
-  std::vector<std::pair<ModelCandidate, Tried>> tried;
-  for (const Shape shape : shapes)
-    for (const Distance distance : ways) {
-      its.shape = shape;
-      its.distance = distance;
-      double off = 0.0, size = 0.0, vertices = 0.0, ms = 0.0, count = 0.0;
-      for (std::uint32_t k = 0; k < kPresses; ++k) {
-        progress.say("choosing a model for `" + node.name + "`");
-        const std::uint32_t n = world->meshes[its.mesh].vertex_count;
-        const auto vertex = static_cast<std::uint32_t>((2 * std::uint64_t{k} + 1) * n / (2 * kPresses));
-        const auto press = press_vertex(*world, vertex, kDepths[k % 2] * kInner * its.reach);
-        if (!press) return press.error();
-        if (!(press->size > 0.0)) continue;
-        off += press->off / press->size;
-        size += 1.0;
-        vertices += press->vertices;
-        ms += press->ms;
-        count += 1.0;
-      }
-      if (count == 0.0) return Error{node.name, "could not be pressed to measure an error; leave out `error`"};
-      ModelCandidate candidate;
-      candidate.label = fmt::format("shape {}, distance {}", word_of(shape), word_of(distance));
-      candidate.error = std::sqrt(off / size);
-      candidate.cost =
-          kTickUs + 1e-3 * vertices / count * (vertex_ns(shape) + (distance == Distance::kSurface ? kMarchNs : 0.0));
-      candidate.ms = ms / count;
-      tried.push_back({candidate, {shape, distance}});
+
+  const OpenKeys open = open_keys(node, truth);
+  std::optional<PressPlaces> places;  // of the finest mesh: a shorter reach has more vertices
+  std::vector<std::pair<ModelCandidate, SurfaceModel>> tried;
+  std::optional<PressBench> bench;
+  for (const double wanted : open.reaches) {
+    alone.nodes[index].deformable->reach = wanted;
+    alone.nodes[index].deformable->contact_radius = 0.0;
+    auto made = PressBench::make(alone, places ? &*places : nullptr, 0.0);
+    if (!made) return made.error();
+    bench = std::move(made).value();
+    if (!places) places = bench->places();
+    const double reach = bench->surface().reach;
+    for (const Distance distance : open.ways) {
+      bench->surface().distance = distance;
+      if (const Status ready = bench->prepare(); !ready) return ready.error();
+      for (const Shape shape : open.shapes)
+        for (const double contact : depends_on_contact(shape) ? open.contacts : std::vector{0.0}) {
+          say();
+          if (contact > kMostContactShare * reach) continue;
+          const SurfaceModel model{shape, distance, reach, contact, static_cast<double>(bench->mesh().tree.bulge)};
+          if (const auto candidate = measure(*bench, model, truth)) tried.emplace_back(*candidate, model);
+        }
     }
-  std::stable_sort(tried.begin(), tried.end(),
-                   [](const auto& a, const auto& b) { return a.first.cost < b.first.cost; });
-  for (const auto& [candidate, what] : tried) choice.tried.push_back(candidate);
-  choice.chosen = cheapest_within(choice.tried, choice.budget);
-  choice.within = choice.tried[choice.chosen].error <= choice.budget;
-  node.deformable->shape = tried[choice.chosen].second.shape;
-  node.deformable->distance = tried[choice.chosen].second.distance;
+  }
+  if (tried.empty()) return Error{node.name, "could not be pressed to measure an error; leave out `error`"};
+  const SurfaceModel taken = take_cheapest(choice, tried);
+  remark(taken.bulge, truth, choice);
+  for (const ChoosableKey& key : choosable_keys(level, index))
+    if (!key.said && (key.key == "shape" || key.key == "distance" || key.key == "reach" ||
+                      (key.key == "contact_radius" && depends_on_contact(taken.shape))))
+      choice.keys.push_back(key);
+  node.deformable->shape = taken.shape;
+  node.deformable->distance = taken.distance;
+  if (!states(node, "deformable", "reach")) node.deformable->reach = taken.reach;
+  if (!states(node, "deformable", "contact_radius")) node.deformable->contact_radius = taken.contact;
   return choice;
 }
 

@@ -1,0 +1,150 @@
+// The law of a surface's force, where `young` and a spherical probe say what the force should be: Hertz's, or that of a
+// layer bonded to something rigid.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "content/keys/enum_words.h"
+#include "content/keys/layer_sphere.h"
+#include "engine/choice/choice_parts.h"
+#include "engine/choice/press_bench.h"
+#include "engine/choice/surface_cost.h"
+#include "systems/touch/contact_law.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kLawDepths = 4;
+constexpr double kDeepest = 0.25;       // [1] of the sphere's radius, and of the layer's thickness: small strains
+constexpr double kMostOfObject = 0.02;  // [1] of the object's diagonal
+constexpr double kMostStiffening = 12.0, kMostCubic = 100.0;  // [1] of the deepest press: alpha d, and k3 d^2 / k
+
+// What a law says of the force at a depth [m], times E*. [m2]
+double law_area(const Deformable& its, SpringLaw spring, double constant, double radius, double depth) {
+  Deformable with = its;
+  with.spring = spring;
+  (spring == SpringLaw::kCubic ? with.cubic : with.stiffening) = constant;
+  const double z = -restoring_law(with).force(-depth);
+  return 4.0 / 3.0 * std::sqrt(radius) * z * std::sqrt(std::max(0.0, z));
+}
+
+// The constant between 0 and `most` whose force comes nearest, by golden section.
+double fitted(const Deformable& its, SpringLaw spring, double most, double radius, double deepest,
+              const LayerSphere& truth) {
+  const auto off = [&](double constant) {
+    double sum = 0.0;
+    for (int i = 1; i <= kLawDepths; ++i) {
+      const double d = deepest * i / kLawDepths, r = law_area(its, spring, constant, radius, d) - truth.force(d);
+      sum += r * r;
+    }
+    return sum;
+  };
+  constexpr double kGolden = 0.6180339887498949;
+  double low = 0.0, high = most;
+  for (int i = 0; i < 60; ++i) {
+    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+    (off(a) < off(b) ? high : low) = off(a) < off(b) ? b : a;
+  }
+  return 0.5 * (low + high);
+}
+
+struct LawModel {
+  SpringLaw spring;
+  double constant;  // [1/m] or [N/m3]
+};
+
+std::string label_of(const LawModel& law) {
+  std::string label = fmt::format("spring {}", word_of(law.spring));
+  if (law.spring == SpringLaw::kExponential) label += fmt::format(", stiffening {:.4g} /m", law.constant);
+  if (law.spring == SpringLaw::kCubic) label += fmt::format(", cubic {:.4g} N/m3", law.constant);
+  return label;
+}
+
+void set(Deformable& its, const LawModel& law) {
+  its.spring = law.spring;
+  if (law.spring == SpringLaw::kExponential) its.stiffening = law.constant;
+  if (law.spring == SpringLaw::kCubic) its.cubic = law.constant;
+}
+
+// The key of a law's constant; null: it has none.
+const char* constant_of(SpringLaw spring) {
+  return spring == SpringLaw::kExponential ? "stiffening" : spring == SpringLaw::kCubic ? "cubic" : nullptr;
+}
+
+// Why there is nothing to choose by; empty: there is.
+std::string no_truth(const LevelNode& node, double sphere) {
+  if (!(node.deformable->young > 0.0))
+    return "the author's, as is the stiffness: without `young` no truth says what it is";
+  if (states(node, "deformable", "spring")) return "the author's: the level itself says spring";
+  if (!(sphere > 0.0)) return "linear is exact: a point presses as the flat punch of 4 mm radius that `young` assumes";
+  return "";
+}
+
+}  // namespace
+
+Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t index, ModelChoice& surface,
+                                              ChoiceProgress& progress) {
+  LevelNode& node = level.nodes[index];
+  const double sphere = least_sphere(level);
+  if (const std::string why = no_truth(node, sphere); !why.empty()) {
+    surface.remarks.push_back("force law: " + why);
+    return std::optional<ModelChoice>();
+  }
+  ModelChoice choice{node.name, "force law", node.deformable->error, {}, 0, false, {}, {}};
+  Level alone = level_alone(level, index);
+  for (LevelMesh& mesh : alone.meshes)  // a painted factor scales law and truth alike
+    for (Primitive& primitive : mesh.primitives) primitive.stiffness.clear();
+  auto bench = PressBench::make(alone, nullptr, sphere);
+  if (!bench) return bench.error();
+  Deformable& its = bench->surface();
+  const double diagonal = static_cast<double>(bench->mesh().box.diagonal());
+  double deepest = std::min(kDeepest * sphere, kMostOfObject * diagonal);
+  if (its.thickness > 0.0) deepest = std::min(deepest, kDeepest * its.thickness);
+  const LayerSphere force(sphere, its.thickness, its.poisson, deepest);
+  const SurfaceTruth truth(level, index, diagonal);
+
+  std::vector<LawModel> laws{{SpringLaw::kLinear, 0.0}};
+  const auto add = [&](SpringLaw spring, const char* key, double said, double most) {
+    if (states(node, "deformable", key)) choice.kept.emplace_back(key);
+    const bool kept = states(node, "deformable", key);
+    laws.push_back({spring, kept ? said : fitted(its, spring, most, sphere, deepest, force)});
+  };
+  add(SpringLaw::kExponential, "stiffening", its.stiffening, kMostStiffening / deepest);
+  add(SpringLaw::kCubic, "cubic", its.cubic, its.stiffness * kMostCubic / (deepest * deepest));
+
+  std::vector<std::pair<ModelCandidate, LawModel>> tried;
+  for (const LawModel& law : laws) {
+    set(its, law);
+    if (const Status ready = bench->prepare(); !ready) return ready.error();
+    double off = 0.0, size = 0.0, ms = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < kPressPlaces; ++k)
+      for (int i = 1; i <= kLawDepths; ++i) {
+        progress.say("choosing a force law for `" + node.name + "`");
+        const double depth = deepest * i / kLawDepths, wanted = plane_modulus(its) * force.force(depth);
+        const PressBench::Press press = bench->press(k, depth, truth);
+        if (!(press.force > 0.0)) continue;
+        off += (press.force - wanted) * (press.force - wanted);
+        size += wanted * wanted;
+        ms += press.ms;
+        count += 1.0;
+      }
+    if (!(size > 0.0)) return Error{node.name, "could not be pressed to measure an error; leave out `error`"};
+    ModelCandidate candidate{label_of(law), std::sqrt(off / size)};
+    candidate.vertices = surface.tried[surface.chosen].vertices;
+    candidate.cost = kTickUs + 1e-3 * candidate.vertices * law_ns(law.spring);
+    candidate.ms = ms / count;
+    tried.emplace_back(candidate, law);
+  }
+  choice.remarks.push_back(fmt::format(
+      "truth: the force of a sphere of {:.3g} mm radius, up to {:.2g} mm deep, {}", 1e3 * sphere, 1e3 * deepest,
+      its.thickness > 0.0 ? fmt::format("on a layer of {:.3g} mm bonded to something rigid", 1e3 * its.thickness)
+                          : std::string("on an elastic half-space (Hertz)")));
+  const LawModel taken = take_cheapest(choice, tried);
+  choice.keys.push_back({"deformable", "spring"});
+  if (const char* constant = constant_of(taken.spring); constant && !states(node, "deformable", constant))
+    choice.keys.push_back({"deformable", constant});
+  set(*node.deformable, taken);
+  return std::optional<ModelChoice>(std::move(choice));
+}
+
+}  // namespace pliant

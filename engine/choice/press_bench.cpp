@@ -1,0 +1,149 @@
+#include "engine/choice/press_bench.h"
+
+#include <cmath>
+
+#include "runtime/clock.h"
+#include "systems/schedule.h"
+#include "systems/touch/prepare.h"
+#include "systems/touch/surface_distance.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kAside = 0.01;  // [1] of the reach
+
+Entity add_probe(World& world, double radius, dvec3 at) {
+  const Entity entity = world.registry.create();
+  Probe probe;
+  probe.device = entity;
+  probe.radius = radius;
+  probe.position = at;
+  world.registry.add(entity, Name{"press"});
+  world.registry.add(entity, probe);
+  HapticDevice device;
+  device.driver = DriverKind::kExternal;
+  device.position = at;
+  device.max_force = 1e9;
+  device.max_slew = 1e12;
+  world.registry.add(entity, device);
+  return entity;
+}
+
+// Distances of vertices along the surface from where the probe presses, as far as `reach` [m].
+std::vector<vec3> distances(const Mesh& mesh, const Contact& contact, double reach) {
+  std::vector<vec3> offset(mesh.px.size(), vec3(kFar));
+  FieldSource source;
+  source.center = vec3(contact.foot);
+  source.normal = vec3(contact.normal);
+  source.inv_reach2 = static_cast<float>(1 / (reach * reach));
+  std::vector<MarchItem> heap;
+  heap.reserve(std::size_t{8} * mesh.vertex_count);
+  march_distance(mesh, contact, source, offset, heap);
+  return offset;
+}
+
+}  // namespace
+
+PressPlaces press_places(const Mesh& mesh) {
+  PressPlaces places;
+  for (std::uint64_t k = 0; k < kPressPlaces; ++k) {
+    const auto vertex = static_cast<std::uint32_t>((2 * k + 1) * mesh.vertex_count / (2 * kPressPlaces));
+    places.foot.emplace_back(mesh.position(vertex));
+    places.normal.emplace_back(mesh.normal(vertex));
+  }
+  return places;
+}
+
+Result<PressBench> PressBench::make(const Level& level, const PressPlaces* places, double probe_radius) {
+  auto world = spawn_level(level);
+  if (!world) return world.error();
+  PressBench bench;
+  bench.world_ = std::move(world).value();
+  bench.probe_radius_ = probe_radius;
+  bench.schedule_ = Schedule<World>(touch_schedule());
+  for (auto [entity, deformable] : bench.world_.registry.view<const Deformable>()) bench.object_ = entity;
+  Deformable& surface = bench.surface();
+  if (surface.reach == 0.0) surface.reach = default_reach(bench.mesh());
+  surface.response = Response::kFollow;
+  surface.settling_time = DeformableRange::kSettlingTime.min;  // at rest again within a tick
+  surface.damping_ratio = 1.0;
+  surface.contact_damping = 0.0;
+  surface.contact_damping_material = false;
+  surface.friction_static = surface.friction_sliding = 0.0;
+  bench.places_ = places ? *places : press_places(bench.mesh());
+  bench.aside_ = kAside * surface.reach;
+  const Pose pose = bench.world_.registry.get<Pose>(bench.object_);
+  for (std::size_t k = 0; k < bench.places_.foot.size(); ++k) {
+    const double outside = probe_radius + bench.aside_;
+    bench.probes_.push_back(add_probe(bench.world_, probe_radius,
+                                      pose.to_world(bench.places_.foot[k] + outside * bench.places_.normal[k])));
+  }
+  bench.regions_.resize(bench.probes_.size());
+  return bench;
+}
+
+Status PressBench::prepare() {
+  world_.fields[surface().field] = {};
+  if (const Status ready = prepare_touch(world_); !ready) return ready;
+  tick(probes_.size(), 0.0);
+  return Done{};
+}
+
+void PressBench::tick(std::size_t place, double depth) {
+  const Pose& pose = world_.registry.get<Pose>(object_);
+  const double dt = 1 / world_.simulation.touch_rate, time = static_cast<double>(ticks_) * dt;
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    HapticDevice& device = world_.registry.get<HapticDevice>(probes_[k]);
+    const double above = probe_radius_ + (k == place ? -depth : aside_);
+    device.position = pose.to_world(places_.foot[k] + above * places_.normal[k]);
+    device.sensed_at = time;
+  }
+  const std::uint64_t begin = now_ns();
+  schedule_.run(world_, {ticks_, dt, time});
+  ms_ = static_cast<double>(now_ns() - begin) * 1e-6;
+  ++ticks_;
+}
+
+void PressBench::find_region(std::size_t place, const Contact& contact, const SurfaceTruth& truth) {
+  Region& region = regions_[place];
+  region.known = true;
+  const Mesh& its = mesh();
+  const std::vector<vec3> way = distances(its, contact, 2 * truth.region());
+  for (std::uint32_t v = 0; v < its.vertex_count; ++v) {
+    if (length(dvec3(its.position(v)) - contact.foot) > truth.region()) continue;
+    const double r = length(dvec3(way[v]));
+    region.vertex.push_back(v);
+    region.share.push_back(r < 2 * truth.region() ? truth.share(r) : 0.0);
+  }
+}
+
+PressBench::Press PressBench::press(std::size_t place, double depth, const SurfaceTruth& truth) {
+  Press out;
+  tick(place, depth);
+  out.ms = ms_;
+  const HeightField& field = world_.fields[surface().field];
+  const Contact* contact = nullptr;
+  for (auto [entity, each] : world_.registry.view<const Contact>())
+    if (each.probe == probes_[place] && each.state != ContactState::kFree && each.height < 0 &&
+        (!contact || each.height < contact->height))
+      contact = &each;
+  if (contact) {
+    if (!regions_[place].known) find_region(place, *contact, truth);
+    const Region& region = regions_[place];
+    const double pressed = -contact->height;
+    for (std::size_t i = 0; i < region.vertex.size(); ++i) {
+      const std::uint32_t v = region.vertex[i];
+      const double share = -static_cast<double>(field.stream[v].w) / pressed, area = mesh().area[v];
+      out.off += area * (share - region.share[i]) * (share - region.share[i]);
+      out.size += area * region.share[i] * region.share[i];
+    }
+    out.vertices = field.awake_vertices;
+    const Pose& pose = world_.registry.get<Pose>(object_);
+    out.force = dot(world_.registry.get<Probe>(probes_[place]).force, pose.rotation * places_.normal[place]);
+  }
+  tick(probes_.size(), 0.0);  // let go
+  tick(probes_.size(), 0.0);  // asleep
+  return out;
+}
+
+}  // namespace pliant

@@ -1,0 +1,77 @@
+// How the touch clock makes a tool's force, by a press of that very tool on a fixed plate.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "content/keys/enum_words.h"
+#include "engine/choice/choice_parts.h"
+#include "engine/choice/tool_press.h"
+#include "systems/tool/handle_model.h"
+
+namespace pliant {
+namespace {
+
+// [us] of a tick, as `pliant study linearisation` measured them (bench/results/linearisation_xeon_2core.json: 20 us
+// with 58 contacts and 69 modes): coupling and handle; the linear model; each number of the contacts' rows.
+constexpr double kHeldUs = 0.5, kLinearUs = 0.1, kEntryUs = 1.5e-3;
+
+double cost_us(ToolForce force, int contacts, int modes) {
+  if (force == ToolForce::kHeld) return kHeldUs;
+  if (force == ToolForce::kLinear) return kHeldUs + kLinearUs;
+  return kHeldUs + kLinearUs + kEntryUs * 3.0 * contacts * (modes + 6.0);
+}
+
+// [1] RMS of the difference of the forces over the RMS of what the truth feels beyond how it began.
+double difference(const std::vector<Vector6>& felt, const std::vector<Vector6>& truth) {
+  double off = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    off += (felt[i] - truth[i]).head<3>().squaredNorm();
+    size += (truth[i] - truth[0]).head<3>().squaredNorm();
+  }
+  return size > 0.0 ? std::sqrt(off / size) : 0.0;
+}
+
+}  // namespace
+
+Result<ModelChoice> choose_tool(Level& level, std::size_t index, double budget, ChoiceProgress& progress) {
+  LevelNode& node = level.nodes[index];
+  ModelChoice choice{node.name, "tool", budget, {}, 0, false, {}, {}};
+  auto press = ToolPress::make(level, index);
+  if (!press) return press.error();
+  const auto truth = press->truth(progress);
+  if (!truth) return truth.error();
+  double most = 0.0;
+  for (const Vector6& each : truth->wrench) most = std::max(most, (each - truth->wrench[0]).head<3>().norm());
+  if (!(most > 0.0)) return Error{node.name, "could not be pressed to measure its force; leave out `error`"};
+  std::vector<ToolForce> forces{ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts};
+  if (states(node, "handle", "force")) {
+    choice.kept.emplace_back("force");
+    forces = {node.handle->force};
+  }
+  std::vector<std::pair<ModelCandidate, ToolForce>> tried;
+  ToolPress::Felt last;
+  for (const ToolForce force : forces) {
+    auto felt = press->touched(force);
+    if (!felt) return felt.error();
+    ModelCandidate candidate;
+    candidate.label = fmt::format("force {}, soft step {:.3g} ms", word_of(force), 1e3 * level.simulation.soft_step);
+    candidate.error = difference(felt->wrench, truth->wrench);
+    candidate.cost = cost_us(force, felt->contacts, felt->modes);
+    candidate.ms = felt->ms;
+    tried.emplace_back(candidate, force);
+    last = std::move(*felt);
+  }
+  choice.remarks.push_back(fmt::format(
+      "truth: what the hand feels, up to {:.2g} N, by soft steps at the touch rate ({:.2g} ms each on this machine), "
+      "pressed {:.2g} mm beyond a plate below it and drawn along; models come one soft step late",
+      most, truth->ms, 1e3 * press->depth()));
+  choice.remarks.push_back(fmt::format(
+      "modes: up to {} of {} that a model has room for, at {} contacts; what they leave out of the contacts' static "
+      "flexibility, at most {:.2g} of it, is kept without inertia, so there is nothing to choose",
+      last.modes, kMaxModes, last.contacts, last.left_out));
+  if (!states(node, "handle", "force")) choice.keys.push_back({"handle", "force"});
+  node.handle->force = take_cheapest(choice, tried);
+  return choice;
+}
+
+}  // namespace pliant
