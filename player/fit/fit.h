@@ -3,15 +3,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace pliant {
 
 struct FitOptions {
-  std::string in;      // a level, or measured presses (.csv, .tsv, .txt)
-  std::string object;  // node of the level
-  std::string out;     // level that is written; empty: none
-  std::string report;  // folder; empty: out/fit
-  bool force = false;  // replaces level and report
+  std::string in;                                     // a level, or measured presses (.csv, .tsv, .txt)
+  std::string object;                                 // node of the level
+  std::string out;                                    // level that is written; empty: none
+  std::string report;                                 // folder; empty: out/fit
+  bool force = false;                                 // replaces level and report
+  double unit = 1.0;                                  // [m] of a bare mesh
+  std::vector<std::string> of_measured, of_elements;  // options that were said and are for one kind only
 
   // Of measured presses.
   std::string level;  // that the keys are written into; empty: they are only said

@@ -1,9 +1,13 @@
 #include "player/fit/fit_level.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
 
 #include "content/keys/extension_table.h"
+#include "content/level/unit.h"
 #include "content/level_file.h"
 #include "player/exit.h"
 #include "player/verbs/content_folder.h"
@@ -11,13 +15,15 @@
 namespace pliant {
 namespace fs = std::filesystem;
 
-Result<Level> level_to_fit(const std::string& name) {
+Result<Level> level_to_fit(const std::string& name, double unit) {
   if (name.empty()) return Error{"fit", "say into which level, as the first word or with --level"};
   const Result<fs::path> file = find_level(name);
   if (!file) return file.error();
   Result<Level> level = load_level(*file);
-  if (level)
-    for (const std::string& sentence : level->notes) note(sentence);
+  if (!level) return level;
+  if (const Status bare = check_unit(*level, unit); !bare) return bare.error();
+  scale_roots(*level, unit);
+  for (const std::string& sentence : level->notes) note(sentence);
   return level;
 }
 
@@ -33,7 +39,11 @@ Result<std::int32_t> object_to_fit(const Level& level, const std::string& name) 
   const std::string where = "--object" + (name.empty() ? "" : " " + name);
   if (name.empty()) {
     if (names.size() == 1) return object_to_fit(level, names[0]);
-    return Error{where, unknown("node", name, "", "nodes with a mesh", names)};
+    constexpr std::size_t kNamed = 8;
+    const std::size_t count = names.size();
+    names.resize(std::min(count, kNamed));
+    return Error{where, fmt::format("is not said, and the level has {} nodes with a mesh; name one of {}{}", count,
+                                    fmt::join(names, ", "), count > kNamed ? " and others" : "")};
   }
   return Error{where, unknown("node", name, "", "nodes with a mesh", names)};
 }

@@ -10,7 +10,7 @@
 namespace pliant {
 
 // A file or the name of a shipped level.
-Result<Level> level_to_fit(const std::string& name);
+Result<Level> level_to_fit(const std::string& name, double unit);
 // The node of that name, which has a mesh; errors name those that have one.
 Result<std::int32_t> object_to_fit(const Level& level, const std::string& name);
 // `out` is glTF, and free or to be replaced.

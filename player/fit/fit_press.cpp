@@ -21,12 +21,12 @@
 namespace pliant {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json law_json(const LawFit& fit) {
-  Json parameters = Json::array();
+OrderedJson law_json(const LawFit& fit) {
+  OrderedJson parameters = OrderedJson::array();
   for (const FittedParameter& p : fit.parameters) {
-    Json one{{"key", p.key}, {"unit", p.unit}, {"value", p.value}};
+    OrderedJson one{{"key", p.key}, {"unit", p.unit}, {"value", p.value}};
     if (p.on_bound || fit.singular)
       one["interval"] = nullptr;
     else
@@ -46,17 +46,17 @@ Json law_json(const LawFit& fit) {
 }
 
 std::string report_of(const PressRecord& record, const RecordFit& fit, const FitOptions& options) {
-  Json laws = Json::array();
+  OrderedJson laws = OrderedJson::array();
   for (const LawFit& law : fit.laws) laws.push_back(law_json(law));
-  const Json report{{"record", record.name},
-                    {"rows", record.size()},
-                    {"rows_fitted", fit.fitted},
-                    {"confidence", options.confidence},
-                    {"radius_m", options.radius},
-                    {"best", fit.laws[fit.best].model.law},
-                    {"laws", laws},
-                    {"notes", fit.notes}};
-  return report.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
+  const OrderedJson report{{"record", record.name},
+                           {"rows", record.size()},
+                           {"rows_fitted", fit.fitted},
+                           {"confidence", options.confidence},
+                           {"radius_m", options.radius},
+                           {"best", fit.laws[fit.best].model.law},
+                           {"laws", laws},
+                           {"notes", fit.notes}};
+  return report.dump(2, ' ', true, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::string residuals_csv(const PressRecord& record, const RecordFit& fit) {
@@ -232,7 +232,7 @@ int fit_press(const FitOptions& options) {
   if (!fit) return fail(kFailed, fit.error());
   const LawFit& best = fit->laws[fit->best];
   if (!options.level.empty()) {
-    Result<Level> level = level_to_fit(options.level);
+    Result<Level> level = level_to_fit(options.level, options.unit);
     if (!level) return fail(kFailed, level.error());
     const Result<std::int32_t> object = object_to_fit(*level, options.object);
     if (!object) return fail(kUsage, object.error());

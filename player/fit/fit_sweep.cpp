@@ -19,9 +19,9 @@
 namespace pliant {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-std::string words_of(const SweepTable& table, const SweepRow& row) {
+std::string row_words(const SweepTable& table, const SweepRow& row) {
   std::string out;
   for (std::size_t a = 0; a < table.axes.size(); ++a)
     out += fmt::format("{}{} = {}", a ? ", " : "", table.axes[a].name, text_of(row.values[a]));
@@ -47,15 +47,15 @@ int fit_sweep(const FitOptions& options) {
   if (!nearest) return fail(kFailed, nearest.error());
   const SweepRow& best = table->rows[nearest->order[0]];
 
-  Json figures = Json::object();
+  OrderedJson figures = OrderedJson::object();
   for (const auto& [name, value] : nearest->target) figures[name] = value;
-  Json between = Json::array();
+  OrderedJson between = OrderedJson::array();
   for (const BetweenRuns& it : nearest->between)
     between.push_back({{"axis", table->axes[it.axis].name}, {"value", it.value}, {"distance", it.distance}});
-  const Json report{{"sweep", options.sweep},  {"target", options.target},
-                    {"probe", nearest->probe}, {"target_figures", figures},
-                    {"nearest", best.id},      {"distance", nearest->distance[nearest->order[0]]},
-                    {"between", between}};
+  const OrderedJson report{{"sweep", options.sweep},  {"target", options.target},
+                           {"probe", nearest->probe}, {"target_figures", figures},
+                           {"nearest", best.id},      {"distance", nearest->distance[nearest->order[0]]},
+                           {"between", between}};
   std::string csv = "id";
   for (const SweepAxis& axis : table->axes) csv += "," + csv_text(axis.name);
   csv += ",distance\n";
@@ -67,7 +67,7 @@ int fit_sweep(const FitOptions& options) {
   }
   auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
   if (!out) return fail(kFailed, out.error());
-  Status done = write_text(*out, "fit.json", report.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+  Status done = write_text(*out, "fit.json", report.dump(2, ' ', true, OrderedJson::error_handler_t::replace) + "\n");
   if (done) done = write_text(*out, "fit_runs.csv", csv);
   if (done) done = out->commit();
   if (!done) return fail(kFailed, done.error());
@@ -75,7 +75,7 @@ int fit_sweep(const FitOptions& options) {
         nearest->target.size(), nearest->probe);
   for (std::size_t i = 0; i < std::min<std::size_t>(3, nearest->order.size()); ++i)
     print("  {:.2f} % off: {} ({})\n", 100 * nearest->distance[nearest->order[i]],
-          words_of(*table, table->rows[nearest->order[i]]), table->rows[nearest->order[i]].id);
+          row_words(*table, table->rows[nearest->order[i]]), table->rows[nearest->order[i]].id);
   for (const BetweenRuns& it : nearest->between)
     print(
         "  between runs: {} = {:.6g}, about {:.2f} % off (a parabola through three runs: check it with one of its "

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
 
 #include "components/kinematic.h"
 #include "content/author/object_frame.h"
@@ -15,32 +13,27 @@
 #include "player/fit/fit.h"
 #include "player/fit/fit_level.h"
 #include "player/fit/surface_check.h"
-#include "player/fit/surface_fit.h"
+#include "player/fit/tissue_fit.h"
 #include "player/interrupt.h"
 #include "player/print.h"
 #include "player/progress.h"
-#include "player/record/csv.h"
 #include "player/record/output_folder.h"
-#include "player/record/panel.h"
 #include "player/study/pareto.h"
-#include "player/study/study_shapes.h"
 #include "player/verbs/left_behind.h"
 
 namespace pliant {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr std::size_t kTets = 16'000;                     // aimed at
-constexpr double kRadiusOverCell = 2.0;                   // [1] what a press must span to be smooth
-constexpr std::size_t kMapPlaces = 400;                   // at most, that the stiffness map is computed at
-constexpr int kDepths = 4;                                // a quarter of the reach is gone to in so many parts
-constexpr double kDeepest = 0.25;                         // [1] of the reach
-constexpr double kHardest = 3.0;                          // [1] of the usual stiffness: beyond it lies what is held
-constexpr double kForceGoal = 0.05, kSurfaceGoal = 0.10;  // [1]
+constexpr std::size_t kTets = 16'000;        // aimed at
+constexpr double kRadiusOverCell = 2.0;      // [1] what a press must span to be smooth
+constexpr std::size_t kMapPlaces = 1000;     // at most, that the stiffness map is computed at
+constexpr int kDepths = 4;                   // a quarter of the reach is gone to in so many parts
+constexpr std::ptrdiff_t kEnoughPlaces = 6;  // away from edges, for law and shape
+constexpr double kDeepestShare = 0.25;       // [1] of the reach
+constexpr double kHardest = 3.0;             // [1] of the usual stiffness: beyond it lies what is held
 
 // A body as its elements are made.
-struct Body {
+struct TissueBody {
   LevelNode node;  // with a soft body
   SoftParts parts;
   double cell = 0.0;
@@ -72,10 +65,10 @@ Result<LevelNode> tissue_node(const Level& level, std::int32_t number, const Fit
   return node;
 }
 
-Result<Body> make_body(const Level& level, std::int32_t number, const FitOptions& options) {
+Result<TissueBody> make_body(const Level& level, std::int32_t number, const FitOptions& options) {
   Result<LevelNode> node = tissue_node(level, number, options);
   if (!node) return node.error();
-  Body out{std::move(*node), {}, 0.0};
+  TissueBody out{std::move(*node), {}, 0.0};
   const LevelMesh& mesh = level.meshes[static_cast<std::size_t>(out.node.mesh)];
   const mat4 to_object = mat4(object_frame(level, number).to_object);
   const auto make = [&]() -> Status {
@@ -101,42 +94,7 @@ Result<Body> make_body(const Level& level, std::int32_t number, const FitOptions
   return out;
 }
 
-// What a place not used in the fit came to.
-struct Held {
-  PressPlace place;
-  Side side = Side::kTop;
-  std::vector<PressedTissue> truth, model;
-  double force_error = 0.0, force_worst = 0.0;  // [1] RMS and largest of the relative differences
-  double surface_error = 0.0;                   // [1] RMS difference over RMS of the dent, at the deepest
-  double surface_of_depth = 0.0;                // [1] RMS difference over the depth
-};
-
-struct Fitted {
-  std::string object;
-  double radius = 0.0, cell = 0.0, young = 0.0, poisson = 0.0;
-  std::size_t tets = 0, mapped = 0, places = 0, left_out = 0;
-  ShapeFit shape;
-  ForceFit force;
-  DeformableParameters surface;
-  bool linear = false;                   // small strains
-  double softest = 0.0, stiffest = 0.0;  // [N/m] of the map
-  std::vector<Held> held;
-};
-
-struct Sum {
-  double force = 0.0, worst = 0.0, surface = 0.0, of_depth = 0.0;
-  std::size_t count = 0;
-  void add(const Held& h) {
-    force += h.force_error * h.force_error;
-    worst = std::max(worst, h.force_worst);
-    surface += h.surface_error * h.surface_error;
-    of_depth += h.surface_of_depth * h.surface_of_depth;
-    ++count;
-  }
-  double rms(double sum) const { return count ? std::sqrt(sum / static_cast<double>(count)) : 0.0; }
-};
-
-void compare(Held& held, const Mesh& mesh, double radius) {
+void compare(HeldPlace& held, const Mesh& mesh, double radius) {
   double sum = 0.0;
   const std::size_t count = std::min(held.truth.size(), held.model.size());
   for (std::size_t i = 0; i < count; ++i) {
@@ -150,6 +108,9 @@ void compare(Held& held, const Mesh& mesh, double radius) {
   const SurfaceDifference d = surface_difference(mesh, held.place, kAroundPress * radius, model.height, truth.height);
   held.surface_error = d.size > 0 ? std::sqrt(d.off / d.size) : 0.0;
   held.surface_of_depth = d.area > 0 ? std::sqrt(d.off / d.area) / truth.depth : 0.0;
+  const SurfaceDifference left = radial_remainder(mesh, held.place, radius, truth.height);
+  held.not_radial = left.area > 0 ? std::sqrt(left.off / left.area) / truth.depth : 0.0;
+  held.near_edge = is_near_an_edge(mesh, held.place, truth.depth);
 }
 
 Side side_of_normal(const Level& level, dvec3 world) {
@@ -184,145 +145,9 @@ std::vector<Primitive> painted_primitives(const LevelMesh& mesh, const mat4& to_
   return out;
 }
 
-std::string places_csv(const Fitted& fitted) {
-  std::string text = "place,side,x,y,z,depth_m,fem_N,p1_N,force_error,surface_error,surface_over_depth\n";
-  for (std::size_t i = 0; i < fitted.held.size(); ++i) {
-    const Held& held = fitted.held[i];
-    for (std::size_t k = 0; k < std::min(held.truth.size(), held.model.size()); ++k) {
-      text += std::to_string(i + 1) + "," + word_of(held.side);
-      put(text, held.place.position);
-      for (const double value : {held.truth[k].depth, held.truth[k].force, held.model[k].force,
-                                 held.model[k].force / held.truth[k].force - 1})
-        put(text, value);
-      if (k + 1 == std::min(held.truth.size(), held.model.size())) {
-        put(text, held.surface_error);
-        put(text, held.surface_of_depth);
-      } else {
-        text += ",,";
-      }
-      text += "\n";
-    }
-  }
-  return text;
-}
-
-std::map<std::string, Sum> sums_of(const Fitted& fitted) {
-  std::map<std::string, Sum> out;
-  for (const Held& held : fitted.held) {
-    if (held.truth.empty()) continue;
-    out["all"].add(held);
-    out[word_of(held.side)].add(held);
-  }
-  return out;
-}
-
-std::string verdict_of(const Fitted& fitted) {
-  const auto sums = sums_of(fitted);
-  const auto all = sums.find("all");
-  if (all == sums.end()) return "No place was left to check the fit at.";
-  const Sum& sum = all->second;
-  const auto good =
-      static_cast<std::size_t>(std::count_if(fitted.held.begin(), fitted.held.end(), [](const Held& held) {
-        return !held.truth.empty() && held.force_error <= kForceGoal && held.surface_of_depth <= kSurfaceGoal;
-      }));
-  return fmt::format(
-      "At {} places that the fit has not seen, up to a quarter of the reach, the surface's force is off by {:.1f} % "
-      "(RMS; {:.1f} % at the worst), and its dents within {:g} radii of the indenter by {:.1f} % of the depth ({:.0f} "
-      "% "
-      "of the dents' own RMS); force within {:g} % and dents within {:g} % of the depth hold at {} of them.",
-      sum.count, 100 * sum.rms(sum.force), 100 * sum.worst, kAroundPress, 100 * sum.rms(sum.of_depth),
-      100 * sum.rms(sum.surface), 100 * kForceGoal, 100 * kSurfaceGoal, good);
-}
-
-std::string json_of(const Fitted& f, const Level& level) {
-  Json regions = Json::array();
-  for (const auto& [name, sum] : sums_of(f))
-    regions.push_back({{"region", name},
-                       {"places", sum.count},
-                       {"force_error_rms", sum.rms(sum.force)},
-                       {"force_error_worst", sum.worst},
-                       {"surface_error_rms", sum.rms(sum.surface)},
-                       {"surface_over_depth_rms", sum.rms(sum.of_depth)}});
-  const char* springs[] = {"linear", "cubic", "exponential", "sls"};
-  const Json out{{"level", level.path.filename().string()},
-                 {"object", f.object},
-                 {"young_Pa", f.young},
-                 {"poisson", f.poisson},
-                 {"tetrahedra", f.tets},
-                 {"cell_m", f.cell},
-                 {"strain", f.linear ? "linear" : "corotational"},
-                 {"indenter_radius_m", f.radius},
-                 {"map_places", f.mapped},
-                 {"fit_places", f.places},
-                 {"left_out_near_what_is_held", f.left_out},
-                 {"keys",
-                  {{"spring", springs[static_cast<std::size_t>(f.surface.spring)]},
-                   {"stiffness", f.surface.stiffness},
-                   {"cubic", f.surface.spring == SpringLaw::kCubic ? Json(f.surface.cubic) : Json()},
-                   {"stiffening", f.surface.spring == SpringLaw::kExponential ? Json(f.surface.stiffening) : Json()},
-                   {"shape", name_of(f.surface.shape)},
-                   {"reach", f.surface.reach},
-                   {"volume", f.surface.volume}}},
-                 {"stiffness_map_N_m", {f.softest, f.stiffest}},
-                 {"fit_force_error", f.force.error},
-                 {"fit_surface_error", f.shape.error},
-                 {"held_out", regions},
-                 {"sentence", verdict_of(f)}};
-  return out.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
-}
-
-void draw(Pen& pen, const Fitted& f) {
-  double deepest = 0.0, strongest = 0.0;
-  std::vector<double> all_x, all_f, all_s;
-  for (const Held& held : f.held)
-    for (std::size_t i = 0; i < std::min(held.truth.size(), held.model.size()); ++i) {
-      deepest = std::max(deepest, held.truth[i].depth * 1e3);
-      strongest = std::max({strongest, held.truth[i].force, held.model[i].force});
-    }
-  const PlotPanel left{110, 150, 640, 520, range_of(0, deepest, true), range_of(0, strongest, true)};
-  const PlotPanel right{890, 150, 670, 520, range_of(0, static_cast<double>(f.held.size()), true), {0.1, 100, true}};
-  draw_axes(pen, left, "depth [mm]", "force [N]");
-  std::size_t number = 0;
-  for (const Held& held : f.held) {
-    std::vector<double> depth{0.0}, truth{0.0}, model{0.0};
-    for (std::size_t i = 0; i < std::min(held.truth.size(), held.model.size()); ++i) {
-      depth.push_back(held.truth[i].depth * 1e3);
-      truth.push_back(held.truth[i].force);
-      model.push_back(held.model[i].force);
-    }
-    draw_line(pen, left, depth, model, series_color(number), 1.6);
-    draw_dots(pen, left, depth, truth, series_color(number), 4, true);
-    ++number;
-    all_x.push_back(static_cast<double>(number) - 0.5);
-    all_f.push_back(100 * held.force_error);
-    all_s.push_back(100 * held.surface_of_depth);
-  }
-  draw_axes(pen, right, "place that the fit has not seen", "error [%]");
-  for (const auto& [goal, color] : {std::pair{kForceGoal, kVermilion}, std::pair{kSurfaceGoal, kBlue}}) {
-    pen.color(color, 0.35);
-    pen.line(right.x, right.py(100 * goal), right.x + right.w, right.py(100 * goal), 3);
-  }
-  draw_dots(pen, right, all_x, all_f, kVermilion, 6, true);
-  draw_dots(pen, right, all_x, all_s, kBlue, 6, true);
-  pen.color(kInk);
-  const double title = pen.text(60, 46, 26, 0, "fit", true);
-  pen.text(60 + title + 18, 46, 16, 0,
-           fmt::format("{}: P1 from {} tetrahedra; indenter of radius {:.3g} mm, reach {:.3g} mm, shape {}", f.object,
-                       f.tets, f.radius * 1e3, f.surface.reach * 1e3, name_of(f.surface.shape)));
-  double y = 74;
-  for (const std::string& text : pen.lines(15, verdict_of(f), 1500)) {
-    pen.text(60, y, 15, 0, text);
-    y += 19;
-  }
-  draw_keys(pen, left.x, 138, left.x + left.w + 60,
-            {{kInk, "dots: finite elements", true}, {kInk, "lines: the fitted surface, in the engine", false}});
-  draw_keys(pen, right.x, 138, 1590,
-            {{kVermilion, "force, RMS (band: 5 %)", true}, {kBlue, "deepest dent, of the depth (band: 10 %)", true}});
-}
-
 // All but files.
-Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& options, const Interrupt& interrupt) {
-  Result<Body> body = make_body(level, number, options);
+Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions& options, const Interrupt& interrupt) {
+  Result<TissueBody> body = make_body(level, number, options);
   if (!body) return body.error();
   const SoftBody& soft = *body->node.soft_body;
   if (const std::string doubt = locking_doubt(soft, body->parts.tets.tets.size()); !doubt.empty())
@@ -334,7 +159,7 @@ Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& o
     return build_mesh(node.name, level.meshes[static_cast<std::size_t>(node.mesh)].primitives, to_object,
                       {crease, reach});
   };
-  Fitted out;
+  TissueFit out;
   out.object = node.name;
   out.young = soft.young;
   out.poisson = soft.poisson;
@@ -367,7 +192,7 @@ Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& o
   std::vector<double> stiffness;
   const std::vector<std::uint32_t> wanted = farthest_vertices(mesh, kMapPlaces);
   for (const std::uint32_t v : wanted) {
-    if (interrupt.requested()) return interrupted();
+    if (interrupt.requested()) return interrupted("fit");
     if (one_of[v] == kBorder) continue;
     dvec3 corner(0);
     corner[static_cast<int>(one_of[v] % 3)] = 1.0;
@@ -395,11 +220,16 @@ Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& o
   std::vector<PressedPlace> places;
   double reach = options.reach > 0 ? options.reach : 4 * out.radius;
   for (const PressPlace& place : scatter(mesh, options.points, 1, allowed)) {
-    if (interrupt.requested()) return interrupted();
-    places.push_back(
-        {place, tissue->stiffness(place, out.radius), tissue->press_to(place, out.radius, kDeepest * reach, kDepths)});
+    if (interrupt.requested()) return interrupted("fit");
+    places.push_back({place, tissue->stiffness(place, out.radius),
+                      tissue->press_to(place, out.radius, kDeepestShare * reach, kDepths)});
     progress.update(0.3 + 0.4 * static_cast<double>(places.size()) / options.points);
   }
+  // Near an edge the surface has no law of its own; those places count only where there are few others.
+  const auto inner = std::stable_partition(places.begin(), places.end(), [&](const PressedPlace& each) {
+    return each.presses.empty() || !is_near_an_edge(mesh, each.place, each.presses.back().depth);
+  });
+  if (inner - places.begin() >= kEnoughPlaces) places.erase(inner, places.end());
   out.places = places.size();
   out.shape = fit_shape(mesh, places, out.radius, options.reach);
   out.force = fit_force(places);
@@ -416,6 +246,7 @@ Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& o
   surface.shape = out.shape.shape;
   surface.reach = reach = out.shape.reach;
   surface.volume = out.shape.volume;
+  surface.contact_radius = out.shape.contact;
   std::vector<double> factor;
   for (const double k : map) factor.push_back(k / usual);
   const auto [softest, stiffest] = std::minmax_element(map.begin(), map.end());
@@ -436,9 +267,9 @@ Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& o
   std::vector<PressPlace> unseen;
   std::vector<std::vector<double>> depths;
   for (const PressPlace& place : scatter(checked, options.held, 2, free)) {
-    if (interrupt.requested()) return interrupted();
-    Held held{place, side_of_normal(level, pose.rotation * place.normal), {}, {}};
-    held.truth = tissue->press_to(place, out.radius, kDeepest * reach, kDepths);
+    if (interrupt.requested()) return interrupted("fit");
+    HeldPlace held{place, side_of_normal(level, pose.rotation * place.normal), {}, {}};
+    held.truth = tissue->press_to(place, out.radius, kDeepestShare * reach, kDepths);
     unseen.push_back(place);
     std::vector<double>& its = depths.emplace_back();
     for (const PressedTissue& press : held.truth) its.push_back(press.depth);
@@ -459,34 +290,16 @@ Result<Fitted> fit_object(Level& level, std::int32_t number, const FitOptions& o
   return out;
 }
 
-void say(const Fitted& f) {
-  print("{}: {} tetrahedra, cell {:.3g} mm; indenter of radius {:.3g} mm; {} places mapped, {} fitted, {} held out\n",
-        f.object, f.tets, f.cell * 1e3, f.radius * 1e3, f.mapped, f.places, f.held.size());
-  const char* springs[] = {"linear", "cubic", "exponential", "sls"};
-  print("  spring {}, stiffness {:.4g} N/m ({:.3g} to {:.3g} over the surface)",
-        springs[static_cast<std::size_t>(f.surface.spring)], f.surface.stiffness, f.softest, f.stiffest);
-  if (f.surface.spring == SpringLaw::kCubic) print(", cubic {:.4g} N/m3", f.surface.cubic);
-  if (f.surface.spring == SpringLaw::kExponential) print(", stiffening {:.4g} 1/m", f.surface.stiffening);
-  print("\n  shape {}, reach {:.3g} mm, volume {:.2g}\n", name_of(f.surface.shape), f.surface.reach * 1e3,
-        f.surface.volume);
-  print("  {:<8} {:>6} {:>12} {:>12} {:>12} {:>14}\n", "region", "places", "force RMS", "force worst", "dent",
-        "dent of depth");
-  for (const auto& [name, sum] : sums_of(f))
-    print("  {:<8} {:>6} {:>10.1f} % {:>10.1f} % {:>10.1f} % {:>12.1f} %\n", name, sum.count, 100 * sum.rms(sum.force),
-          100 * sum.worst, 100 * sum.rms(sum.surface), 100 * sum.rms(sum.of_depth));
-  print("{}\n", verdict_of(f));
-}
-
 }  // namespace
 
 int fit_tissue(const FitOptions& options) {
   if (const Status out = check_out(options); !out) return fail(kUsage, out.error());
-  Result<Level> level = level_to_fit(options.in);
+  Result<Level> level = level_to_fit(options.in, options.unit);
   if (!level) return fail(kFailed, level.error());
   const Result<std::int32_t> object = object_to_fit(*level, options.object);
   if (!object) return fail(kUsage, object.error());
   const Interrupt interrupt({"ending; press Ctrl-C again to quit at once", "quit at once; nothing was written"});
-  const Result<Fitted> fitted = fit_object(*level, *object, options, interrupt);
+  const Result<TissueFit> fitted = fit_object(*level, *object, options, interrupt);
   if (!fitted) return fail(kFailed, fitted.error());
   auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
   if (!out) return fail(kFailed, out.error());

@@ -10,7 +10,8 @@ namespace pliant {
 namespace {
 
 using R = DeformableRange;
-constexpr double kSteepest = 50.0;  // [1] exponent at the deepest place: beyond it a double overflows soon
+constexpr double kFlattestPress = 5.0;  // [1] below 0: hardly a slope is left at the deepest place
+constexpr double kSteepest = 50.0;      // [1] exponent at the deepest place: beyond it a double overflows soon
 
 struct Sizes {
   double depth = 0.0, force = 0.0, span = 0.0, least_step = 0.0;  // [m] [N] [s] [s]
@@ -81,9 +82,10 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
     starts = {{0.9 * k, 0.1 * list[1].box.scale}, {0.3 * k, list[1].box.scale}};
   } else if (law == "exponential") {
     list.push_back(parameter("stiffening", "1/m",
-                             {R::kStiffening.min, std::min(R::kStiffening.max, kSteepest / size.depth)},
+                             {std::max(R::kStiffening.min, -kFlattestPress / size.depth),
+                              std::min(R::kStiffening.max, kSteepest / size.depth)},
                              1.0 / size.depth));
-    starts = {{0.9 * k, 0.3 / size.depth}, {0.2 * k, 3.0 / size.depth}};
+    starts = {{0.9 * k, 0.3 / size.depth}, {0.2 * k, 3.0 / size.depth}, {1.3 * k, -0.5 / size.depth}};
   } else if (law == "sls") {
     list.push_back(parameter("relaxation.stiffness", "N/m", R::kRelaxationStiffness, k));
     list.push_back(parameter(

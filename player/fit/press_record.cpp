@@ -29,7 +29,7 @@ struct QuantityWords {
   std::vector<Unit> units;
   const char* example;
 };
-const QuantityWords& words_of(std::size_t quantity) {
+const QuantityWords& quantity_words(std::size_t quantity) {
   static const QuantityWords words[kQuantities] = {
       {"time", {"time", "t"}, {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60.0}, {"h", 3600.0}}, "time_s"},
       {"depth",
@@ -83,7 +83,7 @@ std::pair<std::string, std::string> name_and_unit(std::string_view head) {
 }
 
 bool is_name(std::size_t quantity, const std::string& name) {
-  const QuantityWords& words = words_of(quantity);
+  const QuantityWords& words = quantity_words(quantity);
   return std::any_of(words.names.begin(), words.names.end(), [&](const char* each) { return name == each; });
 }
 
@@ -113,7 +113,7 @@ Result<Columns> read_head(std::string_view line, const std::string& where) {
     }
     const auto [name, unit] = name_and_unit(heads[i]);
     for (std::size_t q = 0; q < kQuantities; ++q) {
-      const QuantityWords& words = words_of(q);
+      const QuantityWords& words = quantity_words(q);
       if (!is_name(q, name) && !is_name(q, lower(heads[i]))) continue;
       if (run && q == kForce) continue;
       if (out.at[q]) return Error{where, fmt::format("has two columns of {}; leave one", words.what)};
@@ -135,8 +135,8 @@ Result<Columns> read_head(std::string_view line, const std::string& where) {
   }
   for (const std::size_t q : {kDepth, kForce})
     if (!out.at[q])
-      return Error{
-          where, fmt::format("has no column of {}; name one {}, with its unit", words_of(q).what, words_of(q).example)};
+      return Error{where, fmt::format("has no column of {}; name one {}, with its unit", quantity_words(q).what,
+                                      quantity_words(q).example)};
   return out;
 }
 
@@ -203,7 +203,7 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
       const std::string_view cell = cells[columns->at[q] - 1];
       if (!read_number(cell, value[q]) || !std::isfinite(value[q]))
         return Error{here, fmt::format("its {} is '{}', which is no finite number; correct the row or leave it out",
-                                       words_of(q).what, printable(cell.substr(0, 40)))};
+                                       quantity_words(q).what, printable(cell.substr(0, 40)))};
       value[q] *= columns->factor[q];
     }
     if (with_friction && columns->axis[0] && columns->axis[1] && columns->axis[2]) {

@@ -7,9 +7,9 @@
 namespace pliant {
 namespace {
 
-constexpr int kParts = 10;       // a depth is gone to in so many ticks, so that the contact's foot stays with it
-constexpr int kRecover = 400;    // [ticks] until the last dent has gone
-constexpr double kAbove = 0.02;  // [m] where the probe waits
+constexpr int kCheckParts = 10;         // a depth is gone to in so many ticks, so that the contact's foot stays with it
+constexpr int kRecover = 400;           // [ticks] until the last dent has gone
+constexpr double kAboveSurface = 0.02;  // [m] where the probe waits
 
 MeshData data_of(const std::vector<Primitive>& primitives) {
   MeshData out;
@@ -46,12 +46,12 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
   std::vector<vec4> stream;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto to = [&](double depth) { return session->move("probe", places[i].position - depth * places[i].normal); };
-    Status done = to(-kAbove);
+    Status done = to(-kAboveSurface);
     if (done) done = session->step(kRecover);
     double at = 0.0;
     for (const double depth : depths[i]) {
-      for (int k = 1; k <= kParts && done; ++k) {
-        done = to(at + (depth - at) * k / kParts);
+      for (int k = 1; k <= kCheckParts && done; ++k) {
+        done = to(at + (depth - at) * k / kCheckParts);
         if (done) done = session->step();
       }
       at = depth;
@@ -67,7 +67,7 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
       if (const Status told = session->stream("surface", stream); !told) return told.error();
       for (const vec4& value : stream) state.height.push_back(value.w);
     }
-    if (done) done = to(-kAbove);
+    if (done) done = to(-kAboveSurface);
     if (!done) return done.error();
   }
   return out;

@@ -2,30 +2,33 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "player/fit/least_squares.h"
 #include "systems/touch/local_model.h"
 #include "systems/touch/shape.h"
+#include "systems/touch/triangle_tree.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kInner = 0.2;  // [1] of the reach: what force_field.cpp gives a point probe
-constexpr double kFacing = 0.0;
-constexpr double kLeastReach = 1.5, kMostReach = 4.0;  // [1] radii of the indenter
-constexpr std::size_t kNearest = 10;                   // painted places that a vertex takes its value from
+constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
+constexpr double kFacingAtLeast = 0.0;
+constexpr double kLeastFittedReach = 1.5, kMostReach = 4.0;  // [1] radii of the indenter
+constexpr std::size_t kNearest = 10;                         // painted places that a vertex takes its value from
 
-FieldSource source_of(const PressPlace& place, Shape shape, double reach, double volume) {
+// `contact` [1] of the reach.
+FieldSource source_of(const PressPlace& place, Shape shape, double reach, double volume, double contact) {
   FieldSource source;
   source.center = vec3(place.position);
   source.normal = vec3(place.normal);
   source.amplitude = 1.0f;
   source.inv_reach2 = static_cast<float>(1 / (reach * reach));
   source.shape = shape;
-  source.parameter = shape == Shape::kKelvinlet ? static_cast<float>(kInner * reach)
+  source.parameter = shape == Shape::kKelvinlet ? static_cast<float>(contact * reach)
                      : shape == Shape::kVolume  ? static_cast<float>(5 * volume)
-                                                : static_cast<float>(kInner * kInner);
+                                                : static_cast<float>(contact * contact);
   return source;
 }
 
@@ -42,7 +45,8 @@ double next_share(std::uint64_t& state) {
 // What the shapes are compared with, gathered once.
 struct Sample {
   vec3 position, normal;
-  double area = 0.0, share = 0.0;
+  double area = 0.0;
+  double share = 0.0, square = 0.0;  // of the depth: means over the presses, of the share and of its square
 };
 
 }  // namespace
@@ -52,7 +56,7 @@ SurfaceDifference surface_difference(const Mesh& mesh, const PressPlace& place, 
   SurfaceDifference out;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     const dvec3 away = dvec3(mesh.position(v)) - place.position;
-    if (dot(away, away) > around * around || dot(dvec3(mesh.normal(v)), place.normal) <= kFacing) continue;
+    if (dot(away, away) > around * around || dot(dvec3(mesh.normal(v)), place.normal) <= kFacingAtLeast) continue;
     const double d = static_cast<double>(heights[v]) - static_cast<double>(truth[v]), t = static_cast<double>(truth[v]),
                  area = static_cast<double>(mesh.area[v]);
     out.off += area * d * d;
@@ -63,51 +67,93 @@ SurfaceDifference surface_difference(const Mesh& mesh, const PressPlace& place, 
   return out;
 }
 
+SurfaceDifference radial_remainder(const Mesh& mesh, const PressPlace& place, double radius,
+                                   const std::vector<float>& heights) {
+  constexpr int kRings = 4 * static_cast<int>(kAroundPress);
+  struct Ring {
+    double area = 0.0, sum = 0.0, squares = 0.0;
+  };
+  std::array<Ring, kRings> rings;
+  SurfaceDifference out;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const dvec3 away = dvec3(mesh.position(v)) - place.position;
+    const int ring = static_cast<int>(4 * length(away) / radius);
+    if (ring >= kRings || dot(dvec3(mesh.normal(v)), place.normal) <= kFacingAtLeast) continue;
+    const double area = static_cast<double>(mesh.area[v]), h = static_cast<double>(heights[v]);
+    Ring& its = rings[static_cast<std::size_t>(ring)];
+    its.area += area;
+    its.sum += area * h;
+    its.squares += area * h * h;
+    out.size += area * h * h;
+    out.area += area;
+  }
+  for (const Ring& ring : rings)
+    if (ring.area > 0) out.off += std::max(0.0, ring.squares - ring.sum * ring.sum / ring.area);
+  return out;
+}
+
+bool is_near_an_edge(const Mesh& mesh, const PressPlace& place, double depth) {
+  constexpr double kTurned = 0.5, kWithin = 1.5;  // [1] cosine; [1] depths
+  const dvec3 end = place.position - depth * place.normal;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uvec3 corner = mesh.triangles[t];
+    const dvec3 a(mesh.position(corner.x)), b(mesh.position(corner.y)), c(mesh.position(corner.z));
+    const dvec3 twice = cross(b - a, c - a);
+    if (dot(twice, place.normal) > kTurned * length(twice)) continue;
+    if (closest_on_triangle(mesh, t, end).distance2 < kWithin * kWithin * depth * depth) return true;
+  }
+  return false;
+}
+
 ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, double radius, double reach) {
+  std::vector<const PressedPlace*> pressed;
   std::vector<std::vector<Sample>> samples;
   for (const PressedPlace& each : places) {
     if (each.presses.empty()) continue;
-    const PressedTissue& press = each.presses[each.presses.size() / 2];
+    pressed.push_back(&each);
     std::vector<Sample>& of = samples.emplace_back();
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
       const dvec3 away = dvec3(mesh.position(v)) - each.place.position;
-      if (length(away) > kAroundPress * radius || dot(dvec3(mesh.normal(v)), each.place.normal) <= kFacing) continue;
-      of.push_back({mesh.position(v), mesh.normal(v), static_cast<double>(mesh.area[v]),
-                    -static_cast<double>(press.height[v]) / press.depth});
+      if (length(away) > kAroundPress * radius || dot(dvec3(mesh.normal(v)), each.place.normal) <= kFacingAtLeast)
+        continue;
+      Sample& sample = of.emplace_back(Sample{mesh.position(v), mesh.normal(v), static_cast<double>(mesh.area[v])});
+      for (const PressedTissue& press : each.presses) {
+        const double share = -static_cast<double>(press.height[v]) / press.depth;
+        sample.share += share / static_cast<double>(each.presses.size());
+        sample.square += share * share / static_cast<double>(each.presses.size());
+      }
     }
   }
   ShapeFit best;
   best.error = 1e30;
-  const auto attempt = [&](Shape shape, double volume, double over) {
+  const auto attempt = [&](Shape shape, double volume, double over, double contact) {
     double sum = 0.0;
-    std::size_t at = 0;
-    for (const PressedPlace& each : places) {
-      if (each.presses.empty()) continue;
-      const FieldSource source = source_of(each.place, shape, over, volume);
+    for (std::size_t at = 0; at < pressed.size(); ++at) {
+      const FieldSource source = source_of(pressed[at]->place, shape, over, volume, contact);
       double off = 0.0, size = 0.0;
       for (const Sample& s : samples[at]) {
         const vec3 away = s.position - source.center;
         const double f = dot(away, away) * source.inv_reach2 < 1.0f
                              ? static_cast<double>(share_at(source, s.position, s.normal))
                              : 0.0;
-        off += s.area * (f - s.share) * (f - s.share);
-        size += s.area * s.share * s.share;
+        off += s.area * (f * f - 2 * f * s.share + s.square);
+        size += s.area * s.square;
       }
       sum += size > 0 ? off / size : 0.0;
-      ++at;
     }
-    const double error = at ? std::sqrt(sum / static_cast<double>(at)) : 0.0;
-    if (error < best.error) best = {shape, over, volume, error};
+    const double error = pressed.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(pressed.size()));
+    if (error < best.error) best = {shape, over, volume, depends_on_contact(shape) ? contact * over : 0.0, error};
   };
-  for (const Shape shape :
-       {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet})
-    for (double volume = shape == Shape::kVolume ? 0.0 : 1.0; volume < 1.01; volume += 0.1) {
-      if (reach > 0) {
-        attempt(shape, volume, reach);
-        continue;
-      }
-      for (double over = kLeastReach; over <= kMostReach * 1.0001; over *= 1.04) attempt(shape, volume, over * radius);
-    }
+  const auto every_reach = [&](Shape shape, double volume, double contact) {
+    if (reach > 0) return attempt(shape, volume, reach, contact);
+    for (double over = kLeastFittedReach; over <= kMostReach * 1.0001; over *= 1.04)
+      attempt(shape, volume, over * radius, contact);
+  };
+  for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kKelvinlet})
+    for (double contact = kLeastContact; contact < kMostContact + 0.01; contact += kContactStep)
+      every_reach(shape, 1.0, contact);
+  for (const Shape shape : {Shape::kGaussian, Shape::kWendland}) every_reach(shape, 1.0, 0.0);
+  for (double volume = 0.0; volume < 1.01; volume += 0.1) every_reach(Shape::kVolume, volume, 0.0);
   return best;
 }
 
@@ -126,12 +172,12 @@ ForceFit fit_force(const std::vector<PressedPlace>& places) {
     std::vector<FitParameter> boxes{{1.0, 0.1, 10.0, 1.0}};
     const double scale = spring == SpringLaw::kCubic ? 1 / (deepest * deepest) : 1 / deepest;
     if (spring == SpringLaw::kCubic) boxes.push_back({0.1 * scale, 0.0, 100 * scale, scale});
-    if (spring == SpringLaw::kExponential) boxes.push_back({0.1 * scale, 1e-6, 20 * scale, scale});
+    if (spring == SpringLaw::kExponential) boxes.push_back({0.1 * scale, -5 * scale, 20 * scale, scale});
     const LeastSquares fit = least_squares(boxes, count, [&](const Eigen::VectorXd& p, Eigen::VectorXd& r) {
       RestoringLaw law;
       law.kind = spring;
       if (spring == SpringLaw::kCubic) law.cubic = p[1];
-      if (spring == SpringLaw::kExponential) law.stiffening = p[1];
+      if (spring == SpringLaw::kExponential) law.stiffening = exponential_alpha(p[1]);
       Eigen::Index k = 0;
       for (const PressedPlace& each : places)
         for (const PressedTissue& press : each.presses)

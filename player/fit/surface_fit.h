@@ -19,9 +19,10 @@ struct PressedPlace {
 
 struct ShapeFit {
   Shape shape = Shape::kVolume;
-  double reach = 0.0;   // [m]
-  double volume = 1.0;  // [1]
-  double error = 0.0;   // [1] RMS difference over RMS of the dents, by area, within kAround radii
+  double reach = 0.0;    // [m]
+  double volume = 1.0;   // [1]
+  double contact = 0.0;  // [m] contact_radius; 0: the shape has none
+  double error = 0.0;    // [1] RMS difference over RMS of the dents, by area, within kAroundPress radii, all depths
 };
 inline constexpr double kAroundPress = 3.0;  // [1] radii of the indenter that a dent is compared within
 
@@ -33,6 +34,14 @@ struct SurfaceDifference {
 };
 SurfaceDifference surface_difference(const Mesh& mesh, const PressPlace& place, double around,
                                      const std::vector<float>& heights, const std::vector<float>& truth);
+
+// What of a dent no function of the distance from its place can give, whatever its shape: squares of the difference
+// from the mean in rings of a quarter of the indenter's radius, and the area.
+SurfaceDifference radial_remainder(const Mesh& mesh, const PressPlace& place, double radius,
+                                   const std::vector<float>& heights);
+// Whether, at the end of a press of this depth [m], another side of the object is within 1.5 depths: a probe there is
+// as much inside of that.
+bool is_near_an_edge(const Mesh& mesh, const PressPlace& place, double depth);
 
 // `reach`: 0, or the one that is wanted.
 ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, double radius, double reach);

@@ -12,15 +12,15 @@
 namespace pliant {
 namespace {
 
-constexpr double kForever = 1e6;     // [s] of a step in which inertia is nothing (systems/soft/fem/tissue_step.cpp)
-constexpr int kMostIterations = 80;  // of one press
-constexpr double kRest = 1e-4;       // [1] of the load that may be left over
-constexpr std::size_t kMemory = 6;   // iterates that Anderson's acceleration mixes
-constexpr double kFinest = 6.0;      // samples over the indenter's radius
-constexpr int kMostParts = 8;        // of a triangle's edge
-constexpr std::size_t kMoments = 6;  // 1, x, y, x^2, xy, y^2
-constexpr double kFlattest = 1e-6;   // [1] of the largest eigenvalue
-constexpr double kFacing = 0.3;      // [1] cosine: what is turned away is another side of the object
+constexpr double kForever = 1e6;  // [s] of a step in which inertia is nothing (systems/soft/fem/tissue_step.cpp)
+constexpr int kMostTissueIterations = 80;  // of one press
+constexpr double kRestTolerance = 1e-4;    // [1] of the load that may be left over
+constexpr std::size_t kMemory = 6;         // iterates that Anderson's acceleration mixes
+constexpr double kFinest = 6.0;            // samples over the indenter's radius
+constexpr int kMostParts = 8;              // of a triangle's edge
+constexpr std::size_t kMoments = 6;        // 1, x, y, x^2, xy, y^2
+constexpr double kFlattestTissue = 1e-6;   // [1] of the largest eigenvalue
+constexpr double kFacingShare = 0.3;       // [1] cosine: what is turned away is another side of the object
 
 }  // namespace
 
@@ -80,7 +80,7 @@ TissuePress::Punch TissuePress::punch(const PressPlace& place, double radius) co
     const double longest = std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])});
     if (k != place.triangle && length(p[0] - place.position) > radius + longest) continue;
     const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]);
-    if (k != place.triangle && dot(twice, place.normal) < kFacing * length(twice)) continue;
+    if (k != place.triangle && dot(twice, place.normal) < kFacingShare * length(twice)) continue;
     const int parts = std::clamp(static_cast<int>(std::ceil(longest * kFinest / radius)), 1, kMostParts);
     const double area = length(twice) / (parts * parts * radius * radius);
     std::array<double, kMoments> share[3]{};
@@ -109,7 +109,7 @@ TissuePress::Punch TissuePress::punch(const PressPlace& place, double radius) co
   const Vector& values = eigen.eigenvalues();
   Vector over = Vector::Zero(values.size());
   for (Eigen::Index m = 0; m < values.size(); ++m)
-    if (values[m] > kFlattest * values.maxCoeff()) over[m] = 1 / values[m];
+    if (values[m] > kFlattestTissue * values.maxCoeff()) over[m] = 1 / values[m];
   out.inverse = eigen.eigenvectors() * over.asDiagonal() * eigen.eigenvectors().transpose();
   return out;
 }
@@ -139,7 +139,7 @@ double TissuePress::stiffness(const PressPlace& place, double radius) const {
 double TissuePress::settle(const Punch& punch, double depth, Vector& u) {
   std::deque<Vector> iterates, steps;
   Vector step = Vector::Zero(u.size()), rest(u.size());
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMostTissueIterations; ++k) {
     ++iterations_;
     for (std::uint32_t i = 0; i < tissue_->moving(); ++i)
       tissue_->position()[i] = tets_->nodes[i] + dvec3(u[3 * i], u[3 * i + 1], u[3 * i + 2]);
@@ -151,7 +151,7 @@ double TissuePress::settle(const Punch& punch, double depth, Vector& u) {
     rest += push;
     if (!std::isfinite(pressure.norm())) return 0.0;
     const double force = punch.whole.dot(pressure);
-    if (force > 0 && rest.norm() <= kRest * push.norm()) return force;
+    if (force > 0 && rest.norm() <= kRestTolerance * push.norm()) return force;
     step += punch.yields * pressure;
     iterates.push_back(u);
     steps.push_back(step);

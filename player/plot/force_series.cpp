@@ -18,7 +18,7 @@ constexpr std::size_t kShortest = 64;   // below it there is no spectrum
 constexpr double kUneven = 0.01;        // [1] of the usual distance of rows
 constexpr double kClosed = 1e-9;        // [1] of the work put in: rounding
 constexpr double kFast = 20.0;          // [Hz]
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPiOfWindow = 3.14159265358979323846;
 
 std::string_view next_cell(std::string_view& line, std::string& scratch) {
   if (line.starts_with('"')) {
@@ -71,7 +71,7 @@ void transform(std::vector<std::complex<double>>& x) {  // radix 2, in place (Co
   for (std::size_t length = 2; length <= n; length <<= 1)
     for (std::size_t i = 0; i < n; i += length)
       for (std::size_t k = 0; k < length / 2; ++k) {
-        const double angle = -2 * kPi * static_cast<double>(k) / static_cast<double>(length);
+        const double angle = -2 * kPiOfWindow * static_cast<double>(k) / static_cast<double>(length);
         const std::complex<double> a = x[i + k],
                                    b = x[i + k + length / 2] * std::complex<double>(std::cos(angle), std::sin(angle));
         x[i + k] = a + b;
@@ -199,7 +199,7 @@ Spectrum spectrum_of(const ForceSeries& s) {
   std::vector<double> hann(window), power(window / 2, 0.0);
   double energy = 0.0;
   for (std::size_t i = 0; i < window; ++i) {
-    hann[i] = 0.5 - 0.5 * std::cos(2 * kPi * static_cast<double>(i) / static_cast<double>(window));
+    hann[i] = 0.5 - 0.5 * std::cos(2 * kPiOfWindow * static_cast<double>(i) / static_cast<double>(window));
     energy += hann[i] * hann[i];
   }
   std::size_t windows = 0;

@@ -17,9 +17,9 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostDrawn = 8;      // series; the table has all
-constexpr std::size_t kMostPoints = 4000;  // of a line
-constexpr double kLeastDensity = 1e-6;     // [1] of the largest: below it the spectrum's axis ends
+constexpr std::size_t kMostDrawn = 8;           // series; the table has all
+constexpr std::size_t kMostDrawnPoints = 4000;  // of a line
+constexpr double kLeastDensity = 1e-6;          // [1] of the largest: below it the spectrum's axis ends
 
 struct Drawn {
   ForceSeries series;
@@ -28,23 +28,35 @@ struct Drawn {
   std::string name;
 };
 
-// Of [m]: as people say it.
-const char* depth_words(const std::vector<Drawn>& all) {
+// What the runs' depths are: a probe's below the surface, a tool's from the device to the handle.
+struct RunWords {
+  std::string who, loop, depth, depth_head, force, spectrum;
+};
+RunWords run_words(const std::vector<Drawn>& all) {
   const bool tool = std::any_of(all.begin(), all.end(), [](const Drawn& d) { return d.series.tool; });
   const bool probe = std::any_of(all.begin(), all.end(), [](const Drawn& d) { return !d.series.tool; });
-  return tool && probe ? "depth; of tools device-handle offset [mm]"
-         : tool        ? "device-handle offset [mm]"
-                       : "depth [mm]";
-}
-const char* force_words(const std::vector<Drawn>& all) {
-  const bool tool = std::any_of(all.begin(), all.end(), [](const Drawn& d) { return d.series.tool; });
-  return tool ? "force along the (mean) contact normal [N]" : "normal force [N]";
+  RunWords words{.who = tool && probe ? "probes and tools"
+                        : tool        ? "tools"
+                                      : "probes",
+                 .loop = "force over depth",
+                 .depth = "depth [mm]",
+                 .depth_head = "depth [mm]",
+                 .force = "normal force [N]",
+                 .spectrum = "normal force [N/\u221aHz]"};
+  if (all.size() == 1) words.who.pop_back();
+  if (!tool) return words;
+  words.loop = probe ? "force over depth or offset" : "force over offset";
+  words.depth = probe ? "depth; of tools device-handle offset [mm]" : "device-handle offset [mm]";
+  words.depth_head = probe ? "depth, offset [mm]" : "offset [mm]";
+  words.force = "force along the (mean) contact normal [N]";
+  words.spectrum = "force along the contact normal [N/\u221aHz]";
+  return words;
 }
 
 // The least and the largest of every stretch, so that no peak is lost.
 void thin(const std::vector<double>& x, const std::vector<double>& y, std::vector<double>& out_x,
           std::vector<double>& out_y) {
-  const std::size_t stretch = std::max<std::size_t>(1, 2 * x.size() / kMostPoints);
+  const std::size_t stretch = std::max<std::size_t>(1, 2 * x.size() / kMostDrawnPoints);
   for (std::size_t begin = 0; begin < x.size(); begin += stretch) {
     const std::size_t end = std::min(begin + stretch, x.size());
     std::size_t low = begin, high = begin;
@@ -62,19 +74,19 @@ void thin(const std::vector<double>& x, const std::vector<double>& y, std::vecto
 
 struct Column {
   const char* csv;
-  const char* head;
-  double scale;  // of the picture and the terminal
+  const char* head;  // null: RunWords::depth_head
+  double scale;      // of the picture and the terminal
   double SeriesSummary::*value;
 };
-constexpr Column kColumns[] = {{"seconds", "time [s]", 1.0, &SeriesSummary::seconds},
-                               {"contact_s", "contact [s]", 1.0, &SeriesSummary::contact},
-                               {"max_depth_m", "depth [mm]", 1e3, &SeriesSummary::depth},
-                               {"max_force_N", "force [N]", 1.0, &SeriesSummary::force},
-                               {"rms_force_N", "RMS [N]", 1.0, &SeriesSummary::rms},
-                               {"stiffness_N_m", "F/d [N/m]", 1.0, &SeriesSummary::stiffness},
-                               {"put_in_J", "work in [mJ]", 1e3, &SeriesSummary::put_in},
-                               {"lost_J", "lost [mJ]", 1e3, &SeriesSummary::lost},
-                               {"rms_above_20Hz_N", "> 20 Hz [mN]", 1e3, &SeriesSummary::fast}};
+constexpr Column kSummaryColumns[] = {{"seconds", "time [s]", 1.0, &SeriesSummary::seconds},
+                                      {"contact_s", "contact [s]", 1.0, &SeriesSummary::contact},
+                                      {"max_depth_m", nullptr, 1e3, &SeriesSummary::depth},
+                                      {"max_force_N", "force [N]", 1.0, &SeriesSummary::force},
+                                      {"rms_force_N", "RMS [N]", 1.0, &SeriesSummary::rms},
+                                      {"stiffness_N_m", "F/d [N/m]", 1.0, &SeriesSummary::stiffness},
+                                      {"put_in_J", "work in [mJ]", 1e3, &SeriesSummary::put_in},
+                                      {"lost_J", "lost [mJ]", 1e3, &SeriesSummary::lost},
+                                      {"rms_above_20Hz_N", "RMS > 20 Hz [mN]", 1e3, &SeriesSummary::fast}};
 
 std::string shown_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
@@ -88,12 +100,12 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string summary_csv(const std::vector<Drawn>& all) {
   std::string text = "run,probe,kind,objects";
-  for (const Column& column : kColumns) text += std::string(",") + column.csv;
+  for (const Column& column : kSummaryColumns) text += std::string(",") + column.csv;
   text += "\n";
   for (const Drawn& each : all) {
     text += csv_text(each.series.run) + "," + csv_text(each.series.probe) + (each.series.tool ? ",tool," : ",probe,") +
             csv_text(joined(each.series.objects));
-    for (const Column& column : kColumns) {
+    for (const Column& column : kSummaryColumns) {
       if (std::isfinite(each.summary.*column.value))
         put(text, each.summary.*column.value);
       else
@@ -118,6 +130,7 @@ std::string spectra_csv(const std::vector<Drawn>& all) {
 }
 
 void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
+  const RunWords words = run_words(all);
   double seconds = 0.0, depth = 0.0, force = 0.0, shallow = 0.0, dense = 0.0, lowest = 1e30, fastest = 0.0;
   for (std::size_t i = 0; i < shown; ++i) {
     const Drawn& d = all[i];
@@ -137,8 +150,8 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
   pen.color(kInk);
   const double title = pen.text(60, 44, 26, 0, "runs compared", true);
   pen.text(60 + title + 18, 44, 16, 0,
-           shown < all.size() ? fmt::format("the first {} of {} probes and tools; the table has all", shown, all.size())
-                              : fmt::format("{} probes and tools", all.size()));
+           shown < all.size() ? fmt::format("the first {} of {} {}; the table has all", shown, all.size(), words.who)
+                              : fmt::format("{} {}", all.size(), words.who));
   std::vector<PanelKey> keys;
   for (std::size_t i = 0; i < shown; ++i) keys.push_back({series_color(i), all[i].name});
   draw_keys(pen, 60, 74, 1560, keys);
@@ -151,18 +164,18 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
                            kHigh,
                            log_range_of(lowest, fastest),
                            log_range_of(std::max(dense * kLeastDensity, 1e-12), dense)};
-  draw_axes(pen, loop, depth_words(all), force_words(all));
-  draw_axes(pen, over, "time [s]", force_words(all));
-  if (dense > 0) draw_axes(pen, spectrum, "frequency [Hz]", "normal force [N/\xE2\x88\x9AHz]");
+  draw_axes(pen, loop, words.depth, words.force);
+  draw_axes(pen, over, "time [s]", words.force);
+  if (dense > 0) draw_axes(pen, spectrum, "frequency [Hz]", words.spectrum);
   pen.color(kInk);
-  pen.text(loop.x, kTop - 14, 15, 0, "force over depth: the loop is what is lost", true);
+  pen.text(loop.x, kTop - 14, 15, 0, words.loop + ": the loop is what is lost", true);
   pen.text(over.x, kTop - 14, 15, 0, "force over time", true);
   pen.text(spectrum.x, kTop - 14, 15, 0, dense > 0 ? "spectrum" : "no spectrum: fewer than 64 rows, or no force", true);
   for (std::size_t i = 0; i < shown; ++i) {
     const ForceSeries& s = all[i].series;
     std::vector<double> x, y, millimetres;
     for (const double value : s.depth) millimetres.push_back(value * 1e3);
-    const std::size_t every = 1 + s.time.size() / kMostPoints;
+    const std::size_t every = 1 + s.time.size() / kMostDrawnPoints;
     for (std::size_t k = 0; k < s.time.size(); k += every) {
       // Lines end where the probe leaves: the way through the air is none of the law's.
       const bool pressed = s.normal[k] > 0 || (k >= every && s.normal[k - every] > 0) ||
@@ -182,8 +195,9 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
   constexpr double kFirst = 86, kColumn = 122;
   const double right = 1570;
   pen.color(kInk);
-  for (std::size_t c = 0; c < std::size(kColumns); ++c)
-    pen.text(right - kColumn * static_cast<double>(std::size(kColumns) - 1 - c), y, 13, 1.0, kColumns[c].head, true);
+  for (std::size_t c = 0; c < std::size(kSummaryColumns); ++c)
+    pen.text(right - kColumn * static_cast<double>(std::size(kSummaryColumns) - 1 - c), y, 13, 1.0,
+             kSummaryColumns[c].head ? kSummaryColumns[c].head : words.depth_head, true);
   for (std::size_t i = 0; i < all.size() && i < 2 * kMostDrawn; ++i) {
     y += 22;
     if (i < shown) {
@@ -192,12 +206,12 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
     }
     pen.color(kInk);
     std::string name = all[i].name;
-    while (name.size() > 4 && pen.width(13, name) > right - kColumn * (std::size(kColumns) - 1) - kFirst - 100)
+    while (name.size() > 4 && pen.width(13, name) > right - kColumn * (std::size(kSummaryColumns) - 1) - kFirst - 100)
       name.erase(0, 1);
     pen.text(kFirst, y, 13, 0, name.size() < all[i].name.size() ? ".." + name : name);
-    for (std::size_t c = 0; c < std::size(kColumns); ++c)
-      pen.text(right - kColumn * static_cast<double>(std::size(kColumns) - 1 - c), y, 13, 1.0,
-               shown_number(all[i].summary.*kColumns[c].value * kColumns[c].scale));
+    for (std::size_t c = 0; c < std::size(kSummaryColumns); ++c)
+      pen.text(right - kColumn * static_cast<double>(std::size(kSummaryColumns) - 1 - c), y, 13, 1.0,
+               shown_number(all[i].summary.*kSummaryColumns[c].value * kSummaryColumns[c].scale));
   }
   if (all.size() > 2 * kMostDrawn)
     pen.text(kFirst, y + 22, 13, 0, fmt::format("... and {} more in summary.csv", all.size() - 2 * kMostDrawn));

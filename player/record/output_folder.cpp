@@ -21,7 +21,7 @@ constexpr const char* kReserve = ".reserve";
 constexpr const char* kListCopy = ".list";
 constexpr off_t kReserved = 256 << 10, kLeastReserved = 32 << 10;  // [byte] for report.json and forces.png
 constexpr int kMostFolders = 100000;
-constexpr int kAttempts = 8;  // while other runs make and remove the same folders
+constexpr int kFolderAttempts = 8;  // while other runs make and remove the same folders
 
 bool is_there(const fs::path& file) {
   std::error_code error;
@@ -85,7 +85,7 @@ Status OutputFolder::open(const fs::path& folder) {
   std::error_code error;
   const fs::path staging = folder / (".partial-" + std::to_string(::getpid()));
   bool staged = false;
-  for (int attempt = 0; !staged && attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; !staged && attempt < kFolderAttempts; ++attempt) {
     std::vector<fs::path> missing;
     for (fs::path at = folder; !fs::exists(at, error) && at.has_relative_path(); at = at.parent_path())
       missing.push_back(at);
@@ -217,7 +217,7 @@ Status OutputFolder::commit() {
   };
   // The list first: it says what may come, should the process be killed now.
   int placed = EEXIST;
-  for (int attempt = 0; placed == EEXIST && attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; placed == EEXIST && attempt < kFolderAttempts; ++attempt) {
     if (std::any_of(names_.begin(), names_.end(), in_the_way) || (!replaces() && is_there(folder_ / kRunList))) {
       if (const Status next = move_on(); !next) return next.error();
       old.clear();

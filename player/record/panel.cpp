@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kTicks = 6;
+constexpr int kMostTicks = 6;
 
 double share_of(const PanelRange& range, double value) {
   if (range.log) return std::log(std::max(value, 1e-300) / range.low) / std::log(range.high / range.low);
@@ -29,10 +29,10 @@ std::vector<AxisTick> ticks_of(const PanelRange& range) {
     const int every = std::max(1, static_cast<int>(std::ceil(decades / 8.0)));
     for (int e = static_cast<int>(std::ceil(std::log10(range.low) - 1e-9)); e <= std::log10(range.high) + 1e-9;
          e += every)
-      out.push_back({std::pow(10.0, e), fmt::format("{:g}", std::pow(10.0, e))});
+      out.push_back({std::pow(10.0, e), decade_number(std::pow(10.0, e))});
     return out;
   }
-  const double step = tick_step(range.high - range.low, kTicks);
+  const double step = tick_step(range.high - range.low, kMostTicks);
   const double large = std::max(std::abs(range.low), std::abs(range.high));
   for (double v = step * std::ceil(range.low / step - 1e-9); v <= range.high + 1e-9 * step; v += step) {
     const double value = std::abs(v) < 1e-9 * step ? 0.0 : v;
@@ -55,7 +55,7 @@ PanelRange range_of(double least, double most, bool with_zero) {
   if (with_zero) least = std::min(least, 0.0), most = std::max(most, 0.0);
   if (!(most > least))
     return {least - 0.5 * std::max(std::abs(least), 1e-9), most + 0.5 * std::max(std::abs(most), 1e-9)};
-  const double step = tick_step(most - least, kTicks), room = 0.03 * (most - least);
+  const double step = tick_step(most - least, kMostTicks), room = 0.03 * (most - least);
   PanelRange out{step * std::floor((least - room) / step), step * std::ceil((most + room) / step)};
   if (with_zero && least == 0.0) out.low = 0.0;
   if (with_zero && most == 0.0) out.high = 0.0;

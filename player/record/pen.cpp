@@ -55,6 +55,21 @@ double Pen::text(double x, double y, double size, double align, const std::strin
   return box.x_advance;
 }
 
+double Pen::text_over(double x, double y, double size, double align, const std::string& words) {
+  const double left = x - align * width(size, words);
+  cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo_, size);
+  cairo_save(cairo_);
+  color(kPaper, 0.85);
+  cairo_set_line_width(cairo_, 4);
+  cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
+  cairo_move_to(cairo_, left, y);
+  cairo_text_path(cairo_, printable(words).c_str());
+  cairo_stroke(cairo_);
+  cairo_restore(cairo_);
+  return text(left, y, size, 0, words);
+}
+
 double Pen::width(double size, const std::string& words) {
   cairo_save(cairo_);
   cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -109,6 +124,22 @@ Status draw_png_and_svg(const std::filesystem::path& png, const std::filesystem:
     if (!(as_png ? image.save(png) : vectors.finish()))
       return Error{(as_png ? png : svg).string(), "the plot cannot be written; check the space left"};
   return Done{};
+}
+
+std::string decade_number(double value) {
+  if (value >= 0.999e-3 && value < 0.999e5) {
+    std::string words = fmt::format("{:g}", value);
+    if (words.size() == 5 && value >= 1e4) words.insert(2, ",");
+    return words;
+  }
+  constexpr const char* kRaised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                     "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  const int exponent = static_cast<int>(std::floor(std::log10(value) + 1e-9));
+  const long factor = std::lround(value / std::pow(10.0, exponent));
+  std::string words = factor == 1 ? "10" : fmt::format("{}\u00b710", factor);
+  if (exponent < 0) words += "\u207b";
+  for (const char digit : std::to_string(std::abs(exponent))) words += kRaised[digit - '0'];
+  return words;
 }
 
 std::string number(double value, double step) {

@@ -35,6 +35,8 @@ class Pen {
   void line(double x0, double y0, double x1, double y1, double width);
   // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width.
   double text(double x, double y, double size, double align, const std::string& words, bool bold = false);
+  // The same with a white seam, to be read over lines.
+  double text_over(double x, double y, double size, double align, const std::string& words);
   double width(double size, const std::string& words);  // of such a text
   // Broken at blanks, so that no line is wider, unless one word is.
   std::vector<std::string> lines(double size, const std::string& words, double widest);
@@ -53,5 +55,7 @@ Status draw_png_and_svg(const std::filesystem::path& png, const std::filesystem:
 
 // With as many digits as ticks `step` apart need.
 std::string number(double value, double step);
+// 1, 2 or 5 times a power of ten, as it stands on an axis by powers of ten: 0.001, 1, 10,000, 2·10⁻⁵.
+std::string decade_number(double value);
 
 }  // namespace pliant

@@ -16,7 +16,7 @@ constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
 constexpr double kLeft = 84, kRight = 28, kBetween = 100, kAbove = 40, kBelow = 52;
 constexpr double kBand = 6;  // high
 
-struct Panel {
+struct PlotPanel {
   double x, y, w, h;     // [pixel] of the plotting area
   double seconds, high;  // ranges: [0, seconds] and [0, high]
   double px(double t) const { return x + w * t / seconds; }
@@ -25,7 +25,7 @@ struct Panel {
 
 // Fills the columns that `marked` says yes to, from y on downwards; a stretch is at least a pixel wide.
 template <typename Marked>
-void fill_columns(Pen& pen, const Panel& panel, const Trace& trace, double dt, double y, double h, Marked marked) {
+void fill_columns(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, double y, double h, Marked marked) {
   const double column = trace.ticks_per_column() * dt;
   const std::vector<TraceColumn>& columns = trace.columns();
   for (std::size_t i = 0; i < columns.size();) {
@@ -41,7 +41,7 @@ void fill_columns(Pen& pen, const Panel& panel, const Trace& trace, double dt, d
 }
 
 // Where the probe was in contact, then grid and axes with numbers: what lies under the curves.
-void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, const char* quantity) {
+void draw_frame(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, const char* quantity) {
   pen.color(kContact);
   fill_columns(pen, panel, trace, dt, panel.y, panel.h, [](const TraceColumn& column) { return column.contact; });
   const double time_step = tick_step(panel.seconds, 8), value_step = tick_step(panel.high, 5);
@@ -65,7 +65,7 @@ void draw_frame(Pen& pen, const Panel& panel, const Trace& trace, double dt, con
 }
 
 // Through the smallest and the largest value of every column, so that no peak is thinned away.
-void draw_curve(Pen& pen, const Panel& panel, const Trace& trace, double dt, Extremes TraceColumn::*quantity,
+void draw_curve(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, Extremes TraceColumn::*quantity,
                 double scale, Color color) {
   pen.color(color);
   cairo_set_line_width(pen.get(), 2.2);
@@ -110,7 +110,7 @@ void draw_legend(Pen& pen, double right, double y, const std::vector<LegendEntry
 
 // Thin bands along the time axis, one above the other, where a limit kept the force from what the law says. Adds those
 // that are there to the legend.
-void draw_limits(Pen& pen, const Panel& panel, const Trace& trace, double dt, std::vector<LegendEntry>& legend) {
+void draw_limits(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, std::vector<LegendEntry>& legend) {
   const struct {
     SafetyLimit limit;
     LegendEntry entry;
@@ -160,8 +160,8 @@ std::string subtitle_of(const std::vector<PlotRow>& rows, std::size_t shown) {
 
 void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double dt) {
   const double w = (kWidth - kLeft - kRight - kBetween) / 2, h = kRow - kAbove - kBelow;
-  Panel depth{kLeft, top + kAbove, w, h, seconds, axis_high(largest(*row.trace, &TraceColumn::depth) * 1e3)};
-  Panel force{
+  PlotPanel depth{kLeft, top + kAbove, w, h, seconds, axis_high(largest(*row.trace, &TraceColumn::depth) * 1e3)};
+  PlotPanel force{
       kLeft + w + kBetween,
       top + kAbove,
       w,

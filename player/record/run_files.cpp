@@ -13,7 +13,7 @@ namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kTitle = "files that a run of pliant wrote here; --force replaces these and no others\n";
+constexpr std::string_view kListTitle = "files that a run of pliant wrote here; --force replaces these and no others\n";
 
 bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -33,8 +33,9 @@ enum class Staged : std::uint8_t { kOthers, kAbandoned, kAlive };
 Staged state_of(const fs::path& staging) {
   const int list = ::open((staging / kRunList).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
   if (list < 0) return Staged::kOthers;
-  std::string begin(kTitle.size(), '\0');
-  const bool ours = ::read(list, begin.data(), begin.size()) == static_cast<ssize_t>(kTitle.size()) && begin == kTitle;
+  std::string begin(kListTitle.size(), '\0');
+  const bool ours =
+      ::read(list, begin.data(), begin.size()) == static_cast<ssize_t>(kListTitle.size()) && begin == kListTitle;
   const bool free = ours && ::flock(list, LOCK_EX | LOCK_NB) == 0;
   ::close(list);
   return !ours ? Staged::kOthers : free ? Staged::kAbandoned : Staged::kAlive;
@@ -48,14 +49,14 @@ std::set<std::string> listed_files(const fs::path& folder) {
   if (!fs::is_regular_file(folder / kRunList, error)) return names;  // a link to what has no end
   std::ifstream in(folder / kRunList);
   std::string line;
-  if (!std::getline(in, line) || line + '\n' != kTitle) return names;
+  if (!std::getline(in, line) || line + '\n' != kListTitle) return names;
   while (std::getline(in, line))
     if (!line.empty() && line != "." && line != ".." && line.find('/') == std::string::npos) names.insert(line);
   return names;
 }
 
 std::string list_text(const std::vector<std::string>& names) {
-  std::string text(kTitle);
+  std::string text(kListTitle);
   for (const std::string& name : names) text += name + '\n';
   return text;
 }
@@ -72,7 +73,7 @@ int begin_list(const fs::path& staging) {
   const int list = ::open((staging / kRunList).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (list < 0) return -1;
   ::flock(list, LOCK_EX | LOCK_NB);  // before it says whose it is: nobody takes it for an abandoned one
-  if (::write(list, kTitle.data(), kTitle.size()) == static_cast<ssize_t>(kTitle.size())) return list;
+  if (::write(list, kListTitle.data(), kListTitle.size()) == static_cast<ssize_t>(kListTitle.size())) return list;
   const int error = errno;
   ::close(list);
   errno = error;

@@ -57,11 +57,11 @@ void Frames::update(World& world) {
 }
 
 void Frames::update_all(World& world, Tick tick) {
-  // A snapshot holds a bounded number of zones. Every turn takes as many as fit, so this ends.
+  // Every turn takes as many zones as fit, and the next sees it, so this ends.
   do {
     publish(world, tick);
     update(world);
-  } while (!world.snapshots->read().complete);
+  } while (waits_to_be_published(world));
 }
 
 Status Frames::take(OutputFolder& out) {

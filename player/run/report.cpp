@@ -18,10 +18,10 @@
 namespace pliant {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json percentiles(const Histogram& histogram, double scale, bool with_p999) {
-  Json json;
+OrderedJson percentiles(const Histogram& histogram, double scale, bool with_p999) {
+  OrderedJson json;
   json["p50"] = histogram.percentile_us(0.5) * scale;
   json["p99"] = histogram.percentile_us(0.99) * scale;
   if (with_p999) json["p999"] = histogram.percentile_us(0.999) * scale;
@@ -33,8 +33,8 @@ double mean(std::uint64_t sum, std::uint64_t count) {
   return count ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
 }
 
-Json objects(const RunFigures& figures) {
-  Json list = Json::array();
+OrderedJson objects(const RunFigures& figures) {
+  OrderedJson list = OrderedJson::array();
   for (const AwakeStats& stats : figures.journal.awake()) {
     const World& world = figures.world;
     const Mesh& mesh = world.meshes[world.registry.get<Deformable>(stats.object).mesh];
@@ -48,8 +48,8 @@ Json objects(const RunFigures& figures) {
   return list;
 }
 
-Json names(const World& world, const std::vector<Entity>& entities) {
-  Json list = Json::array();
+OrderedJson names(const World& world, const std::vector<Entity>& entities) {
+  OrderedJson list = OrderedJson::array();
   for (const Entity entity : entities) {
     const Name* name = world.registry.find<Name>(entity);
     list.push_back(name ? name->value : std::string());
@@ -58,8 +58,8 @@ Json names(const World& world, const std::vector<Entity>& entities) {
 }
 
 // How often each limit acted: clipped and withheld always, the others where they did.
-Json limits(const SafetyTally& tally) {
-  Json json;
+OrderedJson limits(const SafetyTally& tally) {
+  OrderedJson json;
   for (std::size_t i = 0; i < kSafetyLimits; ++i) {
     const auto limit = static_cast<SafetyLimit>(i);
     const LimitCount& count = tally.of(limit);
@@ -70,24 +70,24 @@ Json limits(const SafetyTally& tally) {
 }
 
 // What only a tool has.
-Json tool(const World& world, Entity entity, const ProbeSummary& summary) {
+OrderedJson tool(const World& world, Entity entity, const ProbeSummary& summary) {
   return {{"tool_force", word_of(world.registry.get<Handle6>(entity).force)},
           {"max_torque_Nm", summary.max_torque},
           {"late_ticks", summary.late_ticks},
           {"stale_ticks", summary.stale_ticks}};
 }
 
-Json probes(const RunFigures& figures) {
-  Json list = Json::array();
+OrderedJson probes(const RunFigures& figures) {
+  OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < figures.keeper.summaries().size(); ++i) {
     const ProbeSummary& probe = figures.keeper.summaries()[i];
-    Json entry{{"name", probe.name},
-               {"source", probe.source},
-               {"contact_ticks", probe.contact_ticks},
-               {"max_depth_m", probe.max_depth},
-               {"max_force_N", probe.max_force},
-               {"net_work_J", probe.net_work},
-               {"touched", names(figures.world, figures.journal.touched(figures.journal.probes()[i]))}};
+    OrderedJson entry{{"name", probe.name},
+                      {"source", probe.source},
+                      {"contact_ticks", probe.contact_ticks},
+                      {"max_depth_m", probe.max_depth},
+                      {"max_force_N", probe.max_force},
+                      {"net_work_J", probe.net_work},
+                      {"touched", names(figures.world, figures.journal.touched(figures.journal.probes()[i]))}};
     if (probe.tool) entry.update(tool(figures.world, figures.journal.probes()[i], probe));
     const HandSafety safety = find_safety(figures.world, figures.journal.probes()[i]);
     if (safety.force) entry.update(limits(safety.force->tally));
@@ -99,10 +99,10 @@ Json probes(const RunFigures& figures) {
 }
 
 // Beyond the contract: what each system cost.
-Json systems(const Schedule<World>& schedule) {
-  Json list = Json::array();
+OrderedJson systems(const Schedule<World>& schedule) {
+  OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < schedule.systems().size(); ++i) {
-    Json entry = percentiles(schedule.cost(i), 1.0, true);
+    OrderedJson entry = percentiles(schedule.cost(i), 1.0, true);
     entry["name"] = schedule.systems()[i].name;
     list.push_back(std::move(entry));
   }
@@ -110,9 +110,9 @@ Json systems(const Schedule<World>& schedule) {
 }
 
 // Figures of the soft clock.
-Json soft(const SoftClock& clock, const SoftTally& tally) {
+OrderedJson soft(const SoftClock& clock, const SoftTally& tally) {
   const SoftFigures& figures = clock.figures();
-  Json json;
+  OrderedJson json;
   json["step_ms"] = percentiles(clock.schedule().total(), 1e-3, false);
   json["steps"] = figures.steps;
   json["overruns"] = figures.overruns;
@@ -136,7 +136,7 @@ Json soft(const SoftClock& clock, const SoftTally& tally) {
 std::string report_json(const RunFigures& figures) {
   static const Histogram none;
   const FrameFigures* frames = figures.frames;
-  Json json;
+  OrderedJson json;
   json["pliant"] = PLIANT_VERSION;
   json["level"] = figures.world.name;
   json["mode"] = figures.mode;
@@ -156,7 +156,7 @@ std::string report_json(const RunFigures& figures) {
   json["hash"] = figures.hash;
   json["systems_us"] = systems(figures.schedule);
   // Names come from files and may not be UTF-8.
-  return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', true, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kSaidResidual = 1e-4;  // [m/s] what creeps more slowly, nobody sees
 constexpr double kSaidLoss = 0.02;      // [1] of the run: less is lost while a first step tries which solver is fastest
 
-std::string name_of(const World& world, std::uint32_t body) {
+std::string body_name(const World& world, std::uint32_t body) {
   const Entity entity = world.soft->bodies[body]->entity;
   const Name* name = world.registry.find<Name>(entity);
   return name ? "`" + name->value + "`" : fmt::format("body {}", body);
@@ -49,7 +49,7 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
   if (tally.began_inside > 0.0)
     sentences.push_back(
         fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart; move one of them in the level",
-                    name_of(world, tally.inside_a), name_of(world, tally.inside_b), tally.began_inside * 1e3));
+                    body_name(world, tally.inside_a), body_name(world, tally.inside_b), tally.began_inside * 1e3));
   if (tally.halted_for > 0.0)
     sentences.push_back(fmt::format(
         "bodies were stopped for {:.3g} s in total, in soft steps in which they would have passed through each "

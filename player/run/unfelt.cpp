@@ -9,47 +9,47 @@
 namespace pliant {
 namespace {
 
-constexpr float kNear = 0.1f;      // [1] of a surface's diagonal: a path that comes so near means to touch it
-constexpr std::size_t kNamed = 5;  // bodies that the sentence names
+constexpr float kNearShare = 0.1f;  // [1] of a surface's diagonal: a path that comes so near means to touch it
+constexpr std::size_t kNamed = 5;   // bodies that the sentence names
 
-struct Body {
+struct UnfeltBody {
   std::string name;
   Pose pose;
   Box box;  // [m] object frame
 };
 
-std::string name_of(const World& world, Entity entity) {
+std::string unfelt_name(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
   return name ? name->value : std::string();
 }
 
 // Soft and rigid bodies that are no tools.
-std::vector<Body> bodies(const World& world) {
-  std::vector<Body> list;
+std::vector<UnfeltBody> bodies(const World& world) {
+  std::vector<UnfeltBody> list;
   for (auto [entity, body, pose] : world.registry.view<SoftBody, Pose>())
     if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) &&
         body.collision_mesh.valid())
-      list.push_back({name_of(world, entity), pose, world.meshes[body.collision_mesh].box});
+      list.push_back({unfelt_name(world, entity), pose, world.meshes[body.collision_mesh].box});
   for (auto [entity, body, pose] : world.registry.view<RigidBody, Pose>())
     if (!world.registry.find<Handle6>(entity) && !world.registry.find<Deformable>(entity) &&
         body.collision_mesh.valid())
-      list.push_back({name_of(world, entity), pose, world.meshes[body.collision_mesh].box});
+      list.push_back({unfelt_name(world, entity), pose, world.meshes[body.collision_mesh].box});
   return list;
 }
 
-std::vector<Body> surfaces(const World& world) {
-  std::vector<Body> list;
+std::vector<UnfeltBody> surfaces(const World& world) {
+  std::vector<UnfeltBody> list;
   for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
     Box box = world.meshes[deformable.mesh].box;
-    const vec3 margin(kNear * box.diagonal());
+    const vec3 margin(kNearShare * box.diagonal());
     box.min -= margin;
     box.max += margin;
-    list.push_back({name_of(world, entity), pose, box});
+    list.push_back({unfelt_name(world, entity), pose, box});
   }
   return list;
 }
 
-bool inside(const Body& body, dvec3 x, double radius) {
+bool inside(const UnfeltBody& body, dvec3 x, double radius) {
   const dvec3 local = body.pose.to_local(x);
   for (int i = 0; i < 3; ++i)
     if (local[i] < static_cast<double>(body.box.min[i]) - radius ||
@@ -78,27 +78,27 @@ class Names {
 }  // namespace
 
 std::optional<std::string> unfelt_bodies(const World& world) {
-  const std::vector<Body> felt = surfaces(world), unfelt = bodies(world);
+  const std::vector<UnfeltBody> felt = surfaces(world), unfelt = bodies(world);
   Names probes, passed;
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     if (probe.meets != ProbeMeets::kSurfaces) continue;
-    const std::string name = name_of(world, entity);
-    const auto pass = [&](const Body& body) {
+    const std::string name = unfelt_name(world, entity);
+    const auto pass = [&](const UnfeltBody& body) {
       probes.add(name);
       passed.add(body.name);
     };
     if (felt.empty())
-      for (const Body& body : unfelt) pass(body);
+      for (const UnfeltBody& body : unfelt) pass(body);
     const HapticDevice* device = find_device(world, entity);
     if (!device || !device->path.valid()) continue;
     const double radius = probe.radius;  // clang 14 captures no structured bindings
     const std::vector<PathRow>& rows = world.paths[device->path].rows;
-    const auto enters = [&](const Body& body) {
+    const auto enters = [&](const UnfeltBody& body) {
       return std::any_of(rows.begin(), rows.end(),
                          [&](const PathRow& row) { return inside(body, row.position, radius); });
     };
     if (std::any_of(felt.begin(), felt.end(), enters)) continue;
-    for (const Body& body : unfelt)
+    for (const UnfeltBody& body : unfelt)
       if (enters(body)) pass(body);
   }
   if (probes.size() == 0) return {};

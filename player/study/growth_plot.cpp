@@ -11,16 +11,17 @@
 namespace pliant {
 namespace {
 
-constexpr double kWidth = 1700, kPanelW = 540, kPanelH = 340, kTop = 110, kGapY = 110, kFoot = 90;  // [pixel]
-constexpr double kLeft = 90, kNames = 250;  // [pixel] beside a panel
-constexpr std::array kColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kInk};
+constexpr double kGrowthWidth = 1240, kPanelW = 330, kPanelH = 300, kGrowthTop = 104, kGapY = 104;  // [pixel]
+constexpr double kGrowthLeft = 84, kNames = 190;  // [pixel] beside a panel
+constexpr double kSentenceText = 15;              // [pixel]
+constexpr std::array kGrowthColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kInk};
 
-struct Range {
+struct AxisRange {
   double low, high, begin, end;
   double at(double value) const { return begin + (end - begin) * (std::log10(value) - low) / (high - low); }
 };
 
-Range range_of(double least, double most, double begin, double end) {
+AxisRange range_of(double least, double most, double begin, double end) {
   double low = std::log10(least) - 0.12, high = std::log10(most) + 0.12;
   if (high - low < 1.0) {
     const double middle = (low + high) / 2;
@@ -30,7 +31,7 @@ Range range_of(double least, double most, double begin, double end) {
   return {low, high, begin, end};
 }
 
-void draw_axis(Pen& pen, const Range& range, bool across, double from, double to) {
+void draw_axis(Pen& pen, const AxisRange& range, bool across, double from, double to) {
   const bool few = range.high - range.low > 2.2;
   for (int decade = static_cast<int>(std::floor(range.low)); decade <= range.high; ++decade)
     for (const int factor : {1, 2, 5}) {
@@ -40,8 +41,8 @@ void draw_axis(Pen& pen, const Range& range, bool across, double from, double to
       pen.color(kFaint);
       across ? pen.line(p, from, p, to, 1) : pen.line(from, p, to, p, 1);
       pen.color(kInk);
-      across ? pen.text(p, to + 18, 13, 0.5, fmt::format("{:g}", value))
-             : pen.text(from - 7, p + 5, 13, 1.0, fmt::format("{:g}", value));
+      across ? pen.text(p, to + 18, 13, 0.5, decade_number(value))
+             : pen.text(from - 7, p + 5, 13, 1.0, decade_number(value));
     }
 }
 
@@ -49,29 +50,30 @@ void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
   const double right = left + kPanelW, bottom = top + kPanelH;
   double least = 1e300, most = 0;
   for (const GrowthCurve& curve : panel.curves)
-    for (const double cost : curve.cost) least = std::min(least, cost), most = std::max(most, cost);
-  const Range x = range_of(*std::min_element(panel.size.begin(), panel.size.end()),
-                           *std::max_element(panel.size.begin(), panel.size.end()), left, right);
-  const Range y = range_of(least, most, bottom, top);
+    for (const double cost : curve.cost) least = std::fmin(least, cost), most = std::fmax(most, cost);
+  const AxisRange x = range_of(*std::min_element(panel.size.begin(), panel.size.end()),
+                               *std::max_element(panel.size.begin(), panel.size.end()), left, right);
+  const AxisRange y = range_of(least, most, bottom, top);
   draw_axis(pen, x, true, top, bottom);
   draw_axis(pen, y, false, left, right);
   pen.color(kInk);
   pen.line(left, top, left, bottom, 1.5);
   pen.line(left, bottom, right, bottom, 1.5);
-  pen.text(left, top - 12, 16, 0, panel.title, true);
+  pen.text(left, top - 12, 15, 0, panel.title, true);
   pen.text((left + right) / 2, bottom + 38, 14, 0.5, panel.across);
   pen.upright_text(left - 62, (top + bottom) / 2, 14, panel.up);
   // Names beside their last points, apart from one another.
   std::vector<std::size_t> order(panel.curves.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return panel.curves[a].cost.back() > panel.curves[b].cost.back(); });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return panel.curves[a].cost[panel.curves[a].last()] > panel.curves[b].cost[panel.curves[b].last()];
+  });
   double lowest = top - 4;
   for (const std::size_t k : order) {
     const GrowthCurve& curve = panel.curves[k];
-    const Color color = kColors[k % kColors.size()];
+    const Color color = kGrowthColors[k % kGrowthColors.size()];
     pen.color(color, 0.6);
-    const double a = panel.size.front(), b = panel.size.back();
+    const double a = panel.size.front(), b = panel.size[curve.last()];
     cairo_save(pen.get());
     cairo_rectangle(pen.get(), left, top, kPanelW, kPanelH);
     cairo_clip(pen.get());
@@ -79,13 +81,14 @@ void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
     cairo_restore(pen.get());
     pen.color(color);
     for (std::size_t i = 0; i < panel.size.size(); ++i) {
+      if (std::isnan(curve.cost[i])) continue;
       cairo_arc(pen.get(), x.at(panel.size[i]), y.at(curve.cost[i]), 5, 0, 2 * M_PI);
       cairo_fill(pen.get());
     }
-    const double at = std::max(y.at(curve.cost.back()), lowest + 20);
+    const double end = y.at(curve.cost[curve.last()]), at = std::max(end, lowest + 20);
     lowest = at + 16;
     pen.color(color, 0.6);
-    pen.line(x.at(panel.size.back()) + 7, y.at(curve.cost.back()), right + 10, at, 0.8);
+    pen.line(x.at(panel.size[curve.last()]) + 7, end, right + 10, at, 0.8);
     pen.color(kInk);
     pen.text(right + 14, at + 4, 14, 0, curve.name, true);
     pen.text(right + 14, at + 20, 13, 0,
@@ -100,21 +103,27 @@ void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
 Status plot_growth(OutputFolder& out, const std::string& stem, const std::string& title,
                    const std::vector<GrowthPanel>& panels, const std::vector<std::string>& sentences) {
   const auto rows = static_cast<double>((panels.size() + 1) / 2);
-  const double bottom = kTop + rows * (kPanelH + kGapY), height = bottom + kFoot;
-  return draw_png_and_svg(out.stage(stem + ".png"), out.stage(stem + ".svg"), kWidth, height, [&](Pen& pen) {
+  const double bottom = kGrowthTop + rows * (kPanelH + kGapY) - kGapY + 72;
+  std::vector<std::string> lines;
+  for (const std::string& sentence : sentences) {
+    Pen measure(1, 1);
+    const std::vector<std::string> broken = measure.lines(kSentenceText, sentence, kGrowthWidth - 60);
+    lines.insert(lines.end(), broken.begin(), broken.end());
+  }
+  const double height = bottom + 19 * static_cast<double>(lines.size());
+  return draw_png_and_svg(out.stage(stem + ".png"), out.stage(stem + ".svg"), kGrowthWidth, height, [&](Pen& pen) {
     pen.color(kInk);
     const double width = pen.text(30, 44, 26, 0, stem, true);
     pen.text(30 + width + 18, 44, 16, 0, title);
     for (std::size_t i = 0; i < panels.size(); ++i)
-      draw_panel(pen, kLeft + static_cast<double>(i % 2) * (kPanelW + kNames + 50),
-                 kTop + static_cast<double>(i / 2) * (kPanelH + kGapY), panels[i]);
-    double foot = bottom - 20;
+      draw_panel(pen, kGrowthLeft + static_cast<double>(i % 2) * (kPanelW + kNames + 96),
+                 kGrowthTop + static_cast<double>(i / 2) * (kPanelH + kGapY), panels[i]);
+    double foot = bottom;
     pen.color(kInk);
-    for (const std::string& sentence : sentences)
-      for (const std::string& line : pen.lines(15, sentence, kWidth - 60)) {
-        pen.text(30, foot, 15, 0, line);
-        foot += 19;
-      }
+    for (const std::string& line : lines) {
+      pen.text(30, foot, kSentenceText, 0, line);
+      foot += 19;
+    }
   });
 }
 

@@ -10,8 +10,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kWidth = 1760, kRow = 23, kTop = 96, kBottom = 118;  // [pixel]
-constexpr double kLeft = 30, kBars = 760, kEnd = 1240, kFigures = 1262;
+constexpr double kTableWidth = 1310, kTableRow = 23, kTableTop = 96, kTableBottom = 118;  // [pixel]
+constexpr double kTableLeft = 30, kBars = 530, kEnd = 830, kFigures = 866;
 constexpr int kLeast = -6, kMost = 1;  // decades of the bound
 constexpr Color kGrey{0.6, 0.6, 0.6};
 
@@ -34,7 +34,7 @@ double share_of(const JudgedCase& each) {
 void draw_row(Pen& pen, double y, const JudgedCase& each) {
   const Color color = color_of(each);
   pen.color(kInk);
-  pen.text(kLeft, y + 16, 14, 0, words_of(each.hard.name));
+  pen.text(kTableLeft, y + 16, 14, 0, words_of(each.hard.name));
   pen.color(color);
   if (each.verdict() != HardVerdict::kNotJudged) {
     const double end = across(share_of(each));
@@ -53,42 +53,41 @@ void draw_row(Pen& pen, double y, const JudgedCase& each) {
 
 Status plot_hardcases(OutputFolder& out, const std::vector<JudgedCase>& cases,
                       const std::vector<std::string>& sentences) {
-  const double bottom = kTop + kRow * static_cast<double>(cases.size()), height = bottom + kBottom + 30;
-  return draw_png_and_svg(out.stage("hardcases.png"), out.stage("hardcases.svg"), kWidth, height, [&](Pen& pen) {
+  const double bottom = kTableTop + kTableRow * static_cast<double>(cases.size()), height = bottom + kTableBottom + 30;
+  return draw_png_and_svg(out.stage("hardcases.png"), out.stage("hardcases.svg"), kTableWidth, height, [&](Pen& pen) {
     pen.color(kInk);
-    const double width = pen.text(kLeft, 44, 26, 0, "hardcases", true);
-    pen.text(kLeft + width + 18, 44, 16, 0,
+    const double width = pen.text(kTableLeft, 44, 26, 0, "hardcases", true);
+    pen.text(kTableLeft + width + 18, 44, 16, 0,
              "where haptic engines break: what must hold, and how much of its bound each figure is");
-    pen.text(kLeft, kTop - 12, 14, 0, "must hold", true);
-    pen.text(kFigures, kTop - 12, 14, 0, "holds; the figure", true);
+    pen.text(kTableLeft, kTableTop - 12, 14, 0, "must hold", true);
+    pen.text(kFigures, kTableTop - 12, 14, 0, "holds; the figure", true);
     for (int decade = kLeast; decade <= kMost; ++decade) {
       const double x = across(std::pow(10.0, decade));
       pen.color(decade == 0 ? kInk : kFaint);
-      pen.line(x, kTop, x, bottom, decade == 0 ? 2 : 1);
+      pen.line(x, kTableTop, x, bottom, decade == 0 ? 2 : 1);
       pen.color(kInk);
-      pen.text(x, bottom + 20, 14, 0.5,
-               decade == 0 ? "the bound"
-                           : fmt::format("{}{:g}",
-                                         decade == kLeast  ? "<= "
-                                         : decade == kMost ? ">= "
-                                                           : "",
-                                         std::pow(10.0, decade)));
+      if (decade % 2 == 0 || decade == kMost)
+        pen.text(x, bottom + 20, 14, decade == kMost ? 0.35 : 0.5,
+                 decade == 0        ? "bound"
+                 : decade == kLeast ? "\u2264 " + decade_number(1e-6)
+                 : decade == kMost  ? "\u2265 10"
+                                    : decade_number(std::pow(10.0, decade)));
     }
     pen.text((kBars + kEnd) / 2, bottom + 44, 16, 0.5, "figure over its bound [1]");
-    double y = kTop;
+    double y = kTableTop;
     for (const JudgedCase& each : cases) {
-      if ((y - kTop) / kRow != std::floor((y - kTop) / kRow / 2) * 2) {
+      if ((y - kTableTop) / kTableRow != std::floor((y - kTableTop) / kTableRow / 2) * 2) {
         pen.color(kFaint, 0.35);
-        pen.line(kLeft - 6, y + kRow / 2, kBars - 6, y + kRow / 2, kRow);
+        pen.line(kTableLeft - 6, y + kTableRow / 2, kBars - 6, y + kTableRow / 2, kTableRow);
       }
       draw_row(pen, y, each);
-      y += kRow;
+      y += kTableRow;
     }
     double foot = bottom + 76;
     pen.color(kInk);
     for (const std::string& sentence : sentences)
-      for (const std::string& line : pen.lines(15, sentence, kWidth - 2 * kLeft)) {
-        pen.text(kLeft, foot, 15, 0, line);
+      for (const std::string& line : pen.lines(15, sentence, kTableWidth - 2 * kTableLeft)) {
+        pen.text(kTableLeft, foot, 15, 0, line);
         foot += 19;
       }
   });

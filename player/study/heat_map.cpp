@@ -11,17 +11,17 @@
 namespace pliant {
 namespace {
 
-constexpr double kWidth = 1600, kHeight = 1000;                        // [pixel]
-constexpr double kLeft = 150, kRight = 20, kTop = 142, kBottom = 120;  // [pixel] margins
-constexpr double kGap = 10;                                            // [pixel] between maps
-constexpr Color kFailed{0.80, 0.24, 0.10};
+constexpr double kMapWidth = 1400, kMapHeight = 920;                               // [pixel]
+constexpr double kMapLeft = 150, kMapRight = 20, kMapTop = 142, kMapBottom = 120;  // [pixel] margins
+constexpr double kGap = 10;                                                        // [pixel] between maps
+constexpr Color kFailedColor{0.80, 0.24, 0.10};
 
 // From dark to light as the error grows; even steps of lightness (a cut of viridis).
 constexpr std::array kTones{Color{0.267, 0.005, 0.329}, Color{0.229, 0.322, 0.546}, Color{0.128, 0.567, 0.551},
                             Color{0.369, 0.789, 0.383}, Color{0.993, 0.906, 0.144}};
 
 Color tone(double value, const HeatMaps& all) {
-  if (!std::isfinite(value)) return kFailed;
+  if (!std::isfinite(value)) return kFailedColor;
   const double low = std::log10(all.low), high = std::log10(all.high);
   const double share = std::clamp((std::log10(std::max(value, 1e-300)) - low) / (high - low), 0.0, 1.0);
   const double at = share * (kTones.size() - 1);
@@ -48,15 +48,15 @@ std::vector<std::size_t> ticks(const std::vector<double>& values) {
 }
 
 void draw_key(Pen& pen, const HeatMaps& all) {
-  const double y = kHeight - 34, x0 = kLeft, w = 420;
+  const double y = kMapHeight - 34, x0 = kMapLeft, w = 420;
   for (int i = 0; i < 210; ++i)
     rectangle(pen, x0 + 2 * i, y, 2, 14, tone(all.low * std::pow(all.high / all.low, (i + 0.5) / 210), all));
   pen.color(kInk);
   for (const double v : {all.low, std::sqrt(all.low * all.high), all.high})
-    pen.text(x0 + w * std::log(v / all.low) / std::log(all.high / all.low), y - 5, 13, 0.5, fmt::format("{:.0e}", v));
+    pen.text(x0 + w * std::log(v / all.low) / std::log(all.high / all.low), y - 5, 13, 0.5, decade_number(v));
   pen.text(x0 + w + 16, y + 12, 14, 0, all.tone);
   const double x = x0 + w + 16 + pen.width(14, all.tone) + 40;
-  rectangle(pen, x, y, 26, 14, kFailed);
+  rectangle(pen, x, y, 26, 14, kFailedColor);
   pen.color(kInk);
   pen.text(x + 34, y + 12, 14, 0, all.failed);
 }
@@ -64,49 +64,55 @@ void draw_key(Pen& pen, const HeatMaps& all) {
 void draw(Pen& pen, const HeatMaps& all) {
   const auto columns = static_cast<double>(all.columns),
              rows = std::ceil(static_cast<double>(all.maps.size()) / columns);
-  const double w = (kWidth - kLeft - kRight - kGap * (columns - 1)) / columns;
-  const double h = (kHeight - kTop - kBottom - kGap * (rows - 1)) / rows;
+  const double w = (kMapWidth - kMapLeft - kMapRight - kGap * (columns - 1)) / columns;
+  const double h = (kMapHeight - kMapTop - kMapBottom - kGap * (rows - 1)) / rows;
   const double cw = w / static_cast<double>(all.x.size()), ch = h / static_cast<double>(all.y.size());
   pen.color(kInk);
   pen.text(40, 44, 26, 0, all.title, true);
   double foot = 72;
-  for (const std::string& line : pen.lines(15, all.line, kWidth - 80)) {
+  for (const std::string& line : pen.lines(15, all.line, kMapWidth - 80)) {
     pen.text(40, foot, 15, 0, line);
     foot += 20;
   }
   for (std::size_t m = 0; m < all.maps.size(); ++m) {
     const std::size_t column = m % all.columns, row = m / all.columns;
-    const double x0 = kLeft + static_cast<double>(column) * (w + kGap),
-                 y0 = kTop + static_cast<double>(row) * (h + kGap);
+    const double x0 = kMapLeft + static_cast<double>(column) * (w + kGap),
+                 y0 = kMapTop + static_cast<double>(row) * (h + kGap);
     for (std::size_t j = 0; j < all.y.size(); ++j)
       for (std::size_t i = 0; i < all.x.size(); ++i)
         rectangle(pen, x0 + cw * static_cast<double>(i), y0 + h - ch * static_cast<double>(j + 1), cw, ch,
                   tone(all.maps[m].values[j * all.x.size() + i], all));
     pen.color(kInk);
-    if (row == 0) pen.text(x0 + w / 2, y0 - 8, 15, 0.5, all.maps[m].column, true);
+    if (row == 0) pen.text(x0 + w / 2, y0 - 8, 13, 0.5, all.maps[m].column, true);
     if (column == 0) {
       cairo_save(pen.get());
       pen.upright_text(58, y0 + h / 2, 15, all.maps[m].row);
       cairo_restore(pen.get());
-      for (const std::size_t j : ticks(all.y))
-        pen.text(x0 - 6, y0 + h - ch * (static_cast<double>(j) + 0.5) + 4, 12, 1.0, fmt::format("{:g}", all.y[j]));
+      double last = kMapHeight;
+      for (const std::size_t j : ticks(all.y)) {
+        const double at = y0 + h - ch * (static_cast<double>(j) + 0.5) + 4;
+        if (last - at < 14) continue;
+        pen.text(x0 - 6, last = at, 13, 1.0, all.y[j] == 0.0 ? "0" : decade_number(all.y[j]));
+      }
     }
     if (row + 1 == static_cast<std::size_t>(rows))
       for (const std::size_t i : ticks(all.x)) {
         if (all.columns > 4 && static_cast<int>(std::lround(std::log10(all.x[i]))) % 2 != 0) continue;
-        pen.text(x0 + cw * (static_cast<double>(i) + 0.5), y0 + h + 17, 12, 0.5, fmt::format("{:g}", all.x[i]));
+        // At the ends within the map, so that neighbours' stay apart.
+        const double align = i == 0 ? 0.0 : i + 1 == all.x.size() ? 1.0 : 0.5;
+        pen.text(x0 + cw * (static_cast<double>(i) + align), y0 + h + 17, 13, align, decade_number(all.x[i]));
       }
   }
   pen.color(kInk);
-  pen.text(kLeft + (kWidth - kLeft - kRight) / 2, kHeight - kBottom + 42, 16, 0.5, all.across);
-  pen.upright_text(28, kTop + (kHeight - kTop - kBottom) / 2, 16, all.up);
+  pen.text(kMapLeft + (kMapWidth - kMapLeft - kMapRight) / 2, kMapHeight - kMapBottom + 42, 16, 0.5, all.across);
+  pen.upright_text(28, kMapTop + (kMapHeight - kMapTop - kMapBottom) / 2, 16, all.up);
   draw_key(pen, all);
 }
 
 }  // namespace
 
 Status plot_heat_maps(OutputFolder& out, const std::string& stem, const HeatMaps& maps) {
-  return draw_png_and_svg(out.stage(stem + ".png"), out.stage(stem + ".svg"), kWidth, kHeight,
+  return draw_png_and_svg(out.stage(stem + ".png"), out.stage(stem + ".svg"), kMapWidth, kMapHeight,
                           [&](Pen& pen) { draw(pen, maps); });
 }
 

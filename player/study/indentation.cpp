@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kAbove = 0.001;          // [m] that a press begins above the surface
+constexpr double kBeginsAbove = 0.001;    // [m] that a press begins above the surface
 constexpr double kSoftStep = 1.0 / 60.0;  // [s]
 const dvec3 kDown(0, -1, 0);
 
@@ -79,7 +79,7 @@ template <class Note>
 Status press(Session& session, const std::string& effector, const Indented& what, double seconds, Indentation& out,
              const Note& note) {
   const int half = std::max(1, static_cast<int>(std::lround(seconds * 1000 / 2)));
-  double from = -kAbove;
+  double from = -kBeginsAbove;
   std::uint64_t spent = 0, ticks = 0;
   for (const double depth : what.depths) {
     for (int i = 1; i <= 2 * half; ++i) {
@@ -120,7 +120,7 @@ Result<Indentation> press_surface(const Indented& what, const DeformableParamete
   Scene scene("press");
   scene.simulation().gravity = dvec3(0);
   scene.add_surface("tissue", slab(what, what.radius / 4, false), parameters);
-  scene.add_probe("point", {}, any_force(), {.position = -kAbove * kDown});
+  scene.add_probe("point", {}, any_force(), {.position = -kBeginsAbove * kDown});
   auto session = Session::open(scene);
   if (!session) return session.error();
   Indentation out;
@@ -143,7 +143,7 @@ Result<Indentation> press_tissue(const Indented& what, PressWish& wish) {
   body.pinned.add(vec3(-wide, -2 * deep, -wide));
   body.pinned.add(vec3(wide, -0.999f * deep, wide));
   scene.add_soft_body("tissue", slab(what, what.radius / 2, true), body);
-  scene.add_rigid_body("punch", punch(what.radius), {}, {.position = -kAbove * kDown});
+  scene.add_rigid_body("punch", punch(what.radius), {}, {.position = -kBeginsAbove * kDown});
   HandleParameters held;
   held.translation = {1e5, 20.0};
   held.rotation = {100.0, 0.1};

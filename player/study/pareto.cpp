@@ -97,8 +97,8 @@ std::string to_json(const ParetoTable& table) {
   return json.dump(2, ' ', true) + "\n";
 }
 
-Error interrupted() {
-  return {"study", "was interrupted and wrote nothing; run it again"};
+Error interrupted(const char* verb) {
+  return {verb, "was interrupted and wrote nothing; run it again"};
 }
 
 Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {

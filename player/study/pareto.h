@@ -49,7 +49,8 @@ std::string to_json(const ParetoTable& table);
 Status write_study(OutputFolder& out, const ParetoTable& table);
 // One of a study's further files.
 Status write_text(OutputFolder& out, const std::string& name, const std::string& text);
-Error interrupted();  // what a study that was ended early returns
+// What a study, or another verb, that was ended early returns.
+Error interrupted(const char* verb = "study");
 // STEM.svg and STEM.png.
 Status plot_pareto(OutputFolder& out, const std::string& stem, const ParetoTable& table);
 

@@ -19,8 +19,21 @@ double PowerLaw::at(double size) const {
   return factor * std::pow(size, power);
 }
 
-PowerLaw fit_power(const std::vector<double>& size, const std::vector<double>& cost) {
-  ASSERT(size.size() == cost.size() && size.size() >= 2);
+std::size_t GrowthCurve::last() const {
+  std::size_t i = cost.size();
+  while (i > 1 && std::isnan(cost[i - 1])) --i;
+  return i - 1;
+}
+
+PowerLaw fit_power(const std::vector<double>& all_sizes, const std::vector<double>& all_costs) {
+  ASSERT(all_sizes.size() == all_costs.size());
+  std::vector<double> size, cost;
+  for (std::size_t i = 0; i < all_sizes.size(); ++i)
+    if (!std::isnan(all_costs[i])) {
+      size.push_back(all_sizes[i]);
+      cost.push_back(all_costs[i]);
+    }
+  ASSERT(size.size() >= 2);
   const auto n = static_cast<double>(size.size());
   double mx = 0, my = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < size.size(); ++i) mx += std::log(size[i]) / n, my += std::log(cost[i]) / n;

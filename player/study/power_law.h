@@ -14,13 +14,15 @@ struct PowerLaw {
   double within = 0.0;  // [1] half the width of the power's 95 % interval, by Student's t; infinite of two points
   double at(double size) const;
 };
-// At least two points, sizes and costs positive, two sizes apart.
+// Over the sizes that have a cost: at least two, sizes and costs positive, two sizes apart.
 PowerLaw fit_power(const std::vector<double>& size, const std::vector<double>& cost);
 
 struct GrowthCurve {
   std::string name;
-  std::vector<double> cost;  // one of each size of its panel
+  std::vector<double> cost;  // one of each size of its panel; NaN: not measured there
   PowerLaw law;
+
+  std::size_t last() const;  // the last place that has a cost
 };
 struct GrowthPanel {
   std::string title, across, up;

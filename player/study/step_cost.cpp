@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kStep = 1.0 / 60, kTick = 1e-3;  // [s]
+constexpr double kStepLength = 1.0 / 60, kTick = 1e-3;  // [s]
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -33,7 +33,7 @@ const char* name_of(StepPart part) {
 }
 
 StepCost measure_step(scenes::PaddleCells cells, scenes::StudBed bed, int steps) {
-  scenes::ToolStage stage(kStep, 1 / kTick);
+  scenes::ToolStage stage(kStepLength, 1 / kTick);
   const Entity tool = scenes::add_paddle(stage, cells);
   scenes::add_bed(stage, bed);
   stage.prepare();
@@ -41,11 +41,11 @@ StepCost measure_step(scenes::PaddleCells cells, scenes::StudBed bed, int steps)
   cost.tetrahedra = static_cast<std::size_t>(cells.tetrahedra());
   const std::vector<System<World>> soft = soft_schedule();
   std::vector<std::vector<double>> times(std::size(kStepParts));
-  const int pressed = static_cast<int>(scenes::kPaddlePressed / kStep) + 1;
+  const int pressed = static_cast<int>(scenes::kPaddlePressed / kStepLength) + 1;
   std::uint64_t ticks = 0;
   for (int n = 0; n < pressed + steps; ++n) {
     std::vector<double> ms(std::size(kStepParts));
-    const Tick tick{static_cast<std::uint64_t>(n), kStep, n * kStep};
+    const Tick tick{static_cast<std::uint64_t>(n), kStepLength, n * kStepLength};
     for (const System<World>& system : soft) {
       const std::uint64_t begin = processor_ns();
       system.run(stage.world, tick);
@@ -54,7 +54,7 @@ StepCost measure_step(scenes::PaddleCells cells, scenes::StudBed bed, int steps)
       ms[0] += own;
       if (part != StepPart::kAll) ms[static_cast<std::size_t>(part)] += own;
     }
-    for (; static_cast<double>(ticks) * kTick < (n + 1) * kStep; ++ticks) {
+    for (; static_cast<double>(ticks) * kTick < (n + 1) * kStepLength; ++ticks) {
       stage.device_of(tool).position = scenes::paddle_path(static_cast<double>(ticks) * kTick);
       stage.tick();
     }

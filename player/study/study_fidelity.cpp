@@ -13,10 +13,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kAround = 5.0;  // [1] radii that a surface is compared over
-constexpr Shape kShapes[] = {Shape::kPunch,    Shape::kHertz,  Shape::kGaussian,
-                             Shape::kWendland, Shape::kVolume, Shape::kKelvinlet};
-constexpr SpringLaw kLaws[] = {SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid};
+constexpr double kFieldAround = 5.0;  // [1] radii that a surface is compared over
+constexpr Shape kFidelityShapes[] = {Shape::kPunch,    Shape::kHertz,  Shape::kGaussian,
+                                     Shape::kWendland, Shape::kVolume, Shape::kKelvinlet};
+constexpr SpringLaw kFidelityLaws[] = {SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid};
 
 double largest(double a, double b) {
   return std::max(a, b);
@@ -87,20 +87,19 @@ class Fidelity {
     DeformableParameters usual;
     usual.stiffness = calibrated_stiffness(what_.young, what_.poisson, what_.thickness);
     usual.reach = 5 * what_.radius;
-    double least = 1e30, reach = 0.0;
+    double least_row = 1e30, reach = 0.0;
     Shape nearest = Shape::kPunch;
-    for (const Shape shape : kShapes) {
+    for (const Shape shape : kFidelityShapes) {
       DeformableParameters its = usual;
       its.shape = shape;
       if (const Status done = add_surface("P1 from Young's modulus", word_of(shape), its); !done) return done;
-      // With the inner radius that the engine takes: a fifth of the reach.
-      for (double over = 1.5; over <= 8.0; over *= 1.1) {
-        const double error =
-            shape_error(engine_share(shape, over * what_.radius / 5, over * what_.radius), shares_).profile;
-        if (error < least) least = error, nearest = shape, reach = over * what_.radius;
+      // Of a half-space shape the contact radius is the punch's: the key `contact_radius`.
+      for (double over = 1.1; over <= 8.0; over *= 1.05) {
+        const double error = shape_error(engine_share(shape, what_.radius, over * what_.radius), shares_).profile;
+        if (error < least_row) least_row = error, nearest = shape, reach = over * what_.radius;
       }
     }
-    for (const SpringLaw law : kLaws) {
+    for (const SpringLaw law : kFidelityLaws) {
       DeformableParameters its = usual;
       its.shape = Shape::kPunch;
       its.spring = law;
@@ -109,6 +108,7 @@ class Fidelity {
     }
     usual.shape = nearest;
     usual.reach = reach;
+    usual.contact_radius = depends_on_contact(nearest) ? what_.radius : 0.0;
     for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential}) {
       DeformableParameters its = usual;
       its.spring = law;
@@ -166,12 +166,14 @@ ParetoTable table_of(const std::vector<FidelityRow>& rows, const std::string& na
   return table;
 }
 
-const FidelityRow& least(const std::vector<FidelityRow>& rows, const std::string& group) {
+const FidelityRow& least_row(const std::vector<FidelityRow>& rows, const std::string& group) {
+  // Of those whose worse error is the same, the one whose other error is less.
+  const auto order = [](const FidelityRow& row) {
+    return std::pair(largest(row.force, row.surface), row.force + row.surface);
+  };
   const FidelityRow* best = nullptr;
   for (const FidelityRow& row : rows)
-    if (row.group.starts_with(group) &&
-        (!best || largest(row.force, row.surface) < largest(best->force, best->surface)))
-      best = &row;
+    if (row.group.starts_with(group) && (!best || order(row) < order(*best))) best = &row;
   return *best;
 }
 
@@ -182,17 +184,17 @@ std::string words(const FidelityRow& row) {
 
 // [1] of the best level's lattice, over the punch's radius.
 double cells_of(const std::vector<FidelityRow>& rows) {
-  return least(rows, "FEM, in").cell / Indented{}.radius;
+  return least_row(rows, "FEM, in").cell / Indented{}.radius;
 }
 
 std::vector<std::string> sentences(const Fidelity& study) {
   const std::vector<FidelityRow>& rows = study.rows();
-  return {"The nearest of each kind: " + words(least(rows, "P1 from")) + "; " + words(least(rows, "P1, law")) + "; " +
-              words(least(rows, "FEM, in")) + "; " + words(least(rows, "FEM, fitted")) + ".",
+  return {"The nearest of each kind: " + words(least_row(rows, "P1 from")) + "; " + words(least_row(rows, "P1, law")) +
+              "; " + words(least_row(rows, "FEM, in")) + "; " + words(least_row(rows, "FEM, fitted")) + ".",
           study.truth_words() +
               fmt::format(". Those grids are fine under the punch; a level's lattice is even, and with cells "
                           "of {:.2g} radii its force is off by {:.2g} %.",
-                          cells_of(rows), 100 * least(rows, "FEM, in").force)};
+                          cells_of(rows), 100 * least_row(rows, "FEM, in").force)};
 }
 
 }  // namespace
@@ -209,7 +211,7 @@ double force_error(const Indentation& model, const Indentation& truth) {
 double surface_error(const Indentation& model, const PressTruth& truth) {
   double off = 0.0, size = 0.0;
   for (const auto& [r, share] : model.surface) {
-    if (r > kAround * truth.inner) continue;
+    if (r > kFieldAround * truth.inner) continue;
     const double u = truth.share(r);
     off += (share - u) * (share - u);
     size += u * u;
@@ -230,9 +232,11 @@ DeformableParameters fitted_law(DeformableParameters law, const Indented& what, 
     }
   };
   const double unit = 1 / what.depths.back();
-  double least = 1e300;
-  for (int i = 0; i <= 60; ++i) {
-    const double stiffening = 1e-3 * std::pow(10.0, i / 15.0);  // [1] over the deepest
+  double least_row = 1e300;
+  for (int i = 0; i <= 121; ++i) {
+    // [1] over the deepest; the exponential law may soften, too.
+    const double stiffening = (i % 2 ? -1 : 1) * 1e-3 * std::pow(10.0, i / 2 / 15.0);
+    if (stiffening < 0 && law.spring != SpringLaw::kExponential) continue;
     const double shape = law.spring == SpringLaw::kCubic ? stiffening * unit * unit : stiffening * unit;
     double up = 0.0, down = 0.0, off = 0.0;
     for (std::size_t k = 0; k < what.depths.size(); ++k) {
@@ -243,11 +247,11 @@ DeformableParameters fitted_law(DeformableParameters law, const Indented& what, 
       const double e = up / down * g(shape, what.depths[k]) - truth.force[k];
       off += e * e;
     }
-    if (!(off < least)) continue;
-    least = off;
+    if (!(off < least_row)) continue;
+    least_row = off;
     law.stiffness = up / down;
-    law.cubic = shape * law.stiffness;
-    law.stiffening = shape;
+    if (law.spring == SpringLaw::kCubic) law.cubic = shape * law.stiffness;
+    if (law.spring == SpringLaw::kExponential) law.stiffening = shape;
     if (law.spring == SpringLaw::kLinear) break;
   }
   return law;

@@ -15,6 +15,7 @@
 #include "player/progress.h"
 #include "player/record/pen.h"
 #include "player/record/plot.h"
+#include "player/study/pareto.h"
 #include "player/study/studies.h"
 #include "player/verbs/content_folder.h"
 #include "systems/device/hands.h"
@@ -69,11 +70,6 @@ Result<World> open_level(const std::string& name, double stiffness) {
     for (auto [entity, surface] : world->registry.view<Deformable>()) surface.stiffness = stiffness;
   if (const Status status = prepare_touch(*world); !status) return status.error();
   return std::move(world).value();
-}
-
-Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
-  return write_file(out.stage(name), std::span(bytes, text.size()));
 }
 
 nlohmann::ordered_json to_json(const HandRun& run) {

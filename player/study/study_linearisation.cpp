@@ -32,7 +32,7 @@ constexpr double kSlow = 1.0, kSwift = 3.2, kBrisk = 4.0;  // [1] of the script'
 constexpr double kSeconds = 6.0, kQuickSeconds = 1.0;      // [s] at that pace
 
 // Its scripts played `pace` times as fast.
-Result<World> open_level(const std::string& name, double pace) {
+Result<World> open_paced(const std::string& name, double pace) {
   const auto file = find_level(name);
   if (!file) return file.error();
   auto level = load_level(*file);
@@ -97,18 +97,18 @@ class Stopwatch {
 };
 
 // (d): handle and wrench of every tick.
-struct Truth {
+struct LinearTruth {
   std::vector<RigidMotion> handle;  // at the tick's end
   std::vector<Vector6> wrench;
   Stopwatch cost;
 };
 
-Result<Truth> full_solve(const std::string& level, double pace, double tick, int ticks, const Interrupt& interrupt,
-                         Progress& progress) {
-  auto world = open_level(level, pace);
+Result<LinearTruth> full_solve(const std::string& level, double pace, double tick, int ticks, const Interrupt& interrupt,
+                              Progress& progress) {
+  auto world = open_paced(level, pace);
   if (!world) return world.error();
   Schedule<World> schedule(soft_schedule());
-  Truth truth;
+  LinearTruth truth;
   for (int i = 0; i <= ticks; ++i) {
     if (interrupt.requested()) return interrupted();
     soft_step(*world, schedule, static_cast<std::uint64_t>(i), tick, i * tick);
@@ -127,7 +127,7 @@ struct Followed {
   CondensedState& state;
   Stopwatch *linear_cost, *contacts_cost;
 
-  void run(const Truth& truth, std::size_t first, std::size_t late, std::size_t length, double tick,
+  void run(const LinearTruth& truth, std::size_t first, std::size_t late, std::size_t length, double tick,
            std::vector<ForceSample>& samples) {
     state.start(model.contacts);
     Vector6 w = model.handle.velocity;
@@ -177,9 +177,9 @@ MethodFigures errors(const char* name, const LinearisationFigures& figures, cons
 }
 
 // (a) to (c) from the soft clock at its own pace.
-Status follow_models(Truth& truth, const std::string& level, std::size_t length, const Interrupt& interrupt,
+Status follow_models(LinearTruth& truth, const std::string& level, std::size_t length, const Interrupt& interrupt,
                      LinearisationFigures& out) {
-  auto world = open_level(level, out.pace);
+  auto world = open_paced(level, out.pace);
   if (!world) return world.error();
   Schedule<World> schedule(soft_schedule());
   const double T = static_cast<double>(length) * out.tick;
@@ -258,7 +258,7 @@ void find_jumps(const std::vector<Vector6>& wrench, const std::vector<bool>& eve
 // All clocks in lockstep, contacts solved again in the touch tick.
 Status run_together(const std::string& level, int ticks, std::size_t length, const Interrupt& interrupt,
                     LinearisationFigures& out) {
-  auto world = open_level(level, out.pace);
+  auto world = open_paced(level, out.pace);
   if (!world) return world.error();
   Schedule<World> touch(touch_schedule()), soft(soft_schedule());
   const double T = static_cast<double>(length) * out.tick;
@@ -360,7 +360,7 @@ Result<LinearisationFigures> measure_linearisation(const std::string& level, dou
   LinearisationFigures out;
   out.level = level;
   out.pace = pace;
-  auto world = open_level(level, pace);
+  auto world = open_paced(level, pace);
   if (!world) return world.error();
   out.tick = 1.0 / world->simulation.touch_rate;
   const auto length =

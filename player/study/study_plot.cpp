@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 
 constexpr Color kSky{0.337, 0.706, 0.914};
-constexpr double kWidth = 1600, kHeight = 900;  // [pixel]
+constexpr double kStudyWidth = 1600, kStudyHeight = 900;  // [pixel]
 
 // The way's colour is the same in both panels.
 struct Way {
@@ -44,7 +44,7 @@ void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures
   const double step_y = tick_step(peak * 1.05, 5), high = step_y * std::ceil(peak * 1.05 / step_y);
   const double step_x = tick_step(end - begin, 10);
   const auto px = [&](double t) { return area.x + area.w * (t - begin) / std::max(end - begin, 1e-9); };
-  const auto py = [&](double f) { return area.y + area.h - area.h * std::min(f / high, 1.1); };
+  const auto py = [&](double f) { return area.y + area.h - area.h * f / high; };
   for (double t = step_x * std::ceil(begin / step_x); t <= end; t += step_x) {
     pen.color(kFaint);
     pen.line(px(t), area.y, px(t), area.y + area.h, 1);
@@ -58,6 +58,9 @@ void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures
     pen.text(area.x - 8, py(f) + 5, 14, 1.0, number(f, step_y));
   }
   frame(pen, area, "time [s]", "force on the handle [N]");
+  cairo_save(pen.get());
+  cairo_rectangle(pen.get(), area.x, area.y, area.w, area.h);  // what lies above is cut off
+  cairo_clip(pen.get());
   for (const Way& way : kWays) {
     pen.color(way.color, 0.9);
     cairo_set_line_width(pen.get(), way.force == &ForceSample::full ? 1.2 : 1.8);
@@ -66,6 +69,7 @@ void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures
       cairo_line_to(pen.get(), px(s.time), py((s.*way.force).head<3>().norm()));
     cairo_stroke(pen.get());
   }
+  cairo_restore(pen.get());
   double x = area.x + area.w;
   for (auto way = kWays.rbegin(); way != kWays.rend(); ++way) {
     pen.color(kInk);
@@ -90,13 +94,13 @@ void draw_trade(Pen& pen, const Area& area, const LinearisationFigures& figures)
     pen.color(kFaint);
     pen.line(px(std::pow(10, e)), area.y, px(std::pow(10, e)), area.y + area.h, 1);
     pen.color(kInk);
-    pen.text(px(std::pow(10, e)), area.y + area.h + 20, 14, 0.5, fmt::format("{:g}", std::pow(10, e)));
+    pen.text(px(std::pow(10, e)), area.y + area.h + 20, 14, 0.5, decade_number(std::pow(10, e)));
   }
   for (double e = kExact; e <= kWrong; e += 1) {
     pen.color(kFaint);
     pen.line(area.x, py(std::pow(10, e)), area.x + area.w, py(std::pow(10, e)), 1);
     pen.color(kInk);
-    pen.text(area.x - 8, py(std::pow(10, e)) + 5, 14, 1.0, fmt::format("{:g}", std::pow(10, e)));
+    pen.text(area.x - 8, py(std::pow(10, e)) + 5, 14, 1.0, decade_number(std::pow(10, e)));
   }
   frame(pen, area, "cost of a tick, median to 99 % [us]", "RMS error of the force [%]");
   for (std::size_t i = 0; i < figures.methods.size(); ++i) {
@@ -108,14 +112,15 @@ void draw_trade(Pen& pen, const Area& area, const LinearisationFigures& figures)
     cairo_fill(pen.get());
     pen.color(kInk);
     pen.text(px(m.p99_us) + 14, y - 8, 15, px(m.p99_us) > area.x + 0.8 * area.w ? 1.0 : 0.0,
-             fmt::format("{}: {:.1f} %, {:.3g} us", m.name, 100.0 * m.rms_share, m.p50_us));
+             fmt::format("{}: {:.1f} %, {} us", m.name, 100.0 * m.rms_share,
+                         m.p50_us < 100 ? fmt::format("{:.3g}", m.p50_us) : fmt::format("{:.0f}", m.p50_us)));
   }
 }
 
 }  // namespace
 
 Status plot_linearisation(const std::filesystem::path& file, const LinearisationFigures& figures) {
-  Pen pen(kWidth, kHeight);
+  Pen pen(kStudyWidth, kStudyHeight);
   pen.color(kInk);
   const double width = pen.text(84, 46, 26, 0, "linearisation", true);
   pen.text(
@@ -123,8 +128,8 @@ Status plot_linearisation(const std::filesystem::path& file, const Linearisation
       fmt::format("{} at {:g} x its pace: {} tetrahedra, up to {} contacts; soft step {:.1f} ms, models one step late",
                   figures.level, figures.pace, figures.tetrahedra, figures.contacts, figures.soft_step * 1e3));
   if (!figures.samples.empty()) {
-    draw_forces(pen, {84, 110, kWidth - 112, 330}, figures);
-    draw_trade(pen, {84, 540, kWidth - 112, 280}, figures);
+    draw_forces(pen, {84, 110, kStudyWidth - 112, 330}, figures);
+    draw_trade(pen, {84, 540, kStudyWidth - 112, 280}, figures);
   }
   if (!pen.save(file)) return Error{file.string(), "the plot cannot be written; check the space left"};
   return Done{};

@@ -1,47 +1,100 @@
-// How costs grow: ticks and frames with the size of a mesh and with what moves on it, soft steps with tetrahedra and
-// contacts. Powers are fitted to the measured times.
+// How costs grow: ticks and drawn frames with the size of a mesh and with what moves on it, soft steps with tetrahedra
+// and contacts. Powers are fitted to the measured times.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "player/print.h"
 #include "player/progress.h"
+#include "player/study/drawn_frame.h"
 #include "player/study/pareto.h"
 #include "player/study/power_law.h"
 #include "player/study/step_cost.h"
 #include "player/study/studies.h"
 #include "player/study/tick_cost.h"
+#include "systems/visual/gpu/context.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kAwake = 500;  // vertices
+constexpr std::uint32_t kAwake = 500;  // vertices in the probe's reach; whole zones move, about a thousand
+// Cells and beds between those of bench/soft_step.cpp, so that a power has more points than a line needs.
+constexpr scenes::PaddleCells kCells[]{{9, 2, 5},   {11, 3, 6},  {14, 3, 8}, {18, 4, 11},
+                                       {24, 5, 14}, {30, 6, 18}, {38, 8, 22}};
+constexpr scenes::StudBed kStuds[]{{1, 3, 3}, {1, 6, 3}, {1, 9, 3}, {2, 4, 5},
+                                   {2, 3, 9}, {3, 4, 7}, {4, 4, 7}, {6, 4, 7}};
+constexpr int kFineCells = 15'000;  // tetrahedra: fewer steps from here on
+constexpr int kMostQuick = 11'000;  // tetrahedra
 
-GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake) {
+// 1,000 for 1016.
+std::string size_words(double size) {
+  const double digit = std::pow(10.0, std::floor(std::log10(size)));
+  std::string digits = fmt::format("{:.0f}", std::round(size / digit * 10) * digit / 10);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+// What draws, if anything does.
+struct Drawing {
+  std::unique_ptr<HeadlessContext> context;
+  std::string renderer;   // GL_RENDERER
+  std::string not_drawn;  // why no frames are drawn
+  std::string too_large;  // why those of large meshes are not
+  bool with_cpu = true;
+
+  DrawnCount count(int frames) const { return {not_drawn.empty() ? frames : 0, with_cpu}; }
+  std::string sentence() const {
+    if (!not_drawn.empty()) return "No frame was drawn: " + not_drawn + ".";
+    return fmt::format("Frames of {} x {} pixels were drawn on {}: {}.{}", kDrawnWidth, kDrawnHeight, renderer,
+                       with_cpu ? "processor time of all its threads" : "time until the picture is complete",
+                       too_large.empty() ? "" : " The largest mesh was not drawn: " + too_large + ".");
+  }
+};
+
+Drawing start_drawing() {
+  Drawing drawing;
+  Result<std::unique_ptr<HeadlessContext>> context = HeadlessContext::create();
+  if (!context) {
+    drawing.not_drawn = context.error().message();
+    return drawing;
+  }
+  drawing.context = std::move(context).value();
+  drawing.renderer = drawing.context->renderer_name();
+  drawing.with_cpu = draws_with_cpu(drawing.renderer);
+  return drawing;
+}
+
+GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake, bool drawn) {
   GrowthPanel panel;
-  panel.title = by_awake ? fmt::format("a tick on {:.2g} vertices, by those that move", double(costs[0].vertices))
-                         : "a tick and a frame with as many moving vertices, by all vertices";
+  panel.title = by_awake ? fmt::format("on {} vertices, by those that move", size_words(costs[0].vertices))
+                         : "about 1,000 vertices move, by all vertices";
   panel.across = by_awake ? "vertices that move" : "vertices";
-  panel.up = "processor time [us]";
-  GrowthCurve half{"tick, p50", {}, {}}, most{"tick, p99", {}, {}}, frame{"frame: publishing", {}, {}};
+  panel.up = "time [us]";
+  GrowthCurve half{"tick, p50", {}, {}}, most{"tick, p99", {}, {}}, told{"frame: publishing", {}, {}},
+      whole{"frame: drawn", {}, {}};
   for (const TickCost& cost : costs) {
     panel.size.push_back(by_awake ? cost.awake : cost.vertices);
     half.cost.push_back(cost.p50_us);
     most.cost.push_back(cost.p99_us);
-    frame.cost.push_back(cost.frame_us);
+    told.cost.push_back(cost.frame_us);
+    whole.cost.push_back(cost.drawn_us > 0.0 ? cost.drawn_us : std::nan(""));
   }
-  panel.curves = {most, half, frame};
+  panel.curves = {most, half, told};
+  if (drawn) panel.curves.push_back(whole);
   return panel;
 }
 
 GrowthPanel steps_panel(const std::vector<StepCost>& costs, bool by_contacts) {
   GrowthPanel panel;
-  panel.title = by_contacts ? fmt::format("a soft step of {} tetrahedra, by contacts", costs[0].tetrahedra)
+  panel.title = by_contacts ? fmt::format("a soft step of {} tetrahedra, by contacts",
+                                          size_words(static_cast<double>(costs[0].tetrahedra)))
                             : fmt::format("a soft step with about {:.0f} contacts, by tetrahedra", costs[0].contacts);
   panel.across = by_contacts ? "contacts" : "tetrahedra";
-  panel.up = "processor time [ms]";
+  panel.up = "time [ms]";
   for (const StepCost& cost : costs)
     panel.size.push_back(by_contacts ? cost.contacts : static_cast<double>(cost.tetrahedra));
   for (const StepPart part : kStepParts) {
@@ -53,7 +106,7 @@ GrowthPanel steps_panel(const std::vector<StepCost>& costs, bool by_contacts) {
 }
 
 std::string power(const PowerLaw& law) {
-  return std::isfinite(law.within) ? fmt::format("{:.2f} +- {:.2f}", law.power, law.within)
+  return std::isfinite(law.within) ? fmt::format("{:.2f} \u00b1 {:.2f}", law.power, law.within)
                                    : fmt::format("{:.2f}", law.power);
 }
 
@@ -62,15 +115,19 @@ std::string csv_of(const std::vector<GrowthPanel>& panels) {
   for (const GrowthPanel& panel : panels)
     for (const GrowthCurve& curve : panel.curves)
       for (std::size_t i = 0; i < panel.size.size(); ++i)
-        csv += fmt::format("by {},\"{}\",{:.6g},{:.4g},{},{:.4g},{:.4g}\n", panel.across, curve.name, panel.size[i],
-                           curve.cost[i], panel.up.find("us") != std::string::npos ? "us" : "ms", curve.law.power,
-                           curve.law.within);
+        if (!std::isnan(curve.cost[i]))
+          csv += fmt::format("by {},\"{}\",{:.6g},{:.4g},{},{:.4g},{:.4g}\n", panel.across, curve.name, panel.size[i],
+                             curve.cost[i], panel.up.find("us") != std::string::npos ? "us" : "ms", curve.law.power,
+                             curve.law.within);
   return csv;
 }
 
-nlohmann::ordered_json json_of(const std::vector<GrowthPanel>& panels, const std::vector<std::string>& sentences) {
+nlohmann::ordered_json json_of(const std::vector<GrowthPanel>& panels, const std::vector<std::string>& sentences,
+                               const std::string& renderer) {
   nlohmann::ordered_json json;
   json["study"] = "scale";
+  json["renderer"] = nullptr;
+  if (!renderer.empty()) json["renderer"] = renderer;
   for (const GrowthPanel& panel : panels) {
     nlohmann::ordered_json one{
         {"title", panel.title}, {"across", panel.across}, {"up", panel.up}, {"size", panel.size}};
@@ -86,70 +143,97 @@ nlohmann::ordered_json json_of(const std::vector<GrowthPanel>& panels, const std
   return json;
 }
 
-std::vector<std::string> sentences_of(const std::vector<GrowthPanel>& panels) {
+std::vector<std::string> sentences_of(const std::vector<GrowthPanel>& panels, const Drawing& drawing) {
   const auto& [sizes, awake, tets, contacts] = std::tie(panels[0], panels[1], panels[2], panels[3]);
   const GrowthCurve& tick = sizes.curves[1];
-  return {
-      fmt::format("From {:.2g} to {:.2g} vertices a tick in which as many move takes {:.3g} to {:.3g} us (power {}), "
+  std::vector<std::string> out{
+      fmt::format("From {} to {} vertices a tick in which as many move takes {:.3g} to {:.3g} us (power {}), "
                   "and with {:.3g} times as many that move {:.3g} times as long (power {}).",
-                  sizes.size.front(), sizes.size.back(), tick.cost.front(), tick.cost.back(), power(tick.law),
-                  awake.size.back() / awake.size.front(), awake.curves[1].cost.back() / awake.curves[1].cost.front(),
-                  power(awake.curves[1].law)),
+                  size_words(sizes.size.front()), size_words(sizes.size.back()), tick.cost.front(), tick.cost.back(),
+                  power(tick.law), awake.size.back() / awake.size.front(),
+                  awake.curves[1].cost.back() / awake.curves[1].cost.front(), power(awake.curves[1].law)),
       fmt::format("A soft step grows with power {} of tetrahedra (free motion {}, linear models {}) and {} of "
                   "contacts (finding them {}, solving them {}).",
                   power(tets.curves[0].law), power(tets.curves[1].law), power(tets.curves[4].law),
                   power(contacts.curves[0].law), power(contacts.curves[2].law), power(contacts.curves[3].law))};
+  if (drawing.not_drawn.empty()) {
+    const GrowthCurve &by_size = sizes.curves.back(), &by_awake = awake.curves.back();
+    const std::size_t last = by_size.last();
+    out.push_back(
+        fmt::format("A drawn frame takes {:.0f} to {:.0f} ms, {:.2g} us a vertex of the largest mesh drawn "
+                    "(power {}), whatever moves (power {}).",
+                    by_size.cost.front() * 1e-3, by_size.cost[last] * 1e-3, by_size.cost[last] / sizes.size[last],
+                    power(by_size.law), power(by_awake.law)));
+  }
+  out.push_back(drawing.sentence());
+  return out;
 }
 
 }  // namespace
 
 Status study_scale(OutputFolder& out, bool quick, const Interrupt& interrupt) {
   using Sizes = std::vector<std::uint32_t>;
-  const Sizes vertices = quick ? Sizes{1'000, 10'000, 100'000} : Sizes{1'000, 10'000, 100'000, 1'000'000, 10'000'000};
-  const Sizes moving = quick ? Sizes{500, 2'000, 8'000} : Sizes{500, 2'000, 8'000, 32'000, 128'000};
-  const int ticks = quick ? 1'000 : 5'000;
+  const Sizes vertices = quick
+                             ? Sizes{1'000, 3'000, 10'000, 30'000, 100'000}
+                             : Sizes{1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000};
+  const Sizes moving = quick ? Sizes{500, 1'000, 2'000, 4'000, 8'000}
+                             : Sizes{500, 1'000, 2'000, 4'000, 8'000, 16'000, 32'000, 64'000, 128'000};
+  const int ticks = quick ? 2'000 : 10'000, batches = quick ? 5 : 10;
   Progress progress("study scale");
+  Drawing drawing = start_drawing();
   std::vector<TickCost> by_size, by_awake;
   std::vector<StepCost> by_tets, by_contacts;
   double done = 0.0;
   // `weight`: about how long a piece takes beside others.
-  const auto measured = [&](double weight) { progress.update((done += weight) / (quick ? 13.0 : 50.0)); };
+  const auto measured = [&](double weight) { progress.update((done += weight) / (quick ? 23.0 : 96.0)); };
+  const auto keep_reason = [&](const TickCost& cost) {
+    if (!cost.not_drawn.empty()) drawing.too_large = cost.not_drawn;
+  };
   for (const std::uint32_t size : vertices) {
     if (interrupt.requested()) return interrupted();
-    by_size.push_back(measure_tick(size, kAwake, ticks));
-    measured(size > 1'000'000 ? 20 : 1);
+    by_size.push_back(measure_tick(size, kAwake, ticks, batches, drawing.count(size > 300'000 ? 3 : 9)));
+    keep_reason(by_size.back());
+    measured(size > 5'000'000 ? 24 : size > 1'000'000 ? 8 : 1);
   }
   for (const std::uint32_t awake : moving) {
     if (interrupt.requested()) return interrupted();
-    by_awake.push_back(measure_tick(quick ? 100'000 : 1'000'000, awake, awake > 10'000 ? ticks / 5 : ticks));
-    measured(quick ? 1 : 2);
+    by_awake.push_back(measure_tick(quick ? 100'000 : 1'000'000, awake, ticks, batches, drawing.count(3)));
+    keep_reason(by_awake.back());
+    measured(quick ? 1 : 3);
   }
-  for (const scenes::PaddleCells& cells : scenes::kPaddles) {
+  for (const scenes::PaddleCells& cells : kCells) {
     if (interrupt.requested()) return interrupted();
-    if (quick && cells.tetrahedra() > 20'000) continue;
-    by_tets.push_back(measure_step(cells, scenes::kUsualBed, quick ? 8 : cells.tetrahedra() > 20'000 ? 24 : 60));
-    measured(quick ? 1 : cells.tetrahedra() > 20'000 ? 6 : 2);
+    if (quick && cells.tetrahedra() > kMostQuick) continue;
+    by_tets.push_back(measure_step(cells, scenes::kUsualBed, quick ? 8 : cells.tetrahedra() > kFineCells ? 24 : 60));
+    measured(quick ? 1 : cells.tetrahedra() > kFineCells ? 6 : 2);
   }
-  for (const scenes::StudBed& bed : scenes::kBeds) {
+  for (const scenes::StudBed& bed : kStuds) {
     if (interrupt.requested()) return interrupted();
     by_contacts.push_back(measure_step(scenes::kUsualPaddle, bed, quick ? 8 : 60));
     measured(1);
   }
-  std::vector<GrowthPanel> panels{ticks_panel(by_size, false), ticks_panel(by_awake, true), steps_panel(by_tets, false),
-                                  steps_panel(by_contacts, true)};
+  const auto is_drawn = [](const TickCost& cost) { return cost.drawn_us > 0.0; };
+  if (drawing.not_drawn.empty() && (std::count_if(by_size.begin(), by_size.end(), is_drawn) < 2 ||
+                                    std::count_if(by_awake.begin(), by_awake.end(), is_drawn) < 2))
+    drawing.not_drawn = drawing.too_large;
+  const bool drawn = drawing.not_drawn.empty();
+  std::vector<GrowthPanel> panels{ticks_panel(by_size, false, drawn), ticks_panel(by_awake, true, drawn),
+                                  steps_panel(by_tets, false), steps_panel(by_contacts, true)};
   for (GrowthPanel& panel : panels)
     for (GrowthCurve& curve : panel.curves) {
-      for (double& cost : curve.cost) cost = std::max(cost, 1e-3);  // what the clock does not resolve
+      for (double& cost : curve.cost)
+        if (!std::isnan(cost)) cost = std::max(cost, 1e-3);  // what the clock does not resolve
       curve.law = fit_power(panel.size, curve.cost);
     }
-  const std::vector<std::string> sentences = sentences_of(panels);
+  const std::vector<std::string> sentences = sentences_of(panels, drawing);
   for (const GrowthPanel& panel : panels) {
     print("scale: {}\n", panel.title);
     for (const GrowthCurve& curve : panel.curves) print("  {:<20} power {}\n", curve.name, power(curve.law));
   }
   for (const std::string& sentence : sentences) print("{}\n", sentence);
   if (const Status written = write_text(out, "scale.csv", csv_of(panels)); !written) return written;
-  if (const Status written = write_text(out, "scale.json", json_of(panels, sentences).dump(2, ' ', true) + "\n");
+  if (const Status written = write_text(
+          out, "scale.json", json_of(panels, sentences, drawn ? drawing.renderer : "").dump(2, ' ', true) + "\n");
       !written)
     return written;
   return plot_growth(out, "scale", "how costs grow, and the powers fitted to them with their 95 % intervals", panels,

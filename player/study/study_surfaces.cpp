@@ -85,7 +85,7 @@ Loop go_around(const Mesh& mesh, const SmoothSurface& surface, FeltSurface felt,
   return loop;
 }
 
-enum Error { kRipple, kDirection, kWork, kErrors };
+enum SurfaceError { kRipple, kDirection, kWork, kErrors };
 struct Kind {
   const char *study, *error, *axis;
   double least, most;

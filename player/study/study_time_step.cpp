@@ -186,13 +186,13 @@ std::vector<TissueScene> step_scenes(int cells) {
   return scenes;
 }
 
-Trace trace_of(const TissueScene& scene, StepScheme scheme, double step, double every, double* ms,
-               const std::function<bool(double)>& goes_on) {
+StepTrace trace_of(const TissueScene& scene, StepScheme scheme, double step, double every, double* ms,
+                   const std::function<bool(double)>& goes_on) {
   const std::uint64_t begin = process_ns();
   TissueRun run(scene, scheme);
   const int samples = static_cast<int>(std::lround(scene.seconds / every)),
             steps = static_cast<int>(std::lround(every / step));
-  Trace trace;
+  StepTrace trace;
   for (int i = 0; i < samples; ++i) {
     if (!goes_on(static_cast<double>(i) / samples)) return {};
     for (int k = 0; k < steps; ++k)
@@ -203,7 +203,7 @@ Trace trace_of(const TissueScene& scene, StepScheme scheme, double step, double 
   return trace;
 }
 
-double trace_error(const TissueScene& scene, const Trace& trace, const Trace& truth, double every) {
+double trace_error(const TissueScene& scene, const StepTrace& trace, const StepTrace& truth, double every) {
   if (trace.size() != truth.size()) return std::numeric_limits<double>::infinity();
   double off = 0.0, size = 0.0;
   for (std::size_t k = 0; k < truth.size(); ++k) {
@@ -231,9 +231,9 @@ Status study_time_step(OutputFolder& out, bool quick, const Interrupt& interrupt
       progress.update((done + from + part * share) / static_cast<double>(scenes.size()));
       return !interrupt.requested();
     };
-    const Trace truth = trace_of(scene, StepScheme::kConverged, 1.0 / truth_rate, kEvery, nullptr, goes_on);
+    const StepTrace truth = trace_of(scene, StepScheme::kConverged, 1.0 / truth_rate, kEvery, nullptr, goes_on);
     from = 0.5, part = 0.25;
-    const Trace coarser = trace_of(scene, StepScheme::kConverged, 2.0 / truth_rate, kEvery, nullptr, goes_on);
+    const StepTrace coarser = trace_of(scene, StepScheme::kConverged, 2.0 / truth_rate, kEvery, nullptr, goes_on);
     if (interrupt.requested()) return interrupted();
     worst = std::max(worst, trace_error(scene, coarser, truth, kEvery));
     from = 0.75, part = 0.0;
@@ -243,7 +243,7 @@ Status study_time_step(OutputFolder& out, bool quick, const Interrupt& interrupt
     for (const StepScheme scheme : kSchemes)
       for (const int rate : kRates) {
         double ms = 0.0;
-        const Trace trace = trace_of(scene, scheme, 1.0 / rate, kEvery, &ms, goes_on);
+        const StepTrace trace = trace_of(scene, scheme, 1.0 / rate, kEvery, &ms, goes_on);
         if (interrupt.requested()) return interrupted();
         rows.push_back({scene.name, scheme, rate, trace_error(scene, trace, truth, kEvery), ms});
         table.rows.push_back(row_of(rows.back()));

@@ -10,6 +10,7 @@
 #include "devices/simulated/profiles.h"
 #include "player/print.h"
 #include "player/progress.h"
+#include "player/study/pareto.h"
 #include "player/study/studies.h"
 #include "runtime/parallel.h"
 
@@ -151,7 +152,7 @@ nlohmann::ordered_json to_json(const WallFigures& figures, const std::vector<std
 }
 
 // What it shows.
-std::vector<std::string> explain(const WallFigures& figures) {
+std::vector<std::string> explain_figures(const WallFigures& figures) {
   const auto good = [&](WallModel model, double delay) { return figures.count(model, delay, Verdict::kStable); };
   const std::size_t cells = figures.stiffnesses.size() * figures.dampings.size();
   double worst = 0.0;
@@ -170,11 +171,6 @@ std::vector<std::string> explain(const WallFigures& figures) {
                   cells - good(WallModel::kGuarded, kDelays[0]), cells - good(WallModel::kGuarded, kDelays[1]),
                   cells - good(WallModel::kGuarded, kDelays[2]), figures.limits[0], figures.limits[1],
                   figures.limits[2])};
-}
-
-Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
-  return write_file(out.stage(name), std::span(bytes, text.size()));
 }
 
 }  // namespace
@@ -230,7 +226,7 @@ Result<WallFigures> measure_walls(std::size_t stiffnesses, std::size_t dampings,
 Status study_walls(OutputFolder& out, bool quick, const Interrupt& interrupt) {
   const auto figures = quick ? measure_walls(24, 13, 1.0, interrupt) : measure_walls(48, 25, 4.0, interrupt);
   if (!figures) return figures.error();
-  const std::vector<std::string> sentences = explain(*figures);
+  const std::vector<std::string> sentences = explain_figures(*figures);
   for (const std::string& sentence : sentences) print("walls: {}\n", sentence);
   for (const WallCycle& c : figures->cycles)
     print("  counts alone, {:>5.0f} N/m: limit cycle {:.4f} m/s, balance allows {:.4f} m/s\n", c.stiffness, c.speed,

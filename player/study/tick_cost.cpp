@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "player/study/drawn_frame.h"
 #include "player/study/processor_time.h"
 #include "systems/touch/prepare.h"
 #include "systems/touch/publish.h"
@@ -20,7 +21,8 @@ double percentile(std::vector<double>& values, double q) {
   return values[static_cast<std::size_t>(at)];
 }
 
-constexpr int kBatches = 4;  // the least of their figures counts: what else runs on the machine disturbs few of them
+constexpr int kTicksAFrame = 16;
+constexpr int kWarmFrames = 1;  // pays for compiling shaders
 
 // [us] that asking for the time takes by itself.
 double clock_us() {
@@ -34,7 +36,7 @@ double clock_us() {
 
 }  // namespace
 
-TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks) {
+TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks, int batches, DrawnCount drawn) {
   constexpr double kRadius = 0.1;  // [m]
   const int n = std::max(2, static_cast<int>(std::lround(std::sqrt((vertices - 2) / 6.0))));
   Stage stage;
@@ -52,7 +54,7 @@ TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks) {
   const double depth = 0.1 * d.reach, clock = clock_us();
   stage.tick();
   std::vector<double> times, frames;
-  const int warm = ticks / 20, batch = std::max(1, ticks / kBatches);
+  const int warm = ticks / 20, batch = std::max(1, ticks / batches);
   out.p50_us = out.p99_us = out.frame_us = 1e30;
   const auto end_batch = [&] {
     out.p50_us = std::min(out.p50_us, percentile(times, 0.5));
@@ -61,16 +63,19 @@ TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks) {
     times.clear();
     frames.clear();
   };
-  for (int i = 0; i < ticks + warm; ++i) {
+  const auto slide = [&](int i) {
     const double a = 0.33 * mesh.mean_edge / kRadius * i, b = 0.3 * std::sin(0.37 * a);
     stage.place(probe, normalize(dvec3(std::sin(a), std::cos(a), b)) * (kRadius - depth));
+  };
+  for (int i = 0; i < ticks + warm; ++i) {
+    slide(i);
     std::uint64_t begin = processor_ns();
     stage.tick();
     const double us = std::max(0.0, static_cast<double>(processor_ns() - begin) * 1e-3 - clock);
     if (i < warm) continue;
     times.push_back(us);
     out.awake += stage.field(surface).awake_vertices / static_cast<double>(ticks);
-    if (i % 16 == 0) {
+    if (i % kTicksAFrame == 0) {
       begin = processor_ns();
       publish(stage.world, {});
       frames.push_back(std::max(0.0, static_cast<double>(processor_ns() - begin) * 1e-3 - clock));
@@ -78,6 +83,22 @@ TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks) {
     }
     if (times.size() == static_cast<std::size_t>(batch) && !frames.empty()) end_batch();
   }
+  if (drawn.frames == 0) return out;
+  Result<DrawnFrames> frame = DrawnFrames::create(stage.world, surface, drawn.with_cpu);
+  if (!frame) {
+    out.not_drawn = frame.error().message();
+    return out;
+  }
+  frames.clear();
+  for (int i = 0; i < kWarmFrames + drawn.frames; ++i) {
+    for (int k = 0; k < kTicksAFrame; ++k) {
+      slide(ticks + warm + kTicksAFrame * i + k);
+      stage.tick();
+    }
+    const double us = frame->draw(stage.world, {});
+    if (i >= kWarmFrames) frames.push_back(us);
+  }
+  out.drawn_us = percentile(frames, 0.5);
   return out;
 }
 

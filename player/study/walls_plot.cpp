@@ -9,23 +9,24 @@
 namespace pliant {
 namespace {
 
-constexpr double kWidth = 1600, kHeight = 1360;  // [pixel]
-constexpr Color kGood{0.80, 0.91, 0.84}, kRings{0.98, 0.80, 0.42}, kGone{0.86, 0.52, 0.40}, kDark{0.75, 0.80, 0.88};
+constexpr double kWallsWidth = 1600, kWallsHeight = 1360;  // [pixel]
+constexpr Color kGoodColor{0.80, 0.91, 0.84}, kRings{0.98, 0.80, 0.42}, kGoneColor{0.86, 0.52, 0.40},
+    kDark{0.75, 0.80, 0.88};
 
-struct Area {
+struct WallArea {
   double x, y, w, h;  // [pixel]
 };
 
 Color color_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::kStable:
-      return kGood;
+      return kGoodColor;
     case Verdict::kCycle:
       return kRings;
     case Verdict::kOff:
       return kDark;
     case Verdict::kDivergent:
-      return kGone;
+      return kGoneColor;
   }
   return kPaper;
 }
@@ -33,7 +34,7 @@ Color color_of(Verdict verdict) {
 // Stiffness across by powers of ten, damping up.
 class Map {
  public:
-  Map(const Area& area, const WallFigures& figures)
+  Map(const WallArea& area, const WallFigures& figures)
       : area_(area),
         low_(std::log10(figures.stiffnesses.front())),
         high_(std::log10(figures.stiffnesses.back())),
@@ -76,7 +77,7 @@ class Map {
     pen.text(area_.x, area_.y - 10, 15, 0, title);
     for (double e = std::ceil(low_); e <= high_ + 1e-9; e += 1.0) {
       pen.line(x(e), area_.y + area_.h, x(e), area_.y + area_.h + 5, 1.5);
-      pen.text(x(e), area_.y + area_.h + 22, 14, 0.5, fmt::format("{:g}", std::pow(10.0, e)));
+      pen.text(x(e), area_.y + area_.h + 22, 14, 0.5, decade_number(std::pow(10.0, e)));
     }
     for (double b = 0; b <= top_ + 1e-9; b += 2.0) {
       pen.line(area_.x - 5, y(b), area_.x, y(b), 1.5);
@@ -87,7 +88,7 @@ class Map {
   }
 
  private:
-  Area area_;
+  WallArea area_;
   double low_, high_, top_, half_k_, half_b_;
 };
 
@@ -152,7 +153,7 @@ void draw(Pen& pen, const WallFigures& figures) {
 }  // namespace
 
 Status plot_walls(const std::filesystem::path& png, const std::filesystem::path& svg, const WallFigures& figures) {
-  return draw_png_and_svg(png, svg, kWidth, kHeight, [&](Pen& pen) { draw(pen, figures); });
+  return draw_png_and_svg(png, svg, kWallsWidth, kWallsHeight, [&](Pen& pen) { draw(pen, figures); });
 }
 
 }  // namespace pliant

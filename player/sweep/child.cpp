@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kSaid = "stderr.txt";
 constexpr std::string_view kError = "pliant: error: ";
-constexpr std::size_t kLongest = 2000;  // [byte] of a sentence in a line
+constexpr std::size_t kLongestSaid = 2000;  // [byte] of a sentence in a line
 
 }  // namespace
 
@@ -113,7 +113,7 @@ std::string Child::complaint() const {
   std::ifstream in(folder_ / kSaid);
   std::string said;
   for (std::string line; std::getline(in, line);)
-    if (line.starts_with(kError)) said = line.substr(kError.size(), kLongest);
+    if (line.starts_with(kError)) said = line.substr(kError.size(), kLongestSaid);
   return said.empty() ? fmt::format("ended with status {} and said nothing; try it with `pliant run`",
                                     WIFEXITED(status_) ? WEXITSTATUS(status_) : -1)
                       : said;

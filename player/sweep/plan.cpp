@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr Limit kPlanFile{16 * limits::kMiB, "bytes", "a plan is held in memory"};
-constexpr int kDeepest = 16;  // what a plan says lies at most 5 deep
+constexpr int kDeepestNesting = 16;  // what a plan says lies at most 5 deep
 
 // Options of `pliant run` that a sweep decides itself, and why.
 constexpr std::pair<const char*, const char*> kRefused[] = {
@@ -67,7 +67,7 @@ Result<PlanJson> parse(const fs::path& file) {
   std::string twice;
   bool deep = false;
   const auto look = [&](int depth, PlanJson::parse_event_t event, PlanJson& parsed) {
-    if (depth > kDeepest) deep = true;
+    if (depth > kDeepestNesting) deep = true;
     if (event == PlanJson::parse_event_t::object_start) keys.emplace_back();
     if (event == PlanJson::parse_event_t::object_end && !keys.empty()) keys.pop_back();
     if (event == PlanJson::parse_event_t::key && !keys.empty() && !keys.back().insert(parsed.get<std::string>()).second)

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kSet = "--set=";
-constexpr const char* kProbe = "--probe=";
+constexpr const char* kProbePath = "--probe=";
 
 void add_text(Hash& hash, const std::string& text) {
   hash.add(text.size());
@@ -74,8 +74,8 @@ Status try_arguments(const Level& level, bool bare, const std::vector<std::strin
   std::vector<std::string> sets;
   for (const std::string& argument : arguments) {
     if (argument.starts_with(kSet)) sets.push_back(argument.substr(std::string_view(kSet).size()));
-    if (!argument.starts_with(kProbe)) continue;
-    auto source = parse_source(argument.substr(std::string_view(kProbe).size()));
+    if (!argument.starts_with(kProbePath)) continue;
+    auto source = parse_source(argument.substr(std::string_view(kProbePath).size()));
     if (!source) return source.error();
     if (source->driver == DriverKind::kMouse)
       return Error{argument, "needs a window, and a sweep's runs have none; use orbit or script:FILE.csv"};

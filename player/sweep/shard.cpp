@@ -19,7 +19,7 @@ std::optional<std::size_t> whole(std::string_view text) {
 }
 
 // Two variables that belong together: this one's number, from 0, and how many there are.
-struct Place {
+struct ShardPlace {
   std::size_t number = 0, count = 1;
   std::string from;
 };
@@ -32,9 +32,9 @@ std::string read(const Variable& variable, const std::string& name) {
   return text ? text : "";
 }
 
-Result<Place> in_array(const Variable& variable) {
+Result<ShardPlace> in_array(const Variable& variable) {
   const std::string id = "SLURM_ARRAY_TASK_ID", text = read(variable, id);
-  if (text.empty()) return Place{};
+  if (text.empty()) return ShardPlace{};
   const auto number = whole(text), count = whole(read(variable, "SLURM_ARRAY_TASK_COUNT")),
              first = whole(read(variable, "SLURM_ARRAY_TASK_MIN"));
   const std::string step_text = read(variable, "SLURM_ARRAY_TASK_STEP");
@@ -44,10 +44,10 @@ Result<Place> in_array(const Variable& variable) {
   if (*number < *first || (*number - *first) % step != 0 || (*number - *first) / step >= *count)
     return Error{
         id, fmt::format("is {}, which is none of {} tasks from {} on, {} apart{}", text, *count, *first, step, kSay)};
-  return Place{(*number - *first) / step, *count, id + " and _COUNT"};
+  return ShardPlace{(*number - *first) / step, *count, id + " and _COUNT"};
 }
 
-Result<Place> in_mpi(const Variable& variable) {
+Result<ShardPlace> in_mpi(const Variable& variable) {
   for (const auto& [rank_name, size_name, from] :
        {std::tuple("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK and _SIZE"),
         std::tuple("PMI_RANK", "PMI_SIZE", "PMI_RANK and PMI_SIZE")}) {
@@ -57,9 +57,9 @@ Result<Place> in_mpi(const Variable& variable) {
     if (!rank || !size || *rank >= *size)
       return Error{rank_name, "is '" + text + "' and " + size_name + " '" + read(variable, size_name) +
                                   "', which is no rank of so many" + kSay};
-    return Place{*rank, *size, from};
+    return ShardPlace{*rank, *size, from};
   }
-  return Place{};
+  return ShardPlace{};
 }
 
 }  // namespace

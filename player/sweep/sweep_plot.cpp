@@ -14,9 +14,10 @@ namespace pliant {
 namespace {
 
 // [pixel]
-constexpr double kWidth = 1600, kTitle = 84, kRow = 330, kFoot = 10, kLeft = 84, kRight = 28, kBetween = 100;
-constexpr double kAbove = 36, kBelow = 66;
-constexpr int kColumns = 3;
+constexpr double kSheetWidth = 1600, kSheetTitle = 84, kSheetRow = 330, kSheetFoot = 10, kSheetLeft = 84,
+                 kSheetRight = 28, kSheetBetween = 100;
+constexpr double kAbovePlot = 36, kBelowPlot = 66;
+constexpr int kPlotColumns = 3;
 constexpr std::size_t kMostPanels = 24;  // of a picture
 constexpr std::size_t kMostMaps = 10;    // pairs of axes
 
@@ -42,19 +43,20 @@ using DrawPanel = std::function<void(Pen&, const PlotArea&, const Figure&)>;
 Status draw_picture(OutputFolder& out, const std::string& name, const std::string& title, const std::string& subtitle,
                     const std::vector<Figure>& figures, const DrawPanel& draw) {
   const std::size_t shown = std::min(figures.size(), kMostPanels);
-  const int columns = static_cast<int>(std::min<std::size_t>(shown, kColumns));
-  const auto rows = (shown + kColumns - 1) / kColumns;
-  const double height = kTitle + kRow * static_cast<double>(rows) + kFoot;
-  const double w = (kWidth - kLeft - kRight - kBetween * (kColumns - 1)) / kColumns, h = kRow - kAbove - kBelow;
-  const double width = std::max(kLeft + kRight + (w + kBetween) * columns - kBetween, 1100.0);
+  const int columns = static_cast<int>(std::min<std::size_t>(shown, kPlotColumns));
+  const auto rows = (shown + kPlotColumns - 1) / kPlotColumns;
+  const double height = kSheetTitle + kSheetRow * static_cast<double>(rows) + kSheetFoot;
+  const double w = (kSheetWidth - kSheetLeft - kSheetRight - kSheetBetween * (kPlotColumns - 1)) / kPlotColumns,
+               h = kSheetRow - kAbovePlot - kBelowPlot;
+  const double width = std::max(kSheetLeft + kSheetRight + (w + kSheetBetween) * columns - kSheetBetween, 1100.0);
   const auto all = [&](Pen& pen) {
     pen.color(kInk);
-    const double used = pen.text(kLeft, 46, 24, 0, title, true);
-    pen.text(kLeft + used + 18, 46, 15, 0, subtitle);
+    const double used = pen.text(kSheetLeft, 46, 24, 0, title, true);
+    pen.text(kSheetLeft + used + 18, 46, 15, 0, subtitle);
     for (std::size_t i = 0; i < shown; ++i)
       draw(pen,
-           {kLeft + (w + kBetween) * static_cast<double>(i % kColumns),
-            kTitle + kRow * static_cast<double>(i / kColumns) + kAbove, w, h},
+           {kSheetLeft + (w + kSheetBetween) * static_cast<double>(i % kPlotColumns),
+            kSheetTitle + kSheetRow * static_cast<double>(i / kPlotColumns) + kAbovePlot, w, h},
            figures[i]);
   };
   const auto png = out.stage(name + ".png"), svg = out.stage(name + ".svg");

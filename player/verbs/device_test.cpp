@@ -30,7 +30,7 @@ constexpr double kPushSeconds = 1.0;  // [s] each way along an axis: a half wave
 constexpr int kPlaneWide = 41, kPlaneHigh = 11;
 
 // The device, behind its guard where it pushes.
-class Held {
+class HeldDevice {
  public:
   Status open(const std::string& wish, std::string& shown) {
     auto chosen = choose_device(wish, list_devices());
@@ -53,7 +53,7 @@ class Held {
     }
     return Done{};
   }
-  ~Held() {
+  ~HeldDevice() {
     if (!driver_) return;
     try {
       driver_->write({});
@@ -113,7 +113,7 @@ std::string told(const DeviceSample& sample, const DeviceCapabilities& can, doub
 
 // Reads and tells for `seconds`, or until it is interrupted; `force` is asked for every tick.
 template <class Force>
-void look(Held& held, double seconds, const Interrupt& interrupt, Force&& force) {
+void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& force) {
   const DeviceCapabilities can = held.driver().capabilities();
   const bool drawn = ::isatty(STDOUT_FILENO);
   dvec3 half = can.workspace;
@@ -155,7 +155,7 @@ bool confirmed(double most) {
 
 int test_device(const DeviceTestOptions& options) {
   register_all_drivers();
-  Held held;
+  HeldDevice held;
   std::string name;
   if (Status s = held.open(options.id, name); !s) return fail(kFailed, s.error());
   print("{}; Ctrl-C ends the test\n", name);

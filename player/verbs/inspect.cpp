@@ -30,7 +30,7 @@
 namespace pliant {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kTissueTime{2000};  // for what bare meshes would be as tissue, all of them
 
@@ -59,8 +59,8 @@ struct ObjectReport {
   std::string refused;  // why it cannot be touched; empty: it can
   Mesh mesh;
   MeshReport report;
-  Box box;         // [m] world
-  Json as_tissue;  // of a bare mesh; null: there was no time for it
+  Box box;                // [m] world
+  OrderedJson as_tissue;  // of a bare mesh; null: there was no time for it
 };
 
 std::vector<ObjectReport> inspect_objects(const Level& level) {
@@ -131,13 +131,13 @@ std::size_t count_creases(const Mesh& mesh) {
   return sides / 2;
 }
 
-Json to_json(const Box& box) {
+OrderedJson to_json(const Box& box) {
   if (box.empty()) return nullptr;
   return {{"min", {box.min.x, box.min.y, box.min.z}}, {"max", {box.max.x, box.max.y, box.max.z}}};
 }
 
-Json describe_tools(const Level& level) {
-  Json list = Json::array();
+OrderedJson describe_tools(const Level& level) {
+  OrderedJson list = OrderedJson::array();
   for (const LevelNode& node : level.nodes)
     if (node.handle)
       list.push_back({{"name", node.name}, {"device", node.handle->device}, {"force", word_of(node.handle->force)}});
@@ -145,11 +145,11 @@ Json describe_tools(const Level& level) {
 }
 
 // The whole answer once, as JSON; the text form reads from it.
-Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
-  Json json;
+OrderedJson describe(const Level& level, const std::vector<ObjectReport>& objects) {
+  OrderedJson json;
   Box box;
   std::size_t triangles = 0, vertices = 0;
-  Json list = Json::array();
+  OrderedJson list = OrderedJson::array();
   bool touchable = false;
   for (const ObjectReport& object : objects) {
     box.add(object.box);
@@ -219,13 +219,13 @@ Json describe(const Level& level, const std::vector<ObjectReport>& objects) {
   return json;
 }
 
-std::string join(const Json& list) {
+std::string join(const OrderedJson& list) {
   std::string text;
-  for (const Json& item : list) text += (text.empty() ? "" : ", ") + item.get<std::string>();
+  for (const OrderedJson& item : list) text += (text.empty() ? "" : ", ") + item.get<std::string>();
   return text.empty() ? "none" : text;
 }
 
-void print_text(const Json& json, const Box& box) {
+void print_text(const OrderedJson& json, const Box& box) {
   print("{}\n", json["file"].get<std::string>());
   print("  {} nodes, {} meshes, {} triangles, {} vertices, {} materials, {} images\n", json["nodes"].get<std::size_t>(),
         json["meshes"].get<std::size_t>(), json["triangles"].get<std::size_t>(), json["vertices"].get<std::size_t>(),
@@ -237,24 +237,24 @@ void print_text(const Json& json, const Box& box) {
           box.size().z, box.center().x, box.center().y, box.center().z);
   if (const std::string hint = json["unit_hint"]; !hint.empty()) print("  unit: {}\n", hint);
   std::size_t left_out = 0;
-  for (const Json& object : json["objects"]) {
+  for (const OrderedJson& object : json["objects"]) {
     print("  object {}: {} vertices (of {}), {} triangles (of {}), {} zones, {}{}\n", object["name"].get<std::string>(),
           object["vertices"].get<std::size_t>(), object["file_vertices"].get<std::size_t>(),
           object["triangles"].get<std::size_t>(), object["file_triangles"].get<std::size_t>(),
           object["zones"].get<std::size_t>(), object["closed"].get<bool>() ? "closed" : "open",
           object["deformable"].get<bool>() ? ", deformable" : "");
-    for (const Json& problem : object["problems"]) print("    {}\n", problem.get<std::string>());
+    for (const OrderedJson& problem : object["problems"]) print("    {}\n", problem.get<std::string>());
     print_as_tissue(object["as_tissue"]);
     left_out += json["bare_mesh"].get<bool>() && object["vertices"] != 0 && object["as_tissue"].is_null();
   }
   if (left_out > 0) print("  {} object{} not tried as tissue, to answer soon\n", left_out, left_out == 1 ? "" : "s");
-  for (const Json& tool : json["tools"]) {
+  for (const OrderedJson& tool : json["tools"]) {
     const std::string device = tool["device"];
     print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),
           device.empty() ? "no device" : "device " + device, tool["force"].get<std::string>());
   }
   print_tissue(json["flesh"]);
-  for (const Json& sentence : json["notes"]) print("  note: {}\n", sentence.get<std::string>());
+  for (const OrderedJson& sentence : json["notes"]) print("  note: {}\n", sentence.get<std::string>());
   if (!json["touchable"].get<bool>())
     print("  cannot be touched: there is no triangle in the scene that is shown\n");
   else if (json["bare_mesh"].get<bool>())
@@ -270,12 +270,16 @@ int inspect(const InspectOptions& options) {
   if (!path) return fail(kFailed, path.error());
   if (options.fit && (is_tet_file(*path) || is_panorama_file(*path)))
     return fail(kUsage, {"--fit", "is for levels and meshes that are touched; leave it out"});
+  if (options.unit != 1.0 && (is_tet_file(*path) || is_panorama_file(*path)))
+    return fail(kUsage, {"--unit", "is for bare meshes; leave it out"});
   if (is_tet_file(*path)) return inspect_tets(*path, options.json);
   if (is_panorama_file(*path)) return inspect_panorama(*path, options.json);
   auto level = load_level(*path);
   if (!level) return fail(kFailed, level.error());
+  if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
+  scale_roots(*level, options.unit);
   const std::vector<ObjectReport> objects = inspect_objects(*level);
-  Json json = describe(*level, objects);
+  OrderedJson json = describe(*level, objects);
   if (options.fit) {
     auto fit = describe_fit(*level, options.error);
     if (!fit) return fail(kFailed, fit.error());

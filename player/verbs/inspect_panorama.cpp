@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // Of Rec. 709 primaries: what the eye sees of linear RGB.
 double luminance(const float* rgb) {
@@ -41,9 +41,10 @@ int inspect_panorama(const std::filesystem::path& path, bool as_json) {
   }
   if (panorama->width != 2 * panorama->height)
     notes.push_back("is not twice as wide as high; a latitude-longitude panorama is, so it will look stretched");
-  Json json = {{"file", path.string()},      {"width", panorama->width},
-               {"height", panorama->height}, {"mean_luminance", pixels ? sum / static_cast<double>(pixels) : 0.0},
-               {"largest_luminance", most},  {"notes", notes}};
+  OrderedJson json = {
+      {"file", path.string()},      {"width", panorama->width},
+      {"height", panorama->height}, {"mean_luminance", pixels ? sum / static_cast<double>(pixels) : 0.0},
+      {"largest_luminance", most},  {"notes", notes}};
   if (as_json) {
     print_json(json);
     return kDone;

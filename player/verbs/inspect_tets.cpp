@@ -17,14 +17,14 @@
 namespace pliant {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-Json describe(const TetMesh& mesh) {
+OrderedJson describe(const TetMesh& mesh) {
   Box box;
   for (const dvec3& p : mesh.nodes) box.add(vec3(p));
-  const auto corner = [](vec3 p) { return Json::array({p.x, p.y, p.z}); };
+  const auto corner = [](vec3 p) { return OrderedJson::array({p.x, p.y, p.z}); };
   return {{"name", mesh.name},
           {"nodes", mesh.node_count()},
           {"handle_nodes", mesh.handle_count},
@@ -65,16 +65,16 @@ Level tissue_of(const Level& level) {
 
 }  // namespace
 
-Json describe_tissue(const Level& level) {
-  Json list = Json::array();
+OrderedJson describe_tissue(const Level& level) {
+  OrderedJson list = OrderedJson::array();
   bool any = false;
   for (const LevelNode& node : level.nodes) any = any || (node.in_scene && node.soft_body);
   if (!any) return list;
   const Result<World> world = spawn(tissue_of(level));
-  if (!world) return Json::array({{{"problem", world.error().message()}}});
+  if (!world) return OrderedJson::array({{{"problem", world.error().message()}}});
   for (auto [entity, body] : world->registry.view<const SoftBody>()) {
     const TetMesh& tets = world->tet_meshes[body.tets];
-    Json tissue = describe(tets);
+    OrderedJson tissue = describe(tets);
     tissue["problems"] = tets.report.findings;
     if (const std::string doubt = locking_doubt(body, tets.tets.size()); !doubt.empty())
       tissue["problems"].push_back(doubt);
@@ -83,8 +83,8 @@ Json describe_tissue(const Level& level) {
   return list;
 }
 
-void print_tissue(const Json& tissue) {
-  for (const Json& body : tissue) {
+void print_tissue(const OrderedJson& tissue) {
+  for (const OrderedJson& body : tissue) {
     if (body.contains("problem")) {
       print("  tissue: {}\n", body["problem"].get<std::string>());
       continue;
@@ -102,11 +102,12 @@ void print_tissue(const Json& tissue) {
     print("    {}about {:.2g} ms a soft step (an estimate)\n",
           body["cell_m"].get<double>() > 0.0 ? "a cell of " + length_text(body["cell_m"].get<double>()) + ", " : "",
           body["step_ms"].get<double>());
-    for (const Json& problem : body.value("problems", Json::array())) print("    {}\n", problem.get<std::string>());
+    for (const OrderedJson& problem : body.value("problems", OrderedJson::array()))
+      print("    {}\n", problem.get<std::string>());
   }
 }
 
-Json describe_as_tissue(const BuiltMesh& surface, const std::stop_token& stop) {
+OrderedJson describe_as_tissue(const BuiltMesh& surface, const std::stop_token& stop) {
   const Result<SoftPreview> preview = preview_soft_body(surface, SoftBody{}, nullptr, stop);
   if (!preview && stop.stop_requested()) return nullptr;
   if (!preview) return {{"problem", preview.error().what}};
@@ -124,7 +125,7 @@ Json describe_as_tissue(const BuiltMesh& surface, const std::stop_token& stop) {
           {"problems", preview->findings}};
 }
 
-void print_as_tissue(const Json& tissue) {
+void print_as_tissue(const OrderedJson& tissue) {
   if (tissue.is_null()) return;
   if (tissue.contains("problem")) {
     print("    as tissue: {}\n", tissue["problem"].get<std::string>());
@@ -134,7 +135,7 @@ void print_as_tissue(const Json& tissue) {
       "    as tissue: {} tetrahedra, a cell of {}, 3 r/R {:.3f} at worst, about {:.2g} ms a soft step (an estimate)\n",
       tissue["tetrahedra"].get<std::size_t>(), length_text(tissue["cell_m"].get<double>()),
       tissue["worst_ratio"].get<double>(), tissue["step_ms"].get<double>());
-  for (const Json& problem : tissue["problems"]) print("      {}\n", problem.get<std::string>());
+  for (const OrderedJson& problem : tissue["problems"]) print("      {}\n", problem.get<std::string>());
 }
 
 int inspect_tets(const std::filesystem::path& path, bool as_json) {
@@ -146,7 +147,7 @@ int inspect_tets(const std::filesystem::path& path, bool as_json) {
   mesh.tets = std::move(file->tets);
   mesh.free_count = mesh.node_count();
   mesh.quality = measure_quality(mesh.nodes, mesh.tets);
-  Json json = {{"file", path.string()}};
+  OrderedJson json = {{"file", path.string()}};
   json.update(describe(mesh));
   json["notes"] = file->notes;
   if (as_json) {
@@ -154,7 +155,7 @@ int inspect_tets(const std::filesystem::path& path, bool as_json) {
     return kDone;
   }
   print("{}\n", path.string());
-  print_tissue(Json::array({json}));
+  print_tissue(OrderedJson::array({json}));
   for (const std::string& sentence : file->notes) print("  note: {}\n", sentence);
   print("  tissue for a level: name it in PLIANT_soft_body/mesh; its boundary can be touched: `pliant run FILE`\n");
   return kDone;

@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kMiddleGrey = 0.18;
 
 // Where a face stands in the cross, and its axes: the middle of the face, its right and its down.
@@ -28,7 +28,7 @@ const float* pixel(const Panorama& panorama, std::int64_t x, std::int64_t y) {
 // Bilinear, around the seam. The middle of the picture looks along -Z.
 dvec3 sample(const Panorama& panorama, dvec3 direction) {
   const dvec3 d = normalize(direction);
-  const double u = 0.5 + std::atan2(d.x, -d.z) / (2 * kPi), v = std::acos(std::clamp(d.y, -1.0, 1.0)) / kPi;
+  const double u = 0.5 + std::atan2(d.x, -d.z) / (2 * kHalfTurn), v = std::acos(std::clamp(d.y, -1.0, 1.0)) / kHalfTurn;
   const double x = u * panorama.width - 0.5, y = v * panorama.height - 0.5;
   const auto x0 = static_cast<std::int64_t>(std::floor(x)), y0 = static_cast<std::int64_t>(std::floor(y));
   const double fx = x - static_cast<double>(x0), fy = y - static_cast<double>(y0);
@@ -54,7 +54,7 @@ std::uint8_t encode(double linear) {
 double mean_luminance(const Panorama& panorama) {
   double sum = 0.0, weight = 0.0;
   for (std::uint32_t y = 0; y < panorama.height; ++y) {
-    const double w = std::sin(kPi * (y + 0.5) / panorama.height);
+    const double w = std::sin(kHalfTurn * (y + 0.5) / panorama.height);
     for (std::uint32_t x = 0; x < panorama.width; ++x) {
       const float* p = pixel(panorama, x, y);
       sum += w * luminance(dvec3(p[0], p[1], p[2]));

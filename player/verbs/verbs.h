@@ -40,6 +40,7 @@ struct InspectOptions {
   bool json = false;
   bool fit = false;    // also which models error budgets choose, and why
   double error = 0.0;  // [1] budget of every surface and soft body; 0: their own
+  double unit = 1.0;   // [m] of a bare mesh
 };
 int inspect(const InspectOptions& options);
 

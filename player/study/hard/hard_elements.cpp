@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 const TissueMaterial kTissue{.young = 1e4, .poisson = 0.3, .density = 1000};
-constexpr double kStep = 5e-3;  // [s]
+constexpr double kHardStep = 5e-3;  // [s]
 
 std::unique_ptr<LinearSolver> solver_for(const Tissue& tissue) {
   auto solver = make_solver(SolverKind::kEigenCholesky, tissue.moving());
@@ -48,7 +48,7 @@ HardFigure inverted(const HardSetting&) {
     for (std::uint32_t i = 0; i < mesh.free_count; ++i) tissue.position()[i] = wreck.place(i, mesh.nodes[i]);
     const double start = energy(tissue);
     for (int i = 0; i < 1000; ++i) {
-      worst.need(step_tissue(tissue, *solver, kStep, dvec3(0)).solved, std::string("not solved: ") + wreck.name);
+      worst.need(step_tissue(tissue, *solver, kHardStep, dvec3(0)).solved, std::string("not solved: ") + wreck.name);
       worst.add(energy(tissue) / start, wreck.name);
     }
     for (const Tet& t : mesh.tets) {
@@ -77,8 +77,8 @@ HardFigure beside_a_sound_one(const std::function<void(TetMesh&, std::uint32_t l
   Tissue tissue(broken, kTissue, broken.free_count), truth(sound, kTissue, sound.free_count);
   auto solver = solver_for(tissue), true_solver = solver_for(truth);
   for (int i = 0; i < 1000; ++i) {
-    worst.need(step_tissue(tissue, *solver, kStep, {0, -9.81, 0}).solved, "not solved");
-    worst.need(step_tissue(truth, *true_solver, kStep, {0, -9.81, 0}).solved, "not solved");
+    worst.need(step_tissue(tissue, *solver, kHardStep, {0, -9.81, 0}).solved, "not solved");
+    worst.need(step_tissue(truth, *true_solver, kHardStep, {0, -9.81, 0}).solved, "not solved");
     worst.need(std::isfinite(energy(tissue)), "the energy");
     for (std::uint32_t n = 0; n < loose; ++n)
       worst.add(length(tissue.position()[n] - truth.position()[n]), fmt::format("node {}, step {}", n, i));

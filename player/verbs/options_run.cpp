@@ -1,0 +1,72 @@
+#include "components/haptic_device.h"
+#include "components/world.h"
+#include "content/keys/enum_words.h"
+#include "player/verbs/options.h"
+
+namespace pliant {
+
+void add_run(CLI::App& app, RunOptions& run) {
+  CLI::App* verb = app.add_subcommand("run", "run a level or touch a bare mesh; writes forces, plot, pictures, report");
+  CLI::Option* level =
+      verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)")
+          ->check(named());
+  verb->add_flag("--list", run.list, "which levels ship, and what they show")->excludes(level);
+  verb->add_option("--probe", run.probes,
+                   "NAME=SOURCE: script:FILE.csv, orbit, hand[:FILE.csv], mouse, device:ID; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--set", run.sets, "NODE.EXT.KEY=VALUE for this run; NODE may be *; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_unit(verb, run.unit, "what one unit of a bare mesh is (m)");
+  verb->add_option("--seconds", run.seconds, "how long [s]; default: the longest script, at most 60, else 4")
+      ->check(within(1e-4, 86400.0));
+  verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")
+      ->check(within(kTouchRateRange.min, kTouchRateRange.max));
+  CLI::Option* lockstep =
+      verb->add_flag("--lockstep", run.lockstep, "virtual time, the same bits every time (default without a window)");
+  verb->add_flag("--realtime", run.realtime, "run the clocks; overruns are counted")->excludes(lockstep);
+  verb->add_option("--field", run.field, "where the surface is computed: auto, cpu, gpu")
+      ->check(one_of({"auto", "cpu", "gpu"}));
+  verb->add_option("--tool-force", run.tool_force,
+                   "how every tool's force is made: " + joined(words_of<ToolForce>()) + "; default: each tool's key")
+      ->check(one_of(words_of<ToolForce>()));
+  verb->add_option("--max-force", run.max_force, "the most that the level may ask of a device [N] (10)")
+      ->check(within(1e-3, DeviceRange::kMaxForce.max));
+  verb->add_option("--error", run.error, "error budget of every surface and soft body: the cheapest models within it")
+      ->check(within(1e-6, 10.0));
+  add_limits(verb);
+  verb->add_option("--out", run.out,
+                   "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results")
+      ->check(named());
+  verb->add_flag("--force", run.force, "replace the results of an earlier run in that folder, and its recording");
+  CLI::Option* frames =
+      verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: none")->check(within(0, 9999));
+  verb->add_option("--fps", run.fps, "pictures per simulated second instead")
+      ->check(within(1e-3, 1000))
+      ->excludes(frames);
+  verb->add_option_function<std::string>(
+      "--size",
+      [&run](const std::string& text) {
+        if (const std::string wrong = parse_size(text, run); !wrong.empty()) throw CLI::ValidationError(wrong);
+      },
+      "of the pictures and the window, WxH (960x540, 1280x720)");
+  CLI::Option* headless = verb->add_flag("--headless", run.headless, "no window (default where there is no display)");
+  verb->add_flag("--window", run.window, "in a window (default where there is a display)")
+      ->excludes(headless)
+      ->excludes(lockstep);
+  verb->add_option("--input", run.input, "events for the window from a CSV file")
+      ->group("")
+      ->check(named());  // docs/cli.md
+  verb->add_option("--record", run.record, "write every probe's pose per tick to FILE")->check(named());
+  verb->add_option("--replay", run.replay, "move the probes as FILE says, in lockstep")->check(named());
+  verb->add_option("--threads", run.threads, "threads for loading and preparing; 0: all")->check(within(0, 1024));
+  verb->footer(
+      "Examples:\n"
+      "  pliant run\n"
+      "  pliant run organ.glb --probe finger=orbit --set '*.deformable.stiffness=500' --frames 4\n"
+      "  pliant run scan_in_millimetres.stl --unit mm\n"
+      "  pliant run level.gltf --probe tip=script:press.csv --record press.pose --out out/press");
+}
+
+}  // namespace pliant
