@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kStep = 0.05;  // [1] of the reach: one click of the wheel
+constexpr double kPointerStep = 0.05;  // [1] of the reach: one click of the wheel
 constexpr int kFirstSteps = 4, kMostSteps = 12;
 constexpr double kHover = 0.03;       // [1] of the scene's size: how high it hovers
 constexpr double kPressTime = 0.12;   // [s] time constant of the way in
@@ -64,7 +64,7 @@ void Pointer::stand(int steps) {
 }
 
 double Pointer::depth_goal() const {
-  return kStep * reach_ * (held_ ? std::max(deep_, standing_) : standing_);
+  return kPointerStep * reach_ * (held_ ? std::max(deep_, standing_) : standing_);
 }
 
 void Pointer::see(const std::optional<Picked>& seen, const ViewRay& ray) {

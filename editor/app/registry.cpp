@@ -29,6 +29,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_settings_panel(app));
   panels.push_back(make_start_page(app));
   panels.push_back(make_plots_panel(app));
+  panels.push_back(make_error_budget_panel());
   return panels;
 }
 

@@ -7,27 +7,18 @@
 #include <map>
 #include <set>
 
-#include "content/keys/extension_table.h"
+#include "editor/document/edit_parts.h"
 
 namespace pliant {
-namespace {
 
-const Error kNoSuchNode{"edit", "the node is not there any more"};
-
-// A copy of the node to be changed, in a copy of the state.
-struct Change {
-  State state;
-  std::shared_ptr<DocumentNode> node;
-};
-std::optional<Change> changing(const State& state, NodeId id) {
+std::optional<NodeChange> changing(const State& state, NodeId id) {
   const std::size_t at = state.place(id);
   if (at >= state.nodes.size()) return {};
-  Change change{state, std::make_shared<DocumentNode>(*state.nodes[at])};
+  NodeChange change{state, std::make_shared<DocumentNode>(*state.nodes[at])};
   change.state.nodes[at] = change.node;
   return change;
 }
 
-// Every reference to a node by its name.
 void rename_references(State& state, const std::string from, const std::string to) {
   for (auto& each : state.nodes) {
     const LevelNode& node = each->node;
@@ -39,6 +30,8 @@ void rename_references(State& state, const std::string from, const std::string t
     each = std::move(changed);
   }
 }
+
+namespace {
 
 std::optional<std::string> fault_of_name(const std::string& name) {
   if (name.empty()) return "a node needs a name";
@@ -84,52 +77,6 @@ std::vector<NodeId> topmost(const State& state, NodeIds ids) {
   for (const NodeId id : ids)
     if (!inside.contains(id) && state.find(id) && taken.insert(id).second) top.push_back(id);
   return top;
-}
-
-template <class Change>
-Result<State> each_with(const State& state, NodeIds ids, const Change& change) {
-  State next = state;
-  bool any = false;
-  for (const NodeId id : ids) {
-    const std::size_t at = next.place(id);
-    if (at >= next.nodes.size()) continue;
-    auto node = std::make_shared<DocumentNode>(*next.nodes[at]);
-    const Result<bool> changed = change(node->node);
-    if (!changed) return changed.error();
-    any = true;
-    if (*changed) next.nodes[at] = std::move(node);
-  }
-  if (!any) return kNoSuchNode;
-  return next;
-}
-
-void remove_from(LevelNode& node, const std::string& extension) {
-  if (extension == "deformable") node.deformable.reset();
-  if (extension == "probe") {
-    node.probe.reset();
-    node.probe_device.clear();
-  }
-  if (extension == "haptic_device") node.device.reset();
-  if (extension == "soft_body") node.soft_body.reset();
-  if (extension == "handle") node.handle.reset();
-  if (extension == "rigid_body") node.rigid_body.reset();
-  if (extension == "motion") node.motion.reset();
-}
-
-Result<const Key*> find_both(const std::string& extension, const std::string& key) {
-  const Extension* const of = find_extension(extension);
-  if (!of) return Error{extension, "is no component"};
-  const Key* const found = find_key(*of, key);
-  if (!found) return Error{extension, unknown_key(*of, key)};
-  return found;
-}
-
-// What a document's scene extensions are set in.
-Level scene_of(const State& state) {
-  Level level;
-  level.environment = state.environment;
-  level.simulation = state.simulation;
-  return level;
 }
 
 State add_copies(State next, const State& from, NodeIds ids, std::optional<NodeId> under, NodeId& next_id,
@@ -195,7 +142,7 @@ Result<State> renamed(const State& state, NodeId id, const std::string& name) {
   if (other && other->id != id)
     return Error{"rename",
                  "another node is called '" + name + "'; nodes are referred to by their names, choose another"};
-  std::optional<Change> change = changing(state, id);
+  std::optional<NodeChange> change = changing(state, id);
   if (!change) return kNoSuchNode;
   const std::string before = change->node->node.name;
   change->node->node.name = name;
@@ -319,223 +266,17 @@ Result<State> placed(const State& state, NodeId id, const LocalTransform& local)
 }
 
 Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light) {
-  std::optional<Change> change = changing(state, id);
+  std::optional<NodeChange> change = changing(state, id);
   if (!change) return kNoSuchNode;
   change->node->node.light = light;
   return std::move(change->state);
 }
 
 Result<State> with_camera(const State& state, NodeId id, const std::optional<Camera>& camera) {
-  std::optional<Change> change = changing(state, id);
+  std::optional<NodeChange> change = changing(state, id);
   if (!change) return kNoSuchNode;
   change->node->node.camera = camera;
   return std::move(change->state);
-}
-
-bool has_component(const State& state, NodeId id, const std::string& extension) {
-  const Extension* const of = find_extension(extension);
-  if (!of) return false;
-  if (of->on_scene) {
-    const Level scene = scene_of(state);
-    return of->present(&scene);
-  }
-  const DocumentNode* const node = state.find(id);
-  return node && of->present(&node->node);
-}
-
-Result<State> with_component(const State& state, NodeIds ids, const std::string& extension) {
-  const Extension* const of = find_extension(extension);
-  if (!of) return Error{extension, "is no component"};
-  if (of->on_scene) {
-    Level scene = scene_of(state);
-    State next = state;
-    if (!of->present(&scene)) of->add(&scene);
-    next.environment = scene.environment;
-    next.simulation = scene.simulation;
-    return next;
-  }
-  return each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
-    if (of->present(&node)) return false;
-    of->add(&node);
-    // What moves a probe or a tool is by default on the same node.
-    if (node.probe && extension == "probe" && node.device) node.probe_device = node.name;
-    if (node.handle && extension == "handle" && node.device) node.handle->device = node.name;
-    if (extension == "haptic_device") {
-      if (node.probe && node.probe_device.empty()) node.probe_device = node.name;
-      if (node.handle && node.handle->device.empty()) node.handle->device = node.name;
-    }
-    return true;
-  });
-}
-
-Result<State> without_component(const State& state, NodeIds ids, const std::string& extension) {
-  const Extension* const of = find_extension(extension);
-  if (!of) return Error{extension, "is no component"};
-  if (of->on_scene) {
-    State next = state;
-    if (extension == "environment") next.environment.reset();
-    if (extension == "simulation") next.simulation = {};
-    return next;
-  }
-  Result<State> next = each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
-    if (!of->present(&node)) return false;
-    remove_from(node, extension);
-    return true;
-  });
-  if (next && extension == "haptic_device")
-    for (const NodeId id : ids)
-      if (const DocumentNode* node = next->find(id); node && !node->node.device)
-        rename_references(*next, node->node.name, "");
-  return next;
-}
-
-Result<State> with_value(const State& state, NodeIds ids, const std::string& extension, const std::string& key,
-                         const Json& value) {
-  const Result<const Key*> found = find_both(extension, key);
-  if (!found) return found.error();
-  const Extension& of = *find_extension(extension);
-  if (const std::string wrong = check_value(**found, value); !wrong.empty()) return Error{key, wrong};
-  if ((*found)->type == KeyType::kNode)
-    if (const std::string name = value.get<std::string>(); !name.empty()) {
-      const DocumentNode* const named = state.find(name);
-      if (!named || !named->node.device)
-        return Error{key, "names '" + name +
-                              (named ? "', which has no haptic device; add one to it first" : "', which is not there")};
-    }
-  if (of.on_scene) {
-    Level scene = scene_of(state);
-    if (!of.present(&scene)) of.add(&scene);
-    (*found)->set(&scene, value);
-    if (const std::string clash = of.settle(&scene); !clash.empty()) return Error{key, clash};
-    State next = state;
-    next.environment = scene.environment;
-    next.simulation = scene.simulation;
-    return next;
-  }
-  return each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
-    if (!of.present(&node)) return false;
-    // Stiffness and Young's modulus stand for each other: the one that is set last holds.
-    if (extension == "deformable" && key == "stiffness") node.deformable->young = 0.0;
-    (*found)->set(&node, value);
-    if (const std::string clash = of.settle(&node); !clash.empty()) return Error{node.name, clash};
-    return true;
-  });
-}
-
-Json value_of_key(const State& state, NodeId id, const std::string& extension, const std::string& key) {
-  const Result<const Key*> found = find_both(extension, key);
-  if (!found || !has_component(state, id, extension)) return {};
-  if (find_extension(extension)->on_scene) {
-    const Level scene = scene_of(state);
-    return (*found)->get(&scene);
-  }
-  return (*found)->get(&state.find(id)->node);
-}
-
-Json default_of_key(const std::string& extension, const std::string& key) {
-  const Result<const Key*> found = find_both(extension, key);
-  if (!found) return {};
-  const Extension& of = *find_extension(extension);
-  if (of.on_scene) {
-    Level scene;
-    of.add(&scene);
-    return (*found)->get(&scene);
-  }
-  LevelNode node;
-  of.add(&node);
-  return (*found)->get(&node);
-}
-
-Result<State> with_default(const State& state, NodeIds ids, const std::string& extension, const std::string& key) {
-  const Result<const Key*> found = find_both(extension, key);
-  if (!found) return found.error();
-  return with_value(state, ids, extension, key, default_of_key(extension, key));
-}
-
-Result<State> with_layer(const State& state, const LayerKey& key, PaintLayer layer) {
-  if (key.mesh >= state.meshes.size() || key.primitive >= state.meshes[key.mesh]->primitives.size() ||
-      layer.size() != state.meshes[key.mesh]->primitives[key.primitive].position.size())
-    return Error{"paint", "does not fit the mesh"};
-  State next = state;
-  next.paint.insert_or_assign(key, std::move(layer));
-  return next;
-}
-
-Result<State> without_layer(const State& state, std::uint32_t mesh, Channel channel) {
-  State next = state;
-  std::erase_if(next.paint, [&](const auto& each) { return each.first.mesh == mesh && each.first.channel == channel; });
-  return next;
-}
-
-Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh) {
-  std::optional<Change> change = changing(state, id);
-  if (!change) return kNoSuchNode;
-  State& next = change->state;
-  const auto number = static_cast<std::uint32_t>(next.meshes.size());
-  for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p)
-    for (const Channel channel : kChannels) {
-      std::vector<float>& values = painted(mesh.primitives[p], channel);
-      if (!values.empty()) next.paint.insert_or_assign({number, p, channel}, PaintLayer::from(values));
-      values = {};
-    }
-  mesh.source = -1;
-  next.meshes.push_back(std::make_shared<const DocumentMesh>(std::move(mesh)));
-  change->node->node.mesh = static_cast<std::int32_t>(number);
-  return std::move(change->state);
-}
-
-Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys) {
-  std::optional<Change> change = changing(state, id);
-  if (!change) return kNoSuchNode;
-  LevelNode& node = change->node->node;
-  if (!node.device) return Error{node.name, "has no haptic device; add one first"};
-  if (file.empty() || file.find('/') != std::string::npos)
-    return Error{file, "is no name for a script; it lies beside the level, without a folder"};
-  node.device->driver = keys.keys.empty() ? DriverKind::kNull : DriverKind::kScript;
-  node.device->file = keys.keys.empty() ? "" : file;
-  if (keys.keys.empty())
-    change->state.scripts.erase(file);
-  else
-    change->state.scripts[file] = std::make_shared<const ScriptKeys>(keys);
-  return std::move(change->state);
-}
-
-Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
-  Level level = level_of(state);
-  // Nodes are known again by a mark, wherever the edit puts new ones between them.
-  constexpr std::int32_t kMark = -2;
-  for (std::size_t i = 0; i < level.nodes.size(); ++i) level.nodes[i].source = kMark - static_cast<std::int32_t>(i);
-  if (Status s = edit(level); !s) return s.error();
-  if (level.nodes.size() < state.nodes.size() || level.meshes.size() < state.meshes.size())
-    return Error{"edit", "an edit of a level may not remove nodes or meshes"};
-  std::vector<NodeId> id_of;  // of each node of the changed level
-  NodeId fresh = next_id;
-  for (LevelNode& node : level.nodes) {
-    const bool known = node.source <= kMark;
-    const auto before = static_cast<std::size_t>(kMark - node.source);
-    id_of.push_back(known ? state.nodes[before]->id : fresh++);
-    node.source = known ? state.nodes[before]->node.source : -1;
-  }
-  const std::size_t mesh_count = state.meshes.size();
-  NodeId numbers = 1;
-  State next = state_of(std::move(level), numbers);  // numbered from 1 on, in order
-  for (auto& each : next.nodes) {
-    auto node = std::make_shared<DocumentNode>(*each);
-    node->id = id_of[each->id - 1];
-    if (each->parent != kNoNode) node->parent = id_of[each->parent - 1];
-    each = std::move(node);
-  }
-  next_id = fresh;
-  // What was there stays shared.
-  for (std::size_t i = 0; i < mesh_count; ++i) next.meshes[i] = state.meshes[i];
-  for (auto& [key, layer] : next.paint)
-    if (const auto before = state.paint.find(key); before != state.paint.end() && before->second == layer)
-      layer = before->second;
-  const bool same_looks = next.rest->materials.size() == state.rest->materials.size() &&
-                          next.rest->images.size() == state.rest->images.size();
-  if (same_looks) next.rest = state.rest;
-  next.scripts = state.scripts;
-  return next;
 }
 
 }  // namespace pliant

@@ -39,6 +39,7 @@ Level without_nodes(const State& state) {
   level.about = state.about;
   level.environment = state.environment;
   level.simulation = state.simulation;
+  level.stated = state.stated;
   return level;
 }
 
@@ -145,10 +146,12 @@ State state_of(Level level, NodeId& next_id) {
   state.about = std::move(level.about);
   state.environment = std::move(level.environment);
   state.simulation = level.simulation;
+  state.stated = std::move(level.stated);
   level.nodes.clear();
   level.meshes.clear();
   level.environment.reset();
   level.about.clear();
+  level.stated.clear();
   state.rest = std::make_shared<const Level>(std::move(level));
   return state;
 }
@@ -167,6 +170,7 @@ Level outline_of(const State& state) {
   level.about = state.about;
   level.environment = state.environment;
   level.simulation = state.simulation;
+  level.stated = state.stated;
   add_nodes(state, level);
   return level;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,7 @@ struct State {
   std::string about;                     // what the level shows
   std::optional<LevelEnvironment> environment;
   Simulation simulation;
+  std::set<std::string> stated;  // keys of the scene that are said, as Level::stated; those of nodes are theirs
   // Paths that devices follow, by the file that they name, relative to the level; files that cannot be read are absent.
   Scripts scripts;
 

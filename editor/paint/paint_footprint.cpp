@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kUnreached = std::numeric_limits<float>::infinity();
 // Shorter by more than rounding, or two nodes would go on improving each other for ever.
 constexpr float kShorter = 1 - 1e-5f;
 
@@ -43,15 +43,15 @@ void PaintSurface::march(const SurfaceHit& hit, double radius, const PaintMask& 
     return a.distance != b.distance ? a.distance > b.distance : a.node > b.node;
   };
   std::vector<float>& distance = work.distance_;
-  for (const std::uint32_t node : work.touched_) distance[node] = kFar;
+  for (const std::uint32_t node : work.touched_) distance[node] = kUnreached;
   work.touched_.clear();
   work.heap_.clear();
   const std::size_t nodes = topology.corners.first.size() - 1;
-  if (distance.size() < nodes) distance.resize(nodes, kFar);
+  if (distance.size() < nodes) distance.resize(nodes, kUnreached);
 
   const auto reached = [&](std::uint32_t node, float r) {
     if (!(r < kShorter * distance[node])) return;
-    if (distance[node] == kFar) work.touched_.push_back(node);
+    if (distance[node] == kUnreached) work.touched_.push_back(node);
     distance[node] = r;
     work.heap_.push_back({r, node});
     std::push_heap(work.heap_.begin(), work.heap_.end(), later);
@@ -80,7 +80,7 @@ void PaintSurface::march(const SurfaceHit& hit, double radius, const PaintMask& 
         const float edge = length(p[k] - pu);
         if (r <= rim) longest = std::max(longest, edge);
         const float other = distance[pair[1 - k]];
-        reached(pair[k], other < kFar ? arrive(pu, p[1 - k], p[k], r, other).distance : r + edge);
+        reached(pair[k], other < kUnreached ? arrive(pu, p[1 - k], p[k], r, other).distance : r + edge);
       }
     }
   }
@@ -155,7 +155,7 @@ std::vector<std::uint32_t> PaintSurface::of_primitive(std::uint32_t primitive) c
 
 std::vector<std::uint32_t> PaintSurface::in_box(const Box& box) const {
   std::vector<std::uint32_t> found;
-  float least = kFar;
+  float least = kUnreached;
   for (std::uint32_t v = 0; v < mesh_.vertex_count; ++v) {
     const vec3 p = mesh_.position(v), away = glm::max(glm::max(box.min - p, p - box.max), vec3(0));
     const float distance2 = dot(away, away);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "content/mesh/touch_mesh.h"
+#include "runtime/disjoint_sets.h"
 #include "systems/touch/triangle_tree.h"
 
 namespace pliant {
@@ -17,23 +18,6 @@ bool flattens(const dmat3& frame) {
   const double longest = std::max({length(frame[0]), length(frame[1]), length(frame[2])});
   return !(std::abs(glm::determinant(frame)) > kFlat * longest * longest * longest) || !std::isfinite(longest);
 }
-
-// Sets of what hangs together, smaller names first.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 }  // namespace
 
@@ -89,7 +73,7 @@ PaintSurface::Topology PaintSurface::split_at_creases(const Mesh& mesh, const Co
   std::vector<std::uint32_t> fan;  // of each corner around the vertex: the place of the first of its fan
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     const std::uint32_t begin = corners.first[v], count = corners.first[v + 1] - begin;
-    Sets fans(count);
+    DisjointSets fans(count);
     for (std::uint32_t a = 0; a < count; ++a) {
       const std::uint32_t t = corners.corner[begin + a] / 3;
       const auto edge = static_cast<int>(corners.corner[begin + a] % 3);  // from the vertex; its other end has the same
@@ -117,7 +101,7 @@ PaintSurface::Topology PaintSurface::split_at_creases(const Mesh& mesh, const Co
 }
 
 void PaintSurface::find_parts() {
-  Sets sets(mesh_.vertex_count);
+  DisjointSets sets(mesh_.vertex_count);
   for (const uvec3& t : mesh_.triangles) sets.join(t.x, t.y), sets.join(t.y, t.z);
   part_.resize(mesh_.vertex_count);
   for (std::uint32_t v = 0; v < mesh_.vertex_count; ++v) {

@@ -17,18 +17,18 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostEntries = 5000;  // of a folder: beyond, one types a part of the name
 
-struct Entry {
+struct FolderEntry {
   std::string name, shown;
   bool folder = false;
   std::uintmax_t size = 0;
 };
 struct Listing {
-  std::vector<Entry> entries;  // folders first, by name
+  std::vector<FolderEntry> entries;  // folders first, by name
   std::size_t left_out = 0;
   std::string fault;
 };
 
-std::string lower(std::string text) {
+std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
@@ -36,7 +36,7 @@ std::string lower(std::string text) {
 bool opens(const fs::path& name) {
   constexpr const char* kEndings[] = {".glb", ".gltf", ".obj",  ".stl", ".ply", ".off",
                                       ".msh", ".vtk",  ".mesh", ".fbx", ".dae"};
-  const std::string ending = lower(name.extension().string());
+  const std::string ending = lower_case(name.extension().string());
   return std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
 }
 
@@ -49,7 +49,7 @@ struct Filter {
 Listing read_folder(const fs::path& folder, const Filter& filter, const Jobs::Stop& stop) {
   Listing out;
   std::error_code failed;
-  const std::string part = lower(filter.part);
+  const std::string part = lower_case(filter.part);
   auto it = fs::directory_iterator(folder, fs::directory_options::none, failed);
   if (failed) {
     out.fault = fs::exists(folder) ? "cannot be read (" + failed.message() + ")" : "is not there";
@@ -57,10 +57,10 @@ Listing read_folder(const fs::path& folder, const Filter& filter, const Jobs::St
   }
   for (; it != fs::directory_iterator() && !stop; it.increment(failed)) {
     if (failed) break;
-    Entry entry;
+    FolderEntry entry;
     entry.name = it->path().filename().string();
     if (!filter.hidden && entry.name.starts_with('.')) continue;
-    if (!part.empty() && lower(entry.name).find(part) == std::string::npos) continue;
+    if (!part.empty() && lower_case(entry.name).find(part) == std::string::npos) continue;
     std::error_code gone;
     entry.folder = it->is_directory(gone);
     if (!entry.folder && (!it->is_regular_file(gone) || (!filter.all && !opens(entry.name)))) continue;
@@ -72,8 +72,8 @@ Listing read_folder(const fs::path& folder, const Filter& filter, const Jobs::St
     entry.shown = printable(entry.name);
     out.entries.push_back(std::move(entry));
   }
-  std::sort(out.entries.begin(), out.entries.end(), [](const Entry& a, const Entry& b) {
-    return a.folder != b.folder ? a.folder : lower(a.name) < lower(b.name);
+  std::sort(out.entries.begin(), out.entries.end(), [](const FolderEntry& a, const FolderEntry& b) {
+    return a.folder != b.folder ? a.folder : lower_case(a.name) < lower_case(b.name);
   });
   return out;
 }
@@ -188,7 +188,7 @@ class FileBrowser : public Panel {
     clipper.Begin(static_cast<int>(listing_->entries.size()));
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const Entry& entry = listing_->entries[static_cast<std::size_t>(i)];
+        const FolderEntry& entry = listing_->entries[static_cast<std::size_t>(i)];
         ImGui::PushID(i);
         const bool pressed =
             ImGui::Selectable("##entry", selected_ == entry.name,

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "content/keys/extension_table.h"
+#include "editor/app/app.h"
 #include "editor/panels/key_fields.h"
 #include "editor/panels/panels.h"
 #include "editor/tools/gizmo_math.h"
@@ -210,6 +211,8 @@ class InspectorPanel : public Panel {
     if (key_field(editor, key, next))
       editor.apply(what, with_value(editor.state(), ids, extension.name, key.name, next),
                    extension.name + "." + key.name);
+    if (key.name == "error" && ui::button("Measure models\u2026", "What this budget chooses, and from what"))
+      app_.show_panel("Error budget");
     if (const std::string doubtful = doubt(key, value); !doubtful.empty()) {
       ImGui::GetWindowDrawList()->AddRect(at, {at.x + ImGui::GetContentRegionAvail().x, at.y + ImGui::GetFrameHeight()},
                                           ui::color(ui::palette().warning), ui::px(4));

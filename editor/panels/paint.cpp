@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-constexpr float kLabelShare = 0.30f;  // [1] of the panel's width
-constexpr float kCurve = 44;          // [point] height of the falloff's picture
+constexpr float kPaintLabelShare = 0.30f;  // [1] of the panel's width
+constexpr float kCurve = 44;               // [point] height of the falloff's picture
 
 template <class T>
 struct Choice {
@@ -48,7 +48,7 @@ void choices(const Choice<T> (&all)[n], T& value) {
 void row(const char* label, const char* hint_text) {
   const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
   ui::label(label, hint_text);
-  ImGui::SameLine(left + kLabelShare * wide);
+  ImGui::SameLine(left + kPaintLabelShare * wide);
 }
 
 void warn(const std::string& text) {
@@ -212,7 +212,7 @@ class PaintPanel : public Panel {
     if (ui::button("Clear", "Nothing is painted of this any more")) painting.clear();
     const Range range = paint_range(attribute_of(painting.channel));
     const bool share = is_share(painting.channel);
-    const float wide = ImGui::GetContentRegionAvail().x * (1 - kLabelShare) / ui::scale();
+    const float wide = ImGui::GetContentRegionAvail().x * (1 - kPaintLabelShare) / ui::scale();
     row("Gradient", "From the first to the second click along a straight line, and level beyond both");
     ui::number("gradient from", painting.gradient_from, range.min, range.max, share ? "" : "\u00d7", !share,
                0.5f * wide - 16);

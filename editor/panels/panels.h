@@ -21,5 +21,6 @@ std::unique_ptr<Panel> make_start_page(App& app);
 std::unique_ptr<Panel> make_play_panel(App& app);
 std::unique_ptr<Panel> make_plots_panel(App& app);
 std::unique_ptr<Panel> make_device_panel(App& app);
+std::unique_ptr<Panel> make_error_budget_panel();
 
 }  // namespace pliant

@@ -25,9 +25,9 @@ constexpr const char* kLevel = "as the level says";
 constexpr const char* kMouse = "mouse";
 constexpr const char* kScript = "script";
 constexpr const char* kOrbit = "orbit";
-constexpr const char* kNone = "nothing";
+constexpr const char* kNoSource = "nothing";
 
-std::string word_of(const PlaySource& source) {
+std::string source_word(const PlaySource& source) {
   switch (source.kind) {
     case PlaySource::Kind::kLevel:
       return kLevel;
@@ -38,7 +38,7 @@ std::string word_of(const PlaySource& source) {
     case PlaySource::Kind::kOrbit:
       return kOrbit;
     case PlaySource::Kind::kNone:
-      return kNone;
+      return kNoSource;
     case PlaySource::Kind::kDriver:
       return source.what;
   }
@@ -49,7 +49,7 @@ PlaySource source_of(const std::string& word, const PlaySource& before) {
   if (word == kLevel) return {PlaySource::Kind::kLevel, {}};
   if (word == kMouse) return {PlaySource::Kind::kMouse, {}};
   if (word == kOrbit) return {PlaySource::Kind::kOrbit, {}};
-  if (word == kNone) return {PlaySource::Kind::kNone, {}};
+  if (word == kNoSource) return {PlaySource::Kind::kNone, {}};
   if (word == kScript)
     return {PlaySource::Kind::kScript, before.kind == PlaySource::Kind::kScript ? before.what : std::string()};
   return {PlaySource::Kind::kDriver, word};
@@ -113,13 +113,13 @@ class PlayPanel : public Panel {
       for (const auto& each : editor.state().nodes)
         if (each->node.probe || each->node.handle) names.push_back(each->node.name);
     }
-    std::vector<std::string> choices{kLevel, kMouse, kScript, kOrbit, kNone};
+    std::vector<std::string> choices{kLevel, kMouse, kScript, kOrbit, kNoSource};
     if (!editor.devices_looked_for) editor.look_for_devices();
     for (const std::string& wish : editor.device_wishes()) choices.push_back(wish);
     if (names.empty()) ui::dim("The level has no probe and no tool.");
     for (const std::string& name : names) {
       PlaySource source = play.sources.contains(name) ? play.sources.at(name) : PlaySource{};
-      std::string word = word_of(source);
+      std::string word = source_word(source);
       for (const PlayEffector& each : play.status().effectors)  // the probe that was added for it
         if (play.on() && each.name == name && each.source == kMouse) word = kMouse;
       const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;

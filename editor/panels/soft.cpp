@@ -9,6 +9,7 @@
 #include "content/author/staging.h"
 #include "content/author/touchable.h"
 #include "content/keys/extensions.h"
+#include "content/keys/stated.h"
 #include "content/level/soft_preview.h"
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
@@ -95,6 +96,7 @@ class SoftPanel : public Panel {
       of.deformable.reset();
       of.soft_body.reset();
       of.rigid_body.reset();
+      for (const char* gone : {"deformable", "soft_body", "rigid_body"}) forget_stated(of.stated, gone);
       return Status(Done{});
     });
     ImGui::NewLine();

@@ -11,7 +11,7 @@ namespace {
 constexpr double kGlideTime = 0.015;   // [s] time constant of the way after what is pointed at
 constexpr double kFastestFree = 8.0;   // [m/s] clear of every surface
 constexpr double kFastestSlide = 0.5;  // [m/s] pressed in
-constexpr double kArc = 0.6;           // [1] of the way that is left: so high it goes over what lies between
+constexpr double kSwingArc = 0.6;      // [1] of the way that is left: so high it goes over what lies between
 
 }  // namespace
 
@@ -62,7 +62,7 @@ std::optional<dvec3> PlayHand::update(double dt) {
     const dvec3 to = pointer_->update(dt);
     const bool free = pointer_->free();
     dvec3 way = to - at_;
-    if (free && seen_) way += kArc * length(way) * seen_->normal;
+    if (free && seen_) way += kSwingArc * length(way) * seen_->normal;
     const double left = length(way), most = (free ? kFastestFree : kFastestSlide) * dt;
     at_ += way * std::min(1.0 - std::exp(-dt / kGlideTime), left > most ? most / left : 1.0);
     return at_;

@@ -31,6 +31,25 @@ double round_above(double value) {
   return 10.0 * decade;
 }
 
+std::vector<double> axis_marks(const PlotAxis& axis, int most) {
+  const double low = axis.low * axis.shown, high = axis.high * axis.shown;
+  std::vector<double> marks;
+  if (!axis.decades) {
+    const double step = round_step(high - low, most);
+    for (double v = std::ceil(low / step - 1e-9) * step; v <= high * (1 + 1e-12) + 1e-9 * step; v += step)
+      marks.push_back(v);
+    return marks;
+  }
+  for (const std::vector<double>& of : {std::vector<double>{1, 2, 5}, {1, 3}, {1}}) {
+    marks.clear();
+    for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
+      for (const double each : of)
+        if (each * decade >= low * (1 - 1e-9) && each * decade <= high * (1 + 1e-9)) marks.push_back(each * decade);
+    if (marks.size() <= static_cast<std::size_t>(most)) break;
+  }
+  return marks;
+}
+
 Plot::Plot(const char* name, const char* title, ImVec2 size, PlotAxis x, PlotAxis y, bool x_labels)
     : x_(x), y_(y), list_(ImGui::GetWindowDrawList()) {
   const Palette& p = palette();
@@ -41,35 +60,38 @@ Plot::Plot(const char* name, const char* title, ImVec2 size, PlotAxis x, PlotAxi
   low_ = {corner.x + px(kLeft), corner.y + px(kAbove)};
   high_ = {corner.x + size.x - px(kRight), corner.y + size.y - px(x_labels ? kBelow : kAbove)};
   held_ = ImGui::IsItemActive();
+  hovered_ = ImGui::IsItemHovered();
   let_go_ = ImGui::IsItemDeactivated();
   const double across = std::clamp(
       static_cast<double>((ImGui::GetIO().MousePos.x - low_.x) / std::max(high_.x - low_.x, 1.0f)), 0.0, 1.0);
-  mouse_x_ = x_.low + across * (x_.high - x_.low);
+  mouse_x_ = x_.decades ? x_.low * std::pow(x_.high / x_.low, across) : x_.low + across * (x_.high - x_.low);
   list_->AddRectFilled(low_, high_, color(p.window), px(2));
   ImGui::PushFont(font(Type::kSmall));
   const float line = ImGui::GetTextLineHeight();
   const auto label = [](double value, double step) {
+    if (step == 0.0) return fmt::format("{:g}", value);
     const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
     return fmt::format("{:.{}f}", value == 0.0 ? 0.0 : value, digits);
   };
-  const double step_y =
-      round_step((y_.high - y_.low) * y_.shown, std::max(2, static_cast<int>((high_.y - low_.y) / px(kTickUp))));
-  for (double v = std::ceil(y_.low * y_.shown / step_y) * step_y; v <= y_.high * y_.shown + 1e-9; v += step_y) {
+  const auto step_of = [](const PlotAxis& axis, const std::vector<double>& marks) {
+    return axis.decades || marks.size() < 2 ? 0.0 : marks[1] - marks[0];
+  };
+  const std::vector<double> rows = axis_marks(y_, std::max(2, static_cast<int>((high_.y - low_.y) / px(kTickUp))));
+  for (const double v : rows) {
     const float at = on({x_.low, v / y_.shown}).y;
     list_->AddLine({low_.x, at}, {high_.x, at}, color(p.text, 0.10f));
-    const std::string text = label(v, step_y);
+    const std::string text = label(v, step_of(y_, rows));
     list_->AddText({low_.x - px(5) - ImGui::CalcTextSize(text.c_str()).x,
                     std::clamp(at - 0.5f * line, corner.y, high_.y - line + px(4))},
                    color(p.dim), text.c_str());
   }
-  const double step_x =
-      round_step((x_.high - x_.low) * x_.shown, std::max(1, static_cast<int>((high_.x - low_.x) / px(kTick))));
+  const std::vector<double> columns = axis_marks(x_, std::max(1, static_cast<int>((high_.x - low_.x) / px(kTick))));
   const float unit_x = high_.x - ImGui::CalcTextSize(x_.unit).x;
-  for (double v = std::ceil(x_.low * x_.shown / step_x - 1e-9) * step_x; v <= x_.high * x_.shown + 1e-9; v += step_x) {
+  for (const double v : columns) {
     const float at = on({v / x_.shown, y_.low}).x;
     list_->AddLine({at, low_.y}, {at, high_.y}, color(p.text, 0.07f));
     if (!x_labels) continue;
-    const std::string text = label(v, step_x);
+    const std::string text = label(v, step_of(x_, columns));
     const float wide = ImGui::CalcTextSize(text.c_str()).x;
     if (at + 0.5f * wide > unit_x - px(6)) continue;
     list_->AddText({std::max(at - 0.5f * wide, low_.x - px(kLeft)), high_.y + px(2)}, color(p.dim), text.c_str());
@@ -96,8 +118,11 @@ void Plot::text(float x, float y, const char* words) {
 }
 
 ImVec2 Plot::on(dvec2 at) const {
-  const double across = (at.x - x_.low) / std::max(x_.high - x_.low, 1e-300),
-               up = (at.y - y_.low) / std::max(y_.high - y_.low, 1e-300);
+  const auto along = [](const PlotAxis& axis, double value) {
+    if (axis.decades) return std::log(std::max(value, 1e-300) / axis.low) / std::log(axis.high / axis.low);
+    return (value - axis.low) / std::max(axis.high - axis.low, 1e-300);
+  };
+  const double across = along(x_, at.x), up = along(y_, at.y);
   const auto within = [](double share) { return static_cast<float>(std::clamp(share, -4.0, 5.0)); };
   return {low_.x + within(across) * (high_.x - low_.x), high_.y - within(up) * (high_.y - low_.y)};
 }
@@ -154,8 +179,22 @@ void Plot::upright(double x, const ImVec4& of, const char* text) {
   if (*text) list_->AddText({at + px(4), high_.y - ImGui::GetTextLineHeight() - px(2)}, color(of), text);
 }
 
-void Plot::dot(dvec2 at, const ImVec4& of) {
-  list_->AddCircleFilled(on(at), px(3.5f), color(of));
+void Plot::level(double y, const ImVec4& of, const char* words) {
+  curve(
+      2, [&](std::size_t i) { return dvec2(i == 0 ? x_.low : x_.high, y); }, of, 1.5f, true);
+  if (!*words) return;
+  ImGui::PushFont(font(Type::kSmall));
+  const ImVec2 size = ImGui::CalcTextSize(words);
+  const float at = on({x_.low, y}).y, above = at - size.y - px(2);
+  list_->AddText({high_.x - size.x - px(6), above < low_.y ? at + px(2) : above}, color(of), words);
+  ImGui::PopFont();
+}
+
+void Plot::dot(dvec2 at, const ImVec4& of, float radius, bool filled) {
+  if (filled)
+    list_->AddCircleFilled(on(at), px(radius), color(of));
+  else
+    list_->AddCircle(on(at), px(radius), color(of), 0, px(1.5f));
 }
 
 void Plot::legends_below(int lines) {

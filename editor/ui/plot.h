@@ -14,12 +14,15 @@ struct PlotAxis {
   double low = 0.0, high = 1.0;
   const char* unit = "";  // "ms", "N"
   double shown = 1.0;     // what is written is the value times this
+  bool decades = false;   // logarithmic; both ends are above 0
 };
 
 // Steps of 1, 2 or 5 times a power of ten: at most `most` of them between the ends.
 double round_step(double span, int most);
 // The least round number that is not below `value`, so that an axis does not tremble.
 double round_above(double value);
+// What is written along an axis: round numbers, at most `most` of them, in units as shown; 1, 2, 5 of decades.
+std::vector<double> axis_marks(const PlotAxis& axis, int most);
 
 class Plot {
  public:
@@ -36,7 +39,10 @@ class Plot {
   void marks(std::size_t count, const std::function<double(std::size_t)>& x, const std::function<bool(std::size_t)>& at,
              const ImVec4& color);
   void upright(double x, const ImVec4& color, const char* text = "");
-  void dot(dvec2 at, const ImVec4& color);
+  void level(double y, const ImVec4& color, const char* text = "");  // dashed, across
+  void dot(dvec2 at, const ImVec4& color, float radius = 3.5f, bool filled = true);
+  ImVec2 on(dvec2 at) const;  // [pixel] of the window
+  bool hovered() const { return hovered_; }
   // In the upper right corner, below each other; or so many in the lower one.
   void legends_below(int lines);
   void legend(const char* text, const ImVec4& color, bool dashed = false);
@@ -47,13 +53,12 @@ class Plot {
   double mouse_x() const { return mouse_x_; }  // of the axis
 
  private:
-  ImVec2 on(dvec2 at) const;
   void text(float x, float y, const char* words);
   const char* title_ = "";
   PlotAxis x_, y_;
   ImVec2 low_, high_;  // [pixel] of what is within the axes
   ImDrawList* list_;
-  bool held_ = false, let_go_ = false;
+  bool held_ = false, let_go_ = false, hovered_ = false;
   double mouse_x_ = 0.0;
   float legend_y_ = 0.0f;
 };

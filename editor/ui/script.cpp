@@ -15,9 +15,9 @@
 namespace pliant::ui {
 namespace {
 
-constexpr double kPatience = 60.0;  // [s] for what `await` waits for, and for the editor to come to rest
-constexpr int kLateFrames = 10;     // for what a click is to hit
-constexpr int kRestFrames = 3;      // a window that opens is drawn, laid out, and answered
+constexpr double kScriptPatience = 60.0;  // [s] for what `await` waits for, and for the editor to come to rest
+constexpr int kLateFrames = 10;           // for what a click is to hit
+constexpr int kRestFrames = 3;            // a window that opens is drawn, laid out, and answered
 
 struct NamedKey {
   const char* name;
@@ -305,7 +305,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "await") {
     if (began_ < 0) began_ = now.now;
     std::string address = step.rest;
-    double patience = kPatience;
+    double patience = kScriptPatience;
     if (const std::size_t last = address.rfind(' '); last != std::string::npos)
       if (const auto seconds = number_of(address.substr(last + 1))) {
         patience = *seconds;
@@ -332,7 +332,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "hear") {
     if (began_ < 0) began_ = now.now;
     waits = !now.has_said(step.rest);
-    if (waits && now.now - began_ > kPatience) return wrong("the console does not say '" + step.rest + "'");
+    if (waits && now.now - began_ > kScriptPatience) return wrong("the console does not say '" + step.rest + "'");
     return Done{};
   }
   if (step.verb == "figures") {
@@ -363,7 +363,7 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
   const bool in_parts = verb == "move" || verb == "release";  // of a press: the hand does not wait
   if (++rest_ < kRestFrames) return Done{};
   if (!now.under_way.empty() && !in_parts && verb != "wait" && verb != "await" && verb != "hear") {
-    if (until_ == 0.0) until_ = now.now + kPatience;
+    if (until_ == 0.0) until_ = now.now + kScriptPatience;
     if (now.now < until_) return Done{};
     return Error{fmt::format("{}:{}", file_, steps_.front().line),
                  "the editor did not come to rest within 60 s: " + now.under_way + " is under way"};

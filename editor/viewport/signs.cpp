@@ -9,9 +9,9 @@ namespace {
 
 constexpr int kArc = 32;  // pieces of a circle
 
-class Pen {
+class SignPen {
  public:
-  Pen(std::vector<ViewLine>& lines, vec4 color) : lines_(lines), color_(color) {}
+  SignPen(std::vector<ViewLine>& lines, vec4 color) : lines_(lines), color_(color) {}
   void line(dvec3 a, dvec3 b) { lines_.push_back({vec3(a), vec3(b), color_, true}); }
   // From angle `from` to `to` [rad], 0 at u, a quarter turn at v.
   void arc(dvec3 middle, dvec3 u, dvec3 v, double from = 0.0, double to = 2.0 * glm::pi<double>()) {
@@ -56,7 +56,7 @@ dmat3 turn_of(const dmat4& frame) {
   return {x, y, cross(x, y)};
 }
 
-void draw_probe(Pen& pen, const Probe& probe, dvec3 at, const dmat3& turn, double small) {
+void draw_probe(SignPen& pen, const Probe& probe, dvec3 at, const dmat3& turn, double small) {
   const double radius = probe.radius;
   if (!probe.points.empty()) {
     for (const vec3& p : probe.points) {
@@ -83,7 +83,7 @@ void draw_probe(Pen& pen, const Probe& probe, dvec3 at, const dmat3& turn, doubl
   if (radius < 0.4 * small) pen.cross(at, turn, small);
 }
 
-void draw_light(Pen& pen, const Light& light, dvec3 at, const dmat3& turn, double small) {
+void draw_light(SignPen& pen, const Light& light, dvec3 at, const dmat3& turn, double small) {
   const dvec3 along = -turn[2];
   if (light.kind == Light::Kind::kDirectional) {
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.5, 0.0}, {-0.5, 0.0}, {0.0, 0.5}, {0.0, -0.5}}) {
@@ -110,7 +110,7 @@ void draw_light(Pen& pen, const Light& light, dvec3 at, const dmat3& turn, doubl
   }
 }
 
-void draw_camera(Pen& pen, const Camera& camera, dvec3 at, const dmat3& turn, double small) {
+void draw_camera(SignPen& pen, const Camera& camera, dvec3 at, const dmat3& turn, double small) {
   const double deep = 2.5 * small, half = deep * std::tan(0.5 * static_cast<double>(camera.yfov)), wide = 1.5 * half;
   dvec3 corner[4];
   const double x[] = {-1, 1, 1, -1}, y[] = {-1, -1, 1, 1};
@@ -126,7 +126,7 @@ void draw_camera(Pen& pen, const Camera& camera, dvec3 at, const dmat3& turn, do
 }
 
 // A hand's device: a stand and an arm.
-void draw_device(Pen& pen, dvec3 at, const dmat3& turn, double small) {
+void draw_device(SignPen& pen, dvec3 at, const dmat3& turn, double small) {
   const dvec3 x = small * turn[0], y = small * turn[1], z = small * turn[2];
   const dvec3 foot = at - 0.8 * y;
   pen.arc(foot, 0.7 * x, 0.7 * z);
@@ -150,11 +150,11 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
     const dvec3 at(frames[i][3]);
     const dmat3 turn = turn_of(frames[i]);
     if (order.settings.nodes) {
-      Pen pen(lines, selected[i] ? colors.selected : colors.plain);
+      SignPen pen(lines, selected[i] ? colors.selected : colors.plain);
       const std::size_t before = lines.size();
       if (node.probe) {
         const vec3 own = glm::pow(glm::clamp(node.probe->color, vec3(0), vec3(1)), vec3(1.0f / 2.2f));
-        Pen of_probe(lines, selected[i] ? colors.selected : vec4(glm::max(own, vec3(0.3f)), 1.0f));
+        SignPen of_probe(lines, selected[i] ? colors.selected : vec4(glm::max(own, vec3(0.3f)), 1.0f));
         draw_probe(of_probe, *node.probe, at, turn, small);
       }
       if (node.light) draw_light(pen, *node.light, at, turn, small);
@@ -171,8 +171,8 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
       dmat4 rigid(turn);
       rigid[3] = glm::dvec4(at, 1.0);
       if (node.soft_body && !node.soft_body->pinned.empty())
-        Pen(lines, colors.pinned).box(rigid, node.soft_body->pinned);
-      if (node.handle && !node.handle->box.empty()) Pen(lines, colors.handle).box(rigid, node.handle->box);
+        SignPen(lines, colors.pinned).box(rigid, node.soft_body->pinned);
+      if (node.handle && !node.handle->box.empty()) SignPen(lines, colors.handle).box(rigid, node.handle->box);
     }
   }
 }

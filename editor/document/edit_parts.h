@@ -1,0 +1,24 @@
+// What edits of several kinds share (edits.h).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "editor/document/edits.h"
+
+namespace pliant {
+
+inline const Error kNoSuchNode{"edit", "the node is not there any more"};
+
+// A copy of the node to be changed, in a copy of the state.
+struct NodeChange {
+  State state;
+  std::shared_ptr<DocumentNode> node;
+};
+std::optional<NodeChange> changing(const State& state, NodeId id);
+
+// Every reference to a node by its name.
+void rename_references(State& state, const std::string from, const std::string to);
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+#include "editor/document/said_keys.h"
+
+#include "content/keys/extension_table.h"
+
+namespace pliant {
+namespace {
+
+// Where it is noted that keys of an extension are said; the node becomes this state's own.
+std::set<std::string>& stated_of(State& state, NodeId id, const std::string& extension) {
+  if (find_extension(extension)->on_scene) return state.stated;
+  const std::size_t at = state.place(id);
+  const auto node = std::make_shared<DocumentNode>(*state.nodes[at]);
+  state.nodes[at] = node;
+  return node->node.stated;
+}
+
+}  // namespace
+
+Result<State> with_said(const State& state, NodeId id, const std::vector<SaidKey>& keys) {
+  Result<State> next(state);
+  for (const SaidKey& each : keys) {
+    next = with_value(*next, NodeIds(&id, 1), each.extension, each.key, each.value);
+    if (!next) return next;
+    stated_of(*next, id, each.extension).insert(each.extension + "." + each.key);
+  }
+  return next;
+}
+
+Result<State> without_said(const State& state, NodeId id, const std::vector<SaidKey>& keys) {
+  Result<State> next(state);
+  for (const SaidKey& each : keys) {
+    next = with_default(*next, NodeIds(&id, 1), each.extension, each.key);
+    if (!next) return next;
+    stated_of(*next, id, each.extension).erase(each.extension + "." + each.key);
+  }
+  return next;
+}
+
+}  // namespace pliant

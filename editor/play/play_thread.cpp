@@ -1,0 +1,379 @@
+// A run's own thread: opens the session, takes turns of ticks, shows what has become of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "content/files/exr.h"
+#include "content/safety_cap.h"
+#include "editor/play/play_inside.h"
+#include "engine/sources.h"
+#include "runtime/clock.h"
+#include "systems/hash_state.h"
+#include "systems/touch/publish.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kTickSlice = 0.012;      // [s] of ticks in a row, so that commands are heard
+constexpr double kFarthestBehind = 0.05;  // [s] a slow machine plays slower; it does not catch up
+constexpr auto kTurn = std::chrono::milliseconds(4);
+constexpr auto kIdleTurn = std::chrono::milliseconds(15);
+constexpr double kShowEvery = 0.03, kPaceOver = 0.5;  // [s]
+constexpr double kRowSeconds = 4.0;                   // [s] of rows that may wait for this thread
+
+double seconds_since(std::uint64_t then) {
+  return static_cast<double>(now_ns() - then) * 1e-9;
+}
+
+std::string words_of(const World& world, const SessionEffector& effector, const PlaySource& source) {
+  switch (source.kind) {
+    case PlaySource::Kind::kLevel:
+      return describe_source(world, effector.entity);
+    case PlaySource::Kind::kMouse:
+      return "mouse";
+    case PlaySource::Kind::kScript:
+      return "script:" + source.what;
+    case PlaySource::Kind::kOrbit:
+      return "orbit";
+    case PlaySource::Kind::kNone:
+      return "none";
+    case PlaySource::Kind::kDriver:
+      return "device:" + source.what;
+  }
+  return {};
+}
+
+// A name that the level does not have yet.
+std::string free_name(const Level& level, std::string name) {
+  const auto taken = [&](const LevelNode& node) { return node.name == name; };
+  while (std::any_of(level.nodes.begin(), level.nodes.end(), taken)) name += "'";
+  return name;
+}
+
+bool wants_mouse(const Level& level, const PlayOptions& options) {
+  if (!options.mouse_probe) return false;
+  for (const auto& [name, source] : options.sources)
+    if (source.kind == PlaySource::Kind::kMouse) return false;
+  return std::none_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
+    if (node.handle) return true;  // it takes hold of it
+    if (!node.device) return false;
+    const HapticDevice& device = *node.device;
+    return device.driver == DriverKind::kMouse ||
+           (device.driver == DriverKind::kExternal && device.id.find("mouse") != std::string::npos);  // may be
+  });
+}
+
+}  // namespace
+
+void PlayRun::run() {
+  Inside in(*this);
+  std::string error;
+  try {
+    if (Status opened = open(in); !opened) {
+      error = opened.error().message();
+    } else {
+      while (!end_) turn(in);
+    }
+  } catch (const std::exception& thrown) {
+    error = thrown.what();
+  }
+  close(in);
+  const std::lock_guard lock(mutex_);
+  if (!error.empty()) status_.error = error;
+  status_.phase = PlayPhase::kEnded;
+  busy_ = false;
+  commands_.clear();
+  changed_.notify_all();
+}
+
+Status PlayRun::open(Inside& in) {
+  Result<Level> level = options_.level();
+  if (!level) return level.error();
+  if (!level->has_pliant()) {
+    make_touchable(*level);
+    in.say("nothing in this level is deformable yet, so every mesh is while it is played; add a Deformable to keep it");
+  }
+  for (std::string& sentence : cap_safety(*level, {})) in.say(sentence);
+  if (wants_mouse(*level, options_)) {
+    const std::string name = free_name(*level, "mouse");
+    if (Status s = add_probes(*level, {{name, DriverKind::kMouse, {}}}); !s) return s;
+    options_.sources.emplace_back(name, PlaySource{PlaySource::Kind::kMouse, {}});
+  }
+  auto session = Session::open(Scene(*level));
+  if (!session) return session.error();
+  in.session = std::move(session).value();
+  in.parts = &SessionInside::of(*in.session);
+  World& world = in.parts->world;
+  for (const std::string& note : in.session->notes()) in.say(note);
+  if (level->environment && !level->environment->panorama.empty()) {
+    auto panorama = load_named_panorama(level->path.parent_path(), level->environment->panorama, &in.notes);
+    if (panorama)
+      world.environment.panorama = std::move(panorama).value();
+    else
+      in.say("the surroundings cannot be shown: " + panorama.error().message());
+  }
+  const std::size_t count = in.parts->effectors.size();
+  if (count == 0) in.say("the level has no probe and no tool, so nothing is touched");
+  in.journal.emplace(world, kRowSeconds);
+  in.poses = std::make_unique<Recorder<PoseRow>>(
+      rows_that_wait(kRowSeconds, world.simulation.touch_rate, std::max<std::size_t>(count, 1)));
+  in.parts->noted = [&in](Tick tick) {
+    in.journal->note(in.parts->world, tick);
+    for (std::uint32_t i = 0; i < in.parts->effectors.size(); ++i) {
+      const HapticDevice& device = in.parts->world.registry.get<HapticDevice>(in.parts->effectors[i].device);
+      const bool ready = device.status == DeviceStatus::kReady && tick.time - device.sensed_at <= kStaleAfter;
+      in.poses->record({tick.index, i, {device.position, device.rotation, ready}});
+    }
+  };
+  in.limited.resize(count);
+  in.sources.resize(count);
+  in.realtime = options_.realtime && !options_.past;
+  in.paused = options_.paused;
+  in.speed = options_.speed;
+  for (const SessionEffector& effector : in.parts->effectors) in.of_level.push_back(in.remember(effector));
+  in.apply_all();
+  if (!options_.past && !in.realtime && in.feels()) {
+    in.realtime = true;
+    in.watch();
+    in.say("a device feels in real time only, so the level plays in real time");
+  }
+  if (options_.past) in.begin_past(*options_.past, options_.until);
+  {
+    std::unique_lock lock(mutex_);
+    samples_.resize(count);
+    world_ = &world;
+    may_picture_ = true;
+    status_.objects = in.parts->objects;
+  }
+  show(in);
+  if (options_.shown) {
+    std::unique_lock lock(mutex_);
+    while (!ready_picture_ && !end_) {
+      parked_ = has_picture_;
+      changed_.notify_all();
+      changed_.wait_for(lock, kIdleTurn);
+    }
+  }
+  if (end_) return Done{};
+  if (in.realtime) {
+    in.move_hand(0.0);
+    if (Status s = in.session->start(); !s) return s;
+    if (in.paused) static_cast<void>(in.session->pause(true));
+  }
+  opening_ = false;
+  in.turned_ns = in.paced_ns = now_ns();
+  return Done{};
+}
+
+Status PlayRun::Inside::tick() {
+  if (again)
+    for (const auto& edits = run.options_.past->edits;
+         next_edit < edits.size() && edits[next_edit].tick <= parts->ticks; ++next_edit) {
+      const PlayEdit& edit = edits[next_edit];
+      static_cast<void>(session->set(edit.object, edit.key, edit.value));
+      past.edits.push_back(edit);
+    }
+  move_hand(1.0 / parts->world.simulation.touch_rate);
+  const Status done = session->step(1);
+  take_rows();
+  return done;
+}
+
+void PlayRun::Inside::move_hand(double dt) {
+  if (again) return;
+  if (!watched.empty() && run.hand.takes()) apply(std::exchange(watched, {}), {PlaySource::Kind::kMouse, {}});
+  if (moved.empty()) return;
+  const std::optional<dvec3> to = run.hand.update(dt);
+  if (!to) return;
+  static_cast<void>(session->move(moved, *to, held));
+}
+
+void PlayRun::Inside::take_rows() {
+  rows.clear();
+  pose_rows.clear();
+  journal->drain(rows);
+  poses->drain(pose_rows);
+  const std::size_t count = parts->effectors.size();
+  past_full |= past.ticks.size() >= PlayPast::kMostTicks;
+  for (const PoseRow& row : pose_rows) {
+    if (past_full) break;
+    if (row.effector == 0) past.ticks.push_back(row.tick);
+    past.poses.push_back(row.pose);
+  }
+  if (rows.empty()) return;
+  const std::lock_guard lock(run.mutex_);
+  for (const TickRow& row : rows) {
+    if (row.probe >= count) continue;
+    PlaySample sample;
+    sample.tick = row.tick;
+    sample.time = row.time;
+    sample.force = static_cast<float>(glm::length(row.reading.force));
+    sample.along = static_cast<float>(row.reading.normal_force);
+    sample.depth = static_cast<float>(row.reading.depth);
+    sample.limited = row.limited;
+    sample.touching = row.reading.in_contact;
+    for (std::size_t i = 0; i < parts->object_entities.size(); ++i)
+      if (sample.touching && parts->object_entities[i] == row.reading.object)
+        sample.object = static_cast<std::uint16_t>(i);
+    for (std::size_t i = 0; i < kSafetyLimits; ++i) limited[row.probe][i] += (row.limited >> i) & 1u;
+    run.samples_[row.probe].push_back(sample);
+  }
+}
+
+// Everything that has changed travels, now that nothing more changes.
+void PlayRun::Inside::flush() {
+  World& world = parts->world;
+  if (world.snapshots->unseen()) return;
+  const bool dirty = std::any_of(world.touch->objects.begin(), world.touch->objects.end(),
+                                 [](const ObjectState& object) { return !object.dirty.empty(); });
+  if (flushed == parts->ticks && !dirty) return;
+  flushed = parts->ticks;
+  publish(world, parts->last);
+}
+
+void PlayRun::turn(Inside& in) {
+  std::vector<Command> commands;
+  bool picture_waits = false;
+  {
+    const std::lock_guard lock(mutex_);
+    commands.swap(commands_);
+    picture_waits = parked_ = has_picture_ && !ready_picture_;
+    if (parked_) changed_.notify_all();
+  }
+  for (const Command& command : commands) command(in);
+  const double passed = seconds_since(in.turned_ns);
+  in.turned_ns = now_ns();
+  const std::uint64_t began = in.turned_ns;
+  const double rate = in.parts->world.simulation.touch_rate;
+  Status status = Done{};
+  bool more = false;
+  if (in.realtime) {
+    if (!in.session->running()) {
+      status = in.session->stop();
+      if (status) status = Error{"play", "the touch clock has ended; press Play again"};
+    } else {
+      in.move_hand(passed);
+      in.take_rows();
+    }
+  } else if (!picture_waits) {
+    if (in.again) {
+      while (status && !end_ && in.parts->ticks < in.until && seconds_since(began) < kTickSlice) status = in.tick();
+      more = in.parts->ticks < in.until;
+    } else if (in.steps > 0) {
+      for (; status && !end_ && in.steps > 0 && seconds_since(began) < kTickSlice; --in.steps) status = in.tick();
+      more = in.steps > 0;
+    } else if (!in.paused) {
+      in.due = std::min(in.due + passed * rate * in.speed, kFarthestBehind * rate * in.speed + 1.0);
+      for (; status && !end_ && in.due >= 1.0 && seconds_since(began) < kTickSlice; in.due -= 1.0) status = in.tick();
+    }
+    if (in.still()) in.flush();
+  }
+  if (!status) {
+    const std::lock_guard lock(mutex_);
+    status_.error = status.error().message();
+    end_ = true;
+  }
+  const bool still = in.still();
+  moving_ = !still && !(in.realtime && in.paused);
+  if (!more || seconds_since(in.shown_ns) > kShowEvery) show(in);
+  std::unique_lock lock(mutex_);
+  if (commands_.empty() && !more && !picture_waits) {
+    busy_ = false;
+    changed_.notify_all();
+  }
+  if (!more) changed_.wait_for(lock, still ? kIdleTurn : kTurn, [this] { return end_ || !commands_.empty(); });
+}
+
+void PlayRun::show(Inside& in) {
+  const Session::Parts& p = *in.parts;
+  const bool still = in.still() && !opening_;
+  const bool figures = seconds_since(in.shown_ns) > kShowEvery || still;
+  if (figures) in.shown_ns = now_ns();
+  if (still && in.hashed != p.ticks) {
+    in.hashed = p.ticks;
+    Hash hash = in.journal->hash();
+    hash_state(p.world, hash);
+    in.hash = fmt::format("{:016x}", hash.value());
+    if (auto findings = in.session->findings()) in.findings = std::move(findings).value();
+  }
+  const std::uint64_t tick = in.realtime && p.clock ? p.clock->now() + 1 : p.ticks;
+  if (const double over = seconds_since(in.paced_ns); over > kPaceOver) {
+    in.pace = static_cast<double>(tick - in.paced_tick) / p.world.simulation.touch_rate / over;
+    in.paced_ns = now_ns();
+    in.paced_tick = tick;
+  }
+  PlayStatus next;
+  if (figures) next.figures = in.session->figures();
+  for (std::size_t i = 0; i < p.effectors.size(); ++i) {
+    PlayEffector each;
+    each.name = p.effectors[i].name;
+    each.tool = !p.world.registry.has<Probe>(p.effectors[i].entity);
+    if (const Probe* probe = p.world.registry.find<Probe>(p.effectors[i].entity)) each.radius = probe->radius;
+    each.source = p.effectors[i].name == in.moved ? "mouse" : words_of(p.world, p.effectors[i], in.sources[i]);
+    if (auto reading = in.session->reading(each.name)) each.reading = *reading;
+    each.limited = in.limited[i];
+    next.effectors.push_back(std::move(each));
+  }
+  DevicesView devices;
+  in.view(devices);
+  devices.late_ticks = next.figures.overruns;
+  const SoftFigures* const soft = !p.soft->any() ? nullptr : p.clock ? &in.parts->soft->latest() : &p.soft->figures();
+  const std::lock_guard lock(mutex_);
+  if (figures) status_.figures = next.figures;
+  status_.effectors = std::move(next.effectors);
+  if (!figures) devices.late_ticks = status_.devices.late_ticks;
+  status_.devices = std::move(devices);
+  status_.surfaces.clear();
+  for (const auto& [name, surface] : p.surfaces) status_.surfaces.emplace(name, surface);
+  status_.phase = opening_                         ? PlayPhase::kOpening
+                  : in.again && p.ticks < in.until ? PlayPhase::kReplaying
+                  : in.paused || in.again          ? PlayPhase::kPaused
+                                                   : PlayPhase::kPlaying;
+  for (std::string& note : in.notes) status_.notes.push_back(std::move(note));
+  in.notes.clear();
+  status_.realtime = in.realtime;
+  status_.rate = p.world.simulation.touch_rate;
+  status_.tick = tick;
+  status_.time = static_cast<double>(tick) / status_.rate;
+  status_.pace = in.pace;
+  status_.speed = in.speed;
+  status_.again = in.again;
+  status_.until = in.until;
+  status_.soft = soft != nullptr;
+  if (soft) status_.soft_ms = soft->step_ms;
+  status_.soft_step_ms = 1e3 * p.world.simulation.soft_step;
+  status_.hash = still ? in.hash : std::string();
+  status_.findings = in.findings;
+}
+
+// Devices first: nobody holds a force while the rest is taken down.
+void PlayRun::close(Inside& in) {
+  if (in.session) {
+    const Status stopped = in.session->stop();
+    for (SessionEffector& effector : in.parts->effectors) in.parts->take_away(effector, EffectorSource::kReleased);
+    in.parts->noted = nullptr;
+    if (in.journal && in.poses) in.take_rows();
+    auto past = std::make_shared<const PlayPast>(std::move(in.past));
+    const std::lock_guard kept_lock(kept->mutex);
+    kept->past = std::move(past);
+    if (!stopped) {
+      const std::lock_guard lock(mutex_);
+      if (status_.error.empty()) status_.error = stopped.error().message();
+    }
+  }
+  {
+    std::unique_lock lock(mutex_);
+    may_picture_ = false;
+    status_.phase = PlayPhase::kEnded;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !has_picture_; });
+    world_ = nullptr;
+  }
+  in.journal.reset();
+  in.session.reset();
+}
+
+}  // namespace pliant
