@@ -16,7 +16,7 @@ namespace pliant {
 namespace {
 
 // What the device inside has been told and says; sample n is n millimetres along x.
-struct Inside {
+struct InsideDriver {
   std::vector<DeviceWrench> written;
   DeviceSample next;
   double step = 1e-3;  // [m]
@@ -26,7 +26,7 @@ struct Inside {
 
 class Counting : public Driver {
  public:
-  explicit Counting(Inside& inside) : inside_(inside) {}
+  explicit Counting(InsideDriver& inside) : inside_(inside) {}
   Status open(const std::string&) override { return Done{}; }
   DeviceCapabilities capabilities() const override {
     DeviceCapabilities can;
@@ -48,10 +48,10 @@ class Counting : public Driver {
   void make_safe() noexcept override { ++inside_.safe; }
 
  private:
-  Inside& inside_;
+  InsideDriver& inside_;
 };
 
-std::unique_ptr<Driver> opened(Inside& inside, const std::string& words) {
+std::unique_ptr<Driver> opened(InsideDriver& inside, const std::string& words) {
   auto chain = wrap(std::make_unique<Counting>(inside), words);
   EXPECT_TRUE(chain) << (chain ? "" : chain.error().message());
   EXPECT_TRUE(chain->driver->open(""));
@@ -60,7 +60,7 @@ std::unique_ptr<Driver> opened(Inside& inside, const std::string& words) {
 
 TEST(Wrappers, DelayIsExactlySoManySamplesInBothDirections) {
   for (const char* words : {"delay=5ms,written=3ms", "delay=5,written=3", "delay=2ms|delay=3ms,written=3ms"}) {
-    Inside inside;
+    InsideDriver inside;
     const auto driver = opened(inside, words);
     EXPECT_NEAR(driver->capabilities().latency, 8e-3, 1e-12) << words;
     for (int i = 1; i <= 50; ++i) {
@@ -82,7 +82,7 @@ TEST(Wrappers, DelayIsExactlySoManySamplesInBothDirections) {
 TEST(Wrappers, DropLosesItsShareAndTheSameEveryTime) {
   std::vector<bool> first;
   for (int run = 0; run < 2; ++run) {
-    Inside inside;
+    InsideDriver inside;
     const auto driver = opened(inside, "drop=10%,written=50%,seed=7");
     std::vector<bool> came;
     for (int i = 0; i < 20000; ++i) {
@@ -100,7 +100,7 @@ TEST(Wrappers, DropLosesItsShareAndTheSameEveryTime) {
 
 TEST(Wrappers, DropOfEverythingAndOfNothingAreExact) {
   for (const auto& [words, expected] : {std::pair("drop=100%", 0), {"drop=0%", 1000}}) {
-    Inside inside;
+    InsideDriver inside;
     const auto driver = opened(inside, words);
     int came = 0;
     for (int i = 0; i < 1000; ++i) {
@@ -112,7 +112,7 @@ TEST(Wrappers, DropOfEverythingAndOfNothingAreExact) {
 }
 
 TEST(Wrappers, JitterKeepsTheOrderAndIsNoLaterThanItSays) {
-  Inside inside;
+  InsideDriver inside;
   const auto driver = opened(inside, "jitter=4ms,seed=3");
   double last = 0.0;
   std::vector<int> late(6, 0);
@@ -129,7 +129,7 @@ TEST(Wrappers, JitterKeepsTheOrderAndIsNoLaterThanItSays) {
 }
 
 TEST(Wrappers, QuantiseRoundsToTheNearestCount) {
-  Inside inside;
+  InsideDriver inside;
   inside.step = 0.37e-3;
   const auto driver = opened(inside, "quantise=1mm,force=0.25");
   for (int i = 1; i <= 100; ++i) {
@@ -144,7 +144,7 @@ TEST(Wrappers, QuantiseRoundsToTheNearestCount) {
 // Work that the hand does on the device, against work of the probe on the world.
 TEST(Wrappers, GainKeepsPowerWhereBothNumbersAreTheSameAndElseSaysThatItDoesNot) {
   for (const auto& [words, kept] : {std::pair("gain=3", true), {"gain=3,force=1", false}, {"scale=3", false}}) {
-    Inside inside;
+    InsideDriver inside;
     auto chain = wrap(std::make_unique<Counting>(inside), words);
     ASSERT_TRUE(chain);
     EXPECT_EQ(chain->notes.empty(), kept) << words;
@@ -163,7 +163,7 @@ TEST(Wrappers, GainKeepsPowerWhereBothNumbersAreTheSameAndElseSaysThatItDoesNot)
 
 // A world spring at the limit that the wrapper says is, at the device, one at the device's own limit.
 TEST(Wrappers, GainSaysTheLimitsOfTheWorld) {
-  Inside inside;
+  InsideDriver inside;
   for (const char* words : {"gain=2", "gain=4,force=0.5", "scale=3"}) {
     const auto driver = opened(inside, words);
     const DeviceCapabilities can = driver->capabilities();
@@ -177,7 +177,7 @@ TEST(Wrappers, GainSaysTheLimitsOfTheWorld) {
 }
 
 TEST(Wrappers, ClutchLeavesThePoseWhereItWasAndForceLeavesOnlyWithoutIt) {
-  Inside inside;
+  InsideDriver inside;
   const auto driver = opened(inside, "clutch=2");
   DeviceSample sample;
   dvec3 last(0);
@@ -195,7 +195,7 @@ TEST(Wrappers, ClutchLeavesThePoseWhereItWasAndForceLeavesOnlyWithoutIt) {
 }
 
 TEST(Wrappers, BorderIsContinuousAndItsRateGrowsWithTheDepth) {
-  Inside inside;
+  InsideDriver inside;
   inside.step = 0.1e-3;
   const auto driver = opened(inside, "border=40mm,rate=5");
   DeviceSample sample;
@@ -214,7 +214,7 @@ TEST(Wrappers, BorderIsContinuousAndItsRateGrowsWithTheDepth) {
 }
 
 TEST(Wrappers, FrameTurnsPosesToTheWorldAndForcesBackAndKeepsTheWork) {
-  Inside inside;
+  InsideDriver inside;
   const auto driver = opened(inside, "frame=0:90:0");
   inside.next.position = {0, 0.2, 0.3};
   DeviceSample a, b;
@@ -232,7 +232,7 @@ TEST(Wrappers, ReplayGivesBackWhatRecordHasKept) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "pliant_record_test.csv";
   std::filesystem::remove(file);
   {
-    Inside inside;
+    InsideDriver inside;
     const auto driver = opened(inside, "record=" + file.string());
     DeviceSample sample;
     for (int i = 1; i <= 100; ++i) {
@@ -246,7 +246,7 @@ TEST(Wrappers, ReplayGivesBackWhatRecordHasKept) {
   const auto rows = read_poses(file.string());
   ASSERT_TRUE(rows) << rows.error().message();
   ASSERT_EQ(rows->size(), 100u);
-  Inside inside;
+  InsideDriver inside;
   inside.step = 7e-3;
   const auto driver = opened(inside, "replay=" + file.string());
   for (int i = 1; i <= 100; ++i) {
@@ -258,7 +258,7 @@ TEST(Wrappers, ReplayGivesBackWhatRecordHasKept) {
     driver->write({dvec3(5, 0, 0), dvec3(0), 0.0});
     EXPECT_EQ(inside.written.back().force, dvec3(0)) << "the hand at the device is not in this motion";
   }
-  Inside again;
+  InsideDriver again;
   auto second = wrap(std::make_unique<Counting>(again), "record=" + file.string());
   ASSERT_TRUE(second);
   const Status refused = second->driver->open("");
@@ -270,7 +270,7 @@ TEST(Wrappers, ReplayGivesBackWhatRecordHasKept) {
 TEST(Wrappers, RecordStopsAtItsLengthAndSaysHowMuchIsMissing) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "pliant_record_long.csv";
   std::filesystem::remove(file);
-  Inside inside;
+  InsideDriver inside;
   const auto driver = opened(inside, "record=" + file.string() + ",seconds=50ms");
   DeviceSample sample;
   for (int i = 0; i < 200; ++i) ASSERT_TRUE(driver->read(sample));
@@ -286,7 +286,7 @@ TEST(Wrappers, RecordStopsAtItsLengthAndSaysHowMuchIsMissing) {
 }
 
 TEST(Wrappers, MotorsAreSwitchedOffThroughEveryWrapper) {
-  Inside inside;
+  InsideDriver inside;
   const auto driver = opened(inside, "delay=5|jitter=1ms|drop=50%|quantise=1mm|gain=2|frame=1:2:3|clutch=1|border=1m");
   driver->make_safe();
   EXPECT_EQ(inside.safe, 1);
@@ -316,7 +316,7 @@ TEST(Wrappers, BadWordsGetOneSentence) {
              {"replay=/nowhere/at/all.csv", "cannot be opened"},
              {"record=", "must name a file"}};
   for (const auto& [words, part] : bad) {
-    Inside inside;
+    InsideDriver inside;
     const auto chain = wrap(std::make_unique<Counting>(inside), words);
     ASSERT_FALSE(chain) << words;
     EXPECT_THAT(chain.error().message(), testing::HasSubstr(part)) << words;

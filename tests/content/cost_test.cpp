@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::size_t kVertices = 8000;
+constexpr std::size_t kVertexCount = 8000;
 // 8 MiB of decoded data beyond the multiple of the buffers.
 const double kEightMiB = 8.0 * limits::kMiB / limits::kDecoded.most;
 
@@ -37,7 +37,7 @@ std::size_t zeros(Gltf& gltf, const char* type) {
   const std::size_t values = gltf.view(std::vector<float>(width, 0.0f));
   gltf.json["accessors"].push_back({{"type", type},
                                     {"componentType", kFloat},
-                                    {"count", kVertices},
+                                    {"count", kVertexCount},
                                     {"sparse",
                                      {{"count", 1},
                                       {"indices", {{"bufferView", indices}, {"componentType", kUnsignedInt}}},
@@ -50,7 +50,7 @@ std::size_t zero_positions(Gltf& gltf) {
   return i;
 }
 std::size_t zero_joints(Gltf& gltf) {
-  gltf.json["accessors"].push_back({{"type", "VEC4"}, {"componentType", kUnsignedByte}, {"count", kVertices}});
+  gltf.json["accessors"].push_back({{"type", "VEC4"}, {"componentType", kUnsignedByte}, {"count", kVertexCount}});
   return gltf.json["accessors"].size() - 1;
 }
 
@@ -130,11 +130,11 @@ TEST(Cost, APlaceholderOfAnySizeAllowsNothing) {
 Gltf compressed(int primitives) {
   DracoMesh mesh;
   DracoAttribute position{"POSITION", 0, 3, false, {}};
-  for (std::uint32_t i = 0; i < kVertices; ++i) {
+  for (std::uint32_t i = 0; i < kVertexCount; ++i) {
     position.values.insert(position.values.end(), {static_cast<float>(i), static_cast<float>(i % 2), 0.0f});
-    if (i + 2 < kVertices) mesh.index.insert(mesh.index.end(), {i, i + 1, i + 2});
+    if (i + 2 < kVertexCount) mesh.index.insert(mesh.index.end(), {i, i + 1, i + 2});
   }
-  mesh.vertices = kVertices;
+  mesh.vertices = kVertexCount;
   mesh.attributes.push_back(position);
   const Result<Bytes> blob = encode_draco(mesh, 14);
   EXPECT_TRUE(blob.ok());
@@ -145,7 +145,7 @@ Gltf compressed(int primitives) {
                                     {"componentType", kFloat},
                                     {"count", mesh.vertices},
                                     {"min", {0, 0, 0}},
-                                    {"max", {static_cast<float>(kVertices), 1, 0}}});
+                                    {"max", {static_cast<float>(kVertexCount), 1, 0}}});
   gltf.json["accessors"].push_back({{"type", "SCALAR"}, {"componentType", kUnsignedInt}, {"count", mesh.index.size()}});
   Json& first = gltf.primitive({{"POSITION", 0}});
   first["indices"] = 1;

@@ -205,5 +205,17 @@ TEST(Extension, HowAToolsForceIsMadeIsReadSetAndWritten) {
       << handle({{"force", "magic"}}).refusal();
 }
 
+TEST(Extension, AKeyThatIsSaidAtItsDefaultIsWrittenAndOneThatIsNotIsLeftOut) {
+  Level level = *with({{"PLIANT_deformable", Json::object()}}).load();
+  EXPECT_EQ(node_extensions(level.nodes[0], Json())["PLIANT_deformable"], Json::object());
+  EXPECT_EQ(set(level, "*.deformable.distance=chord"), "");
+  EXPECT_EQ(node_extensions(level.nodes[0], Json())["PLIANT_deformable"], (Json{{"distance", "chord"}}));
+  // What the file had is known by what it said, not by the file.
+  Level read = *with({{"PLIANT_deformable", {{"distance", "chord"}, {"shape", "volume"}}}}).load();
+  read.nodes[0].stated.erase("deformable.shape");
+  const Json before{{"PLIANT_deformable", {{"shape", "volume"}, {"extras", 7}}}};
+  EXPECT_EQ(node_extensions(read.nodes[0], before)["PLIANT_deformable"], (Json{{"distance", "chord"}, {"extras", 7}}));
+}
+
 }  // namespace
 }  // namespace pliant::test

@@ -42,6 +42,7 @@ TEST(KeyTable, EveryRangeOfADeformableIsThatOfTheTouchClock) {
     if (key.name == "young" || key.name == "poisson" || key.name == "thickness" || key.name == "crease_angle" ||
         key.name == "error")
       continue;  // become a stiffness, a mesh and a shape before the touch clock sees them
+    if (key.name == "contact_radius") continue;  // within the reach: touch_shape_test.cpp
     const double below = std::nextafter(key.range.min, -1e30), above = std::nextafter(key.range.max, 1e30);
     if (key.name != "reach") EXPECT_TRUE(taken(key, key.range.min)) << key.name;  // 0: from the object's box
     EXPECT_TRUE(taken(key, key.range.max)) << key.name;

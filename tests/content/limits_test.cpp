@@ -39,7 +39,7 @@ Level many(int count, bool turned, bool touched) {
   }
   return level;
 }
-std::string spawn_refusal(const Level& level) {
+std::string refusal_of(const Level& level) {
   const Result<World> world = spawn(level);
   return world ? "" : world.error().message();
 }
@@ -181,12 +181,11 @@ TEST(Limits, PicturesAreAddedUpBeforeTheFirstIsDecoded) {
 
 TEST(Limits, InstancesThatShareNothingAreCountedBeforeTheyAreBuilt) {
   const Level level = many(30, true, false);  // 80 triangles each
-  EXPECT_EQ(spawn_refusal(level), "");
+  EXPECT_EQ(refusal_of(level), "");
   const Lowered lowered(1600.0 / limits::kAddedTriangles.most);
-  EXPECT_THAT(spawn_refusal(level),
-              HasSubstr("node `n21`: brings the level to 1680 triangles beyond those of its mesh"));
-  EXPECT_EQ(spawn_refusal(many(30, false, false)), "") << "what is shared is built once";
-  EXPECT_EQ(spawn_refusal(many(21, true, false)), "");
+  EXPECT_THAT(refusal_of(level), HasSubstr("node `n21`: brings the level to 1680 triangles beyond those of its mesh"));
+  EXPECT_EQ(refusal_of(many(30, false, false)), "") << "what is shared is built once";
+  EXPECT_EQ(refusal_of(many(21, true, false)), "");
 }
 
 TEST(Limits, SurfacesThatGiveWayAreCountedWithTheirVerticesSharedOrNot) {
@@ -194,15 +193,15 @@ TEST(Limits, SurfacesThatGiveWayAreCountedWithTheirVerticesSharedOrNot) {
   for (LevelNode& node : level.nodes) node.deformable->reach = 100.0;  // not cut finer
   {
     const Lowered lowered(7.0 / limits::kSurfaces.most);
-    EXPECT_THAT(spawn_refusal(level), HasSubstr("node `n7`: brings the level to 8 surfaces and rigid bodies"));
+    EXPECT_THAT(refusal_of(level), HasSubstr("node `n7`: brings the level to 8 surfaces and rigid bodies"));
     level.nodes.pop_back();
-    EXPECT_EQ(spawn_refusal(level), "");
+    EXPECT_EQ(refusal_of(level), "");
   }
   const Level whole = level;
   level.meshes[0].primitives = {icosphere(4)};  // 2562 vertices
   const Lowered lowered(10'000.0 / limits::kAddedVertices.most);
-  EXPECT_THAT(spawn_refusal(level), HasSubstr("vertices of surfaces beyond those of its meshes"));
-  EXPECT_EQ(spawn_refusal(whole), "");
+  EXPECT_THAT(refusal_of(level), HasSubstr("vertices of surfaces beyond those of its meshes"));
+  EXPECT_EQ(refusal_of(whole), "");
 }
 
 TEST(Limits, ACellThatIsTooFineIsRefusedByAnEstimateBeforeTheLatticeIsFilled) {
@@ -239,11 +238,11 @@ TEST(Limits, TetrahedraOfALevelAreAddedUpOverItsSoftBodies) {
   node.soft_body.emplace();
   node.soft_body->cell = 0.161;  // some 12,000 tetrahedra
   const Lowered lowered(0.01);   // 20,000
-  EXPECT_EQ(spawn_refusal(level), "");
+  EXPECT_EQ(refusal_of(level), "");
   level.nodes.push_back(level.nodes[0]);
   level.nodes[1].name = "second";
-  EXPECT_THAT(spawn_refusal(level), HasSubstr("node `second`: brings the level to 2"));
-  EXPECT_THAT(spawn_refusal(level), HasSubstr("tetrahedra, more than the 20000"));
+  EXPECT_THAT(refusal_of(level), HasSubstr("node `second`: brings the level to 2"));
+  EXPECT_THAT(refusal_of(level), HasSubstr("tetrahedra, more than the 20000"));
 }
 
 TEST(Limits, RowsThatWaitAreBoundedWhateverTheHands) {

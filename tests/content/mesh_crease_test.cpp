@@ -24,7 +24,7 @@ using test::level_of;
 using test::unshared;
 using test::worst_gap;
 
-Mesh build(const Primitive& p, double crease_angle = 0.0) {
+Mesh creased(const Primitive& p, double crease_angle = 0.0) {
   Result<BuiltMesh> built = build_mesh("test", {&p, 1}, mat4(1.0f), {crease_angle});
   EXPECT_TRUE(built.ok()) << built.error().message();
   return std::move(built->mesh);
@@ -61,7 +61,7 @@ void expect_creases_on_both_sides(const Mesh& mesh) {
 
 TEST(MeshCrease, ABoxHasTwelveCreasesAndTheNormalsOfItsFacesWithAndWithoutNormalsInTheFile) {
   for (const bool normals : {false, true}) {
-    const Mesh mesh = build(box({0.3f, 0.2f, 0.5f}, normals));
+    const Mesh mesh = creased(box({0.3f, 0.2f, 0.5f}, normals));
     ASSERT_EQ(mesh.triangles.size(), 12u);
     ASSERT_EQ(mesh.vertex_count, 8u);
     EXPECT_EQ(creases(mesh), 12u);
@@ -91,7 +91,7 @@ TEST(MeshCrease, ABoxIsDrawnWithTheNormalsItIsTouchedWith) {
 TEST(MeshCrease, ACylinderIsCreasedAlongItsRimsAndSmoothAround) {
   for (const std::uint32_t n : {12u, 32u})
     for (const bool normals : {false, true}) {
-      const Mesh mesh = build(cylinder(n, normals));
+      const Mesh mesh = creased(cylinder(n, normals));
       EXPECT_EQ(creases(mesh), 2 * n);
       expect_creases_on_both_sides(mesh);
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -109,7 +109,7 @@ TEST(MeshCrease, ACylinderIsCreasedAlongItsRimsAndSmoothAround) {
 TEST(MeshCrease, ACoarseSphereIsSmoothWithTheFilesNormalsAndCreasedWithoutWhereItTurnsByMoreThanFortyDegrees) {
   Primitive p = globe(6, 5);
   ASSERT_EQ(p.index.size() / 3, 48u);
-  const Mesh bare = build(p);
+  const Mesh bare = creased(p);
   EXPECT_TRUE(bare.closed);
   for (std::uint32_t t = 0; t < bare.triangles.size(); ++t)
     for (int i = 0; i < 3; ++i)
@@ -118,7 +118,7 @@ TEST(MeshCrease, ACoarseSphereIsSmoothWithTheFilesNormalsAndCreasedWithoutWhereI
   EXPECT_GT(creases(bare), 0u);
   EXPECT_LT(worst_gap(bare), 1e-6);
   p.normal = p.position;
-  const Mesh smooth = build(p);
+  const Mesh smooth = creased(p);
   EXPECT_TRUE(smooth.crease.empty());
   EXPECT_TRUE(smooth.split_normals.empty());
   EXPECT_TRUE(smooth.corner_normal.empty());
@@ -148,7 +148,7 @@ TEST(MeshCrease, AFoldIsACreaseByItsTurnAndInBetweenByTheFilesNormals) {
     const auto count = [&](double degrees, bool smooth, bool file = true, double authored = 0.0) {
       Primitive p = fold(glm::radians(degrees), ridge, smooth);
       if (!file) p.normal.clear();
-      const Mesh mesh = build(p, authored);
+      const Mesh mesh = creased(p, authored);
       EXPECT_LT(worst_gap(mesh), 1e-6);
       return creases(mesh);
     };
@@ -174,7 +174,7 @@ TEST(MeshCrease, ACreaseThatEndsWithinTheSurfaceLeavesNoCrack) {
   }
   for (std::uint32_t i = 0; i < 8; ++i)
     for (const std::uint32_t v : {0u, 1 + i, 1 + (i + 1) % 8}) p.index.push_back(v);
-  const Mesh mesh = build(p);
+  const Mesh mesh = creased(p);
   EXPECT_GT(creases(mesh), 0u);
   EXPECT_LT(worst_gap(mesh), 1e-6);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -195,9 +195,9 @@ TEST(MeshCrease, NodesShareAMeshOnlyWhereTheirCreaseAnglesAgree) {
 TEST(MeshCrease, AreTheSameOnAnyNumberOfThreads) {
   const Primitive p = unshared(icosphere(5));
   set_thread_count(1);
-  const Mesh one = build(p, 0.02);
+  const Mesh one = creased(p, 0.02);
   set_thread_count(4);
-  const Mesh four = build(p, 0.02);
+  const Mesh four = creased(p, 0.02);
   set_thread_count(0);
   EXPECT_FALSE(one.crease.empty());
   EXPECT_EQ(one.crease, four.crease);

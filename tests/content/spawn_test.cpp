@@ -21,7 +21,7 @@ LevelNode named(const std::string& name) {
   return node;
 }
 
-World spawned(const Level& level) {
+World spawned_level(const Level& level) {
   Result<World> world = spawn(level);
   EXPECT_TRUE(world.ok()) << world.error().message();
   return std::move(*world);
@@ -34,7 +34,7 @@ TEST(Spawn, BakesScaleAndMirrorSoThatTouchNormalsPointOutwardAndTheWorldPosition
     local.rotation = glm::angleAxis(0.7f, normalize(vec3(1, 2, -1)));
     local.scale = scale;
     const Primitive sphere = icosphere(5);  // fine enough not to be cut finer
-    const World world = spawned(level_of(sphere, local));
+    const World world = spawned_level(level_of(sphere, local));
     const Entity thing = find_by_name(world, "thing");
     const Deformable& deformable = world.registry.get<Deformable>(thing);
     const Pose& pose = world.registry.get<Pose>(thing);
@@ -62,7 +62,7 @@ TEST(Spawn, ShearFromANonUniformParentIsBakedIntoTheMesh) {
   level.nodes[0].parent = 0;
   level.nodes[0].local.rotation = glm::angleAxis(0.6f, vec3(0, 0, 1));
   level.nodes.insert(level.nodes.begin(), parent);
-  const World world = spawned(level);
+  const World world = spawned_level(level);
   const Entity thing = find_by_name(world, "thing");
   const Pose& pose = world.registry.get<Pose>(thing);
   const Mesh& mesh = world.meshes[world.registry.get<Deformable>(thing).mesh];
@@ -81,7 +81,7 @@ TEST(Spawn, NodesBecomeEntitiesInOrderUnderTheirParentsAndOnlyThoseOfTheScene) {
   level.nodes[2].parent = 0;
   level.nodes[2].local.translation = {0, 5, 0};
   level.nodes[0].local.translation = {1, 0, 0};
-  const World world = spawned(level);
+  const World world = spawned_level(level);
   const Entity thing = find_by_name(world, "thing"), child = find_by_name(world, "child");
   EXPECT_EQ(find_by_name(world, "hidden"), kNoEntity);
   const std::vector<Hierarchy::Link>& order = world.hierarchy.order();
@@ -100,7 +100,7 @@ TEST(Spawn, NodesThatBakeTheSameFrameShareOneMeshButNotTheirHeights) {
   level.nodes.push_back(level.nodes[0]);
   level.nodes[2].name = "larger";
   level.nodes[2].local.scale = vec3(2);
-  const World world = spawned(level);
+  const World world = spawned_level(level);
   EXPECT_EQ(world.meshes.size(), 2u);
   EXPECT_EQ(world.draw_meshes.size(), 2u);
   EXPECT_EQ(world.fields.size(), 3u);
@@ -109,7 +109,7 @@ TEST(Spawn, NodesThatBakeTheSameFrameShareOneMeshButNotTheirHeights) {
 TEST(Spawn, WhatDoesNotGiveWayIsOnlyDrawn) {
   Level level = level_of(icosphere(1));
   level.nodes[0].deformable.reset();
-  const World world = spawned(level);
+  const World world = spawned_level(level);
   const Entity thing = find_by_name(world, "thing");
   EXPECT_FALSE(world.registry.has<Deformable>(thing));
   EXPECT_TRUE(world.registry.has<Pose>(thing));
@@ -128,7 +128,7 @@ TEST(Spawn, AProbeFindsTheDeviceItNamesOrItsOwn) {
   other.probe = Probe{};
   other.device = HapticDevice{};
   level.nodes.insert(level.nodes.end(), {tip, other, hand});
-  const World world = spawned(level);
+  const World world = spawned_level(level);
   EXPECT_EQ(world.registry.get<Probe>(find_by_name(world, "tip")).device, find_by_name(world, "hand"));
   EXPECT_EQ(world.registry.get<Probe>(find_by_name(world, "tip")).position, dvec3(0, 1, 0));
   EXPECT_EQ(world.registry.get<Probe>(find_by_name(world, "other")).device, find_by_name(world, "other"));

@@ -34,7 +34,7 @@ Level ball(const LocalTransform& local = {}) {
   return level;
 }
 
-World spawned(const Level& level) {
+World spawned_tets(const Level& level) {
   Result<World> world = spawn(level);
   EXPECT_TRUE(world.ok()) << world.error().message();
   return world ? std::move(*world) : World{};
@@ -64,7 +64,7 @@ TEST(SpawnSoft, TissueHasTetrahedraASurfaceADrawableAndAPose) {
   local.translation = {1, 2, 3};
   local.rotation = glm::angleAxis(0.7f, normalize(vec3(1, 2, -1)));
   local.scale = {2, 1, 1};
-  const World world = spawned(ball(local));
+  const World world = spawned_tets(ball(local));
   const Entity thing = find_by_name(world, "thing");
   const SoftBody& body = world.registry.get<SoftBody>(thing);
   const TetMesh& tets = world.tet_meshes[body.tets];
@@ -85,7 +85,7 @@ TEST(SpawnSoft, NodesStandInTheOrderFreeHandlePinnedByTheirBoxes) {
   level.nodes[0].soft_body->pinned = {{-1, -1, -1}, {1, -0.023f, 1}};
   level.nodes[0].handle = Handle6{};
   level.nodes[0].handle->box = {{-1, 0.023f, -1}, {1, 1, 1}};
-  const World world = spawned(level);
+  const World world = spawned_tets(level);
   const TetMesh& tets = world.tet_meshes[world.registry.get<SoftBody>(find_by_name(world, "thing")).tets];
   EXPECT_GT(tets.free_count, 0u);
   EXPECT_GT(tets.handle_count, 0u);
@@ -106,7 +106,7 @@ TEST(SpawnSoft, PaintHoldsTheNodesBeneathIt) {
     collision_mesh.handle.push_back(p.y > 0.02f ? 0.7f : 0.3f);
   }
   level.nodes[0].handle = Handle6{};
-  const World world = spawned(level);
+  const World world = spawned_tets(level);
   const TetMesh& tets = world.tet_meshes[world.registry.get<SoftBody>(find_by_name(world, "thing")).tets];
   EXPECT_GT(tets.handle_count, 0u);
   for (std::uint32_t n = 0; n < tets.node_count(); ++n) {
@@ -138,7 +138,7 @@ TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesM
   level.nodes[0].soft_body->mesh = file.path.filename().string();
   level.nodes[0].local.scale = vec3(-0.1f, 0.1f, 0.1f);  // mirrored: elements are turned
   level.nodes[0].mesh = -1;
-  const World world = spawned(level);
+  const World world = spawned_tets(level);
   const SoftBody& body = world.registry.get<SoftBody>(find_by_name(world, "thing"));
   const TetMesh& tets = world.tet_meshes[body.tets];
   EXPECT_EQ(tets.node_count(), 8u);
@@ -156,7 +156,7 @@ TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesM
   level.nodes[0].mesh = 0;
   level.nodes[0].local.scale = vec3(1);
   for (vec3& p : level.meshes[0].primitives[0].position) p += vec3(0.5f);
-  const World ridden = spawned(level);
+  const World ridden = spawned_tets(level);
   const SoftBody& rider = ridden.registry.get<SoftBody>(find_by_name(ridden, "thing"));
   EXPECT_EQ(ridden.meshes[rider.collision_mesh].vertex_count, 642u);
   for (const Embedding& e : ridden.tet_meshes[rider.tets].embedding)
@@ -167,7 +167,7 @@ TEST(SpawnSoft, ARigidBodyHasASkinAndIsDrawn) {
   Level level = ball();
   level.nodes[0].soft_body.reset();
   level.nodes[0].rigid_body = RigidBody{};
-  const World world = spawned(level);
+  const World world = spawned_tets(level);
   const Entity thing = find_by_name(world, "thing");
   const Mesh& collision_mesh = world.meshes[world.registry.get<RigidBody>(thing).collision_mesh];
   EXPECT_EQ(collision_mesh.vertex_count, 642u);

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-Mesh build(const Primitive& p) {
+Mesh mesh_of(const Primitive& p) {
   Result<BuiltMesh> built = build_mesh("test", {&p, 1}, mat4(1.0f));
   EXPECT_TRUE(built.ok());
   return std::move(built->mesh);
@@ -19,7 +19,7 @@ bool holds(const Box& outer, const Box& inner) {
 }
 
 TEST(Zones, CoverEveryVertexOnceAndPadWithWhatHasNoArea) {
-  const Mesh mesh = build(test::icosphere(4));
+  const Mesh mesh = mesh_of(test::icosphere(4));
   EXPECT_EQ(mesh.zone_count(), (mesh.vertex_count + kZoneSize - 1) / kZoneSize);
   std::uint32_t next = 0;
   for (std::uint32_t z = 0; z < mesh.zone_count(); ++z) {
@@ -34,7 +34,7 @@ TEST(Zones, CoverEveryVertexOnceAndPadWithWhatHasNoArea) {
 }
 
 TEST(Zones, BoxesHoldTheirVerticesAndEveryTriangleAroundThem) {
-  const Mesh mesh = build(test::icosphere(4));
+  const Mesh mesh = mesh_of(test::icosphere(4));
   for (const uvec3& t : mesh.triangles) {
     Box box;
     for (int i = 0; i < 3; ++i) box.add(mesh.position(t[i]));
@@ -44,7 +44,7 @@ TEST(Zones, BoxesHoldTheirVerticesAndEveryTriangleAroundThem) {
 
 TEST(Zones, NeighboursAreThoseThatShareATriangleByBruteForce) {
   for (const Primitive& p : {test::icosphere(4), test::sheet(40)}) {
-    const Mesh mesh = build(p);
+    const Mesh mesh = mesh_of(p);
     std::vector<std::set<std::uint32_t>> expected(mesh.zone_count());
     for (const uvec3& t : mesh.triangles)
       for (int i = 0; i < 3; ++i)
@@ -61,7 +61,7 @@ TEST(Zones, NeighboursAreThoseThatShareATriangleByBruteForce) {
 }
 
 TEST(Zones, AreCompactPatches) {
-  const Mesh mesh = build(test::icosphere(6));
+  const Mesh mesh = mesh_of(test::icosphere(6));
   double sum = 0.0;
   for (const Box& box : mesh.zone_box) sum += static_cast<double>(box.diagonal());
   // 128 vertices of spacing e fill a disc of diameter about 12 e; a run of rows would be hundreds of e long.
@@ -70,7 +70,7 @@ TEST(Zones, AreCompactPatches) {
 
 TEST(Tree, BoxesHoldAllBelowThemUpToOneRoot) {
   for (const Primitive& p : {test::icosphere(0), test::icosphere(4), test::sheet(1)}) {
-    const Mesh mesh = build(p);
+    const Mesh mesh = mesh_of(p);
     const auto& levels = mesh.tree.levels;
     ASSERT_EQ(levels[0].size(), (mesh.triangles.size() + kLeafSize - 1) / kLeafSize);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -70,8 +70,8 @@ class EmulatedLine final : public GamepadLine {
   EmulatedGamepad& pad_;
 };
 
-struct Rig {
-  explicit Rig(bool rumble = true, bool constant = false, const std::string& id = "") : pad(rumble, constant) {
+struct PadRig {
+  explicit PadRig(bool rumble = true, bool constant = false, const std::string& id = "") : pad(rumble, constant) {
     driver = make_gamepad(
         [this](const std::string&) -> Result<std::unique_ptr<GamepadLine>> {
           return std::unique_ptr<GamepadLine>(std::make_unique<EmulatedLine>(pad));
@@ -94,7 +94,7 @@ struct Rig {
 };
 
 TEST(Gamepad, AStickThatIsHeldGoesOnMovingThoughNothingIsSaid) {
-  Rig rig;
+  PadRig rig;
   rig.pad.say(EV_ABS, ABS_X, 32767);
   rig.pad.say(EV_ABS, ABS_RY, -32768);
   rig.pad.report();
@@ -105,7 +105,7 @@ TEST(Gamepad, AStickThatIsHeldGoesOnMovingThoughNothingIsSaid) {
 }
 
 TEST(Gamepad, NothingCountsBeforeItsReportIsComplete) {
-  Rig rig;
+  PadRig rig;
   rig.pad.say(EV_KEY, BTN_EAST, 1);
   EXPECT_EQ(rig.run(5).buttons, 0u);
   rig.pad.report();
@@ -120,7 +120,7 @@ TEST(Gamepad, NothingCountsBeforeItsReportIsComplete) {
 }
 
 TEST(Gamepad, AfterLostEventsItAsksForTheWholeState) {
-  Rig rig;
+  PadRig rig;
   rig.pad.say(EV_ABS, ABS_X, 32767);
   rig.pad.report();
   rig.run(20);
@@ -146,7 +146,7 @@ TEST(Gamepad, AConstantEffectPointsWhereTheForceDoes) {
 }
 
 TEST(Gamepad, AForceIsRenewedWhileItLastsAndEndsAtOnce) {
-  Rig rig(false, true);
+  PadRig rig(false, true);
   EXPECT_TRUE(rig.driver->capabilities().renders_force);
   EXPECT_FALSE(rig.driver->capabilities().resists_only);
   rig.run(1000, {.force = {1.5, 0, 0}});
@@ -162,21 +162,21 @@ TEST(Gamepad, AForceIsRenewedWhileItLastsAndEndsAtOnce) {
 }
 
 TEST(Gamepad, ByItselfAStickWithForceIsADisplacement) {
-  Rig rig(false, true);
+  PadRig rig(false, true);
   rig.pad.say(EV_ABS, ABS_X, 32767);
   rig.pad.report();
   EXPECT_NEAR(rig.run(400).position.x, StickSettings{}.reach, 1e-6);
 }
 
 TEST(Gamepad, WithoutForceFeedbackItRendersNothing) {
-  Rig rig(false, false);
+  PadRig rig(false, false);
   EXPECT_FALSE(rig.driver->capabilities().renders_force);
   rig.run(100, {.force = {1, 1, 1}});
   EXPECT_TRUE(rig.pad.rendered.empty());
 }
 
 TEST(Gamepad, ItsRumbleEndsWhenItIsClosed) {
-  Rig rig;
+  PadRig rig;
   EXPECT_TRUE(rig.driver->capabilities().resists_only);
   rig.run(100, {.force = {0, Shaker::kFull, 0}});
   EXPECT_GT(rig.pad.rendered.back().strong, 20000);
@@ -185,7 +185,7 @@ TEST(Gamepad, ItsRumbleEndsWhenItIsClosed) {
 }
 
 TEST(Gamepad, UnpluggedItHasNoSample) {
-  Rig rig;
+  PadRig rig;
   rig.run(5);
   rig.pad.unplugged = true;
   DeviceSample sample;

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Random {
+struct RandomBytes {
   std::mt19937 engine{7};
   double in(double least, double most) { return std::uniform_real_distribution(least, most)(engine); }
   // Within the arm's reach, away from where the linkage is stretched out.
@@ -45,7 +45,7 @@ TEST(PolhemKinematics, BodyATurnsTheTipAboutTheVerticalToTheRight) {
 }
 
 TEST(PolhemKinematics, TheJacobianIsTheFiniteDifferenceOfThePosition) {
-  Random random;
+  RandomBytes random;
   for (const PolhemConfig& config : kPolhemConfigs)
     for (int i = 0; i < 50; ++i) {
       const dvec3 q = random.angles();
@@ -60,7 +60,7 @@ TEST(PolhemKinematics, TheJacobianIsTheFiniteDifferenceOfThePosition) {
 }
 
 TEST(PolhemKinematics, TheMotorsPowerIsTheForcesPower) {
-  Random random;
+  RandomBytes random;
   for (const PolhemConfig& config : kPolhemConfigs)
     for (int i = 0; i < 50; ++i) {
       const dvec3 q = random.angles(), rates = random.vector(0.5), force = random.vector(0.5);
@@ -75,7 +75,7 @@ TEST(PolhemKinematics, TheMotorsPowerIsTheForcesPower) {
 }
 
 TEST(PolhemKinematics, AboveTheLimitAllMotorsAreScaledAndTheDirectionStays) {
-  Random random;
+  RandomBytes random;
   int saturated = 0;
   for (const PolhemConfig& config : kPolhemConfigs)
     for (int i = 0; i < 50; ++i) {
@@ -106,8 +106,8 @@ TEST(PolhemKinematics, TheGimbalTurnsThePenAboutTheForearm) {
 }
 
 // A driver on an emulated arm, ticked as the servo of a device does: wait, read, write.
-struct Rig {
-  explicit Rig(const std::string& words, const PolhemConfig& config = kPolhemConfigs[0])
+struct PolhemRig {
+  explicit PolhemRig(const std::string& words, const PolhemConfig& config = kPolhemConfigs[0])
       : arm(config), driver(make_polhem(opener_of(arm.hid), clock.function())) {
     opened = driver->open("?mechanism=" + std::string(config.name) + words);
   }
@@ -127,7 +127,7 @@ struct Rig {
 };
 
 TEST(Polhem, AZeroReportStartsItAndEveryReportIsAnswered) {
-  Rig rig("&home=kept");
+  PolhemRig rig("&home=kept");
   ASSERT_TRUE(rig.opened.ok());
   EXPECT_EQ(rig.driver->capabilities().loop, DeviceLoop::kReply);
   ASSERT_EQ(rig.arm.hid.heard.size(), 1u);
@@ -147,7 +147,7 @@ TEST(Polhem, ItDoesNotOpenWithoutItsMechanism) {
 }
 
 TEST(Polhem, UntilItsButtonIsPressedThePoseIsUnknownAndNoForceLeaves) {
-  Rig rig("");
+  PolhemRig rig("");
   for (int i = 0; i < 50; ++i) {
     EXPECT_TRUE(rig.tick({.force = {3, 3, 3}}));
     EXPECT_FALSE(rig.sample.ready);
@@ -163,7 +163,7 @@ TEST(Polhem, UntilItsButtonIsPressedThePoseIsUnknownAndNoForceLeaves) {
 
 TEST(Polhem, ParkedWhenOpenedItIsReadyAtOnce) {
   for (const PolhemConfig& config : kPolhemConfigs) {
-    Rig rig("&home=here", config);
+    PolhemRig rig("&home=here", config);
     for (int i = 0; i < 5; ++i) rig.tick();
     EXPECT_TRUE(rig.sample.ready) << config.name;
   }
@@ -171,8 +171,8 @@ TEST(Polhem, ParkedWhenOpenedItIsReadyAtOnce) {
 
 TEST(Polhem, TheForceThatTheArmRendersIsTheForceThatWasWritten) {
   for (const PolhemConfig& config : kPolhemConfigs) {
-    Random random;
-    Rig rig("&home=here", config);
+    RandomBytes random;
+    PolhemRig rig("&home=here", config);
     for (int i = 0; i < 5; ++i) rig.tick();
     dvec3 at = rig.arm.angles;
     for (int goal = 0; goal < 20; ++goal) {
@@ -206,7 +206,7 @@ TEST(Polhem, PenButtonAndGimbalAreToldApart) {
 }
 
 TEST(Polhem, ShortRepeatedAndLeapingReportsDoNotMoveIt) {
-  Rig rig("&home=here");
+  PolhemRig rig("&home=here");
   for (int i = 0; i < 10; ++i) rig.tick();
   const dvec3 at = rig.sample.position;
   for (int i = 0; i < 100; ++i) {
@@ -220,7 +220,7 @@ TEST(Polhem, ShortRepeatedAndLeapingReportsDoNotMoveIt) {
 }
 
 TEST(Polhem, EncodersThatSomeoneElseHasSetAreNotBelieved) {
-  Rig rig("&home=here");
+  PolhemRig rig("&home=here");
   for (int i = 0; i < 10; ++i) rig.tick({.force = {0, 1, 0}});
   EXPECT_GT(length(rig.arm.currents), 0.0);
   std::array<std::uint8_t, kPolhemOutput> reset;
@@ -232,7 +232,7 @@ TEST(Polhem, EncodersThatSomeoneElseHasSetAreNotBelieved) {
 }
 
 TEST(Polhem, APauseOfTheProgramIsNoLeap) {
-  Rig rig("&home=here");
+  PolhemRig rig("&home=here");
   for (int i = 0; i < 10; ++i) rig.tick();
   rig.clock.now += 0.2;
   rig.arm.move(rig.arm.angles + dvec3(0.3, 0.2, -0.2));
@@ -242,7 +242,7 @@ TEST(Polhem, APauseOfTheProgramIsNoLeap) {
 }
 
 TEST(Polhem, SilentTheArmSwitchesItsMotorsOffItself) {
-  Rig rig("&home=here");
+  PolhemRig rig("&home=here");
   for (int i = 0; i < 10; ++i) rig.tick({.force = {0, 1, 0}});
   EXPECT_GT(length(rig.arm.currents), 0.0);
   for (int i = 0; i < 510; ++i) rig.arm.pass(0.001);
@@ -251,7 +251,7 @@ TEST(Polhem, SilentTheArmSwitchesItsMotorsOffItself) {
 }
 
 TEST(Polhem, ClosedMadeSafeOrUnpluggedNoForceStays) {
-  Rig rig("&home=here");
+  PolhemRig rig("&home=here");
   for (int i = 0; i < 10; ++i) rig.tick({.force = {0, 1, 0}});
   rig.driver->make_safe();
   EXPECT_EQ(rig.arm.currents, dvec3(0));
@@ -268,7 +268,7 @@ TEST(Polhem, ClosedMadeSafeOrUnpluggedNoForceStays) {
 }
 
 TEST(Polhem, ReadingAndWritingDoNotAllocate) {
-  Rig rig("&home=here");
+  PolhemRig rig("&home=here");
   for (int i = 0; i < 10; ++i) rig.tick();
   const CountAllocations count;
   for (int i = 0; i < 100; ++i) rig.tick({.force = {0, 1, 0}});

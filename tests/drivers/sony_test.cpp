@@ -26,8 +26,8 @@ const Line kLines[] = {{SonyModel::kDualSense, false},
                        {SonyModel::kDualShock, true}};
 
 // One driver on one emulated controller that reports every 4 ms.
-struct Rig {
-  explicit Rig(const Line& line, const std::string& id = "", int firmware = 0x0220)
+struct SonyRig {
+  explicit SonyRig(const Line& line, const std::string& id = "", int firmware = 0x0220)
       : pad(line.model, line.bluetooth, firmware),
         driver(make_sony_pad(line.model, opener_of(pad.hid), clock.function())) {
     EXPECT_TRUE(driver->open(id).ok());
@@ -64,7 +64,7 @@ TEST(Sony, TheSumIsTheCrcOfTheStandardsCheckValue) {
 
 TEST(Sony, SticksTriggersAndButtonsArriveOnEveryLine) {
   for (const Line& line : kLines) {
-    Rig rig(line, "?dead_zone=0");
+    SonyRig rig(line, "?dead_zone=0");
     EmulatedHold hold;
     hold.sticks = {1.0, -1.0, 0.0, -1.0};  // left: right and away; right: up
     hold.right = 0.6;
@@ -81,7 +81,7 @@ TEST(Sony, SticksTriggersAndButtonsArriveOnEveryLine) {
 TEST(Sony, AQuarterTurnOfTheGyroscopeIsAQuarterTurnOfThePoseAboutEachAxis) {
   for (const Line& line : kLines)
     for (int axis = 0; axis < 3; ++axis) {
-      Rig rig(line);
+      SonyRig rig(line);
       EmulatedHold hold;
       rig.hold(hold, 100);
       dvec3 about(0);
@@ -101,7 +101,7 @@ TEST(Sony, AQuarterTurnOfTheGyroscopeIsAQuarterTurnOfThePoseAboutEachAxis) {
 
 TEST(Sony, TheSameReportTwiceTurnsOnce) {
   for (const Line& line : kLines) {
-    Rig once(line), twice(line);
+    SonyRig once(line), twice(line);
     EmulatedHold hold;
     hold.turning = {0, 1.0, 0};
     const DeviceSample expected = once.hold(hold, 400);
@@ -115,7 +115,7 @@ TEST(Sony, TheSameReportTwiceTurnsOnce) {
 
 TEST(Sony, BrokenReportsChangeNothing) {
   for (const Line& line : kLines) {
-    Rig clean(line), disturbed(line);
+    SonyRig clean(line), disturbed(line);
     EmulatedHold hold;
     hold.sticks[0] = 0.7;
     hold.turning = {0.3, -0.2, 0.1};
@@ -186,7 +186,7 @@ TEST(Sony, BatteryIsReadOnEveryLine) {
 TEST(Sony, AForceShakesAndNoForceEndsItAtOnce) {
   for (const Line& line : kLines)
     for (const int firmware : {0x0200, 0x0220}) {
-      Rig rig(line, "", firmware);
+      SonyRig rig(line, "", firmware);
       rig.push({.force = {0, 3.0, 0}}, 12);
       EXPECT_GT(rig.pad.weak, 150);  // the blow of the contact
       rig.push({.force = {0, 3.0, 0}}, 500);
@@ -205,7 +205,7 @@ TEST(Sony, AForceShakesAndNoForceEndsItAtOnce) {
 }
 
 TEST(Sony, AForceThatChangesAlwaysIsSentNoOftenerThanTheMotorsFollow) {
-  Rig rig(kLines[1]);
+  SonyRig rig(kLines[1]);
   for (int i = 0; i < 1000; ++i) rig.push({.force = {0.001 * i, 1.0 + std::sin(0.3 * i), 0}}, 1);
   EXPECT_LE(rig.pad.hid.heard.size(), 101u);
   EXPECT_GT(rig.pad.hid.heard.size(), 60u);
@@ -214,7 +214,7 @@ TEST(Sony, AForceThatChangesAlwaysIsSentNoOftenerThanTheMotorsFollow) {
 
 TEST(Sony, TheTriggerResistsMoreTheMoreIsWantedAndNotAtAllAtTheEnd) {
   for (const bool bluetooth : {false, true}) {
-    Rig rig({SonyModel::kDualSense, bluetooth});
+    SonyRig rig({SonyModel::kDualSense, bluetooth});
     int last = 0;
     for (const double grip : {0.2, 1.0, 2.2, 3.1, 4.0, 40.0}) {
       rig.push({.grip = grip}, 15);
@@ -236,7 +236,7 @@ TEST(Sony, TheTriggerResistsMoreTheMoreIsWantedAndNotAtAllAtTheEnd) {
 
 TEST(Sony, SilentOrUnpluggedItHasNoSample) {
   for (const Line& line : kLines) {
-    Rig rig(line);
+    SonyRig rig(line);
     DeviceSample sample;
     EXPECT_FALSE(rig.driver->read(sample)) << "before its first report";
     rig.hold({}, 20);
@@ -251,7 +251,7 @@ TEST(Sony, SilentOrUnpluggedItHasNoSample) {
 }
 
 TEST(Sony, ReadingAndWritingDoNotAllocate) {
-  Rig rig(kLines[1]);
+  SonyRig rig(kLines[1]);
   for (int i = 0; i < 200; ++i) rig.pad.hold({}, 0.004);
   DeviceSample sample;
   const CountAllocations count;

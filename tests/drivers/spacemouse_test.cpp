@@ -13,8 +13,8 @@ namespace {
 using testing::HasSubstr;
 
 // One driver on one emulated cap, a thousand reads a second of simulated time.
-struct Rig {
-  explicit Rig(bool six_in_one = false, bool described = true, const std::string& id = "")
+struct SpacemouseRig {
+  explicit SpacemouseRig(bool six_in_one = false, bool described = true, const std::string& id = "")
       : cap(six_in_one, described), driver(make_spacemouse(opener_of(cap.hid), clock.function())) {
     EXPECT_TRUE(driver->open(id).ok());
   }
@@ -45,7 +45,7 @@ TEST(SpaceMouse, EveryAxisMovesAlongItsWorldAxisByRateOnEveryLayout) {
   const StickSettings usual;
   for (const auto& [six, described] : {std::pair{false, true}, {true, true}, {false, false}, {true, false}})
     for (std::size_t axis = 0; axis < 6; ++axis) {
-      Rig rig(six, described);
+      SpacemouseRig rig(six, described);
       std::array<int, 6> counts{};
       counts[axis] = 350;
       const DeviceSample sample = rig.hold(counts, 400);
@@ -59,7 +59,7 @@ TEST(SpaceMouse, EveryAxisMovesAlongItsWorldAxisByRateOnEveryLayout) {
 }
 
 TEST(SpaceMouse, AnOppositePushUndoesAPush) {
-  Rig rig;
+  SpacemouseRig rig;
   rig.hold({200, -300, 100, 50, 150, -250}, 300);
   rig.hold({0, 0, 0, 0, 0, 0}, 600);
   rig.hold({-200, 300, -100, 0, 0, 0}, 300);
@@ -67,21 +67,21 @@ TEST(SpaceMouse, AnOppositePushUndoesAPush) {
 }
 
 TEST(SpaceMouse, ByPositionTheCapIsADisplacementAndComesBack) {
-  Rig rig(false, true, "?control=position&reach=0.04&dead_zone=0");
+  SpacemouseRig rig(false, true, "?control=position&reach=0.04&dead_zone=0");
   EXPECT_LT(length(rig.hold({175, 0, 0, 0, 0, 0}, 400).position - dvec3(0.02, 0, 0)), 1e-9);
   EXPECT_LT(length(rig.hold({0, 0, -350, 0, 0, 0}, 400).position - dvec3(0, 0.04, 0)), 1e-9);
   EXPECT_LT(length(rig.hold({0, 0, 0, 0, 0, 0}, 400).position), 1e-9);
 }
 
 TEST(SpaceMouse, TheWorkspaceEndsWhereItSays) {
-  Rig rig;
+  SpacemouseRig rig;
   const dvec3 extent = rig.driver->capabilities().workspace;
   EXPECT_EQ(rig.hold({350, -350, -350, 0, 0, 0}, 5000).position, dvec3(extent.x, extent.y, -extent.z));
 }
 
 TEST(SpaceMouse, TheClutchKeepsThePoseAndLetsItGoOnWithoutAJump) {
   for (const char* id : {"", "?control=position"}) {
-    Rig rig(false, true, id);
+    SpacemouseRig rig(false, true, id);
     const DeviceSample before = rig.hold({250, 0, 0, 0, 200, 0}, 300);
     rig.cap.press(2);
     DeviceSample last = rig.hold({250, 0, 0, 0, 200, 0}, 1);
@@ -110,7 +110,7 @@ TEST(SpaceMouse, ADeadZoneIsContinuousAndKeepsFullScale) {
 }
 
 TEST(SpaceMouse, BrokenReportsChangeNothing) {
-  Rig clean, disturbed;
+  SpacemouseRig clean, disturbed;
   const std::array<int, 6> counts{120, -80, 200, 30, -300, 60};
   const DeviceSample expected = clean.hold(counts, 500);
   const DeviceSample found = disturbed.hold(counts, 500, [&](int i) {
@@ -126,12 +126,12 @@ TEST(SpaceMouse, BrokenReportsChangeNothing) {
 }
 
 TEST(SpaceMouse, CountsBeyondFullScaleAreFullScale) {
-  Rig within, beyond;
+  SpacemouseRig within, beyond;
   EXPECT_EQ(within.hold({350, 0, 0, 0, 0, 0}, 200).position, beyond.hold({32767, 0, 0, 0, 0, 0}, 200).position);
 }
 
 TEST(SpaceMouse, ACapThatFallsSilentWhileDeflectedStops) {
-  Rig rig;
+  SpacemouseRig rig;
   rig.hold({350, 0, 0, 0, 0, 0}, 100);
   DeviceSample sample, later;
   for (int i = 0; i < 700; ++i) {
@@ -147,7 +147,7 @@ TEST(SpaceMouse, ACapThatFallsSilentWhileDeflectedStops) {
 }
 
 TEST(SpaceMouse, APauseOfTheProgramIsNotALeap) {
-  Rig rig;
+  SpacemouseRig rig;
   const DeviceSample before = rig.hold({350, 0, 0, 0, 0, 0}, 100);
   rig.clock.now += 30.0;
   DeviceSample after;
@@ -156,7 +156,7 @@ TEST(SpaceMouse, APauseOfTheProgramIsNotALeap) {
 }
 
 TEST(SpaceMouse, UnpluggedItHasNoSampleAndIsOpenedAnewAtRest) {
-  Rig rig;
+  SpacemouseRig rig;
   rig.hold({350, 0, 0, 0, 0, 0}, 300);
   rig.cap.hid.unplugged = true;
   DeviceSample sample;

@@ -9,14 +9,14 @@ namespace pliant {
 namespace {
 
 // The library is loaded once more here, and so stays as it is while drivers come and go.
-struct Fake {
+struct TouchLibrary {
   void* library = dlopen(PLIANT_FAKE_HD, RTLD_NOW | RTLD_LOCAL);
   FakeHd& hd = *reinterpret_cast<FakeHd* (*)()>(dlsym(library, "fake_hd"))();
-  ~Fake() { dlclose(library); }
+  ~TouchLibrary() { dlclose(library); }
 };
 
 TEST(Touch, MillimetresBecomeMetresAndTheLimitsOfTheMakerAreOn) {
-  Fake fake;
+  TouchLibrary fake;
   fake.hd.x = 10;
   fake.hd.y = 20;
   fake.hd.z = -30;
@@ -39,7 +39,7 @@ TEST(Touch, MillimetresBecomeMetresAndTheLimitsOfTheMakerAreOn) {
 }
 
 TEST(Touch, ItsLoopCallsTheTickOnTheLibrarysThread) {
-  Fake fake;
+  TouchLibrary fake;
   Touch driver({PLIANT_FAKE_HD});
   EXPECT_FALSE(driver.run([] {})) << "before it is opened";
   ASSERT_TRUE(driver.open(""));
@@ -63,7 +63,7 @@ TEST(Touch, ItsLoopCallsTheTickOnTheLibrarysThread) {
 }
 
 TEST(Touch, AfterAFaultOfTheLibraryThePoseIsUnknownForAFrameAndTheForceZero) {
-  Fake fake;
+  TouchLibrary fake;
   Touch driver({PLIANT_FAKE_HD});
   ASSERT_TRUE(driver.open("default"));
   std::atomic<int> unknown{0}, forces{0};
@@ -91,7 +91,7 @@ TEST(Touch, AfterAFaultOfTheLibraryThePoseIsUnknownForAFrameAndTheForceZero) {
 }
 
 TEST(Touch, SafeMeansThatItsOutputIsOffAndStaysOff) {
-  Fake fake;
+  TouchLibrary fake;
   Touch driver({PLIANT_FAKE_HD});
   ASSERT_TRUE(driver.open(""));
   DeviceSample sample;
@@ -111,7 +111,7 @@ TEST(Touch, WhatIsMissingIsOneSentence) {
       "device");
   EXPECT_NE(Touch({PLIANT_FAKE_HD_SHORT}).open("").error().message().find("has no function `hdGetError`"),
             std::string::npos);
-  Fake fake;
+  TouchLibrary fake;
   Touch driver({PLIANT_FAKE_HD});
   EXPECT_EQ(
       driver.open("left hand").error().message(),

@@ -12,30 +12,18 @@
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
 #include "editor/document/edits.h"
+#include "tests/editor/small_level.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-Primitive triangle_sheet(std::size_t n) {
-  Primitive p;
-  for (std::size_t y = 0; y <= n; ++y)
-    for (std::size_t x = 0; x <= n; ++x)
-      p.position.push_back({0.1f * static_cast<float>(x) / static_cast<float>(n), 0.0f,
-                            0.1f * static_cast<float>(y) / static_cast<float>(n)});
-  const auto at = [&](std::size_t x, std::size_t y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
-  for (std::size_t y = 0; y < n; ++y)
-    for (std::size_t x = 0; x < n; ++x)
-      p.index.insert(p.index.end(),
-                     {at(x, y), at(x, y + 1), at(x + 1, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)});
-  return p;
-}
+using testing::id_of;
 
 Level small_level() {
   Level level;
   level.name = "small";
-  level.meshes.push_back({"sheet", {triangle_sheet(70)}});
+  level.meshes.push_back({"sheet", {testing::quad_sheet(70)}});
   LevelNode sheet;
   sheet.name = "sheet";
   sheet.mesh = 0;
@@ -62,11 +50,6 @@ Document opened(const fs::path& folder) {
   Result<Document> document = Document::open(file);
   EXPECT_TRUE(document.ok()) << document.error().message();
   return *std::move(document);
-}
-
-NodeId id_of(const Document& document, const std::string& name) {
-  const DocumentNode* const node = document.state().find(name);
-  return node ? node->id : kNoNode;
 }
 
 // One edit of any kind; errors are fine, they change nothing.
@@ -217,7 +200,7 @@ TEST(Document, TenThousandRandomCommandsUndoneAndDoneAgainAreTheSameToTheBit) {
     ASSERT_EQ(twins.size() > document.step(), true);
     if (n % 97 == 0 || n > 9'990) {
       expect_same(twins[document.step()], document.state());
-      if (testing::Test::HasFatalFailure()) return;
+      if (::testing::Test::HasFatalFailure()) return;
     }
     if (twins.size() > 400) {  // begin again, so that the twins fit
       ASSERT_TRUE(document.save_as(folder.path / "small.glb").ok());
@@ -354,7 +337,7 @@ TEST(Document, MovingInTheTreeKeepsThePlaceInTheWorld) {
 TEST(Document, AStrokeOnALargeMeshCostsWhatItTouches) {
   NodeId next = 1;
   Level level = small_level();
-  level.meshes[0].primitives[0] = triangle_sheet(400);  // 160,801 vertices
+  level.meshes[0].primitives[0] = testing::quad_sheet(400);  // 160,801 vertices
   State state = state_of(std::move(level), next);
   const std::size_t count = state.meshes[0]->primitives[0].position.size();
   const LayerKey key{0, 0, Channel::kStiffness};

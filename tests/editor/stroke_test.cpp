@@ -13,18 +13,18 @@ namespace {
 
 using namespace test;
 
-Ray down(double x, double y) {
+Ray straight_down(double x, double y) {
   return {{x, y, 10}, {0, 0, -1}};
 }
 
-struct Painted {
+struct PaintedSheet {
   LevelMesh mesh;
   PaintSurface surface;
   MeshPaint paint;
-  explicit Painted(LevelMesh m, PaintAttribute attribute = PaintAttribute::kStiffness)
+  explicit PaintedSheet(LevelMesh m, PaintAttribute attribute = PaintAttribute::kStiffness)
       : mesh(std::move(m)), surface(surface_of(mesh)), paint(paint_of(mesh, surface, attribute)) {}
-  explicit Painted(Primitive p, PaintAttribute attribute = PaintAttribute::kStiffness)
-      : Painted(LevelMesh{"mesh", {std::move(p)}}, attribute) {}
+  explicit PaintedSheet(Primitive p, PaintAttribute attribute = PaintAttribute::kStiffness)
+      : PaintedSheet(LevelMesh{"mesh", {std::move(p)}}, attribute) {}
 };
 
 // Every place where two paints differ.
@@ -37,7 +37,7 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> differences(const MeshPaint& a
 }
 
 TEST(Stroke, OneDabOnAPlaneIsTheFalloffOfTheDistance) {
-  const Painted on(sheet(80));
+  const PaintedSheet on(sheet(80));
   const dvec3 center(0.5031, 0.4873, 0);
   const std::map<BrushFalloff, double (*)(double)> law{
       {BrushFalloff::kConstant, [](double) { return 1.0; }},
@@ -46,7 +46,7 @@ TEST(Stroke, OneDabOnAPlaneIsTheFalloffOfTheDistance) {
       {BrushFalloff::kSharp, [](double d) { return (1 - d) * (1 - d); }}};
   for (const auto& [falloff, weight] : law) {
     Stroke stroke(on.surface, on.paint, {.radius = 0.2, .strength = 0.5, .falloff = falloff, .value = 9.0});
-    stroke.move(down(center.x, center.y), 0.8);
+    stroke.move(straight_down(center.x, center.y), 0.8);
     const MeshPaint after = stroke.after();
     for (std::uint32_t i = 0; i < on.mesh.primitives[0].position.size(); ++i) {
       const double d = length(dvec3(on.mesh.primitives[0].position[i]) - center) / 0.2;
@@ -57,10 +57,10 @@ TEST(Stroke, OneDabOnAPlaneIsTheFalloffOfTheDistance) {
 }
 
 TEST(Stroke, GoingOverAPlaceAgainSetsItNoFartherThanTheStrength) {
-  const Painted on(sheet(60));
+  const PaintedSheet on(sheet(60));
   const Brush brush{.radius = 0.1, .strength = 0.5, .falloff = BrushFalloff::kConstant, .value = 5.0};
   Stroke stroke(on.surface, on.paint, brush);
-  for (int i = 0; i < 40; ++i) stroke.move(down(i % 2 ? 0.3 : 0.7, 0.5));
+  for (int i = 0; i < 40; ++i) stroke.move(straight_down(i % 2 ? 0.3 : 0.7, 0.5));
   EXPECT_GT(stroke.dabs(), 400u);
   const MeshPaint after = stroke.after();
   std::set<float> values;
@@ -68,35 +68,35 @@ TEST(Stroke, GoingOverAPlaceAgainSetsItNoFartherThanTheStrength) {
   EXPECT_EQ(values, (std::set<float>{1.0f, 3.0f}));
   // The next stroke begins where this one has ended.
   Stroke next(on.surface, after, brush);
-  next.move(down(0.5, 0.5));
-  EXPECT_EQ(value_probe(next.after(), on.surface, on.surface.hit(down(0.5, 0.5))), 4.0);
+  next.move(straight_down(0.5, 0.5));
+  EXPECT_EQ(value_probe(next.after(), on.surface, on.surface.hit(straight_down(0.5, 0.5))), 4.0);
 }
 
 TEST(Stroke, DabsAreAQuarterRadiusApartHoweverThePointerMoves) {
-  const Painted on(sheet(60));
+  const PaintedSheet on(sheet(60));
   const Brush brush{.radius = 0.08, .falloff = BrushFalloff::kConstant, .mode = BrushMode::kAdd, .value = 0.25};
   for (const int moves : {1, 7, 100}) {
     Stroke stroke(on.surface, on.paint, brush);
-    stroke.move(down(0.2, 0.5));
-    for (int i = 1; i <= moves; ++i) stroke.move(down(0.2 + 0.601 * i / moves, 0.5));
+    stroke.move(straight_down(0.2, 0.5));
+    for (int i = 1; i <= moves; ++i) stroke.move(straight_down(0.2 + 0.601 * i / moves, 0.5));
     EXPECT_EQ(stroke.dabs(), 31u) << "0.6 m at 0.02 m, and the first";
     // A place in the middle of the way is met by every dab within a radius: 8 or 9 of them.
-    const double added = value_probe(stroke.after(), on.surface, on.surface.hit(down(0.5, 0.5))) - 1.0;
+    const double added = value_probe(stroke.after(), on.surface, on.surface.hit(straight_down(0.5, 0.5))) - 1.0;
     EXPECT_GE(added, 8 * 0.25 - 1e-6);
     EXPECT_LE(added, 9 * 0.25 + 1e-6);
   }
 }
 
 TEST(Stroke, DabsThatWaitLeadToTheSamePaintAsDabsMadeAtOnce) {
-  const Painted on(sheet(60));
+  const PaintedSheet on(sheet(60));
   const Brush brush{.radius = 0.1, .mode = BrushMode::kSmooth};
   Primitive rough = on.mesh.primitives[0];
   for (std::size_t i = 0; i < rough.position.size(); ++i) rough.stiffness.push_back(1.0f + float(i * 7 % 13));
-  const Painted from(rough);
+  const PaintedSheet from(rough);
   Stroke at_once(from.surface, from.paint, brush), in_pieces(from.surface, from.paint, brush);
   MeshPaint shown = from.paint;
   for (int i = 0; i < 5; ++i) {
-    const Ray ray = down(0.2 + 0.15 * i, 0.4 + 0.05 * (i % 2));
+    const Ray ray = straight_down(0.2 + 0.15 * i, 0.4 + 0.05 * (i % 2));
     at_once.move(ray);
     EXPECT_FALSE(at_once.waits());
     shown = with(shown, in_pieces.move(ray, 1.0, 0.0));
@@ -111,34 +111,35 @@ TEST(Stroke, DabsThatWaitLeadToTheSamePaintAsDabsMadeAtOnce) {
 }
 
 TEST(Stroke, PressureIsInterpolatedBetweenMoves) {
-  const Painted on(sheet(100));
+  const PaintedSheet on(sheet(100));
   Stroke stroke(on.surface, on.paint,
                 {.radius = 0.04, .falloff = BrushFalloff::kSmooth, .mode = BrushMode::kSet, .value = 2.0});
-  stroke.move(down(0.1, 0.5), 0.0);
-  stroke.move(down(0.9, 0.5), 1.0);
+  stroke.move(straight_down(0.1, 0.5), 0.0);
+  stroke.move(straight_down(0.9, 0.5), 1.0);
   const MeshPaint after = stroke.after();
   for (const double x : {0.3, 0.5, 0.7})
-    EXPECT_NEAR(value_probe(after, on.surface, on.surface.hit(down(x, 0.5))) - 1.0, (x - 0.1) / 0.8, 0.03) << x;
+    EXPECT_NEAR(value_probe(after, on.surface, on.surface.hit(straight_down(x, 0.5))) - 1.0, (x - 0.1) / 0.8, 0.03)
+        << x;
 }
 
 TEST(Stroke, SmoothingLeavesARampAloneAndFlattensASpike) {
   Primitive p = sheet(40);
   for (const vec3& x : p.position) p.stiffness.push_back(1.0f + x.x);
-  const Painted ramp(p);
+  const PaintedSheet ramp(p);
   const Brush brush{.radius = 0.2, .mode = BrushMode::kSmooth};
   Stroke over_ramp(ramp.surface, ramp.paint, brush);
-  over_ramp.move(down(0.4, 0.4));
-  over_ramp.move(down(0.6, 0.6));
+  over_ramp.move(straight_down(0.4, 0.4));
+  over_ramp.move(straight_down(0.6, 0.6));
   for (const auto& [n, i] : differences(ramp.paint, over_ramp.after()))
     EXPECT_NEAR(over_ramp.after().layers[n].value(i), p.stiffness[i], 1e-5f);
 
   p.stiffness.assign(p.position.size(), 1.0f);
   p.stiffness[20 * 41 + 20] = 50.0f;
-  const Painted spike(p);
+  const PaintedSheet spike(p);
   Stroke over_spike(spike.surface, spike.paint, brush);
   double highest = 50.0;
   for (int i = 0; i < 5; ++i) {
-    over_spike.move(down(0.5 + 0.06 * (i % 2), 0.5));
+    over_spike.move(straight_down(0.5 + 0.06 * (i % 2), 0.5));
     const std::vector<float> now = over_spike.after().layers[0].flatten();
     const double highest_now = double(*std::max_element(now.begin(), now.end()));
     EXPECT_LT(highest_now, highest);
@@ -152,11 +153,11 @@ TEST(Stroke, ErasingLeadsBackToWhatIsUnpainted) {
   for (const PaintAttribute attribute : {PaintAttribute::kFriction, PaintAttribute::kPinned}) {
     Primitive p = sheet(30);
     p.*painted_attribute(attribute).values = std::vector<float>(p.position.size(), 0.75f);
-    const Painted on(p, attribute);
+    const PaintedSheet on(p, attribute);
     Stroke stroke(on.surface, on.paint,
                   {.radius = 0.2, .falloff = BrushFalloff::kConstant, .mode = BrushMode::kErase, .value = 7});
-    stroke.move(down(0.5, 0.5));
-    const SurfaceHit hit = on.surface.hit(down(0.5, 0.5));
+    stroke.move(straight_down(0.5, 0.5));
+    const SurfaceHit hit = on.surface.hit(straight_down(0.5, 0.5));
     EXPECT_EQ(value_probe(stroke.after(), on.surface, hit), attribute == PaintAttribute::kPinned ? 0.0 : 1.0);
   }
 }
@@ -166,11 +167,11 @@ TEST(Stroke, ValuesStayWithinTheRangeOfTheirAttribute) {
        {std::tuple{PaintAttribute::kStiffness, 0.01f, 100.0f}, {PaintAttribute::kHandle, 0.0f, 1.0f}})
     for (const double value : {1e9, -1e9, double(INFINITY)})
       for (const BrushMode mode : {BrushMode::kSet, BrushMode::kAdd}) {
-        const Painted on(sheet(20), attribute);
+        const PaintedSheet on(sheet(20), attribute);
         Stroke stroke(on.surface, on.paint,
                       {.radius = 0.3, .falloff = BrushFalloff::kConstant, .mode = mode, .value = value});
-        stroke.move(down(0.5, 0.5));
-        const SurfaceHit hit = on.surface.hit(down(0.5, 0.5));
+        stroke.move(straight_down(0.5, 0.5));
+        const SurfaceHit hit = on.surface.hit(straight_down(0.5, 0.5));
         EXPECT_EQ(float(value_probe(stroke.after(), on.surface, hit)), value > 0 ? high : low);
       }
 }
@@ -207,27 +208,27 @@ TEST(Stroke, AMirroredStrokeIsSymmetricAndCountsOnceOnThePlane) {
       EXPECT_GT(painted, 100u);
     }
   // A dab on the plane and its image are one dab.
-  const Painted on(sheet(40));
+  const PaintedSheet on(sheet(40));
   LevelMesh centred = on.mesh;
   for (vec3& p : centred.primitives[0].position) p.x -= 0.5f;
-  const Painted plane(centred);
+  const PaintedSheet plane(centred);
   Stroke stroke(plane.surface, plane.paint,
                 {.radius = 0.2,
                  .falloff = BrushFalloff::kConstant,
                  .mode = BrushMode::kAdd,
                  .value = 1.0,
                  .mirror = BrushMirror::kX});
-  stroke.move(down(0.0, 0.5));
-  EXPECT_EQ(value_probe(stroke.after(), plane.surface, plane.surface.hit(down(0.0, 0.5))), 2.0);
+  stroke.move(straight_down(0.0, 0.5));
+  EXPECT_EQ(value_probe(stroke.after(), plane.surface, plane.surface.hit(straight_down(0.0, 0.5))), 2.0);
 }
 
 TEST(Stroke, CopiesOfAVertexAtASeamAlwaysGetTheSameValue) {
   Primitive right = unshared(sheet(15));
   for (vec3& p : right.position) p.x += 1.0f;
-  const Painted on(LevelMesh{"seams", {unshared(sheet(15)), right}});
+  const PaintedSheet on(LevelMesh{"seams", {unshared(sheet(15)), right}});
   Stroke stroke(on.surface, on.paint, {.radius = 0.3, .value = 20.0});
-  stroke.move(down(0.8, 0.5));
-  stroke.move(down(1.2, 0.6));
+  stroke.move(straight_down(0.8, 0.5));
+  stroke.move(straight_down(1.2, 0.6));
   std::map<std::tuple<float, float, float>, float> value;
   const MeshPaint after = stroke.after();
   std::size_t both = 0;
@@ -242,7 +243,7 @@ TEST(Stroke, CopiesOfAVertexAtASeamAlwaysGetTheSameValue) {
 }
 
 TEST(Stroke, WhatItReportsIsExactlyWhatHasChanged) {
-  const Painted on(LevelMesh{"two", {unshared(icosphere(3)), sheet(5)}});
+  const PaintedSheet on(LevelMesh{"two", {unshared(icosphere(3)), sheet(5)}});
   for (const BrushMode mode : {BrushMode::kSet, BrushMode::kAdd}) {
     Stroke stroke(on.surface, on.paint, {.radius = 0.3, .mode = mode, .value = 3.0});
     MeshPaint shown = on.paint;
@@ -265,13 +266,13 @@ TEST(Stroke, WhatItReportsIsExactlyWhatHasChanged) {
 }
 
 TEST(Stroke, UndoKeepsEveryStepForWhatTheStrokesTouched) {
-  const Painted on(sheet(400));  // 40 chunks
+  const PaintedSheet on(sheet(400));  // 40 chunks
   std::vector<MeshPaint> steps{on.paint};
   std::size_t bytes = 0;
   for (int i = 0; i < 30; ++i) {
     Stroke stroke(on.surface, steps.back(), {.radius = 0.02, .value = 2.0 + i});
-    stroke.move(down(0.1 + 0.02 * i, 0.1 + 0.01 * i));
-    stroke.move(down(0.15 + 0.02 * i, 0.1 + 0.01 * i));
+    stroke.move(straight_down(0.1 + 0.02 * i, 0.1 + 0.01 * i));
+    stroke.move(straight_down(0.15 + 0.02 * i, 0.1 + 0.01 * i));
     steps.push_back(stroke.after());
     bytes += steps.back().layers[0].bytes_not_shared_with(steps[steps.size() - 2].layers[0]);
   }
@@ -281,12 +282,12 @@ TEST(Stroke, UndoKeepsEveryStepForWhatTheStrokesTouched) {
   for (int i = 0; i < 30; ++i) {
     EXPECT_TRUE(again == steps[std::size_t(i)]);
     Stroke stroke(on.surface, again, {.radius = 0.02, .value = 2.0 + i});
-    stroke.move(down(0.1 + 0.02 * i, 0.1 + 0.01 * i));
-    stroke.move(down(0.15 + 0.02 * i, 0.1 + 0.01 * i));
+    stroke.move(straight_down(0.1 + 0.02 * i, 0.1 + 0.01 * i));
+    stroke.move(straight_down(0.15 + 0.02 * i, 0.1 + 0.01 * i));
     again = stroke.after();
   }
   Stroke nothing(on.surface, again, {.radius = 0.02});
-  nothing.move(down(5, 5));
+  nothing.move(straight_down(5, 5));
   EXPECT_EQ(nothing.after().layers[0].bytes_not_shared_with(again.layers[0]), 0u);
 }
 
@@ -294,9 +295,9 @@ TEST(Stroke, ItNeverCrossesAGapNorGoesThroughAThinWall) {
   Primitive slab = grid_cube(40), lid = slab;
   for (vec3& p : slab.position) p.z *= 0.001f;
   for (vec3& p : lid.position) p.z = p.z * 0.001f - 0.004f;  // another slab 2 mm below
-  const Painted on(LevelMesh{"slabs", {slab, lid}});
+  const PaintedSheet on(LevelMesh{"slabs", {slab, lid}});
   Stroke stroke(on.surface, on.paint, {.radius = 0.2, .value = 9.0});
-  for (int i = 0; i <= 20; ++i) stroke.move(down(-0.7 + 0.07 * i, 0.6 * std::sin(i)));
+  for (int i = 0; i <= 20; ++i) stroke.move(straight_down(-0.7 + 0.07 * i, 0.6 * std::sin(i)));
   const auto changed = differences(on.paint, stroke.after());
   EXPECT_GT(changed.size(), 500u);
   for (const auto& [n, i] : changed) {
@@ -308,11 +309,11 @@ TEST(Stroke, ItNeverCrossesAGapNorGoesThroughAThinWall) {
 TEST(Stroke, ThePointerLeavesThePartOnlyWhereTheMaskLetsIt) {
   Primitive right = sheet(30);
   for (vec3& p : right.position) p.x += 1.2f;
-  const Painted on(LevelMesh{"two", {sheet(30), right}});
+  const PaintedSheet on(LevelMesh{"two", {sheet(30), right}});
   for (const bool masked : {false, true}) {
     Stroke stroke(on.surface, on.paint, {.radius = 0.1, .value = 9.0, .mask = {.part = masked}});
-    stroke.move(down(0.5, 0.5));
-    stroke.move(down(1.7, 0.5));
+    stroke.move(straight_down(0.5, 0.5));
+    stroke.move(straight_down(1.7, 0.5));
     const auto changed = differences(on.paint, stroke.after());
     std::set<std::uint32_t> primitives;
     for (const auto& [n, i] : changed) primitives.insert(n);
@@ -324,8 +325,8 @@ TEST(Stroke, ThePointerLeavesThePartOnlyWhereTheMaskLetsIt) {
 }
 
 TEST(Paint, FillAndGradientAreWhatTheySay) {
-  const Painted on(sheet(20));
-  const SurfaceHit hit = on.surface.hit(down(0.5, 0.5));
+  const PaintedSheet on(sheet(20));
+  const SurfaceHit hit = on.surface.hit(straight_down(0.5, 0.5));
   const std::vector<std::uint32_t> part = on.surface.connected(hit);
   const MeshPaint filled = with(on.paint, fill(on.paint, on.surface, part, 4.0));
   EXPECT_TRUE(filled.layers[0] == PaintLayer::constant(21 * 21, 4.0f));
@@ -334,7 +335,7 @@ TEST(Paint, FillAndGradientAreWhatTheySay) {
 
   const MeshPaint ramp = with(on.paint, gradient(on.paint, on.surface, part, {0.2, 0, 0}, {0.7, 0, 0}, 2.0, 12.0));
   for (const double x : {0.05, 0.2, 0.35, 0.6, 0.7, 0.9})
-    EXPECT_NEAR(value_probe(ramp, on.surface, on.surface.hit(down(x, 0.33))),
+    EXPECT_NEAR(value_probe(ramp, on.surface, on.surface.hit(straight_down(x, 0.33))),
                 2 + 10 * std::clamp((x - 0.2) / 0.5, 0.0, 1.0), 1e-4);
   EXPECT_TRUE(gradient(on.paint, on.surface, part, {0, 0, 0}, {0, 0, 0}, 1, 2).values.empty());
 }
@@ -345,9 +346,9 @@ TEST(Paint, PaintingAPrimitiveThatWasUnpaintedDoesNotChangeItsSeam) {
   for (vec3& p : right.position) p.x += 1.0f;
   left.stiffness.assign(left.position.size(), 3.0f);
   LevelMesh mesh{"two", {left, right}};
-  const Painted on(mesh);
+  const PaintedSheet on(mesh);
   Stroke stroke(on.surface, on.paint, {.radius = 0.05, .value = 50.0});
-  stroke.move(down(1.7, 0.5));
+  stroke.move(straight_down(1.7, 0.5));
   LevelMesh after = mesh;
   store(on.paint, stroke.after(), after);
   EXPECT_EQ(after.primitives[0].stiffness, left.stiffness);

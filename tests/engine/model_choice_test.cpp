@@ -4,13 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "content/keys/extensions.h"
+#include "content/keys/extension_table.h"
 #include "content/level_file.h"
-#include "engine/choice/choice_parts.h"
 #include "pliant/session.h"
-#include "systems/soft/fem/tissue_step.h"
 #include "tests/scenes/scenes.h"
 
 namespace pliant {
@@ -127,82 +126,117 @@ TEST(ModelChoice, ALevelWithoutABudgetIsLeftAlone) {
   EXPECT_FALSE(set_error_budget(empty, 0.1));
 }
 
-Level slab_level(double error) {
+TEST(ModelChoice, OneThatIsSlowerThanRealTimeSaysSo) {
+  ModelChoice choice{"liver", "soft body", 0.1, {{"cell 4 mm", 0.05, 1200.0}}, 0, true, {}, {}, {}};
+  EXPECT_NE(choice.sentence().find("that is slower than real time"), std::string::npos) << choice.sentence();
+  choice.tried[0].cost = 1000.0;
+  EXPECT_EQ(choice.sentence().find("slower"), std::string::npos) << choice.sentence();
+  choice.tried[0].cost = 1200.0;
+  choice.within = false;
+  EXPECT_NE(choice.sentence().find("that is slower than real time; for less"), std::string::npos) << choice.sentence();
+}
+
+TEST(ModelChoice, WhereNoneIsWithinTheCheapestOfTheNearestIsTaken) {
+  const std::vector<ModelCandidate> tried{{"a", 0.4, 5.0}, {"b", 0.2509, 8.0}, {"c", 0.2507, 296.0}, {"d", 0.3, 300.0}};
+  EXPECT_EQ(cheapest_within(tried, 0.2), 1u) << "a hundredth nearer is not worth 288 us";
+  EXPECT_EQ(cheapest_within(tried, 0.2508), 2u);
+  EXPECT_EQ(cheapest_within(tried, 0.5), 0u);
+}
+
+// A surface and a body in one level: each alone has the candidates that both have together.
+Level both_level() {
   Scene scene;
+  DeformableParameters d;
+  d.reach = kReach;
+  d.error = 0.4;
+  scene.add_surface("sheet", data_of(scenes::sheet(40, 0.16)), d);
   SoftBodyParameters body;
   body.young = 1e4;
   body.rayleigh = {0.0, 0.01};
-  body.error = error;
-  body.pinned.add(vec3(-1, -0.06f, -1));
-  body.pinned.add(vec3(1, -0.035f, 1));
-  scene.add_soft_body("slab", data_of(scenes::slab(8, 0.1, 0.05)), body);
+  body.error = 0.8;
+  scene.add_soft_body("slab", data_of(scenes::slab(6, 0.1, 0.05)), body);
   return scene.level();
 }
 
-// A body of its own, made from the level and not by the chooser: places on its top after a press in the middle, while
-// it rises and while it holds, in steps of `step` [s].
-std::vector<dvec3> press_middle(Level level, double cell, double step, Scheme scheme) {
-  level.nodes[0].soft_body->cell = cell;
-  level.nodes[0].soft_body->error = 0.0;
-  const auto world = spawn_level(level);
-  EXPECT_TRUE(world);
-  const SoftBody* body = nullptr;
-  for (auto [entity, each] : world->registry.view<const SoftBody>()) body = &each;
-  const TetMesh& tets = world->tet_meshes[body->tets];
-  const auto depth = [](dvec3 p) {  // of a smooth dent's weight
-    const double u = (p.x * p.x + p.z * p.z) / (0.02 * 0.02);
-    return p.y > -1e-3 && u < 1 ? (1 - u) * (1 - u) : 0.0;
-  };
-  // By nodes of the top: each as much as its weight, to one sum.
-  std::vector<dvec3> load(tets.node_count(), dvec3(0)), push = load;
-  double sum = 0.0;
-  for (std::uint32_t i = 0; i < tets.free_count; ++i) sum += depth(tets.nodes[i]);
-  for (std::uint32_t i = 0; i < tets.free_count; ++i) load[i].y = -0.2 * depth(tets.nodes[i]) / sum;
-  Tissue tissue(tets,
-                {.young = body->young, .poisson = body->poisson, .density = body->density, .beta = body->rayleigh[1]},
-                tets.free_count);
-  const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);
-  solver->analyse(tissue.inner());
-  std::vector<dvec3> out;
-  for (int i = 1; i <= static_cast<int>(std::lround(0.3 / step)); ++i) {
-    const double t = std::min(1.0, (i - (scheme == Scheme::kMidpoint ? 0.5 : 0.0)) * step / 0.2);
-    for (std::size_t n = 0; n < load.size(); ++n) push[n] = t * t * (3 - 2 * t) * load[n];
-    EXPECT_TRUE(step_tissue(tissue, *solver, step, dvec3(0), {.scheme = scheme, .push = &push}).solved);
-    if (i % static_cast<int>(std::lround(0.1 / step)) != 0) continue;
-    // The top as it is seen from above, by the nearest node of the lattice.
-    for (double x = -0.04; x < 0.041; x += 0.01)
-      for (double z = -0.04; z < 0.041; z += 0.01) {
-        std::uint32_t nearest = 0;
-        for (std::uint32_t k = 1; k < tets.free_count; ++k)
-          if (length(tets.nodes[k] - dvec3(x, 0, z)) < length(tets.nodes[nearest] - dvec3(x, 0, z))) nearest = k;
-        out.push_back(tissue.position()[nearest] - tets.nodes[nearest]);
-      }
+TEST(ModelChoice, OneObjectAloneHasTheCandidatesThatAllTogetherHave) {
+  Level all = both_level();
+  const auto choices = choose_models(all);
+  ASSERT_TRUE(choices) << choices.error().message();
+  ASSERT_EQ(choices->size(), 2u);
+  for (std::size_t n = 0; n < 2; ++n) {
+    Level level = both_level();
+    const auto one = choose_model(level, n);
+    ASSERT_TRUE(one) << one.error().message();
+    const ModelChoice& other = (*choices)[n];
+    ASSERT_EQ(one->size(), 1u);
+    const ModelChoice& its = one->front();
+    EXPECT_EQ(its.sentence(), other.sentence());
+    ASSERT_EQ(its.tried.size(), other.tried.size());
+    for (std::size_t i = 0; i < its.tried.size(); ++i) {
+      EXPECT_EQ(its.tried[i].label, other.tried[i].label);
+      EXPECT_EQ(its.tried[i].error, other.tried[i].error);
+      EXPECT_EQ(its.tried[i].cost, other.tried[i].cost);
+    }
+    EXPECT_EQ(node_extensions(level.nodes[n], Json()), node_extensions(all.nodes[n], Json()));
+    EXPECT_EQ(node_extensions(level.nodes[1 - n], Json()), node_extensions(both_level().nodes[1 - n], Json()))
+        << "the other object is left alone";
+    if (n == 1) EXPECT_EQ(level.simulation.soft_step, all.simulation.soft_step);
   }
-  return out;
 }
 
-TEST(ModelChoice, ABodyIsWithinItsBudgetAndATighterOneNeverGivesItACheaperLatticeAndStep) {
-  Level level = slab_level(0.8);
-  const auto choices = choose_models(level);
-  ASSERT_TRUE(choices) << choices.error().message();
-  const ModelChoice& choice = choices->front();
-  EXPECT_TRUE(choice.within) << choice.sentence();
-  EXPECT_GT(level.nodes[0].soft_body->cell, 0.0);
-  const double cell = level.nodes[0].soft_body->cell;
-  const auto taken = press_middle(level, cell, level.simulation.soft_step, Scheme::kEuler),
-             fine = press_middle(level, 0.7 * cell, 1.0 / 120, Scheme::kMidpoint);
-  ASSERT_EQ(taken.size(), fine.size());
-  double off = 0.0, size = 0.0;
-  for (std::size_t i = 0; i < fine.size(); ++i)
-    off += dot(taken[i] - fine[i], taken[i] - fine[i]), size += dot(fine[i], fine[i]);
-  EXPECT_LT(std::sqrt(off / size), 0.8);
-  EXPECT_GT(std::sqrt(off / size), 0.0);
-  double before = 0.0;
-  for (const double budget : {2.0, 1.0, 0.5, 0.3, 0.2, 0.1, 0.01}) {
-    const double cost = choice.tried[cheapest_within(choice.tried, budget)].cost;
-    EXPECT_GE(cost, before) << budget;
-    before = cost;
+TEST(ModelChoice, EveryKeyThatIsChosenIsNamedAsChoosableAndOneThatIsSaidIsNot) {
+  for (const std::size_t n : {0u, 1u}) {
+    Level level = both_level();
+    const Json object = node_extensions(level.nodes[n], Json()), scene = scene_extensions(level, Json());
+    std::vector<ChoosableKey> keys = choosable_keys(level, n);
+    ASSERT_EQ(keys.size(), n == 0 ? 4u : 3u);
+    for (const ChoosableKey& key : keys) EXPECT_EQ(key.said, key.key == "reach") << key.key;
+    const auto choices = choose_model(level, n);
+    ASSERT_TRUE(choices);
+    EXPECT_GE(choices->front().keys.size(), 2u);
+    for (const ChoosableKey& chosen : choices->front().keys)
+      EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [&](const ChoosableKey& key) {
+        return !key.said && key.extension == chosen.extension && key.key == chosen.key;
+      })) << chosen.key;
+    // Without them, everything is as it was.
+    Level back = level;
+    for (const ChoosableKey& key : keys) {
+      const Extension& extension = *find_extension(key.extension);
+      Level was = both_level();
+      void* const owner = extension.on_scene ? static_cast<void*>(&back) : &back.nodes[n];
+      const void* const before = extension.on_scene ? static_cast<const void*>(&was) : &was.nodes[n];
+      const Key& it = *find_key(extension, key.key);
+      it.set(owner, it.get(before));
+    }
+    EXPECT_EQ(node_extensions(back.nodes[n], Json()), object);
+    EXPECT_EQ(scene_extensions(back, Json()), scene);
   }
+  Level level = both_level();
+  ASSERT_TRUE(set_keys(level, {"sheet.deformable.distance=chord", "*.simulation.soft_step=0.005"}));
+  EXPECT_FALSE(choosable_keys(level, 0)[0].said);
+  EXPECT_TRUE(choosable_keys(level, 0)[1].said) << "said at its default";
+  EXPECT_TRUE(choosable_keys(level, 1)[2].said) << "soft_step";
+  ASSERT_TRUE(set_key(level, "sheet.deformable.volume=0.5"));
+  EXPECT_EQ(choosable_keys(level, 0).size(), 3u) << "`volume` stands for a shape";
+}
+
+TEST(ModelChoice, AWatchIsToldWhatIsDoneAndMayEndIt) {
+  for (const std::size_t n : {0u, 1u}) {
+    Level level = both_level();
+    int told = 0;
+    const auto stopped = choose_model(level, n, [&](const std::string& doing) {
+      EXPECT_NE(doing.find(level.nodes[n].name), std::string::npos);
+      return ++told < 3;
+    });
+    EXPECT_EQ(told, 3);
+    ASSERT_FALSE(stopped);
+    EXPECT_NE(stopped.error().message().find("was not measured to the end"), std::string::npos);
+    EXPECT_EQ(node_extensions(level.nodes[n], Json()), node_extensions(both_level().nodes[n], Json()));
+  }
+  Level level = sheet_level(0.0);
+  const auto none = choose_model(level, 0);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message().find("has no error budget"), std::string::npos);
 }
 
 }  // namespace

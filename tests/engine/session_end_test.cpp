@@ -267,10 +267,16 @@ TEST(SessionEnd, ASolverThatHangsKeepsNoDeviceDriven) {
     log.height = std::max(-0.003, 0.004 - 2e-5 * i);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  EXPECT_TRUE(within_five_seconds([&] { return log.last > 0.1; }));
+  // A hand that presses trembles: one that says the very same pose for long is taken for a frozen sensor.
+  int said = 0;
+  const auto presses = [&] {
+    log.height = -0.003 + (++said % 2 ? 1e-5 : 0.0);
+    return log.last > 0.1;
+  };
+  EXPECT_TRUE(within_five_seconds(presses));
   does = Does::kHangs;
-  EXPECT_TRUE(within_five_seconds([&] { return hanging == 1; }));
-  EXPECT_TRUE(within_five_seconds([&] { return log.last > 0.1; })) << "the touch clock goes on";
+  EXPECT_TRUE(within_five_seconds([&] { return presses(), hanging == 1; }));
+  EXPECT_TRUE(within_five_seconds(presses)) << "the touch clock goes on";
   std::atomic<bool> stopped{false};
   std::thread stopping([&] {
     EXPECT_TRUE(session.stop());

@@ -18,6 +18,7 @@ struct Plug {
   std::atomic<bool> in{true};
   std::atomic<int> opened{0}, closed{0}, written{0};
   std::atomic<double> strongest{3.0};  // [N] of what is plugged in
+  std::atomic<bool> guarded{false};    // by a process that holds its line
 };
 class PluggedDevice final : public Driver {
  public:
@@ -38,6 +39,7 @@ class PluggedDevice final : public Driver {
   }
   void write(const DeviceWrench&) override { ++plug_.written; }
   void close() override { ++plug_.closed; }
+  bool safe_line(SafeLine&) const override { return plug_.guarded; }
   bool gone() const override { return gone_; }
 
  private:
@@ -87,6 +89,21 @@ TEST(Refound, AnotherDeviceInItsPlaceIsNotTaken) {
   EXPECT_FALSE(device.read(sample)) << "its limits are not those that were promised";
   plug.strongest = 3.0;
   ASSERT_TRUE(comes_true([&] { return device.read(sample); }));
+}
+
+TEST(Refound, OneWhoseLineAGuardProcessHoldsIsNotOpenedAnewBehindItsBack) {
+  Plug plug;
+  plug.guarded = true;
+  Refound device(std::make_unique<PluggedDevice>(plug));
+  ASSERT_TRUE(device.open("left"));
+  DeviceSample sample;
+  plug.in = false;
+  EXPECT_FALSE(device.read(sample));
+  plug.in = true;
+  std::this_thread::sleep_for(std::chrono::duration<double>(3 * Refound::kLookEvery));
+  EXPECT_EQ(plug.opened, 1);
+  EXPECT_FALSE(device.read(sample));
+  EXPECT_TRUE(device.gone());
 }
 
 TEST(Refound, ClosingWhileItIsGoneEndsTheSearchAndOpeningBeginsAnew) {

@@ -127,6 +127,32 @@ TEST(House, EveryRoomIncludesOnlyThoseBelowIt) {
   EXPECT_GT(checked, 50u) << "the rooms were not found";
 }
 
+// Two types of one name in one program are one type to the linker, however different they are. What only one file knows
+// stands in an unnamed namespace, and may be called anything.
+TEST(House, EveryTypeThatIsNotAFilesOwnHasANameOfItsOwn) {
+  const std::regex type(
+      "^(?:struct|class|enum class|enum) (?:alignas\\([^)]*\\) )?(\\w+)(?: final)?(?: :[^:;].*| \\{.*)$");
+  std::map<std::string, std::string> where;
+  for (const Source& source : sources()) {
+    if (source.folder == "tests" || source.folder == "bench" || source.folder == "examples" || source.folder == "fuzz")
+      continue;  // each of their files is a program of its own, or nearly
+    std::istringstream lines(source.text);
+    bool own = false;
+    std::string space;  // "" is namespace pliant
+    for (std::string line; std::getline(lines, line);) {
+      if (line == "namespace {") own = true;
+      if (line == "}  // namespace") own = false;
+      if (line.starts_with("namespace ") && line != "namespace {" && line != "namespace pliant {") space = line;
+      if (!space.empty() && line == "}  // " + space.substr(0, space.find(" {"))) space.clear();
+      std::smatch found;
+      if (own || !std::regex_match(line, found, type)) continue;
+      const auto [it, fresh] = where.emplace(space + found[1].str(), source.path);
+      EXPECT_TRUE(fresh) << found[1] << " is in " << it->second << " and in " << source.path;
+    }
+  }
+  EXPECT_GT(where.size(), 200u) << "the types were not found";
+}
+
 TEST(House, EveryHeaderIsReadOnce) {
   for (const Source& source : sources()) {
     if (source.path.ends_with(".h")) {

@@ -35,6 +35,10 @@ TEST_F(Files, InspectHintsAtAWrongUnitAndConvertMendsIt) {
   std::string millimetres = "v 0 0 0\nv 100000 0 0\nv 0 100000 0\nf 1 2 3\n";
   write_text(folder / "big.obj", millimetres);
   EXPECT_NE(inspect("big.obj")["unit_hint"].get<std::string>(), "");
+  const Said scaled = pliant({"inspect", "big.obj", "--unit", "mm", "--json"});
+  ASSERT_EQ(scaled.status, 0) << scaled.err;
+  EXPECT_NEAR(Json::parse(scaled.out)["bounds_m"]["max"][0], 100.0, 1e-3);
+  expect_refused({"inspect", "minimal", "--unit", "mm"}, 2, "bare meshes");
   const Said said = pliant({"convert", "big.obj", "metres.glb", "--unit", "mm"});
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_NEAR(inspect("metres.glb")["bounds_m"]["max"][0], 100.0, 1e-3);

@@ -16,6 +16,7 @@ using ::testing::HasSubstr;
 using testing::Json;
 using testing::read_text;
 using testing::Said;
+using testing::write_text;
 
 constexpr float kWide = 0.035f, kThick = 0.02f;  // [m]
 constexpr double kRadius = 0.01;                 // [m] of the punch
@@ -131,6 +132,36 @@ TEST(FitTissue, TheLawThatAPressHasIsFoundAndAMapGoesThroughItsPlaces) {
     EXPECT_NEAR(map[v] / std::exp(3 * static_cast<double>(built->mesh.px[v])), 1.0, 0.04);
 }
 
+TEST(FitTissue, WhatNoDentCanGiveIsWhatDependsOnMoreThanTheDistance) {
+  const auto built = build_mesh("block", std::vector<Primitive>{block()}, mat4(1.0f), {});
+  ASSERT_TRUE(built.ok());
+  const Mesh& mesh = built->mesh;
+  const PressPlace place = middle_of(mesh);
+  std::vector<float> rings(mesh.vertex_count), tilted(mesh.vertex_count);
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const dvec3 away = dvec3(mesh.position(v)) - place.position;
+    rings[v] = -0.001f * static_cast<float>(std::floor(4 * length(away) / kRadius));
+    tilted[v] = static_cast<float>(away.x);
+  }
+  const SurfaceDifference none = radial_remainder(mesh, place, kRadius, rings);
+  EXPECT_LT(none.off, 1e-10 * none.size);
+  const SurfaceDifference all = radial_remainder(mesh, place, kRadius, tilted);
+  EXPECT_GT(all.off, 0.9 * all.size) << "the mean of a tilt over a ring is nothing";
+}
+
+TEST(FitTissue, AnEdgeIsNearWhereAnotherSideIsWithinThePress) {
+  const auto built = build_mesh("block", std::vector<Primitive>{block()}, mat4(1.0f), {});
+  ASSERT_TRUE(built.ok());
+  const auto at = [&](float x) {  // on the top, this far from the right side
+    PressPlace place;
+    place.position = {kWide - x, 0, 0};
+    return place;
+  };
+  EXPECT_FALSE(is_near_an_edge(built->mesh, at(0.02f), 0.005));
+  EXPECT_TRUE(is_near_an_edge(built->mesh, at(0.007f), 0.005));
+  EXPECT_TRUE(is_near_an_edge(built->mesh, at(0.02f), 0.01)) << "the bottom";
+}
+
 class FitTissueCommandTest : public CommandTest {};
 
 TEST_F(FitTissueCommandTest, ASurfaceFromAnObjectIsWrittenWithItsErrorsAndIsTheSameTwice) {
@@ -148,6 +179,21 @@ TEST_F(FitTissueCommandTest, ASurfaceFromAnObjectIsWrittenWithItsErrorsAndIsTheS
   EXPECT_GE(report["keys"]["reach"].get<double>(), 1.49 * 0.035);
   EXPECT_EQ(report["held_out"][0]["region"], "all");
   EXPECT_EQ(report["held_out"][0]["places"], 4);
+}
+
+TEST_F(FitTissueCommandTest, WithoutAnObjectALevelOfManyIsAskedForOne) {
+  const Said said = pliant({"fit", "hand_crowd", "-o", "x.glb"});
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.err, HasSubstr("--object: is not said, and the level has 9 nodes with a mesh; name one of"));
+}
+
+TEST_F(FitTissueCommandTest, WhatIsOfAnotherKindOfFitIsRefusedAndNotIgnored) {
+  write_text(folder / "press.csv", "depth_mm,force_N\n0,0\n1,1\n");
+  expect_refused({"fit", "press.csv", "--cell", "0.01"}, 2, "--cell");
+  expect_refused({"fit", "press.csv", "--unit", "mm"}, 2, "--unit");
+  expect_refused({"fit", "hand", "--object", "organ", "--damping"}, 2, "--damping");
+  expect_refused({"fit", "--sweep", "there", "--target", "press.csv", "--law", "cubic"}, 2, "--law");
+  expect_refused({"fit", "--sweep", "there", "--target", "press.csv", "-o", "x.glb"}, 2, "--sweep");
 }
 
 TEST_F(FitTissueCommandTest, AnObjectWithoutAModulusIsAskedForOne) {

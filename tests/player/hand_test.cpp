@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -41,6 +42,35 @@ TEST(Hand, StiffOrganAtTenMillisecondsShakesAnUnguardedHandAndNotAGuardedOne) {
   EXPECT_LT(guarded->limit, guarded->stiffest) << "the organ is softened";
   EXPECT_TRUE(guarded->stable()) << guarded->buzz;
   EXPECT_FALSE(bare->stable()) << bare->buzz;
+}
+
+TEST(Hand, ARunOfTheStudyIsTheSameBitsEveryTime) {
+  const auto forces = [] {
+    const auto run = run_hand("three_probes", "omni,hand=finger", 1e-3, true, 2.0);
+    std::vector<double> all;
+    if (run)
+      for (const HandSample& sample : run->samples) all.insert(all.end(), {sample.time, sample.depth, sample.force});
+    return all;
+  };
+  const std::vector<double> first = forces();
+  ASSERT_FALSE(first.empty());
+  EXPECT_GT(*std::max_element(first.begin(), first.end()), 0.0);
+  EXPECT_EQ(first, forces());
+}
+
+TEST(Walls, VerdictsAreTheSameBitsEveryTime) {
+  const Interrupt interrupt;
+  const auto measured = [&] {
+    const auto figures = measure_walls(4, 3, 0.2, interrupt);
+    std::vector<double> all;
+    if (figures)
+      for (const WallCell& cell : figures->cells)
+        all.insert(all.end(), {double(cell.result.verdict), cell.result.amplitude, cell.result.work});
+    return all;
+  };
+  const std::vector<double> first = measured();
+  ASSERT_FALSE(first.empty());
+  EXPECT_EQ(first, measured());
 }
 
 TEST_F(HandRunTest, MovesAProbeInLockstepWithTheSameHashEveryTimeAndReplaysIt) {

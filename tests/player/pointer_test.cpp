@@ -17,10 +17,10 @@ const Viewpoint kAbove{.eye = {0, 1, 0.2}, .target = {0, 0, 0}};
 const ViewRay kDown{{0, 1, 0}, {0, -1, 0}};
 
 // A plate of 0.2 m in y = 0 that gives way, and a table that does not.
-struct Scene {
+struct PointerScene {
   World world;
   Entity plate, table;
-  Scene() {
+  PointerScene() {
     plate = world.registry.create();
     table = world.registry.create();
     DrawMesh draw;
@@ -43,7 +43,7 @@ dvec3 settled(Pointer& pointer) {
 }
 
 TEST(Pointer, BeforeAnythingIsSeenTheProbeStandsOutsideOnTheSideOfTheEye) {
-  const Scene scene;
+  const PointerScene scene;
   Pointer pointer(scene.world, 0.005, kAbove);
   const dvec3 at = pointer.update(0.01);
   EXPECT_GT(at.y, 0.05);
@@ -52,7 +52,7 @@ TEST(Pointer, BeforeAnythingIsSeenTheProbeStandsOutsideOnTheSideOfTheEye) {
 }
 
 TEST(Pointer, HoversOverWhatIsPointedAtAndPressesByStepsOfTheReach) {
-  const Scene scene;
+  const PointerScene scene;
   constexpr double kRadius = 0.005;
   Pointer pointer(scene.world, kRadius, kAbove);
   pointer.see(on(scene.plate, {0.01, 0, 0}, {0.01, 0, 0}), kDown);
@@ -73,7 +73,7 @@ TEST(Pointer, HoversOverWhatIsPointedAtAndPressesByStepsOfTheReach) {
 }
 
 TEST(Pointer, ADeepDentUnderTheCursorDoesNotTakeTheProbeDeeper) {
-  const Scene scene;
+  const PointerScene scene;
   Pointer pointer(scene.world, 0.0, kAbove);
   pointer.hold(true);
   pointer.see(on(scene.plate, {0.01, 0, 0}, {0.01, 0, 0}), kDown);
@@ -84,7 +84,7 @@ TEST(Pointer, ADeepDentUnderTheCursorDoesNotTakeTheProbeDeeper) {
 }
 
 TEST(Pointer, WhatDoesNotGiveWayIsHoveredOverAndNotPressed) {
-  const Scene scene;
+  const PointerScene scene;
   Pointer pointer(scene.world, 0.0, kAbove);
   pointer.hold(true);
   pointer.see(on(scene.table, {0.3, -0.1, 0}, {0.3, -0.1, 0}), kDown);
@@ -96,7 +96,7 @@ TEST(Pointer, WhatDoesNotGiveWayIsHoveredOverAndNotPressed) {
 }
 
 TEST(Pointer, WhereNothingIsSeenTheProbeGoesWithTheRayThatSawNothing) {
-  const Scene scene;
+  const PointerScene scene;
   Pointer pointer(scene.world, 0.0, kAbove);
   pointer.see(on(scene.plate, {0, 0, 0}, {0, 0, 0}), kDown);
   settled(pointer);
@@ -123,7 +123,7 @@ TEST(HeavyCursor, GoesSlowerTheMoreItIsPushedBackAndRejoinsTheHand) {
 }
 
 // A tool at (0.1, 0, 0) whose device is the mouse.
-struct ToolScene : Scene {
+struct ToolScene : PointerScene {
   Entity tool, device;
   ToolScene() {
     tool = world.registry.create();
@@ -136,7 +136,7 @@ struct ToolScene : Scene {
 };
 
 TEST(Carrier, ExistsOnlyForAToolOnTheMouseAndBeginsWhereTheToolStands) {
-  Scene none;
+  PointerScene none;
   EXPECT_FALSE(Carrier::of(none.world));
   ToolScene scene;
   const std::optional<Carrier> carrier = Carrier::of(scene.world);

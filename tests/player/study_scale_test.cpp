@@ -3,9 +3,13 @@
 
 #include <cmath>
 
+#include "player/study/drawn_frame.h"
 #include "player/study/power_law.h"
 #include "player/study/step_cost.h"
 #include "player/study/tick_cost.h"
+#include "systems/touch/publish.h"
+#include "systems/visual/gpu/context.h"
+#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {
@@ -33,6 +37,14 @@ TEST(StudyScale, TheIntervalIsStudentsOfTheResiduals) {
   EXPECT_TRUE(std::isinf(fit_power({1, 2}, {1, 4}).within));
 }
 
+TEST(StudyScale, ASizeThatWasNotMeasuredIsLeftOutOfTheFit) {
+  GrowthCurve curve{"some", {2, 4, std::nan(""), 16, std::nan("")}, {}};
+  const PowerLaw law = fit_power({1, 2, 4, 8, 16}, curve.cost);
+  EXPECT_NEAR(law.power, 1.0, 1e-12);
+  EXPECT_NEAR(law.factor, 2.0, 1e-12);
+  EXPECT_EQ(curve.last(), 3u);
+}
+
 TEST(StudyScale, AsManyVerticesMoveHoweverLargeTheMeshIs) {
   const TickCost small = measure_tick(6'000, 500, 200), large = measure_tick(60'000, 500, 200);
   EXPECT_NEAR(small.vertices, 6'000, 300);
@@ -48,6 +60,37 @@ TEST(StudyScale, APaddleHasItsTetrahedraAndMoreStudsMeanMoreContacts) {
   EXPECT_GT(few.contacts, 4.0);
   EXPECT_GT(many.contacts, 2.0 * few.contacts);
   EXPECT_GE(few.ms[0], few.ms[1] + few.ms[2]);
+}
+
+TEST(StudyScale, WhatAStepAndATickHoldIsTheSameInEveryRun) {
+  EXPECT_EQ(measure_tick(6'000, 500, 200).awake, measure_tick(6'000, 500, 200).awake);
+  EXPECT_EQ(measure_step(scenes::kPaddles[0], scenes::kBeds[0], 3).contacts,
+            measure_step(scenes::kPaddles[0], scenes::kBeds[0], 3).contacts);
+}
+
+TEST(StudyScale, ADrawnFrameTakesAllThatChangedAndShowsIt) {
+  const auto context = HeadlessContext::create();
+  if (!context) GTEST_SKIP() << context.error().message();
+  scenes::Stage stage;
+  const Entity surface = stage.add(scenes::sphere(12, 0.1), Deformable{});
+  const Entity probe = stage.add_probe({0, 0.101, 0});
+  stage.prepare();
+  auto frames = DrawnFrames::create(stage.world, surface, draws_with_cpu((*context)->renderer_name()));
+  ASSERT_TRUE(frames) << frames.error().message();
+  EXPECT_GT(frames->draw(stage.world, {}), 0.0);
+  const Image before = frames->picture();
+  stage.move(probe, {0, 0.06, 0}, 0.1);
+  EXPECT_GT(frames->draw(stage.world, {}), 0.0);
+  EXPECT_NE(before.rgba, frames->picture().rgba);
+  publish(stage.world, {});
+  stage.world.snapshots->acquire();
+  for (const ObjectSnapshot& object : stage.world.snapshots->read().objects) EXPECT_EQ(object.zone_count, 0u);
+}
+
+TEST(StudyScale, RenderersThatDrawWithTheCpuAreKnownByName) {
+  EXPECT_TRUE(draws_with_cpu("llvmpipe (LLVM 15.0.6, 256 bits)"));
+  EXPECT_TRUE(draws_with_cpu("Google SwiftShader"));
+  EXPECT_FALSE(draws_with_cpu("NVIDIA H100 80GB HBM3/PCIe/SSE2"));
 }
 
 }  // namespace

@@ -49,5 +49,18 @@ TEST(StudyShapes, TheForceOnABlockIsLinearInTheDepthAndNearsTheHalfSpacesAsItGet
   EXPECT_NEAR(deep->share.front(), 1.0, 1e-9);
 }
 
+TEST(StudyShapes, ErrorsAreTheSameBitsInEveryRun) {
+  const auto measured = [] {
+    const auto block = press_block({10e3, 0.45, kContact, 2 * kContact, 8 * kContact, 1}, 1e-4);
+    const PressTruth truth = block_truth("block", kContact, *block);
+    const ShapeError error =
+        shape_error(engine_share(Shape::kPunch, kContact, best_reach(Shape::kPunch, truth)), truth);
+    return std::vector{block->force, error.profile, error.volume};
+  };
+  const std::vector<double> first = measured();
+  EXPECT_GT(first[1], 0.0);
+  EXPECT_EQ(first, measured());
+}
+
 }  // namespace
 }  // namespace pliant

@@ -14,7 +14,7 @@ TEST(StudyTimeStep, AFallingBlockIsWhereTheClosedFormOfEachSchemeHasIt) {
   constexpr double kStep = 0.01, kEnd = 0.1;
   for (const StepScheme scheme : {StepScheme::kEuler, StepScheme::kMidpoint, StepScheme::kMidpointTwice}) {
     fall.seconds = kEnd;
-    const Trace trace = trace_of(fall, scheme, kStep, kEnd);
+    const StepTrace trace = trace_of(fall, scheme, kStep, kEnd);
     ASSERT_EQ(trace.size(), 1u);
     // Implicit Euler takes the velocity at each step's end: g T t / 2 too far.
     const double late = scheme == StepScheme::kEuler ? 0.5 * kStep * kEnd : 0.0;
@@ -28,7 +28,7 @@ TEST(StudyTimeStep, EulerIsOfOrderOneAndTheOthersOfOrderTwoWhereTheMotionIsSmoot
   TissueScene swing = step_scenes(1)[0];
   swing.seconds = 0.1;
   constexpr double kEvery = 1.0 / 30;
-  const Trace truth = trace_of(swing, StepScheme::kConverged, kEvery / 512, kEvery);
+  const StepTrace truth = trace_of(swing, StepScheme::kConverged, kEvery / 512, kEvery);
   const auto order = [&](StepScheme scheme) {
     const double coarse = trace_error(swing, trace_of(swing, scheme, kEvery / 32, kEvery), truth, kEvery),
                  fine = trace_error(swing, trace_of(swing, scheme, kEvery / 64, kEvery), truth, kEvery);
@@ -41,7 +41,7 @@ TEST(StudyTimeStep, EulerIsOfOrderOneAndTheOthersOfOrderTwoWhereTheMotionIsSmoot
 
 TEST(StudyTimeStep, TheGroundStopsABlockWhoseEnergyIsThenInTheSpringsAndTheTissue) {
   TissueScene impact = step_scenes(1)[3];
-  const Trace trace = trace_of(impact, StepScheme::kMidpointTwice, 1.0 / 960, 1.0 / 60);
+  const StepTrace trace = trace_of(impact, StepScheme::kMidpointTwice, 1.0 / 960, 1.0 / 60);
   double lowest = 0.0, last = 0.0;
   for (const std::vector<dvec3>& at : trace) {
     last = at[0].y;
@@ -58,8 +58,8 @@ TEST(StudyTimeStep, TheGroundStopsABlockWhoseEnergyIsThenInTheSpringsAndTheTissu
 TEST(StudyTimeStep, ErrorsAreTheSameBitsInEveryRun) {
   TissueScene press = step_scenes(1)[1];
   press.seconds = 0.1;
-  const Trace a = trace_of(press, StepScheme::kBdf2, 1.0 / 120, 1.0 / 30),
-              b = trace_of(press, StepScheme::kBdf2, 1.0 / 120, 1.0 / 30);
+  const StepTrace a = trace_of(press, StepScheme::kBdf2, 1.0 / 120, 1.0 / 30),
+                  b = trace_of(press, StepScheme::kBdf2, 1.0 / 120, 1.0 / 30);
   ASSERT_FALSE(a.empty());
   EXPECT_EQ(a, b);
 }

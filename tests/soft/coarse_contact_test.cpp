@@ -13,8 +13,8 @@ namespace pliant {
 namespace {
 
 using test::ContactLoop;
-constexpr double kT = 1.0 / 60.0;  // [s]
-constexpr double kG = 9.81;        // [m/s2]
+constexpr double kCoarseStep = 1.0 / 60.0;  // [s]
+constexpr double kCoarseGravity = 9.81;     // [m/s2]
 
 dquat yaw(double angle) {
   return glm::angleAxis(angle, dvec3(0, 1, 0));
@@ -37,11 +37,11 @@ TEST(CoarseContact, ABoxOfTwelveTrianglesLiesLevelOnAGroundOfTwelve) {
       auto& body = loop.add<RigidState>(box, Pose{dvec3(0.013, 0.5 * size.y + 0.01, 0.007), yaw(angle)},
                                         test::block_mass(dvec3(size), 0.3));
       loop.set_friction(0.4, 0.3);
-      for (int i = 0; i < 120; ++i) loop.step(kT);
+      for (int i = 0; i < 120; ++i) loop.step(kCoarseStep);
       SCOPED_TRACE(testing::Message() << size.x << " x " << size.y << " x " << size.z << ", turned " << angle);
       EXPECT_NEAR(body.centre().y, 0.5 * size.y, 1e-6);
       EXPECT_LT(tilt(body), 1e-6);
-      EXPECT_LT(length(loop.force(1, 0) - dvec3(0, 0.3 * kG, 0)), 1e-5 * 0.3 * kG);
+      EXPECT_LT(length(loop.force(1, 0) - dvec3(0, 0.3 * kCoarseGravity, 0)), 1e-5 * 0.3 * kCoarseGravity);
     }
 }
 
@@ -59,16 +59,16 @@ TEST(CoarseContact, BoxesOfAnySizeLieLevelOnEachOther) {
         auto& body = loop.add<RigidState>(upper, Pose{dvec3(0.003, 0.105 + 0.5 * high.y, 0.002), yaw(angle)},
                                           test::block_mass(dvec3(high), 0.3));
         loop.set_friction(0.4, 0.3);
-        for (int i = 0; i < 60; ++i) loop.step(kT);
+        for (int i = 0; i < 60; ++i) loop.step(kCoarseStep);
         const dvec3 settled = body.centre();
-        for (int i = 0; i < 60; ++i) loop.step(kT);
+        for (int i = 0; i < 60; ++i) loop.step(kCoarseStep);
         SCOPED_TRACE(testing::Message() << high.x << " x " << high.z << " on " << low.x << " x " << low.z << ", turned "
                                         << angle);
         EXPECT_LT(length(body.centre() - settled), 1e-6);
         EXPECT_NEAR(body.centre().y, 0.1 + 0.5 * high.y, 1e-5);
         EXPECT_LT(tilt(body), 1e-5);
-        EXPECT_LT(length(loop.force(2, 1) - dvec3(0, 0.3 * kG, 0)), 1e-4 * kG);
-        EXPECT_LT(length(loop.force(1, 0) - dvec3(0, 0.8 * kG, 0)), 1e-4 * kG);
+        EXPECT_LT(length(loop.force(2, 1) - dvec3(0, 0.3 * kCoarseGravity, 0)), 1e-4 * kCoarseGravity);
+        EXPECT_LT(length(loop.force(1, 0) - dvec3(0, 0.8 * kCoarseGravity, 0)), 1e-4 * kCoarseGravity);
         for (const ContactPoint& c : loop.contacts) {
           const auto inside = [](dvec3 w) { return (w.x > 0.01) + (w.y > 0.01) + (w.z > 0.01) == 2; };
           crossed += c.impulse.x > 0.0 && inside(c.a.barycentric) && inside(c.b.barycentric);
@@ -87,7 +87,7 @@ TEST(CoarseContact, APlankOverTwoWallsBearsItsLoadByTheLever) {
     auto& beam = loop.add<RigidState>(plank, Pose{dvec3(0, 0.0105, 0)}, test::block_mass(dvec3(0.4, 0.02, 0.06), 0.2));
     auto& box = loop.add<RigidState>(load, Pose{dvec3(at, 0.036, 0.005), yaw(0.5)}, test::block_mass(dvec3(0.03), 0.4));
     loop.set_friction(0.4, 0.3);
-    for (int i = 0; i < 120; ++i) loop.step(kT);
+    for (int i = 0; i < 120; ++i) loop.step(kCoarseStep);
     EXPECT_LT(tilt(beam), 1e-5) << at;
     EXPECT_LT(tilt(box), 1e-5) << at;
     EXPECT_NEAR(box.centre().x, at, 1e-4);
@@ -95,13 +95,13 @@ TEST(CoarseContact, APlankOverTwoWallsBearsItsLoadByTheLever) {
     double left = 0, right = 0, moment = 0;
     for (const ContactPoint& c : loop.contacts) {
       if (c.body_a > 1 && c.body_b > 1) continue;
-      const double up = (c.body_a > c.body_b ? 1.0 : -1.0) * (c.axes * c.impulse).y / kT;
+      const double up = (c.body_a > c.body_b ? 1.0 : -1.0) * (c.axes * c.impulse).y / kCoarseStep;
       (c.a.position.x < 0 ? left : right) += up;
       moment += up * c.a.position.x;
     }
-    EXPECT_NEAR(left + right, 0.6 * kG, 1e-4) << at;
-    EXPECT_NEAR(moment, 0.4 * kG * at, 1e-4) << at;
-    EXPECT_NEAR(right - left, 0.4 * kG * at / 0.15, 0.04 * 0.6 * kG) << at;
+    EXPECT_NEAR(left + right, 0.6 * kCoarseGravity, 1e-4) << at;
+    EXPECT_NEAR(moment, 0.4 * kCoarseGravity * at, 1e-4) << at;
+    EXPECT_NEAR(right - left, 0.4 * kCoarseGravity * at / 0.15, 0.04 * 0.6 * kCoarseGravity) << at;
   }
 }
 
@@ -139,10 +139,10 @@ Pressed press_middle(int squares) {
   auto& box =
       loop.add<RigidState>(small, Pose{dvec3(0.003, 0.046, 0.001), yaw(0.3)}, test::block_mass(dvec3(0.03), 0.2));
   loop.set_friction(0.4, 0.3);
-  for (int i = 0; i < 150; ++i) loop.step(kT);
-  double weight = 0.2 * kG;
+  for (int i = 0; i < 150; ++i) loop.step(kCoarseStep);
+  double weight = 0.2 * kCoarseGravity;
   EXPECT_LT(length(loop.force(2, 1) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
-  for (const double m : body.tissue().mass()) weight += m * kG;
+  for (const double m : body.tissue().mass()) weight += m * kCoarseGravity;
   EXPECT_LT(length(loop.force(1, 0) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
   EXPECT_LT(tilt(box), 0.01) << squares;
   Pressed out{0.03 - (box.centre().y - 0.015), 0.0};

@@ -13,19 +13,19 @@ namespace pliant {
 namespace {
 
 using test::ContactLoop;
-constexpr double kT = 1.0 / 60.0;  // [s]
-constexpr double kG = 9.81;        // [m/s2]
-constexpr float kRadius = 0.02f;   // [m] of the ball
-constexpr double kMass = 0.05;     // [kg] of the rigid one
+constexpr double kConcaveStep = 1.0 / 60.0;  // [s]
+constexpr double kConcaveGravity = 9.81;     // [m/s2]
+constexpr float kBowlRadius = 0.02f;         // [m] of the ball
+constexpr double kMass = 0.05;               // [kg] of the rigid one
 
 // A ball in a fixed hollow: rigid, or of tissue.
 struct Rest {
-  Mesh ball = test::sphere_mesh(kRadius, 3);
+  Mesh ball = test::sphere_mesh(kBowlRadius, 3);
   Mesh hollow;
   TetMesh tets;
   ContactLoop loop;
   Body* body = nullptr;
-  double weight = kMass * kG;  // [N]
+  double weight = kMass * kConcaveGravity;  // [N]
 
   Rest(Mesh ground, bool soft, dvec3 at, double friction) : hollow(std::move(ground)) {
     loop.add<FixedBody>(hollow, Pose{});
@@ -36,15 +36,15 @@ struct Rest {
       const SoftBody tissue{{.young = 2e4, .poisson = 0.4, .density = 1000.0, .rayleigh = {0.0, 0.02}}};
       auto& state = loop.add<SoftBodyState>(tets, ball, tissue, nullptr, Pose{at}, SolverKind::kAuto);
       weight = 0.0;
-      for (const double m : state.tissue().mass()) weight += m * kG;
+      for (const double m : state.tissue().mass()) weight += m * kConcaveGravity;
       body = &state;
     } else {
-      body = &loop.add<RigidState>(ball, Pose{at}, test::sphere_mass(kRadius, kMass));
+      body = &loop.add<RigidState>(ball, Pose{at}, test::sphere_mass(kBowlRadius, kMass));
     }
     loop.set_friction(friction, friction);
   }
   void run(double seconds) {
-    for (int i = 0; i < int(std::lround(seconds / kT)); ++i) loop.step(kT);
+    for (int i = 0; i < int(std::lround(seconds / kConcaveStep)); ++i) loop.step(kConcaveStep);
   }
   dvec3 centre() const {
     dvec3 sum(0);
@@ -56,12 +56,12 @@ struct Rest {
   double pressed_by(dvec3 wall) const {             // [N] along the normal of a wall
     double sum = 0;
     for (const ContactPoint& c : loop.contacts)
-      if (dot(normal(c), wall) > 0.999) sum += c.impulse.x / kT;
+      if (dot(normal(c), wall) > 0.999) sum += c.impulse.x / kConcaveStep;
     return sum;
   }
   double pressed() const {  // [N] along whatever normals
     double sum = 0;
-    for (const ContactPoint& c : loop.contacts) sum += c.impulse.x / kT;
+    for (const ContactPoint& c : loop.contacts) sum += c.impulse.x / kConcaveStep;
     return sum;
   }
   // [m] the ball's deepest vertex behind the surface y = height(x, z).
@@ -81,7 +81,7 @@ TEST(ConcaveContact, WallsOfAGrooveShareTheWeightByTheirInclination) {
         if (soft && open && angle != 0.7) continue;
         const auto walls = [&](auto x, auto) { return std::abs(x) * static_cast<decltype(x)>(std::tan(angle)); };
         Rest rest(test::relief_mesh(0.16f, 8, -0.05f, open, walls), soft,
-                  dvec3(0.0, 1.05 * kRadius / std::cos(angle), 0.003), 0.0);
+                  dvec3(0.0, 1.05 * kBowlRadius / std::cos(angle), 0.003), 0.0);
         rest.run(2.5);
         SCOPED_TRACE(testing::Message() << "angle " << angle << ", soft " << soft << ", open " << open);
         const double each = rest.weight / (2.0 * std::cos(angle)), error = (soft ? 0.01 : 1e-3) * each;
@@ -99,7 +99,7 @@ TEST(ConcaveContact, WhatLiesInAGrooveNeitherSinksInNorCreeps) {
     for (const bool open : {false, true}) {
       const auto walls = [&](auto x, auto) { return std::abs(x) * static_cast<decltype(x)>(std::tan(angle)); };
       Rest rest(test::relief_mesh(0.16f, 8, -0.05f, open, walls), soft,
-                dvec3(0.0, 1.05 * kRadius / std::cos(angle), 0.003), 0.4);
+                dvec3(0.0, 1.05 * kBowlRadius / std::cos(angle), 0.003), 0.4);
       rest.run(2.0);
       const dvec3 settled = rest.centre();
       rest.run(2.0);
@@ -119,7 +119,7 @@ TEST(ConcaveContact, ABallRollsToTheBottomOfABowlAndStays) {
       Rest rest(test::relief_mesh(0.12f, 12, -0.03f, open, bowl), soft, dvec3(0.02, 0.035, 0.01), 0.4);
       SCOPED_TRACE(testing::Message() << "soft " << soft << ", open " << open);
       for (int i = 0; i < 120; ++i) {
-        rest.loop.step(kT);
+        rest.loop.step(kConcaveStep);
         for (const ContactPoint& c : rest.loop.contacts) {
           const SurfacePoint& mine = c.body_a == 1 ? c.a : c.b;
           EXPECT_GT(dot(rest.normal(c), normalize(rest.centre() - mine.position)), 0.7) << i;
@@ -130,7 +130,7 @@ TEST(ConcaveContact, ABallRollsToTheBottomOfABowlAndStays) {
       EXPECT_LT(length(rest.centre() - settled), 1e-5);
       EXPECT_LT(std::hypot(settled.x, settled.z), 1e-3);  // a tenth of a facet of the bowl
       // A facet's sagitta lower than the paraboloid at most: (10 mm)^2 / 80 mm / 2.
-      EXPECT_NEAR(settled.y, kRadius, 1.3e-3);
+      EXPECT_NEAR(settled.y, kBowlRadius, 1.3e-3);
       EXPECT_LT(length(rest.force() - dvec3(0, rest.weight, 0)), 1e-3 * rest.weight);
     }
 }
@@ -141,9 +141,9 @@ TEST(ConcaveContact, ACornersWallsBearTheComponentsOfTheWeight) {
                                        [](int i, int j, int k) { return i == 0 || j == 0 || k == 0; });
   for (const bool soft : {false, true})
     for (const double friction : {0.0, 0.4}) {
-      Rest rest(corner, soft, dvec3(1.1 * kRadius), friction);
+      Rest rest(corner, soft, dvec3(1.1 * kBowlRadius), friction);
       const dvec3 down = -normalize(dvec3(1, 2, 3));
-      rest.loop.gravity = kG * down;
+      rest.loop.gravity = kConcaveGravity * down;
       rest.run(2.0);
       const dvec3 settled = rest.centre();
       rest.run(1.0);
@@ -172,8 +172,8 @@ TEST(ConcaveContact, ABlockLiesFlatInTheCornerOfAnL) {
     auto& body = loop.add<RigidState>(block, Pose{dvec3(0.045, 0.04, 0.0), turned},
                                       test::block_mass(dvec3(0.06, 0.04, 0.05), 0.2));
     loop.set_friction(0.05, 0.05);
-    loop.gravity = -kG * dvec3(std::sin(lean), std::cos(lean), 0.0);
-    for (int i = 0; i < 480; ++i) loop.step(kT);
+    loop.gravity = -kConcaveGravity * dvec3(std::sin(lean), std::cos(lean), 0.0);
+    for (int i = 0; i < 480; ++i) loop.step(kConcaveStep);
     for (const ContactPoint& c : loop.contacts)
       EXPECT_TRUE(c.impulse.x == 0.0 || std::max(std::abs(c.normal.x), std::abs(c.normal.y)) > 1 - 1e-6) << lean;
     EXPECT_LT(length(loop.force(1, 0) + 0.2 * loop.gravity), 1e-4) << lean;

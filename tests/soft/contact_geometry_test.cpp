@@ -10,8 +10,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kT = 1.0 / 60.0;                 // [s]
-constexpr double kRadius = 0.03, kSmall = 0.012;  // [m]
+constexpr double kGeometryStep = 1.0 / 60.0;          // [s]
+constexpr double kBallRadius = 0.03, kSmall = 0.012;  // [m]
 constexpr dvec3 kUp{0, 1, 0};
 
 // A collision mesh that went by `went` in the last step and stands at `at` now.
@@ -23,7 +23,7 @@ struct Going {
     const std::vector<dvec3> rest = body.surface_position;
     for (const dvec3 place : {at - went, at}) {
       for (std::size_t v = 0; v < rest.size(); ++v) body.surface_position[v] = rest[v] + place;
-      collision_mesh.refit(body, kT, 1e-3);
+      collision_mesh.refit(body, kGeometryStep, 1e-3);
     }
   }
 };
@@ -51,7 +51,7 @@ struct CornerOnSphere {
   std::uint32_t vertex = 0, triangle = 0;
   CornerOnSphere(dvec3 now, dvec3 went)
       : block(test::block_mesh(vec3(0.01f)), now - dvec3(-0.005), went),
-        sphere(test::sphere_mesh(float(kRadius), 3), dvec3(0), dvec3(0)),
+        sphere(test::sphere_mesh(float(kBallRadius), 3), dvec3(0), dvec3(0)),
         triangle(triangle_towards(sphere.mesh, normalize(now))) {
     while (length(block.collision_mesh.vertex(vertex).x - now) > 1e-6 && vertex + 1 < block.mesh.vertex_count) ++vertex;
   }
@@ -68,7 +68,7 @@ dmat3 axes_along(dvec3 normal) {
 
 // It slides 3 mm in a step.
 TEST(ContactGeometry, TheNormalIsTheOneWhereTheStepEnds) {
-  const dvec3 went(0.003, 0, 0.001), now = kRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
+  const dvec3 went(0.003, 0, 0.001), now = kBallRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
   const CornerOnSphere scene(now, went);
   const FeaturePair pair = scene.pair();
   ASSERT_FALSE(pair.a.smooth(scene.vertex));
@@ -78,20 +78,20 @@ TEST(ContactGeometry, TheNormalIsTheOneWhereTheStepEnds) {
   EXPECT_GT(degrees_between(pair.normal, end), 4.0) << "where it began";
   // gap + T u_n is the gap at the end: the corner's height over the facets, which lie up to h^2 / 8R below the sphere.
   const double at_end = contact.gap + dot(contact.normal, went), sag = 1.5e-4;
-  EXPECT_GT(at_end, length(end) - kRadius - 1e-5);
-  EXPECT_LT(at_end, length(end) - kRadius + sag);
+  EXPECT_GT(at_end, length(end) - kBallRadius - 1e-5);
+  EXPECT_LT(at_end, length(end) - kBallRadius + sag);
 
   contact.axes = axes_along(contact.normal);
   find_turning(pair, contact);
   EXPECT_GT(contact.reach, 0.0);
   for (int column = 0; column < 2; ++column)
     for (int row = 0; row < 2; ++row)
-      EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kRadius : 0.0, 0.15 / kRadius);
+      EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kBallRadius : 0.0, 0.15 / kBallRadius);
 }
 
 // It has not moved yet, and the step itself tells where it will be.
 TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
-  const dvec3 went(0.003, 0, 0.001), now = kRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
+  const dvec3 went(0.003, 0, 0.001), now = kBallRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
   CornerOnSphere scene(now, dvec3(0));
   ContactPoint contact;
   ASSERT_TRUE(look_ahead(scene.pair(), contact));
@@ -99,29 +99,30 @@ TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
   contact.axes = axes_along(contact.normal);
   const SurfacePoint a = contact.a, b = contact.b;
 
-  scene.block.collision_mesh.predict(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kT), kT);
+  scene.block.collision_mesh.predict(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kGeometryStep),
+                                     kGeometryStep);
   ASSERT_TRUE(look_again(scene.pair(), contact));
   EXPECT_LT(degrees_between(contact.normal, end), 0.5);
   EXPECT_LT(degrees_between(contact.axes * leaning_axes(contact.lean)[0], contact.normal), 1e-6);
-  EXPECT_NEAR(contact.end_gap, length(end) - kRadius, 1.5e-4);
+  EXPECT_NEAR(contact.end_gap, length(end) - kBallRadius, 1.5e-4);
   EXPECT_EQ(contact.a.position, a.position) << "what pushes where is the step's first look";
   EXPECT_EQ(contact.b.position, b.position);
 
-  scene.block.collision_mesh.refit(scene.block.body, kT, 1e-3);
+  scene.block.collision_mesh.refit(scene.block.body, kGeometryStep, 1e-3);
   EXPECT_LT(length(scene.block.collision_mesh.ahead(scene.vertex) - now), 1e-9) << "the next step knows nothing of it";
 }
 
 // Soft things are dented by what slides over them, and the dent comes along: curvature is that of the shape at rest.
 TEST(ContactGeometry, ADentDoesNotCountAsCurvature) {
-  const dvec3 now = kRadius * kUp;
+  const dvec3 now = kBallRadius * kUp;
   CornerOnSphere scene(now, dvec3(0));
   std::vector<dvec3>& collision_mesh = scene.sphere.body.surface_position;
-  for (dvec3& x : collision_mesh) x.y = std::min(x.y, 0.8 * kRadius);
-  scene.sphere.collision_mesh.refit(scene.sphere.body, kT, 1e-3);
-  scene.sphere.collision_mesh.refit(scene.sphere.body, kT, 1e-3);
-  scene.block.body.surface_position[scene.vertex].y = 0.8 * kRadius;
-  scene.block.collision_mesh.refit(scene.block.body, kT, 1e-3);
-  scene.block.collision_mesh.refit(scene.block.body, kT, 1e-3);
+  for (dvec3& x : collision_mesh) x.y = std::min(x.y, 0.8 * kBallRadius);
+  scene.sphere.collision_mesh.refit(scene.sphere.body, kGeometryStep, 1e-3);
+  scene.sphere.collision_mesh.refit(scene.sphere.body, kGeometryStep, 1e-3);
+  scene.block.body.surface_position[scene.vertex].y = 0.8 * kBallRadius;
+  scene.block.collision_mesh.refit(scene.block.body, kGeometryStep, 1e-3);
+  scene.block.collision_mesh.refit(scene.block.body, kGeometryStep, 1e-3);
   ContactPoint contact;
   ASSERT_TRUE(look_ahead(scene.pair(), contact));
   EXPECT_LT(degrees_between(contact.normal, kUp), 0.1);
@@ -129,19 +130,19 @@ TEST(ContactGeometry, ADentDoesNotCountAsCurvature) {
   find_turning(scene.pair(), contact);
   for (int column = 0; column < 2; ++column)
     for (int row = 0; row < 2; ++row)
-      EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kRadius : 0.0, 0.2 / kRadius);
+      EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kBallRadius : 0.0, 0.2 / kBallRadius);
 }
 
 // Vertices of one sphere beside the point where it touches another: both surfaces lean there, the contact does not.
 TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
   const dvec3 towards = normalize(dvec3(0.2, 1.0, 0.3));
-  const Going large(test::sphere_mesh(float(kRadius), 3), dvec3(0), dvec3(0));
-  const Going little(test::sphere_mesh(float(kSmall), 2), (kRadius + kSmall) * towards, dvec3(0));
+  const Going large(test::sphere_mesh(float(kBallRadius), 3), dvec3(0), dvec3(0));
+  const Going little(test::sphere_mesh(float(kSmall), 2), (kBallRadius + kSmall) * towards, dvec3(0));
   int looked_at = 0;
   for (std::uint32_t v = 0; v < little.mesh.vertex_count; ++v) {
     const dvec3 x = little.collision_mesh.vertex(v).x;
     const double beside = length(x - dot(x, towards) * towards);
-    if (dot(x, towards) > kRadius + 0.2 * kSmall || beside < 0.001 || beside > 0.004) continue;
+    if (dot(x, towards) > kBallRadius + 0.2 * kSmall || beside < 0.001 || beside > 0.004) continue;
     const std::uint32_t t = triangle_towards(large.mesh, normalize(x));
     ContactPoint contact;
     ASSERT_TRUE(look_ahead({little.collision_mesh, large.collision_mesh, false, v, t, large.collision_mesh.normal(t)},
@@ -156,16 +157,16 @@ TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
 // What has come to rest stays where it is, also in what is predicted of it.
 TEST(ContactGeometry, WhatStopsIsForetoldWhereItStands) {
   Going block(test::block_mesh(vec3(0.01f)), dvec3(0.02, 0, 0), dvec3(0.003, 0, 0.001));
-  for (int i = 0; i < 3; ++i) block.collision_mesh.refit(block.body, kT, 1e-3);
+  for (int i = 0; i < 3; ++i) block.collision_mesh.refit(block.body, kGeometryStep, 1e-3);
   for (std::uint32_t v = 0; v < block.mesh.vertex_count; ++v)
     EXPECT_LT(length(block.collision_mesh.ahead(v) - block.collision_mesh.vertex(v).x), 1e-12) << v;
 }
 
 // Faster than the surface's triangles are large: such a motion will not go on, and nothing is predicted.
 TEST(ContactGeometry, AnImpactIsNotForetold) {
-  const dvec3 now = (kRadius + 0.001) * kUp, went(0, -0.008, 0), corner(-0.005, -0.005, -0.005);
+  const dvec3 now = (kBallRadius + 0.001) * kUp, went(0, -0.008, 0), corner(-0.005, -0.005, -0.005);
   Going block(test::block_mesh(vec3(0.01f)), now - corner, went);
-  const Going sphere(test::sphere_mesh(float(kRadius), 3), dvec3(0), dvec3(0));
+  const Going sphere(test::sphere_mesh(float(kBallRadius), 3), dvec3(0), dvec3(0));
   std::uint32_t vertex = 0;
   while (length(block.collision_mesh.vertex(vertex).x - now) > 1e-6) ASSERT_LT(++vertex, block.mesh.vertex_count);
   const std::uint32_t t = triangle_towards(sphere.mesh, kUp);

@@ -16,6 +16,7 @@
 #include "tests/scenes/count_allocations.h"
 #include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
+#include "tests/soft/random_contacts.h"
 
 namespace pliant {
 namespace {
@@ -23,27 +24,9 @@ namespace {
 using test::ContactLoop;
 
 constexpr double kT = 1.0 / 60.0, kG = 9.81;  // [s], [m/s2]
-constexpr SweepLimits kStep{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
+constexpr SweepLimits kSolverStep{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 constexpr SweepLimits kNewton{.sweeps = 400, .tolerance = 1e-10, .newtons = 60};
 constexpr SweepLimits kReference{.sweeps = 200000, .tolerance = 1e-12};
-
-// W = J J^T of `contacts` random contacts on something with `freedoms` degrees of freedom.
-ContactProblem random_problem(int contacts, int freedoms, double mu, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  ContactProblem p;
-  p.resize(contacts);
-  Eigen::MatrixXd J(3 * contacts, freedoms);
-  for (double& x : J.reshaped()) x = normal(random) / std::sqrt(double(freedoms));
-  p.W = J * J.transpose();
-  Vector v(freedoms);
-  for (double& x : v) x = normal(random);
-  p.bias = J * v;
-  p.impulse.setZero();
-  std::fill(p.mu_static.begin(), p.mu_static.end(), mu);
-  std::fill(p.mu_sliding.begin(), p.mu_sliding.end(), mu);
-  return p;
-}
 
 TEST(PivotedLu, SolvesWhatEigenSolves) {
   for (int n = 1; n < 40; ++n) {
@@ -88,7 +71,7 @@ TEST(ContactNewton, SettlesOnRedundantContactsInFewSweeps) {
   int newton = 0, plain = 0;
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     ContactProblem p = random_problem(36, 36, 0.4, seed), q = p;
-    const SweepReport with = solve(p, kStep), without = solve(q, {.sweeps = 20000, .tolerance = 1e-6});
+    const SweepReport with = solve(p, kSolverStep), without = solve(q, {.sweeps = 20000, .tolerance = 1e-6});
     EXPECT_TRUE(with.settled) << seed << " residual " << with.residual;
     newton += with.sweeps;
     plain += without.sweeps;
@@ -135,7 +118,7 @@ struct Pile {
 
   explicit Pile(double mu = 0.5, double angle = 0.0) {
     const dquat r = glm::angleAxis(angle, dvec3(0, 0, 1));
-    loop.limits = kStep;
+    loop.limits = kSolverStep;
     loop.add<FixedBody>(ground, Pose{-0.5 * (r * dvec3(0, 1, 0)), r});
     friction = mu;
     rotation = r;
@@ -220,7 +203,7 @@ TEST(ContactSolver, PlatesThatPinchASoftBlockPushEquallyAndOppositely) {
   auto tets = make_lattice(collision_mesh, 0.0167);
   ASSERT_TRUE(tets);
   ContactLoop loop;
-  loop.limits = kStep;
+  loop.limits = kSolverStep;
   loop.gravity = dvec3(0);
   std::vector<FixedBody*> plates;
   for (const double side : {-1.0, 1.0}) plates.push_back(&loop.add<FixedBody>(plate, Pose{dvec3(side * 0.0351, 0, 0)}));
@@ -359,7 +342,7 @@ TEST(ContactAdmm, SettlesAWallAtAnImpact) {
   p.impulse.setZero();
   std::fill(p.sliding.begin(), p.sliding.end(), std::uint8_t{0});
   ContactProblem q = p, sweeps_alone = p;
-  const SweepReport report = solve(p, kStep);
+  const SweepReport report = solve(p, kSolverStep);
   EXPECT_GT(report.alternations, 0);
   EXPECT_TRUE(report.settled) << report.residual;
   EXPECT_FALSE(solve(sweeps_alone, {.sweeps = 200, .tolerance = 1e-6}).settled) << "it would prove nothing";

@@ -59,8 +59,8 @@ Pair any_pair(Dice& dice, double reach, double angle, double speed) {
 }
 
 // log2 of how much the error shrinks when the step is halved: 2 for a derivative.
-template <class Error>
-double slope(Error error, double step) {
+template <class ErrorOf>
+double slope(ErrorOf error, double step) {
   return std::log2(error(step) / error(step / 2));
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadius = 0.004;  // [m] of the finely meshed disc
 const TissueMaterial kBlock{.young = 1e4, .poisson = 0.3, .density = 1, .strain = Strain::kLinear};
-const double kPi = std::acos(-1.0);
+const double kPiOfHertz = std::acos(-1.0);
 const double kEStar = kBlock.young / (1 - kBlock.poisson * kBlock.poisson);
 
 class QuarterBlock {
@@ -135,7 +135,7 @@ Errors errors(int rings, int growing, double factor) {
   out.sphere = ball.force / (4.0 / 3 * kEStar * std::sqrt(R) * std::pow(d, 1.5)) - 1;
   // u(r) = F / (pi E* c) asin(c / r) beside a punch of radius c: here a/2, seen at r = a.
   const QuarterBlock::Contact half = block.punch(a / 2, d);
-  const double theory = half.force / (kPi * kEStar * (a / 2)) * std::asin(0.5);
+  const double theory = half.force / (kPiOfHertz * kEStar * (a / 2)) * std::asin(0.5);
   out.beside = 0;
   for (std::size_t k = 0; k < block.radius().size(); ++k)
     if (block.radius()[k] > 0.999 * a)

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kHalf = 0.02;  // [m] of the height
 
-class Block {
+class LockingBlock {
  public:
-  explicit Block(double cell) {
+  explicit LockingBlock(double cell) {
     const Primitive box = scenes::box({0.06, 2 * kHalf, 0.06});
     const Result<BuiltMesh> surface = build_mesh("block", {&box, 1}, mat4(1));
     EXPECT_TRUE(surface.ok());
@@ -58,9 +58,9 @@ class Block {
 
 TEST(Locking, TheBoundIsWhereTheUsualLatticeIsTenPercentTooStiff) {
   const double cell = 0.005, smaller = 0.004;  // [m]
-  const Block usual(0.0), fine(cell), finest(smaller);
+  const LockingBlock usual(0.0), fine(cell), finest(smaller);
   EXPECT_LT(usual.size(), 1.3 * kUsualTets);
-  const auto excess = [&](double poisson, const Block& block) {
+  const auto excess = [&](double poisson, const LockingBlock& block) {
     const double share = smaller * smaller / (cell * cell);
     return block.risen(poisson) / ((finest.risen(poisson) - share * fine.risen(poisson)) / (1 - share)) - 1;
   };

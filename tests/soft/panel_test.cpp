@@ -42,7 +42,7 @@ TEST(PanelKernels, GiveTheSameBitsWithEveryWidth) {
     for (const int strips : {4, 7}) {
       if (strips * kStrip < columns) continue;  // no panel: its rows hold at least its columns
       const auto size = static_cast<std::size_t>(columns * strips);
-      Panel panel{nullptr, columns, strips};
+      FactorPanel panel{nullptr, columns, strips};
       Strips wide =
           random_strips(size + 64, 1);   // kernels may read, and leave alone, what follows a panel in its array
       for (int c = 0; c < columns; ++c)  // a heavy diagonal: positive definite

@@ -15,11 +15,11 @@ namespace {
 
 using scenes::ToolStage;
 
-constexpr double kStep = 1.0 / 60.0;  // [s]
-constexpr double kSize = 0.03;        // [m] of the boxes
+constexpr double kPileStep = 1.0 / 60.0;  // [s]
+constexpr double kBoxSize = 0.03;         // [m] of the boxes
 const dquat kUpright(1, 0, 0, 0);
 
-dquat yaw(double angle) {
+dquat turned_about_y(double angle) {
   return glm::angleAxis(angle, dvec3(0, 1, 0));
 }
 RigidBody fixed() {
@@ -27,7 +27,7 @@ RigidBody fixed() {
   body.fixed = true;
   return body;
 }
-SoftBody rubber() {
+SoftBody pile_rubber() {
   SoftBody body;
   body.young = 3e4;
   body.poisson = 0.4;
@@ -46,24 +46,26 @@ TetMesh soft_ball(double radius) {
 }
 
 // Bodies over a floor whose top is y = 0.
-struct Pile {
-  ToolStage stage{kStep};
+struct BoxPile {
+  ToolStage stage{kPileStep};
   std::vector<Entity> bodies;
   Entity floor;
-  Pile() : floor(stage.add_rigid(scenes::box(dvec3(1.0, 0.1, 1.0), dvec3(0, -0.05, 0)), fixed(), {})) {}
+  BoxPile() : floor(stage.add_rigid(scenes::box(dvec3(1.0, 0.1, 1.0), dvec3(0, -0.05, 0)), fixed(), {})) {}
 
-  void rigid(dvec3 at, dquat turned = kUpright, dvec3 size = dvec3(kSize)) {
+  void rigid(dvec3 at, dquat turned = kUpright, dvec3 size = dvec3(kBoxSize)) {
     bodies.push_back(stage.add_rigid(scenes::box(size), RigidBody{}, Pose{at, turned}));
   }
   void cube(dvec3 at, dquat turned = kUpright, int cells = 3) {
-    const TetMesh tets = tets::box(cells, cells, cells, dvec3(-0.5 * kSize), dvec3(0.5 * kSize));
-    bodies.push_back(stage.add_soft(tets, rubber(), Pose{at, turned}));
+    const TetMesh tets = tets::box(cells, cells, cells, dvec3(-0.5 * kBoxSize), dvec3(0.5 * kBoxSize));
+    bodies.push_back(stage.add_soft(tets, pile_rubber(), Pose{at, turned}));
   }
-  void ball(dvec3 at) { bodies.push_back(stage.add_soft(soft_ball(0.5 * kSize), rubber(), Pose{at, kUpright})); }
+  void ball(dvec3 at) {
+    bodies.push_back(stage.add_soft(soft_ball(0.5 * kBoxSize), pile_rubber(), Pose{at, kUpright}));
+  }
   Entity wall(dvec3 size, dvec3 at) { return stage.add_rigid(scenes::box(size), fixed(), Pose{at, kUpright}); }
   void run(double seconds) {
     if (!stage.world.soft) stage.prepare();
-    for (int i = 0; i < int(std::lround(seconds / kStep)); ++i) stage.step();
+    for (int i = 0; i < int(std::lround(seconds / kPileStep)); ++i) stage.step();
   }
 
   const std::vector<dvec3>& collision_mesh(std::size_t i) { return stage.body(bodies[i]).surface_position; }
@@ -94,21 +96,21 @@ struct Pile {
   SoftTally& tally() { return stage.soft().tally; }
 };
 
-TEST(Pile, ABodyThatFallsOnOneAtRestLiesOnIt) {
+TEST(BoxPile, ABodyThatFallsOnOneAtRestLiesOnIt) {
   for (const bool soft : {false, true}) {
-    Pile pile;
-    for (const double y : {0.5 * kSize, 1.5 * kSize + 0.002}) soft ? pile.cube({0, y, 0}) : pile.rigid({0, y, 0});
+    BoxPile pile;
+    for (const double y : {0.5 * kBoxSize, 1.5 * kBoxSize + 0.002}) soft ? pile.cube({0, y, 0}) : pile.rigid({0, y, 0});
     pile.run(2.0);
-    EXPECT_GT(pile.lowest(0), -0.01 * kSize) << soft;
-    EXPECT_GT(pile.lowest(1), pile.highest(0) - 0.01 * kSize) << soft;
+    EXPECT_GT(pile.lowest(0), -0.01 * kBoxSize) << soft;
+    EXPECT_GT(pile.lowest(1), pile.highest(0) - 0.01 * kBoxSize) << soft;
     EXPECT_LT(pile.fastest(), 1e-4) << soft;
   }
 }
 
 // Solved to the last digit: what is tested is which pairs are found. 2 mm apart all fall at once, and each meets the
 // one below only because that has been stopped.
-TEST(Pile, AColumnOfTenBoxesStands) {
-  const Mesh ground = test::block_mesh(vec3(1.0f, 0.2f, 1.0f)), box = test::block_mesh(vec3(float(kSize)));
+TEST(BoxPile, AColumnOfTenBoxesStands) {
+  const Mesh ground = test::block_mesh(vec3(1.0f, 0.2f, 1.0f)), box = test::block_mesh(vec3(float(kBoxSize)));
   for (const double turned : {0.0, 0.1}) {
     test::ContactLoop loop;
     loop.margin = {};
@@ -116,60 +118,62 @@ TEST(Pile, AColumnOfTenBoxesStands) {
     loop.add<FixedBody>(ground, Pose{dvec3(0, -0.1, 0)});
     std::vector<RigidState*> column;
     for (int i = 0; i < 10; ++i)
-      column.push_back(&loop.add<RigidState>(box, Pose{dvec3(0, 0.5 * kSize + 0.032 * i, 0), yaw(turned * i)},
-                                             test::block_mass(dvec3(kSize), 0.027)));
-    for (int i = 0; i < 60; ++i) loop.step(kStep);
+      column.push_back(&loop.add<RigidState>(box,
+                                             Pose{dvec3(0, 0.5 * kBoxSize + 0.032 * i, 0), turned_about_y(turned * i)},
+                                             test::block_mass(dvec3(kBoxSize), 0.027)));
+    for (int i = 0; i < 60; ++i) loop.step(kPileStep);
     for (std::size_t i = 0; i < column.size(); ++i) {
       const Vector& v = column[i]->velocity();
-      EXPECT_NEAR(column[i]->centre().y, (double(i) + 0.5) * kSize, 0.01 * kSize) << turned << ' ' << i;
-      EXPECT_LT(std::hypot(column[i]->centre().x, column[i]->centre().z), 0.01 * kSize) << turned << ' ' << i;
+      EXPECT_NEAR(column[i]->centre().y, (double(i) + 0.5) * kBoxSize, 0.01 * kBoxSize) << turned << ' ' << i;
+      EXPECT_LT(std::hypot(column[i]->centre().x, column[i]->centre().z), 0.01 * kBoxSize) << turned << ' ' << i;
       EXPECT_LT(v.head(3).norm(), 1e-3) << turned << ' ' << i;
     }
   }
 }
 
-TEST(Pile, ColumnsOfFourSoftCubesStand) {
-  Pile pile;
-  for (int i = 0; i < 4; ++i) pile.cube({0, 0.5 * kSize + 0.032 * i, 0});
+TEST(BoxPile, ColumnsOfFourSoftCubesStand) {
+  BoxPile pile;
+  for (int i = 0; i < 4; ++i) pile.cube({0, 0.5 * kBoxSize + 0.032 * i, 0});
   pile.run(2.0);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(pile.lowest(i), (i ? pile.highest(i - 1) : 0.0) - 0.01 * kSize) << i;
-  EXPECT_LT(pile.tally().deepest, 0.01 * kSize);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(pile.lowest(i), (i ? pile.highest(i - 1) : 0.0) - 0.01 * kBoxSize) << i;
+  EXPECT_LT(pile.tally().deepest, 0.01 * kBoxSize);
   EXPECT_EQ(pile.tally().began_inside, 0.0);
   EXPECT_LT(pile.fastest(), 1e-4);
 }
 
 // As the soft step solves it, ten seconds long, turned so that no two boxes' corners lie above each other.
-TEST(Pile, AColumnOfTenBoxesStandsAtTheSoftStepsOwnLimits) {
+TEST(BoxPile, AColumnOfTenBoxesStandsAtTheSoftStepsOwnLimits) {
   for (const double turned : {0.0, 0.05}) {
-    Pile pile;
-    for (int i = 0; i < 10; ++i) pile.rigid({0, 0.5 * kSize + 0.0301 * i, 0}, yaw(turned * i));
+    BoxPile pile;
+    for (int i = 0; i < 10; ++i) pile.rigid({0, 0.5 * kBoxSize + 0.0301 * i, 0}, turned_about_y(turned * i));
     pile.run(10.0);
     for (std::size_t i = 0; i < 10; ++i) {
-      EXPECT_NEAR(pile.centre(i).y, (double(i) + 0.5) * kSize, 0.01 * kSize) << turned << ' ' << i;
-      EXPECT_LT(std::hypot(pile.centre(i).x, pile.centre(i).z), 0.01 * kSize) << turned << ' ' << i;
+      EXPECT_NEAR(pile.centre(i).y, (double(i) + 0.5) * kBoxSize, 0.01 * kBoxSize) << turned << ' ' << i;
+      EXPECT_LT(std::hypot(pile.centre(i).x, pile.centre(i).z), 0.01 * kBoxSize) << turned << ' ' << i;
     }
-    EXPECT_LT(pile.tally().deepest, 0.01 * kSize) << turned;
+    EXPECT_LT(pile.tally().deepest, 0.01 * kBoxSize) << turned;
     EXPECT_LT(pile.fastest(), 1e-4) << turned;
   }
 }
 
-TEST(Pile, ABlockOfSixtyFourBoxesStands) {
-  Pile pile;
-  for (int i = 0; i < 64; ++i) pile.rigid({0.0302 * (i % 4), 0.5 * kSize + 0.0301 * (i / 16), 0.0302 * (i / 4 % 4)});
+TEST(BoxPile, ABlockOfSixtyFourBoxesStands) {
+  BoxPile pile;
+  for (int i = 0; i < 64; ++i) pile.rigid({0.0302 * (i % 4), 0.5 * kBoxSize + 0.0301 * (i / 16), 0.0302 * (i / 4 % 4)});
   pile.run(10.0);
-  for (std::size_t i = 0; i < 64; ++i) EXPECT_NEAR(pile.centre(i).y, (double(i / 16) + 0.5) * kSize, 0.01 * kSize) << i;
-  EXPECT_LT(pile.tally().deepest, 0.01 * kSize);
+  for (std::size_t i = 0; i < 64; ++i)
+    EXPECT_NEAR(pile.centre(i).y, (double(i / 16) + 0.5) * kBoxSize, 0.01 * kBoxSize) << i;
+  EXPECT_LT(pile.tally().deepest, 0.01 * kBoxSize);
   EXPECT_LT(pile.fastest(), 1e-4);
 }
 
 // Two cards that lean on each other stand where the floor's friction holds what each pushes out with: seen from the
 // side a card's weight W turns about its foot, W (l / 2) sin(a) = N l cos(a), so that N = W tan(a) / 2 <= mu W.
-TEST(Pile, ACardHouseStandsUpToTheAngleOfFriction) {
+TEST(BoxPile, ACardHouseStandsUpToTheAngleOfFriction) {
   constexpr double kLong = 0.06, kThick = 0.001;  // [m]
   for (const double mu : {0.2, 0.4})
     for (const double share : {0.3, 0.5, 0.8, 0.93, 1.07, 1.2}) {
       SCOPED_TRACE(testing::Message() << "mu " << mu << ", tangent " << share << " of the steepest");
-      Pile pile;
+      BoxPile pile;
       const double lean = std::atan(2.0 * mu * share);
       for (const double side : {-1.0, 1.0}) {
         RigidBody card;
@@ -196,30 +200,30 @@ TEST(Pile, ACardHouseStandsUpToTheAngleOfFriction) {
     }
 }
 
-TEST(Pile, APyramidOfBoxesStands) {
-  Pile pile;
+TEST(BoxPile, APyramidOfBoxesStands) {
+  BoxPile pile;
   for (int row = 0; row < 4; ++row)
-    for (int i = 0; i < 4 - row; ++i) pile.rigid({0.032 * (i - 0.5 * (3 - row)), 0.5 * kSize + 0.0301 * row, 0});
+    for (int i = 0; i < 4 - row; ++i) pile.rigid({0.032 * (i - 0.5 * (3 - row)), 0.5 * kBoxSize + 0.0301 * row, 0});
   pile.run(3.0);
   std::size_t body = 0;
   for (int row = 0; row < 4; ++row)
     for (int i = 0; i < 4 - row; ++i, ++body)
-      EXPECT_NEAR(pile.centre(body).y, kSize * (row + 0.5), 0.01 * kSize) << row << ' ' << i;
+      EXPECT_NEAR(pile.centre(body).y, kBoxSize * (row + 0.5), 0.01 * kBoxSize) << row << ' ' << i;
   EXPECT_LT(pile.fastest(), 1e-3);
 }
 
-TEST(Pile, SixtyFourBoxesOnOneFloorAllStayOnIt) {
-  Pile pile;
+TEST(BoxPile, SixtyFourBoxesOnOneFloorAllStayOnIt) {
+  BoxPile pile;
   for (int i = 0; i < 8; ++i)
     for (int k = 0; k < 8; ++k) pile.rigid({0.04 * (i - 3.5), 0.02, 0.04 * (k - 3.5)});
   pile.run(1.0);
-  for (std::size_t i = 0; i < pile.bodies.size(); ++i) EXPECT_NEAR(pile.lowest(i), 0.0, 0.01 * kSize) << i;
+  for (std::size_t i = 0; i < pile.bodies.size(); ++i) EXPECT_NEAR(pile.lowest(i), 0.0, 0.01 * kBoxSize) << i;
   EXPECT_LT(pile.fastest(), 1e-3);
 }
 
 // Twenty in a tray of four walls: boxes, plates, soft cubes and balls.
-TEST(Pile, WhatIsDroppedIntoATrayStaysInItAndComesToRest) {
-  Pile pile;
+TEST(BoxPile, WhatIsDroppedIntoATrayStaysInItAndComesToRest) {
+  BoxPile pile;
   for (const double side : {-1.0, 1.0}) {
     pile.wall(dvec3(0.02, 0.2, 0.2), dvec3(0.08 * side, 0.1, 0));
     pile.wall(dvec3(0.2, 0.2, 0.02), dvec3(0, 0.1, 0.08 * side));
@@ -234,28 +238,28 @@ TEST(Pile, WhatIsDroppedIntoATrayStaysInItAndComesToRest) {
     else if (i % 5 == 1)
       pile.ball(at);
     else if (i % 5 == 2)
-      pile.rigid(at, turned, dvec3(kSize, 0.006, kSize));
+      pile.rigid(at, turned, dvec3(kBoxSize, 0.006, kBoxSize));
     else
       pile.rigid(at, turned);
   }
   pile.run(4.0);
   for (std::size_t i = 0; i < pile.bodies.size(); ++i) {
     const dvec3 c = pile.centre(i);
-    EXPECT_GT(pile.lowest(i), -0.01 * kSize) << i;
+    EXPECT_GT(pile.lowest(i), -0.01 * kBoxSize) << i;
     EXPECT_LT(std::max(std::abs(c.x), std::abs(c.z)), 0.07) << i;
   }
   double depth = 0.0;
   for (const ContactPoint& contact : pile.stage.soft().contacts) depth = std::max(depth, contact.depth);
-  EXPECT_LT(depth, 0.01 * kSize);
+  EXPECT_LT(depth, 0.01 * kBoxSize);
   EXPECT_LT(pile.fastest(), 2e-2);
 }
 
 // A soft block dragged over the floor by its weight, with and without a pebble at rest half a metre away.
-TEST(Pile, APebbleElsewhereChangesNothing) {
+TEST(BoxPile, APebbleElsewhereChangesNothing) {
   const auto slide = [](bool pebble) {
-    Pile pile;
-    pile.cube({0, 0.5 * kSize + 1e-4, 0}, yaw(0.3), 4);
-    pile.rigid({0, 1.5 * kSize + 2e-4, 0});
+    BoxPile pile;
+    pile.cube({0, 0.5 * kBoxSize + 1e-4, 0}, turned_about_y(0.3), 4);
+    pile.rigid({0, 1.5 * kBoxSize + 2e-4, 0});
     if (pebble) pile.rigid({0.4, 0.0005, 0.4}, kUpright, dvec3(0.001));
     pile.stage.world.simulation.gravity = dvec3(6, -9.81, 0);
     pile.run(0.5);
@@ -276,24 +280,24 @@ struct Overlap {
 };
 // Crossing bars and plates have no vertex inside each other, aligned boxes share all their side planes, one body is
 // inside the other.
-TEST(Pile, WhatBeginsInsideIsPushedOutTheShortestWay) {
+TEST(BoxPile, WhatBeginsInsideIsPushedOutTheShortestWay) {
   const std::vector<Overlap> cases{
-      {dvec3(kSize), dvec3(kSize), dvec3(0, 0.02, 0), 0.01, dvec3(0, 1, 0)},
-      {dvec3(kSize), dvec3(kSize), dvec3(0), kSize, dvec3(0)},
+      {dvec3(kBoxSize), dvec3(kBoxSize), dvec3(0, 0.02, 0), 0.01, dvec3(0, 1, 0)},
+      {dvec3(kBoxSize), dvec3(kBoxSize), dvec3(0), kBoxSize, dvec3(0)},
       {dvec3(0.1, 0.02, 0.02), dvec3(0.02, 0.02, 0.1), dvec3(0, 0.015, 0), 0.005, dvec3(0, 1, 0)},
       {dvec3(0.1, 0.002, 0.1), dvec3(0.002, 0.1, 0.1), dvec3(0, 0.045, 0), 0.006, dvec3(0, 1, 0)},
       {dvec3(0.1), dvec3(0.02), dvec3(0.02, 0.03, 0.01), 0.03, dvec3(0, 1, 0)},
   };
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Overlap& c = cases[i];
-    Pile pile;
+    BoxPile pile;
     pile.stage.world.simulation.gravity = dvec3(0);
     pile.rigid({0, 0.5, 0}, kUpright, c.size_a);
     pile.rigid(dvec3(0, 0.5, 0) + c.at, kUpright, c.size_b);
-    pile.run(kStep);
+    pile.run(kPileStep);
     EXPECT_NEAR(pile.tally().deepest, c.depth, 1e-6) << i;
     EXPECT_EQ(pile.tally().began_inside, pile.tally().deepest) << i;
-    const double limit = kPenetrationShare * c.depth / kStep;  // [m/s] that contacts ask for at most
+    const double limit = kPenetrationShare * c.depth / kPileStep;  // [m/s] that contacts ask for at most
     for (int step = 0; step < 60; ++step) {
       pile.stage.step();
       EXPECT_LT(pile.fastest(), 1.1 * limit) << i << ' ' << step;
@@ -317,30 +321,30 @@ double winding(const Body& body, dvec3 p) {
 }
 
 // Sets a soft body in motion as a whole; it is a step further then.
-void throw_down(Pile& pile, std::size_t body, double speed) {
+void throw_down(BoxPile& pile, std::size_t body, double speed) {
   SoftBodyState& tissue = pile.stage.tissue(pile.bodies[body]);
-  tissue.free_step(kStep, dvec3(0, -speed / kStep, 0));
-  tissue.advance(kStep);
+  tissue.free_step(kPileStep, dvec3(0, -speed / kPileStep, 0));
+  tissue.advance(kPileStep);
 }
 
 // At 3 m/s a body goes 50 mm in a step.
-TEST(Pile, SoftBodiesThrownAtAFloorOrAThinBarDoNotPass) {
+TEST(BoxPile, SoftBodiesThrownAtAFloorOrAThinBarDoNotPass) {
   for (const bool bar : {false, true})
     for (const int kind : {0, 1, 2})
       for (const double turned : {0.0, 0.5}) {
-        Pile pile;
+        BoxPile pile;
         pile.stage.world.simulation.gravity = dvec3(0);
         const Pose pose{dvec3(0, 0.115, 0), glm::angleAxis(turned, normalize(dvec3(1, 2, 3)))};
-        const dvec3 half = kind == 0 ? dvec3(0.5 * kSize) : dvec3(0.5 * kSize, 0.0015, 0.5 * kSize);
-        pile.bodies.push_back(
-            pile.stage.add_soft(kind == 2 ? soft_ball(0.5 * kSize) : tets::box(4, 4, 4, -half, half), rubber(), pose));
+        const dvec3 half = kind == 0 ? dvec3(0.5 * kBoxSize) : dvec3(0.5 * kBoxSize, 0.0015, 0.5 * kBoxSize);
+        pile.bodies.push_back(pile.stage.add_soft(
+            kind == 2 ? soft_ball(0.5 * kBoxSize) : tets::box(4, 4, 4, -half, half), pile_rubber(), pose));
         if (bar) pile.wall(dvec3(0.2, 0.004, 0.004), dvec3(0, 0.02, 0.003));
         pile.stage.prepare();
         throw_down(pile, 0, 3.0);
         SCOPED_TRACE(testing::Message() << "bar " << bar << ", kind " << kind << ", turned " << turned);
         for (int step = 0; step < 40; ++step) {
           pile.stage.step();
-          ASSERT_GT(pile.lowest(0), -0.01 * kSize) << step;
+          ASSERT_GT(pile.lowest(0), -0.01 * kBoxSize) << step;
           for (double x = -0.06; bar && x < 0.06; x += 0.002)
             ASSERT_LT(std::abs(winding(pile.stage.body(pile.bodies[0]), dvec3(x, 0.02, 0.003))), 0.5) << step;
         }
@@ -348,9 +352,9 @@ TEST(Pile, SoftBodiesThrownAtAFloorOrAThinBarDoNotPass) {
       }
 }
 
-TEST(Pile, SoftBodiesThrownAtEachOtherDoNotPass) {
+TEST(BoxPile, SoftBodiesThrownAtEachOtherDoNotPass) {
   for (const bool balls : {false, true}) {
-    Pile pile;
+    BoxPile pile;
     pile.stage.world.simulation.gravity = dvec3(0);
     for (const double y : {0.3, 0.45}) balls ? pile.ball({0.004 * y, y, 0}) : pile.cube({0.004 * y, y, 0});
     pile.stage.prepare();
@@ -360,7 +364,7 @@ TEST(Pile, SoftBodiesThrownAtEachOtherDoNotPass) {
       ASSERT_GT(pile.centre(1).y, pile.centre(0).y) << balls << ' ' << step;
       for (const int i : {0, 1})
         for (const dvec3& x : pile.collision_mesh(static_cast<std::size_t>(i))) {
-          const dvec3 inwards = x + 0.02 * kSize * normalize(x - pile.centre(static_cast<std::size_t>(1 - i)));
+          const dvec3 inwards = x + 0.02 * kBoxSize * normalize(x - pile.centre(static_cast<std::size_t>(1 - i)));
           ASSERT_LT(winding(pile.stage.body(pile.bodies[static_cast<std::size_t>(1 - i)]), inwards), 0.5) << step;
         }
     }
@@ -368,17 +372,17 @@ TEST(Pile, SoftBodiesThrownAtEachOtherDoNotPass) {
 }
 
 // Squashed to 15 % of its height under a plate: thinned contacts alone let it sink 4 mm into the floor.
-TEST(Pile, ASquashedBlockIsHeldByTheFloorAndStill) {
-  Pile pile;
-  pile.cube({0, 0.5 * kSize, 0}, kUpright, 6);
-  const Entity plate = pile.wall(dvec3(0.1, 0.01, 0.1), dvec3(0, kSize + 0.0055, 0));
+TEST(BoxPile, ASquashedBlockIsHeldByTheFloorAndStill) {
+  BoxPile pile;
+  pile.cube({0, 0.5 * kBoxSize, 0}, kUpright, 6);
+  const Entity plate = pile.wall(dvec3(0.1, 0.01, 0.1), dvec3(0, kBoxSize + 0.0055, 0));
   pile.stage.prepare();
   auto& driven = dynamic_cast<FixedBody&>(pile.stage.body(plate));
   double least = 1e300, most = 0.0;
   for (int step = 0; step < 150; ++step) {
-    driven.set_velocity(dvec3(0, step < 60 ? -(0.85 * kSize + 0.0005) : 0.0, 0), dvec3(0));
+    driven.set_velocity(dvec3(0, step < 60 ? -(0.85 * kBoxSize + 0.0005) : 0.0, 0), dvec3(0));
     pile.stage.step();
-    EXPECT_GT(pile.lowest(0), -0.01 * kSize) << step;
+    EXPECT_GT(pile.lowest(0), -0.01 * kBoxSize) << step;
     if (step < 130) continue;
     const double force = pile.stage.contact_force(pile.bodies[0], pile.floor).y;
     least = std::min(least, force), most = std::max(most, force);
@@ -388,8 +392,8 @@ TEST(Pile, ASquashedBlockIsHeldByTheFloorAndStill) {
 }
 
 // A ring of rubber that is open at its top, squeezed from both sides until its ends have met.
-TEST(Pile, TheEndsOfASqueezedRingMeetAndDoNotPassThroughEachOther) {
-  Pile pile;
+TEST(BoxPile, TheEndsOfASqueezedRingMeetAndDoNotPassThroughEachOther) {
+  BoxPile pile;
   pile.stage.world.simulation.gravity = dvec3(0);
   TetMesh ring = tets::box(36, 2, 4, dvec3(0, -0.002, -0.0075), dvec3(1, 0.002, 0.0075));
   std::vector<std::size_t> first, last;
@@ -400,7 +404,7 @@ TEST(Pile, TheEndsOfASqueezedRingMeetAndDoNotPassThroughEachOther) {
     const double angle = 0.5 * M_PI - 0.3 - x.x * (2.0 * M_PI - 0.6), r = 0.02 + x.y;
     x = dvec3(r * std::cos(angle), 0.5 + r * std::sin(angle), x.z);
   }
-  SoftBody body = rubber();
+  SoftBody body = pile_rubber();
   body.young = 1e5;
   pile.bodies.push_back(pile.stage.add_soft(ring, body, {}));
   std::array<Entity, 2> jaws;

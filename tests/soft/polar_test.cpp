@@ -34,7 +34,7 @@ double difference(const dmat3& F, const dquat& q, double& gap) {
   return (to_eigen(mat3_cast(q)) - twin).norm();
 }
 
-class Dice {
+class MatrixDice {
  public:
   double normal() { return normal_(random_); }
   dmat3 matrix() {
@@ -51,7 +51,7 @@ class Dice {
 };
 
 TEST(Polar, AgreesWithTheFlippedDecompositionOnAnyMatrixFromAnyGuess) {
-  Dice dice;
+  MatrixDice dice;
   int inverted = 0;
   for (int i = 0; i < 100000; ++i) {
     const dmat3 F = dice.matrix() * std::pow(10.0, dice.normal());
@@ -67,7 +67,7 @@ TEST(Polar, AgreesWithTheFlippedDecompositionOnAnyMatrixFromAnyGuess) {
 }
 
 TEST(Polar, FollowsStepsOfASimulationToRounding) {
-  Dice dice;
+  MatrixDice dice;
   dquat q(1, 0, 0, 0), truth(1, 0, 0, 0);
   for (int i = 0; i < 20000; ++i) {
     truth = normalize(truth * rotation_of(0.1 * dvec3(dice.normal(), dice.normal(), dice.normal())));
@@ -80,7 +80,7 @@ TEST(Polar, FollowsStepsOfASimulationToRounding) {
 }
 
 TEST(Polar, TheTwinFromHornsMatrixAgreesToo) {
-  Dice dice;
+  MatrixDice dice;
   for (int i = 0; i < 20000; ++i) {
     const dmat3 F = dice.matrix();
     dquat q = dice.turn();
@@ -93,7 +93,7 @@ TEST(Polar, TheTwinFromHornsMatrixAgreesToo) {
 
 // Flat in one direction the answer is still one; in two, about an axis it is the guess's; a point says nothing.
 TEST(Polar, CollapsedMatricesKeepWhatTheGuessKnew) {
-  Dice dice;
+  MatrixDice dice;
   for (int i = 0; i < 2000; ++i) {
     const dquat truth = dice.turn();
     const dmat3 R = mat3_cast(truth);

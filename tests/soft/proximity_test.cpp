@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 using test::ContactLoop;
-constexpr double kT = 1.0 / 60.0;  // [s]
+constexpr double kProximityStep = 1.0 / 60.0;  // [s]
 
 // A collision mesh that moves as a test says, vertex by vertex.
 class ScriptedBody : public FixedBody {
@@ -79,10 +79,10 @@ TEST(Proximity, TheTreesMissNoMeetingThatBruteForceFinds) {
     std::array<CollisionMesh, 2> collision_mesh{CollisionMesh(body[0]), CollisionMesh(body[1])};
     for (int step = 0; step < 3; ++step) {
       for (int i = 0; i < 2; ++i) {
-        body[i].move_to(1.0, [&](dvec3 x) { return path[i](x, step * kT); });
+        body[i].move_to(1.0, [&](dvec3 x) { return path[i](x, step * kProximityStep); });
         body[i].arrive(1.0);
-        body[i].move_to(kT, [&](dvec3 x) { return path[i](x, (step + 1) * kT); });
-        collision_mesh[i].refit(body[i], kT, 0.5 * std::max(reach.front, reach.behind));
+        body[i].move_to(kProximityStep, [&](dvec3 x) { return path[i](x, (step + 1) * kProximityStep); });
+        collision_mesh[i].refit(body[i], kProximityStep, 0.5 * std::max(reach.front, reach.behind));
       }
       std::set<std::pair<std::uint32_t, std::uint32_t>> visited;
       for_each_pair(collision_mesh[0], collision_mesh[1], [&](std::uint32_t s, std::uint32_t t) {
@@ -169,7 +169,7 @@ Depth throw_at_plate(const Mesh& mesh, const RigidMass& mass, double radius, dve
   loop.set_friction(0.3, 0.3);
   Depth depth;
   for (int i = 0; i < 30; ++i) {
-    loop.step(kT);
+    loop.step(kProximityStep);
     depth.last = -1.0;
     for (const dvec3& x : body.surface_position) {
       const dvec3 local = glm::conjugate(turned) * x;
@@ -232,8 +232,8 @@ TEST(Proximity, NormalsDoNotFlipWhileABallIsPressedHalfThrough) {
   moving.arrive(1.0);
   for (int step = 0; step < 200; ++step) {
     const double depth = -0.002 + 7e-5 * (step + 1);  // ends at 12 mm: past the middle of the slab
-    moving.move_to(kT, place(depth));
-    proximity.find(bodies, kT, 2e-3, contacts);
+    moving.move_to(kProximityStep, place(depth));
+    proximity.find(bodies, kProximityStep, 2e-3, contacts);
     double deepest = 1e300;
     for (const ContactPoint& c : contacts) {
       const dvec3 up = c.body_a == 1 ? c.normal : -c.normal;
@@ -244,7 +244,7 @@ TEST(Proximity, NormalsDoNotFlipWhileABallIsPressedHalfThrough) {
       ASSERT_FALSE(contacts.empty()) << depth;
       EXPECT_NEAR(deepest, -(depth - 7e-5), 2e-4) << depth;
     }
-    moving.arrive(kT);
+    moving.arrive(kProximityStep);
   }
 }
 
@@ -264,8 +264,8 @@ TEST(Proximity, WhatEntersAThinPlateIsSentBackWhereItCameFrom) {
   std::vector<ContactPoint> contacts;
   for (int step = 0; step < 60; ++step) {
     const double depth = -0.001 + 6e-5 * (step + 1);  // ends at 2.6 mm of 3 mm
-    moving.move_to(kT, place(depth));
-    proximity.find(bodies, kT, 3e-3, contacts);
+    moving.move_to(kProximityStep, place(depth));
+    proximity.find(bodies, kProximityStep, 3e-3, contacts);
     bool sent_back = false;
     for (const ContactPoint& c : contacts) {
       if (c.body_a != 1) continue;
@@ -273,7 +273,7 @@ TEST(Proximity, WhatEntersAThinPlateIsSentBackWhereItCameFrom) {
       sent_back |= c.normal.y > 0.9 && c.gap < 1e-3 - depth;
     }
     EXPECT_TRUE(sent_back) << depth;
-    moving.arrive(kT);
+    moving.arrive(kProximityStep);
   }
 }
 
@@ -289,7 +289,7 @@ TEST(Proximity, AVertexInsideWithoutAPastIsPushedOutTheNearestWay) {
     moving.move_to(1.0, [&](dvec3 x) { return x + dvec3(0.003, side * (0.005 + 0.01 - 0.0008), 0.001); });
     Proximity proximity(bodies);
     std::vector<ContactPoint> contacts;
-    proximity.find(bodies, kT, 1e-3, contacts);
+    proximity.find(bodies, kProximityStep, 1e-3, contacts);
     ASSERT_GE(contacts.size(), 4u);
     for (const ContactPoint& c : contacts) {
       EXPECT_NEAR((c.body_a == 1 ? c.normal : -c.normal).y, side, 1e-6);
@@ -324,12 +324,12 @@ TEST(Proximity, FingersOfOneHandMeetAndNeighboursDoNot) {
   int touching_steps = 0, apart_steps = 0;
   for (int step = 0; step <= 60; ++step) {
     const double angle = 0.385 * step / 60.0;
-    hand.move_to(kT, [&](dvec3 x) { return Fingers::bend(x, angle); });
+    hand.move_to(kProximityStep, [&](dvec3 x) { return Fingers::bend(x, angle); });
     double closest = 1e300;  // of the two inner sides, at the end of the step
     for (std::uint32_t v = 0; v < fingers.mesh.vertex_count; ++v)
       if (fingers.mesh.px[v] < -0.001f && fingers.mesh.py[v] > 0.0f)
         closest = std::min(closest, -2.0 * Fingers::bend(dvec3(fingers.mesh.position(v)), angle).x);
-    proximity.find(bodies, kT, 1e-3, contacts);
+    proximity.find(bodies, kProximityStep, 1e-3, contacts);
     if (closest > 1e-3) {
       ++apart_steps;
       EXPECT_TRUE(contacts.empty()) << "angle " << angle << ", apart " << closest;
@@ -344,7 +344,7 @@ TEST(Proximity, FingersOfOneHandMeetAndNeighboursDoNot) {
       EXPECT_LT(xa * xb, 0.0f) << "one finger with itself";
       EXPECT_GT(c.normal.x * (xa < 0.0f ? -1.0 : 1.0), 0.3);
     }
-    hand.arrive(kT);
+    hand.arrive(kProximityStep);
   }
   EXPECT_GT(touching_steps, 5);
   EXPECT_GT(apart_steps, 5);
@@ -366,7 +366,7 @@ TEST(Proximity, AHandOnAnObjectHasTensOfContactsAndKeepsThem) {
   moving.move_to(1.0, pressed);
   Proximity proximity(bodies);
   std::vector<ContactPoint> contacts;
-  proximity.find(bodies, kT, 1e-3, contacts);
+  proximity.find(bodies, kProximityStep, 1e-3, contacts);
   EXPECT_GE(contacts.size(), 20u);
   EXPECT_LE(contacts.size(), 60u);
   std::set<std::uint64_t> keys;
@@ -375,7 +375,7 @@ TEST(Proximity, AHandOnAnObjectHasTensOfContactsAndKeepsThem) {
     c.impulse = dvec3(1, 2, 3);
   }
   EXPECT_EQ(keys.size(), contacts.size());
-  proximity.find(bodies, kT, 1e-3, contacts);
+  proximity.find(bodies, kProximityStep, 1e-3, contacts);
   for (const ContactPoint& c : contacts) {
     EXPECT_TRUE(keys.count(c.key));
     EXPECT_EQ(c.impulse, dvec3(1, 2, 3));
@@ -404,7 +404,7 @@ TEST(Proximity, ContactAxesAreOrthonormalAndTurnSteadily) {
       scripted.arrive(1.0);
       std::fill(scripted.surface_velocity.begin(), scripted.surface_velocity.end(), dvec3(0));
     }
-    proximity.find(bodies, kT, 1e-3, contacts);
+    proximity.find(bodies, kProximityStep, 1e-3, contacts);
     ASSERT_GE(contacts.size(), 4u);
     for (const ContactPoint& c : contacts) {
       const dmat3 unit = glm::transpose(c.axes) * c.axes;

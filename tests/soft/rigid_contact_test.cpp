@@ -11,8 +11,8 @@ namespace pliant {
 namespace {
 
 using test::ContactLoop;
-constexpr double kT = 1.0 / 60.0;  // [s]
-constexpr double kG = 9.81;        // [m/s2]
+constexpr double kRigidStep = 1.0 / 60.0;  // [s]
+constexpr double kRigidGravity = 9.81;     // [m/s2]
 
 dquat tilt(double angle) {
   return glm::angleAxis(angle, dvec3(0, 0, 1));
@@ -38,7 +38,7 @@ struct Incline {
   double travelled() const { return dot(body->centre(), along); }
   double speed() const { return dot(dvec3(body->velocity()[0], body->velocity()[1], body->velocity()[2]), along); }
   void run(double seconds) {
-    for (int i = 0; i < int(std::lround(seconds / kT)); ++i) loop.step(kT);
+    for (int i = 0; i < int(std::lround(seconds / kRigidStep)); ++i) loop.step(kRigidStep);
   }
 };
 
@@ -53,7 +53,7 @@ TEST(RigidContact, ABlockOnAnInclineHoldsBelowTheFrictionAngleAndSlipsAbove) {
     EXPECT_LT(std::abs(settled), 1e-5) << mu;
     EXPECT_NEAR(below.travelled(), settled, 1e-6) << mu;
     const double angle = std::atan(mu) + tenth;
-    const double expected = 0.5 * kG * (std::sin(angle) - mu * std::cos(angle)) * 4.0;
+    const double expected = 0.5 * kRigidGravity * (std::sin(angle) - mu * std::cos(angle)) * 4.0;
     EXPECT_NEAR(-above.travelled(), expected, 0.02 * expected) << mu;
   }
 }
@@ -64,7 +64,8 @@ TEST(RigidContact, ASlidingBlockAcceleratesByGravityLessFriction) {
     incline.run(0.5);
     const double v0 = incline.speed();
     incline.run(0.5);
-    EXPECT_NEAR(-(incline.speed() - v0) / 0.5, kG * (std::sin(angle) - 0.25 * std::cos(angle)), 1e-3) << angle;
+    EXPECT_NEAR(-(incline.speed() - v0) / 0.5, kRigidGravity * (std::sin(angle) - 0.25 * std::cos(angle)), 1e-3)
+        << angle;
   }
 }
 
@@ -74,16 +75,16 @@ TEST(RigidContact, StaticFrictionHoldsWhereSlidingFrictionWouldNot) {
   rest.run(1.0);
   pushed.run(1.0);
   EXPECT_LT(std::abs(rest.travelled()), 1e-6);
-  EXPECT_NEAR(-pushed.speed(), 0.1 + kG * (std::sin(angle) - 0.3 * std::cos(angle)), 2e-3);
+  EXPECT_NEAR(-pushed.speed(), 0.1 + kRigidGravity * (std::sin(angle) - 0.3 * std::cos(angle)), 2e-3);
 }
 
 TEST(RigidContact, ABlockThatSlidesStopsAfterTheDistanceOfItsEnergy) {
   for (const double angle : {0.0, 0.15}) {
-    const double mu = 0.4, v = 1.0, a = kG * (mu * std::cos(angle) - std::sin(angle));
+    const double mu = 0.4, v = 1.0, a = kRigidGravity * (mu * std::cos(angle) - std::sin(angle));
     Incline incline(angle, mu, mu, -v);
     incline.run(2.0);
     // Implicit steps brake from the first on: half a step's travel is missing.
-    EXPECT_NEAR(-incline.travelled() + 0.5 * v * kT, v * v / (2 * a), 0.01 * v * v / (2 * a)) << angle;
+    EXPECT_NEAR(-incline.travelled() + 0.5 * v * kRigidStep, v * v / (2 * a), 0.01 * v * v / (2 * a)) << angle;
     const double stopped = incline.travelled();
     incline.run(1.0);
     EXPECT_NEAR(incline.travelled(), stopped, 1e-6);
@@ -108,7 +109,7 @@ TEST(RigidContact, AStackOfFiveStandsForFiveSeconds) {
   loop.set_friction(0.5, 0.4);
   std::vector<dvec3> start;
   for (const RigidState* s : stack) start.push_back(s->centre());
-  for (int i = 0; i < 300; ++i) loop.step(kT);
+  for (int i = 0; i < 300; ++i) loop.step(kRigidStep);
   for (std::size_t i = 0; i < stack.size(); ++i) EXPECT_LT(length(stack[i]->centre() - start[i]), 2e-4) << i;
 }
 
@@ -128,12 +129,12 @@ TEST(RigidContact, ImpactsConserveMomentumAndGainNoEnergy) {
       };
       return p(a) + p(b);
     };
-    loop.step(kT);
+    loop.step(kRigidStep);
     const dvec3 before = momentum();
     double energy = a.kinetic_energy() + b.kinetic_energy();
     const double first = energy;
     for (int i = 0; i < 60; ++i) {
-      loop.step(kT);
+      loop.step(kRigidStep);
       const double now = a.kinetic_energy() + b.kinetic_energy();
       EXPECT_LE(now, energy * (1 + 1e-9)) << offset << ' ' << i;
       energy = now;
@@ -158,9 +159,9 @@ TEST(RigidContact, AFreeBodyKeepsItsAngularMomentumAndItsEnergy) {
   bool tumbled = false;
   const dvec3 axis = body.rotation() * dvec3(0, 1, 0);
   for (int i = 0; i < 3600; ++i) {
-    body.free_step(kT, dvec3(0));
+    body.free_step(kRigidStep, dvec3(0));
     body.correct(Vector::Zero(6));
-    body.advance(kT);
+    body.advance(kRigidStep);
     lowest = std::min(lowest, body.kinetic_energy());
     highest = std::max(highest, body.kinetic_energy());
     tumbled |= dot(body.rotation() * dvec3(0, 1, 0), axis) < -0.5;
@@ -176,11 +177,12 @@ TEST(RigidContact, AFallIsTheParabola) {
   RigidState body(block, Pose{dvec3(0)}, test::block_mass(dvec3(0.1), 1.0));
   body.set_velocity(dvec3(1, 2, 0), dvec3(0));
   for (int i = 0; i < 60; ++i) {
-    body.free_step(kT, dvec3(0, -kG, 0));
-    body.advance(kT);
+    body.free_step(kRigidStep, dvec3(0, -kRigidGravity, 0));
+    body.advance(kRigidStep);
   }
   EXPECT_NEAR(body.centre().x, 1.0, 1e-12);
-  EXPECT_NEAR(body.centre().y, 2.0 - 0.5 * kG * 1.0 * (1.0 + kT), 1e-9);  // implicit Euler's own parabola
+  EXPECT_NEAR(body.centre().y, 2.0 - 0.5 * kRigidGravity * 1.0 * (1.0 + kRigidStep),
+              1e-9);  // implicit Euler's own parabola
 }
 
 // Contacts between two rigid bodies, one of them asked by unit impulses what W says of it.
@@ -208,8 +210,8 @@ TEST(RigidContact, TheDelassusOperatorIsWhatUnitImpulsesDo) {
     }
     return u;
   };
-  for (auto& body : loop.bodies) body->free_step(kT, dvec3(0));
-  build_problem(loop.bodies, loop.contacts, kT, 0.15, loop.delassus, loop.problem);
+  for (auto& body : loop.bodies) body->free_step(kRigidStep, dvec3(0));
+  build_problem(loop.bodies, loop.contacts, kRigidStep, 0.15, loop.delassus, loop.problem);
   const Eigen::Index rows = 3 * Eigen::Index(loop.contacts.size());
   const Eigen::MatrixXd w = Eigen::MatrixXd(loop.problem.W).topLeftCorner(rows, rows);
   EXPECT_TRUE(w.isApprox(w.transpose(), 0.0));
@@ -217,8 +219,8 @@ TEST(RigidContact, TheDelassusOperatorIsWhatUnitImpulsesDo) {
   const Vector before = relative_velocity();
   for (std::size_t i = 0; i < loop.contacts.size(); ++i) {
     const double gap = loop.contacts[i].gap;
-    EXPECT_NEAR(loop.problem.bias[3 * Eigen::Index(i)], before[3 * Eigen::Index(i)] + (gap < 0 ? 0.15 : 1.0) * gap / kT,
-                1e-9);
+    EXPECT_NEAR(loop.problem.bias[3 * Eigen::Index(i)],
+                before[3 * Eigen::Index(i)] + (gap < 0 ? 0.15 : 1.0) * gap / kRigidStep, 1e-9);
   }
   for (Eigen::Index k = 0; k < rows; ++k) {
     loop.problem.impulse.setZero();
@@ -241,7 +243,7 @@ double dropped_in_grip(double mu) {
   RigidState& body = loop.add<RigidState>(cube, Pose{dvec3(0)}, test::block_mass(dvec3(0.05), 0.2));
   loop.set_friction(mu, mu);
   for (FixedBody* pad : pads) pad->set_velocity(dvec3(0, 0.05, 0), dvec3(0));
-  for (int i = 0; i < 60; ++i) loop.step(kT);
+  for (int i = 0; i < 60; ++i) loop.step(kRigidStep);
   return pads[0]->pose().position.y - body.centre().y;
 }
 

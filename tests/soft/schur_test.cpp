@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-constexpr double T = 1.0 / 60;  // [s]
-constexpr dvec3 kGravity{0, -9.81, 0};
+constexpr double kSchurStep = 1.0 / 60;  // [s]
+constexpr dvec3 kSchurGravity{0, -9.81, 0};
 
 // What a solver of this kind promises: direct ones the digits there are, iterative ones their own tolerance.
 double promised(SolverKind kind) {
@@ -70,30 +70,30 @@ struct Finger {
     for (int i = 0; i < 4; ++i) step();
   }
   void step() {
-    state->free_step(T, kGravity);
-    state->advance(T);
+    state->free_step(kSchurStep, kSchurGravity);
+    state->advance(kSchurStep);
   }
 };
 
-struct System {
+struct SchurSystem {
   Eigen::MatrixXd A;
   Vector b;
 };
 
 // The paper's matrices, whole and dense, from tissue whose nodes all have rows; at the state that a step begins with.
-System dense_system(const Finger& finger) {
+SchurSystem dense_system(const Finger& finger) {
   const SoftBodyState& state = *finger.state;
   const TetMesh& tets = finger.bar.tets;
   Tissue whole(tets, {.young = finger.body.young, .alpha = finger.body.rayleigh[0], .beta = finger.body.rayleigh[1]},
                tets.node_count());
   whole.position() = state.tissue().position();
   whole.velocity() = state.tissue().velocity();
-  whole.assemble(T, kGravity);
+  whole.assemble(kSchurStep, kSchurGravity);
   Eigen::MatrixXd tissue = whole.inner().dense();
   Vector right = whole.right();
 
   const Eigen::Index nodes = tissue.rows(), first = 3 * tets.free_count;
-  System out;
+  SchurSystem out;
   if (finger.handle.attachment == Attachment::kSlave) {  // [v_t; v_h] = P [v_t; w]
     Eigen::MatrixXd P = Eigen::MatrixXd::Zero(nodes, first + 6);
     P.topLeftCorner(first, first).setIdentity();
@@ -101,21 +101,22 @@ System dense_system(const Finger& finger) {
       P.block<3, 6>(first + 3 * i, first) = grip_matrix(state.handle().arm(i));
     out = {P.transpose() * tissue * P, P.transpose() * right};
   } else {
-    const double damped = 1 + T * finger.body.rayleigh[0];
+    const double damped = 1 + kSchurStep * finger.body.rayleigh[0];
     const Matrix6 mass = state.handle().mass_matrix();
     out.A = Eigen::MatrixXd::Zero(nodes + 6, nodes + 6);
     out.A.topLeftCorner(nodes, nodes) = tissue;
     out.A.bottomRightCorner<6, 6>() = damped * mass;
     out.b = Vector::Zero(nodes + 6);
     out.b.head(nodes) = right;
-    out.b.tail<6>() = mass * (state.handle().motion().velocity + T * join(kGravity, dvec3(0)));
+    out.b.tail<6>() = mass * (state.handle().motion().velocity + kSchurStep * join(kSchurGravity, dvec3(0)));
     for (std::uint32_t i = 0; i < tets.handle_count; ++i) {
       const std::uint32_t node = tets.free_count + i;
       const double m = whole.mass()[node], k = kTieStiffness * finger.body.young * std::cbrt(m / finger.body.density);
-      const double s = T * 2 * std::sqrt(k * m) + T * T * k;
+      const double s = kSchurStep * 2 * std::sqrt(k * m) + kSchurStep * kSchurStep * k;
       const dvec3 ride = state.handle().motion().pose.position + state.handle().arm(i);
-      const dvec3 e = whole.position()[node] - ride, carried = m * (whole.velocity()[node] + T * kGravity);
-      const Eigen::Vector3d pull = T * k * Eigen::Vector3d(e.x, e.y, e.z);
+      const dvec3 e = whole.position()[node] - ride,
+                  carried = m * (whole.velocity()[node] + kSchurStep * kSchurGravity);
+      const Eigen::Vector3d pull = kSchurStep * k * Eigen::Vector3d(e.x, e.y, e.z);
       const Eigen::Index at = first + 3 * i;
       const Grip Gi = grip_matrix(whole.position()[node] - state.handle().motion().pose.position);
       out.A.block<3, 3>(at, at) += (s - damped * m) * Eigen::Matrix3d::Identity();
@@ -127,7 +128,8 @@ System dense_system(const Finger& finger) {
     }
   }
   const RigidMotion motion = state.handle().motion(), device = state.device_target();
-  const CouplingStep coupling = coupling_step(coupling_force(finger.handle, motion, device), motion, device, T);
+  const CouplingStep coupling =
+      coupling_step(coupling_force(finger.handle, motion, device), motion, device, kSchurStep);
   out.A.diagonal().tail<6>() += coupling.matrix;
   out.b.tail<6>() += coupling.right;
   return out;
@@ -163,9 +165,9 @@ TEST(Schur, FreeMotionAndSolvesOfATwoPartToolAreThoseOfItsWholeMatrixWithEverySo
   for (const Attachment attachment : {Attachment::kSlave, Attachment::kSpring})
     for (const SolverKind kind : available_solvers()) {
       Finger finger(attachment, make_solver(kind, 200));
-      const System whole = dense_system(finger);
+      const SchurSystem whole = dense_system(finger);
       const Eigen::LDLT<Eigen::MatrixXd> truth(whole.A);
-      finger.state->free_step(T, kGravity);
+      finger.state->free_step(kSchurStep, kSchurGravity);
       SCOPED_TRACE(testing::Message() << "attachment " << int(attachment) << ", solver " << int(kind));
       ASSERT_EQ(finger.state->size(), whole.b.size());
       EXPECT_LT(distance(finger.state->velocity(), truth.solve(whole.b)), promised(kind));
@@ -184,7 +186,7 @@ TEST(Schur, AStepTakesExactlySevenSolvesOfTheTissue) {
     Counter counter;
     Finger finger(attachment, std::make_unique<CountingSolver>(counter));
     counter = {};
-    finger.state->free_step(T, kGravity);
+    finger.state->free_step(kSchurStep, kSchurGravity);
     EXPECT_EQ(counter.factorised, 1);
     EXPECT_EQ(counter.solved, 7);
     Rows columns = random_matrix(finger.state->size(), 12, 5);
@@ -198,7 +200,7 @@ TEST(Schur, ContactsSeeOneBodyWhetherItsPartsAreSolvedTogetherOrApart) {
   for (const Attachment attachment : {Attachment::kSlave, Attachment::kSpring}) {
     Finger finger(attachment, make_solver(SolverKind::kDense, 1));
     SoftBodyState& state = *finger.state;
-    state.free_step(T, kGravity);
+    state.free_step(kSchurStep, kSchurGravity);
     const int points = 6, n = state.size();
     const dmat3 axes = glm::mat3_cast(rotation_of({0.2, 0.4, -0.7}));
     Rows together = Rows::Zero(n, 3 * points), hat = Rows::Zero(3 * points, 6);

@@ -12,9 +12,9 @@ namespace pliant {
 namespace {
 
 using test::ContactLoop;
-constexpr double kT = 1.0 / 60.0;  // [s]
-constexpr double kG = 9.81;        // [m/s2]
-constexpr double kMass = 0.05;     // [kg]
+constexpr double kSheetStep = 1.0 / 60.0;  // [s]
+constexpr double kSheetGravity = 9.81;     // [m/s2]
+constexpr double kSheetMass = 0.05;        // [kg]
 
 float flat(float, float) {
   return 0.0f;
@@ -34,8 +34,9 @@ struct Flight {
         sheet(std::move(surface)),
         thing(round ? test::sphere_mesh(0.02f, 3) : test::block_mesh(vec3(0.03f))) {
     loop.add<FixedBody>(sheet, Pose{});
-    body = &loop.add<RigidState>(thing, Pose{at, attitude},
-                                 round ? test::sphere_mass(0.02, kMass) : test::block_mass(dvec3(0.03), kMass));
+    body =
+        &loop.add<RigidState>(thing, Pose{at, attitude},
+                              round ? test::sphere_mass(0.02, kSheetMass) : test::block_mass(dvec3(0.03), kSheetMass));
     body->set_velocity(velocity, spin);
     loop.set_friction(0.5, 0.4);
   }
@@ -49,7 +50,7 @@ struct Flight {
   }
 };
 
-struct Dice {
+struct SheetDice {
   std::mt19937 random;
   double operator()(double most) { return std::uniform_real_distribution<double>(-most, most)(random); }
   dvec3 vector(double most) { return {(*this)(most), (*this)(most), (*this)(most)}; }
@@ -61,12 +62,12 @@ TEST(SheetContact, WhatIsThrownOnTheFrontRestsOnItHoweverCoarseTheSheet) {
     for (const int squares : {1, 16})
       for (const double speed : {0.1, 1.0})
         for (std::uint32_t seed = 0; seed < 6; ++seed) {
-          Dice dice{std::mt19937(seed)};
+          SheetDice dice{std::mt19937(seed)};
           Flight flight(test::relief_mesh(0.2f, squares, 0.0f, true, flat), round, dvec3(dice(0.04), 0.035, dice(0.04)),
                         dice.attitude(), dvec3(dice(0.1), -speed, dice(0.1)), dice.vector(4.0));
           double worst = 0;
           for (int i = 0; i < 180; ++i) {
-            flight.loop.step(kT);
+            flight.loop.step(kSheetStep);
             worst = std::max(worst, -flight.lowest());
           }
           SCOPED_TRACE(testing::Message()
@@ -74,21 +75,22 @@ TEST(SheetContact, WhatIsThrownOnTheFrontRestsOnItHoweverCoarseTheSheet) {
           // What turns while it is stopped: (4 rad/s / 60)^2 / 2 of its radius at least.
           EXPECT_LT(worst, 6e-4);
           EXPECT_LT(std::abs(flight.lowest()), 2e-6);
-          EXPECT_NEAR(flight.force().y, kMass * kG, 0.01 * kMass * kG);
+          EXPECT_NEAR(flight.force().y, kSheetMass * kSheetGravity, 0.01 * kSheetMass * kSheetGravity);
         }
 }
 
 TEST(SheetContact, WhatIsThrownOnHillsStaysOnThem) {
   for (const bool round : {true, false})
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
-      Dice dice{std::mt19937(seed)};
+      SheetDice dice{std::mt19937(seed)};
       Flight flight(test::relief_mesh(0.2f, 24, 0.0f, true, hilly), round, dvec3(dice(0.04), 0.035, dice(0.04)),
                     dice.attitude(), dvec3(dice(0.1), -1.0, dice(0.1)), dice.vector(4.0));
       for (int i = 0; i < 180; ++i) {
-        flight.loop.step(kT);
+        flight.loop.step(kSheetStep);
         EXPECT_GT(flight.lowest(), -0.0045) << "round " << round << ", " << seed << ", step " << i;
       }
-      EXPECT_LT(length(flight.force() - dvec3(0, kMass * kG, 0)), 1e-3 * kMass * kG) << seed;
+      EXPECT_LT(length(flight.force() - dvec3(0, kSheetMass * kSheetGravity, 0)), 1e-3 * kSheetMass * kSheetGravity)
+          << seed;
     }
 }
 
@@ -97,7 +99,7 @@ TEST(SheetContact, WhatComesFromBehindPassesUnhindered) {
     for (const int squares : {1, 16})
       for (const double speed : {0.02, 1.0})
         for (std::uint32_t seed = 0; seed < 8; ++seed) {
-          Dice dice{std::mt19937(seed)};
+          SheetDice dice{std::mt19937(seed)};
           const dvec3 velocity(seed % 2 * dice(0.3 * speed), speed, seed % 2 * dice(0.3 * speed));
           // Half of them through the border.
           const double aside = seed < 4 ? 0.0 : 0.1;
@@ -105,7 +107,7 @@ TEST(SheetContact, WhatComesFromBehindPassesUnhindered) {
                         dvec3(aside + dice(0.02), -0.035, dice(0.04)), seed ? dice.attitude() : dquat(1, 0, 0, 0),
                         velocity, dvec3(0));
           flight.loop.gravity = dvec3(0);
-          for (int i = 0; i < int(0.08 / speed / kT); ++i) flight.loop.step(kT);
+          for (int i = 0; i < int(0.08 / speed / kSheetStep); ++i) flight.loop.step(kSheetStep);
           SCOPED_TRACE(testing::Message()
                        << "round " << round << ", " << squares << " squares, " << speed << " m/s, " << seed);
           EXPECT_GT(flight.body->centre().y, 0.03);
@@ -120,21 +122,21 @@ TEST(SheetContact, WhatPassedFromBehindFallsBackOnTheFrontAndRests) {
                   glm::angleAxis(0.3, normalize(dvec3(1, 2, 3))), dvec3(0, 1.5, 0), dvec3(0));
     double highest = 0;
     for (int i = 0; i < 240; ++i) {
-      flight.loop.step(kT);
+      flight.loop.step(kSheetStep);
       highest = std::max(highest, flight.lowest());
     }
     EXPECT_GT(highest, 0.02) << "it should have passed";
     EXPECT_LT(std::abs(flight.lowest()), 2e-6);
-    EXPECT_NEAR(flight.force().y, kMass * kG, 0.01 * kMass * kG);
+    EXPECT_NEAR(flight.force().y, kSheetMass * kSheetGravity, 0.01 * kSheetMass * kSheetGravity);
   }
 }
 
 TEST(SheetContact, WhatIsPutIntoASheetByAHairIsLiftedOntoIt) {
   Flight flight(test::relief_mesh(0.2f, 16, 0.0f, true, flat), false, dvec3(0.003, 0.015 - 5e-4, 0.001),
                 dquat(1, 0, 0, 0), dvec3(0), dvec3(0));
-  for (int i = 0; i < 120; ++i) flight.loop.step(kT);
+  for (int i = 0; i < 120; ++i) flight.loop.step(kSheetStep);
   EXPECT_NEAR(flight.lowest(), 0.0, 1e-6);
-  EXPECT_NEAR(flight.force().y, kMass * kG, 1e-3 * kMass * kG);
+  EXPECT_NEAR(flight.force().y, kSheetMass * kSheetGravity, 1e-3 * kSheetMass * kSheetGravity);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 using test::ContactLoop;
-constexpr double kT = 1.0 / 60.0;  // [s]
+constexpr double kSoftStep = 1.0 / 60.0;  // [s]
 
 struct SoftBlock {
   Mesh collision_mesh;
@@ -45,7 +45,7 @@ TEST(SoftContact, ABlockOfTissueRestsOnTheGroundWithItsWeight) {
   const auto& body = loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr,
                                              Pose{dvec3(0.003, 0.03, 0.001)}, SolverKind::kAuto);
   loop.set_friction(0.5, 0.4);
-  for (int i = 0; i < 120; ++i) loop.step(kT);
+  for (int i = 0; i < 120; ++i) loop.step(kSoftStep);
   double lowest = 1.0;
   for (const dvec3& x : body.surface_position) lowest = std::min(lowest, x.y);
   EXPECT_NEAR(lowest, 0.0, 1e-5);
@@ -66,9 +66,9 @@ TEST(SoftContact, SoftBlocksStack) {
     stack.push_back(&loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr,
                                              Pose{dvec3(0.004 * i, 0.0252 + 0.0502 * i, 0.002)}, SolverKind::kAuto));
   loop.set_friction(0.5, 0.4);
-  for (int i = 0; i < 90; ++i) loop.step(kT);
+  for (int i = 0; i < 90; ++i) loop.step(kSoftStep);
   const dvec3 upper = mean(stack[1]->tissue().position());
-  for (int i = 0; i < 30; ++i) loop.step(kT);
+  for (int i = 0; i < 30; ++i) loop.step(kSoftStep);
   EXPECT_LT(length(mean(stack[1]->tissue().position()) - upper), 1e-4);
   EXPECT_GT(upper.y, 0.065);  // on top, both somewhat compressed
   EXPECT_LT(upper.y, 0.0755);
@@ -89,7 +89,7 @@ double dropped(double mu) {
   loop.set_friction(mu, mu);
   const auto move = [&](double close, double lift, int steps) {
     for (int side = 0; side < 2; ++side) fingers[side]->set_velocity(dvec3((side ? -1 : 1) * close, lift, 0), dvec3(0));
-    for (int i = 0; i < steps; ++i) loop.step(kT);
+    for (int i = 0; i < steps; ++i) loop.step(kSoftStep);
   };
   move(0.0022 * 3, 0, 20);
   move(0, 0, 20);
@@ -131,12 +131,12 @@ TEST(SoftContact, ABallPressedDeepIntoTissueLeavesItWhole) {
       }
     return depth;
   };
-  for (int i = 0; i < 40; ++i) loop.step(kT);
+  for (int i = 0; i < 40; ++i) loop.step(kSoftStep);
   const std::vector<dvec3> rested = body.surface_position;
   double worst = 0;
   for (int i = 0; i < 40; ++i) {
     driven.set_velocity(dvec3(0, i < 20 ? -0.0375 : 0.0375, 0), dvec3(0));
-    loop.step(kT);
+    loop.step(kSoftStep);
     if (i < 20) worst = std::max(worst, deepest());
     for (const ContactPoint& c : loop.contacts) {
       const bool of_ball = c.body_a == 1 || c.body_b == 1;
@@ -144,7 +144,7 @@ TEST(SoftContact, ABallPressedDeepIntoTissueLeavesItWhole) {
     }
   }
   EXPECT_LT(worst, 1e-3);
-  for (int i = 0; i < 60; ++i) loop.step(kT);
+  for (int i = 0; i < 60; ++i) loop.step(kSoftStep);
   double change = 0;
   for (std::size_t v = 0; v < rested.size(); ++v)
     change = std::max(change, std::abs(body.surface_position[v].y - rested[v].y));
@@ -195,8 +195,8 @@ TEST(SoftContact, TissueThrownAtTissueDoesNotPassThroughIt) {
                       glm::angleAxis(turned * side, normalize(dvec3(1, 2, 3)))};
       cube[i] =
           &loop.add<SoftBodyState>(block.tets, block.collision_mesh, block.material, nullptr, pose, SolverKind::kAuto);
-      cube[i]->free_step(kT, dvec3(-side / kT, 0, 0));  // a push as a whole
-      cube[i]->advance(kT);
+      cube[i]->free_step(kSoftStep, dvec3(-side / kSoftStep, 0, 0));  // a push as a whole
+      cube[i]->advance(kSoftStep);
     }
     loop.set_friction(0.4, 0.3);
     const auto momentum = [&] {
@@ -211,7 +211,7 @@ TEST(SoftContact, TissueThrownAtTissueDoesNotPassThroughIt) {
     double worst = 0.0;
     std::size_t touched = 0;
     for (int i = 0; i < 40; ++i) {
-      loop.step(kT);
+      loop.step(kSoftStep);
       touched += loop.contacts.size();
       worst = std::max({worst, deepest_inside(*cube[0], *cube[1]), deepest_inside(*cube[1], *cube[0])});
       EXPECT_LT(mean(cube[0]->tissue().position()).x, mean(cube[1]->tissue().position()).x) << turned << ' ' << i;

@@ -17,8 +17,8 @@ namespace {
 
 using scenes::ToolStage;
 
-constexpr double kStep = 1.0 / 60.0;  // [s]
-constexpr double kEdge = 0.04;        // [m] of the cubes
+constexpr double kSoftStepLength = 1.0 / 60.0;  // [s]
+constexpr double kEdge = 0.04;                  // [m] of the cubes
 
 TetMesh cube(int cells, double edge = kEdge) {
   return tets::box(cells, cells, cells, dvec3(-0.5 * edge), dvec3(0.5 * edge));
@@ -49,7 +49,7 @@ double weight(ToolStage& stage, Entity soft) {
 }
 
 TEST(PrepareSoft, ALevelWithoutSoftOrRigidBodiesHasNoSoftClock) {
-  ToolStage stage(kStep);
+  ToolStage stage(kSoftStepLength);
   stage.add(scenes::sheet(8, 0.1), {});
   stage.add_rigid(ground_box(), ground(), {});
   stage.prepare();
@@ -59,7 +59,7 @@ TEST(PrepareSoft, ALevelWithoutSoftOrRigidBodiesHasNoSoftClock) {
 }
 
 TEST(PrepareSoft, ARigidBodyThatEnclosesNothingIsRefusedByName) {
-  ToolStage stage(kStep);
+  ToolStage stage(kSoftStepLength);
   stage.add_rigid(scenes::sheet(2, 0.1), {}, {});
   ASSERT_TRUE(prepare_touch(stage.world).ok());
   ASSERT_TRUE(prepare_tools(stage.world).ok());
@@ -80,7 +80,7 @@ TEST(PrepareSoft, ASoftStepThatIsNoDurationIsRefused) {
 }
 
 TEST(SoftStep, ASoftCubeFallsAndRestsWithItsWeightOnTheGround) {
-  ToolStage stage(kStep);
+  ToolStage stage(kSoftStepLength);
   const Entity soft = stage.add_soft(cube(3), rubber(), {dvec3(0, 0.5 * kEdge + 0.01, 0)});
   const Entity floor = stage.add_rigid(ground_box(), ground(), {});
   stage.prepare();
@@ -93,7 +93,7 @@ TEST(SoftStep, ASoftCubeFallsAndRestsWithItsWeightOnTheGround) {
 }
 
 TEST(SoftStep, TheLowerOfTwoSoftCubesCarriesBoth) {
-  ToolStage stage(kStep);
+  ToolStage stage(kSoftStepLength);
   const Entity lower = stage.add_soft(cube(2), rubber(), {dvec3(0, 0.5 * kEdge + 0.001, 0)});
   const Entity upper = stage.add_soft(cube(2, 0.03), rubber(), {dvec3(0.002, kEdge + 0.5 * 0.03 + 0.003, 0.001)});
   const Entity floor = stage.add_rigid(ground_box(), ground(), {});
@@ -105,8 +105,8 @@ TEST(SoftStep, TheLowerOfTwoSoftCubesCarriesBoth) {
 }
 
 // Two rigid fingers of a scripted gripper hold a soft cube between them.
-struct Grip {
-  explicit Grip(double friction, double step = kStep) : stage(step) {
+struct GripOfBar {
+  explicit GripOfBar(double friction, double step = kSoftStepLength) : stage(step) {
     SoftBody body = rubber();
     body.friction_static = body.friction_sliding = friction;
     soft = stage.add_soft(cube(2), body, {});
@@ -134,7 +134,7 @@ struct Grip {
 TEST(SoftStep, AGripLiftsACubeInsideTheConeAndLosesItOutside) {
   for (const bool holds : {true, false}) {
     // Squeezed by F, the cube is held while 2 mu F > m g; F is measured, and mu chosen to either side of that.
-    Grip probe(0.5);
+    GripOfBar probe(0.5);
     probe.stage.world.simulation.gravity = dvec3(0);
     probe.stage.prepare();
     probe.move({0.05, 0, 0}, {-0.05, 0, 0}, 0.08);
@@ -143,7 +143,7 @@ TEST(SoftStep, AGripLiftsACubeInsideTheConeAndLosesItOutside) {
     const double needed = weight(probe.stage, probe.soft) / (2 * squeeze);
     ASSERT_GT(squeeze, 0.1);
 
-    Grip grip(needed * (holds ? 1.3 : 0.7));
+    GripOfBar grip(needed * (holds ? 1.3 : 0.7));
     grip.stage.world.simulation.gravity = dvec3(0);
     grip.stage.prepare();
     grip.move({0.05, 0, 0}, {-0.05, 0, 0}, 0.08);
@@ -162,7 +162,7 @@ TEST(SoftStep, AGripLiftsACubeInsideTheConeAndLosesItOutside) {
 }
 
 TEST(SoftStep, AHeldCubeNeverGainsEnergyOverTenThousandSteps) {
-  Grip grip(0.6, 5e-3);
+  GripOfBar grip(0.6, 5e-3);
   grip.stage.world.simulation.gravity = dvec3(0);
   grip.stage.prepare();
   grip.move({0.05, 0, 0}, {-0.05, 0, 0}, 0.08);
@@ -192,7 +192,7 @@ TEST(SoftStep, AHeldCubeNeverGainsEnergyOverTenThousandSteps) {
 TEST(SoftStep, TheSameInputGivesTheSameBits) {
   std::uint64_t hash[2];
   for (std::uint64_t& h : hash) {
-    ToolStage stage(kStep);
+    ToolStage stage(kSoftStepLength);
     Handle6 handle;
     TetMesh finger = tets::box(2, 4, 2, dvec3(-0.01, 0, -0.01), dvec3(0.01, 0.04, 0.01));
     tets::hold(
@@ -209,7 +209,7 @@ TEST(SoftStep, TheSameInputGivesTheSameBits) {
 }
 
 TEST(SoftStep, AMotionThatIsNoNumberIsStoppedAndSaid) {
-  ToolStage stage(kStep);
+  ToolStage stage(kSoftStepLength);
   const Entity rigid = stage.add_rigid(scenes::box(dvec3(0.02)), {}, {dvec3(0, 0.2, 0)});
   const Entity soft = stage.add_soft(cube(1), rubber(), {dvec3(0.1, 0.2, 0)});
   stage.prepare();
@@ -224,7 +224,7 @@ TEST(SoftStep, AMotionThatIsNoNumberIsStoppedAndSaid) {
 }
 
 TEST(SoftStep, ABodyThatCannotBeSolvedStandsStillAndSaysSo) {
-  ToolStage stage(kStep);
+  ToolStage stage(kSoftStepLength);
   const Entity soft = stage.add_soft(cube(2), rubber(), {dvec3(0, 0.2, 0)});
   stage.prepare();
   const_cast<Tissue&>(stage.tissue(soft).tissue()).position()[0] = dvec3(std::nan(""), 0, 0);
@@ -233,7 +233,7 @@ TEST(SoftStep, ABodyThatCannotBeSolvedStandsStillAndSaysSo) {
 }
 
 TEST(PublishSoft, ASnapshotShowsWhatMovesAndWhatPushes) {
-  ToolStage stage(kStep);
+  ToolStage stage(kSoftStepLength);
   const Entity soft = stage.add_soft(cube(2), rubber(), {dvec3(0, 0.5 * kEdge, 0)});
   const Entity rigid = stage.add_rigid(scenes::box(dvec3(0.02)), {}, {dvec3(0.1, 0.01, 0)});
   stage.add_rigid(ground_box(), ground(), {});

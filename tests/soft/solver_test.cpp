@@ -220,11 +220,11 @@ TEST_P(EverySolver, RefusesWhatIsNotPositiveDefinite) {
 }
 
 // A clamped beam of soft tissue as the soft step has it, nodes near and far: stiffness (T c / h)^2 times inertia.
-struct Beam {
+struct SolverBeam {
   TetMesh mesh;
   std::unique_ptr<Tissue> tissue;
 
-  Beam(std::uint32_t nx, std::uint32_t ny) {
+  SolverBeam(std::uint32_t nx, std::uint32_t ny) {
     const double h = 0.1 / (ny - 1);
     mesh.free_count = (nx - 1) * ny * ny;
     // The layer at x = 0 is pinned, and pinned nodes are the last ones.
@@ -242,7 +242,7 @@ struct Beam {
 
 TEST_P(EverySolver, AgreesWithADenseFactorOnABendingBeam) {
   for (const double T : {0.001, 0.01, 0.1, 1e6}) {
-    Beam beam(11, 4);
+    SolverBeam beam(11, 4);
     const auto solver = make_solver(GetParam(), beam.tissue->moving());
     solver->analyse(beam.tissue->inner());
     for (int step = 0; step < 3; ++step) {
@@ -266,7 +266,7 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsOnTwiceTheNodesWhenItKnowsWhereThey
   int iterations[2][2];  // [nodes known][finer]
   for (const bool known : {false, true})
     for (const bool finer : {false, true}) {
-      Beam beam(finer ? 23 : 16, finer ? 8 : 6);
+      SolverBeam beam(finer ? 23 : 16, finer ? 8 : 6);
       ConjugateGradient solver;
       solver.analyse(beam.tissue->inner());
       beam.tissue->assemble(0.01, {0, 0, -9.81});
@@ -282,7 +282,7 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsOnTwiceTheNodesWhenItKnowsWhereThey
 }
 
 TEST(ConjugateGradient, StartsFromTheGuess) {
-  Beam beam(14, 5);
+  SolverBeam beam(14, 5);
   ConjugateGradient solver;
   solver.analyse(beam.tissue->inner());
   beam.tissue->assemble(0.01, {0, 0, -9.81});
@@ -300,7 +300,7 @@ TEST(ConjugateGradient, StartsFromTheGuess) {
 
 // One right-hand side by conjugate gradients, many by a factor, and back: always the same answers.
 TEST(AutoSolver, ChangesItsMethodAndNotItsAnswers) {
-  Beam beam(18, 6);
+  SolverBeam beam(18, 6);
   AutoSolver solver;
   solver.analyse(beam.tissue->inner());
   for (const int columns : {0, 40, 0, 0, 2, 90, 90}) {

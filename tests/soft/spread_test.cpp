@@ -15,14 +15,14 @@ const dmat3 kAxes = glm::mat3_cast(rotation_of({0.2, 0.4, -0.7}));
 const dvec3 kPlaces[]{{1, 0, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0.2, 0.5, 0.3}};  // barycentric
 
 // A finger whose last layer is pinned. Its collision mesh stands on its nodes, or rides inside its tetrahedra.
-struct Finger {
+struct SpreadFinger {
   Bar bar = make_bar(4, 2, 2, 0.01, [](std::uint32_t i, std::uint32_t, std::uint32_t) {
     return i == 4 ? Role::kPinned : i <= 1 ? Role::kHandle : Role::kFree;
   });
   Handle6 handle;
   std::unique_ptr<SoftBodyState> state;
 
-  explicit Finger(bool inside) {
+  explicit SpreadFinger(bool inside) {
     if (inside)
       for (Embedding& place : bar.tets.embedding) place.weight = {0.1, 0.2, 0.3, 0.4};
     handle.attachment = Attachment::kSlave;
@@ -54,7 +54,7 @@ Eigen::Matrix3d axes() {
 
 TEST(Spread, AndGatherAreTheJacobianOfTwelveNodes) {
   for (const bool inside : {false, true}) {
-    const Finger finger(inside);
+    const SpreadFinger finger(inside);
     const SoftBodyState& state = *finger.state;
     const Rows x = Rows::Random(state.size(), 7);
     for (std::uint32_t t = 0; t < finger.bar.collision_mesh.triangles.size(); ++t)
@@ -73,7 +73,7 @@ TEST(Spread, AndGatherAreTheJacobianOfTwelveNodes) {
 }
 
 TEST(Spread, AndGatherLeaveNodesOfNoWeightAlone) {
-  const Finger finger(false);
+  const SpreadFinger finger(false);
   const SoftBodyState& state = *finger.state;
   for (std::uint32_t t = 0; t < finger.bar.collision_mesh.triangles.size(); ++t)
     for (const dvec3 place : kPlaces) {

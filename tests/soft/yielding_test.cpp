@@ -14,10 +14,10 @@ namespace {
 
 using scenes::ToolStage;
 
-constexpr double kSize = 0.2;          // [m] of the plate
-constexpr int kCells = 64;             // vertices every 3.125 mm
-constexpr double kStiffness = 400.0;   // [N/m]
-constexpr double kStep = 1.0 / 100.0;  // [s]
+constexpr double kSize = 0.2;                  // [m] of the plate
+constexpr int kCells = 64;                     // vertices every 3.125 mm
+constexpr double kStiffness = 400.0;           // [N/m]
+constexpr double kYieldingStep = 1.0 / 100.0;  // [s]
 
 Deformable plate() {
   Deformable plate;
@@ -63,7 +63,7 @@ struct Law {
     asymmetry = (w - w.transpose()).norm() / w.norm();
     return normal.ldlt().solve(-gap / T) / T;
   }
-  ToolStage stage{kStep};
+  ToolStage stage{kYieldingStep};
   std::unique_ptr<YieldingBody> body;
   std::vector<ContactPoint> contacts;
   double asymmetry = 0.0;
@@ -77,7 +77,7 @@ TEST(Yielding, OneContactIsPushedBackAsAProbeWouldBe) {
       Law law(deformable);
       law.press(0.0, depth);  // on a vertex: the shape function is 1 there
       const double expected = law_force(restoring_law(deformable), kStiffness, depth);
-      EXPECT_NEAR(law.hold(kStep)[0], expected, 1e-5 * expected) << int(spring) << ' ' << depth;
+      EXPECT_NEAR(law.hold(kYieldingStep)[0], expected, 1e-5 * expected) << int(spring) << ' ' << depth;
     }
 }
 
@@ -86,7 +86,7 @@ TEST(Yielding, TwoContactsShareOneDentByTheShapeFunction) {
   Law law(plate());
   law.press(-0.5 * apart, depth);
   law.press(0.5 * apart, depth);
-  const Vector force = law.hold(kStep);
+  const Vector force = law.hold(kYieldingStep);
   const double rho = apart / 0.03, f = std::pow(1 - rho, 4) * (4 * rho + 1);  // Wendland C2
   EXPECT_NEAR(force[0], kStiffness * depth / (1 + f), 1e-4 * force[0]);
   EXPECT_NEAR(force[1], force[0], 1e-6 * force[0]);
@@ -96,16 +96,16 @@ TEST(Yielding, TwoContactsShareOneDentByTheShapeFunction) {
 TEST(Yielding, CoincidentContactsDoNotAddUp) {
   Law law(plate());
   for (int i = 0; i < 4; ++i) law.press(1e-6 * i, 2e-3);
-  law.body->place(law.contacts, 0, kStep);
+  law.body->place(law.contacts, 0, kYieldingStep);
   // Four alike: any split of the one force holds them; the mean mobility is a single contact's.
   std::vector<Body::Side> sides;
   for (int i = 0; i < 4; ++i) sides.push_back({i, &law.contacts[static_cast<std::size_t>(i)].b});
   Eigen::MatrixXd w = Eigen::MatrixXd::Zero(12, 12);
-  law.body->add_compliance(sides, kStep, w);
+  law.body->add_compliance(sides, kYieldingStep, w);
   double mean = 0.0;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) mean += w(3 * i, 3 * j) / 16;
-  const double single = 1 / (kStiffness * kStep * kStep);
+  const double single = 1 / (kStiffness * kYieldingStep * kYieldingStep);
   EXPECT_NEAR(mean, single, 1e-3 * single);
 }
 
@@ -114,15 +114,15 @@ TEST(Yielding, DampingActsOnTheRateOfTheDepth) {
   deformable.contact_damping = 5.0;
   Law law(deformable);
   law.press(0.0, 2e-3);  // it was there before, and stays: no rate
-  EXPECT_NEAR(law.hold(kStep)[0], kStiffness * 2e-3, 1e-5);
+  EXPECT_NEAR(law.hold(kYieldingStep)[0], kStiffness * 2e-3, 1e-5);
   Law fresh(deformable);
   fresh.press(0.0, 0.0);
-  fresh.body->place(fresh.contacts, 0, kStep);
+  fresh.body->place(fresh.contacts, 0, kYieldingStep);
   std::vector<Body::Side> sides{{0, &fresh.contacts[0].b}};
   Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3, 3);
-  fresh.body->add_compliance(sides, kStep, w);
-  const double d = 1e-3, force = d / (kStep * kStep * w(0, 0));  // pressed by d within the step
-  EXPECT_NEAR(force, kStiffness * d + 5.0 * d / kStep, 1e-4 * force);
+  fresh.body->add_compliance(sides, kYieldingStep, w);
+  const double d = 1e-3, force = d / (kYieldingStep * kYieldingStep * w(0, 0));  // pressed by d within the step
+  EXPECT_NEAR(force, kStiffness * d + 5.0 * d / kYieldingStep, 1e-4 * force);
 }
 
 TEST(Yielding, AContactBesideAnOpenRimIsDropped) {
@@ -133,14 +133,14 @@ TEST(Yielding, AContactBesideAnOpenRimIsDropped) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)  // the search for contacts began at the rim
     for (int c = 0; c < 3; ++c)
       if (mesh.position(mesh.triangles[t][c]) == vec3(0.5f * float(kSize), 0, 0)) law.contacts[0].b.triangle = t;
-  law.body->place(law.contacts, 0, kStep);
+  law.body->place(law.contacts, 0, kYieldingStep);
   ASSERT_EQ(law.contacts.size(), 1u);
   EXPECT_EQ(law.contacts[0].key, 1u);
 }
 
 // --- A soft block, held by its handle from above, against the plate.
 
-SoftBody rubber() {
+SoftBody yielding_rubber() {
   SoftBody body;
   body.young = 5e4;
   body.poisson = 0.3;
@@ -161,7 +161,7 @@ struct Press {
     handle.max_force = 100;
     handle.max_torque = 10;
     stage.world.simulation.gravity = dvec3(0);
-    tool = stage.add_soft(block, rubber(), {dvec3(0, 0.002, 0)}, &handle);
+    tool = stage.add_soft(block, yielding_rubber(), {dvec3(0, 0.002, 0)}, &handle);
     stage.prepare();
   }
   double deepest() {  // [m] of the surface as the touch clock draws it, along the normal
@@ -175,7 +175,7 @@ struct Press {
       if (contact.probe == kNoEntity && contact.state == ContactState::kTouching) sum += kStiffness * contact.amplitude;
     return sum;
   }
-  ToolStage stage{kStep};
+  ToolStage stage{kYieldingStep};
   Entity surface, tool;
 };
 
@@ -200,7 +200,7 @@ TEST(Yielding, ABlockPressedOntoAPlateIsInBalanceAndDentsItAsP1Says) {
 TEST(Yielding, TheForceHardlyDependsOnHowManyPointsPress) {
   double force[2];
   for (const int cells : {1, 3}) {
-    ToolStage stage(kStep);
+    ToolStage stage(kYieldingStep);
     const Entity surface = stage.add(scenes::sheet(kCells, kSize), plate());
     TetMesh block = tets::box(cells, cells, cells, dvec3(-0.006, 0, -0.006), dvec3(0.006, 0.012, 0.006));
     RigidBody weight;

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double T = 1.0 / 60;  // [s]
+constexpr double kAnswerStep = 1.0 / 60;  // [s]
 
 double distance(const Eigen::MatrixXd& x, const Eigen::MatrixXd& truth) {
   return (x - truth).norm() / truth.norm();
@@ -22,10 +22,11 @@ TEST(BodyAnswers, AreThoseOfTheTissueToItsContactsAndShakesAndTheGramMatrixIsThe
     handle.attachment = attachment;
     PressScene scene(firm_tissue(), handle, 0.4);
     for (int i = 1; i <= 8; ++i)
-      scene.step(T, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
-    scene.step(T, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));
+      scene.step(kAnswerStep, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
+    scene.step(kAnswerStep, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));
     const SoftBodyState& tool = scene.tool();
-    const FinishedStep step{scene.bodies, scene.contacts, scene.delassus, scene.problem, T, kUndonePenetration};
+    const FinishedStep step{scene.bodies,  scene.contacts, scene.delassus,
+                            scene.problem, kAnswerStep,    kUndonePenetration};
     const ToolContacts contacts(step, 0);
     const BodyAnswers of = answers_of(contacts, 0);
     const Eigen::Index tissue = tool.size() - 6, rows = of.contact_rows(), columns = rows + of.shaken.cols();
@@ -61,9 +62,9 @@ TEST(BodyAnswers, AreThoseOfTheTissueToItsContactsAndShakesAndTheGramMatrixIsThe
 TEST(ToolContacts, LeaveOutAnOpenContactThatNothingCouldBePredictedOf) {
   PressScene scene(firm_tissue(), firm_handle(), 0.4);
   for (int i = 1; i <= 8; ++i)
-    scene.step(T, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
-  scene.step(T, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));
-  const FinishedStep step{scene.bodies, scene.contacts, scene.delassus, scene.problem, T, kUndonePenetration};
+    scene.step(kAnswerStep, moved(scene.start(), join({1e-4 * i, -2e-4 * i, 0}, {0, 0, 0.01 * i}))), scene.advance();
+  scene.step(kAnswerStep, moved(scene.start(), join({1e-3, -2e-3, 0}, {0, 0, 0.09})));
+  const FinishedStep step{scene.bodies, scene.contacts, scene.delassus, scene.problem, kAnswerStep, kUndonePenetration};
   const auto chosen = [&](std::size_t contact) {
     const std::vector<int> of = contacts_of(step, 0, kMaxCondensed);
     return std::find(of.begin(), of.end(), static_cast<int>(contact)) != of.end();

@@ -27,11 +27,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kTick = 1e-3;  // [s]
+constexpr double kPressTick = 1e-3;  // [s]
 #ifdef PLIANT_SANITIZED
 constexpr double kSeconds = 0.1;
 #else
-constexpr double kSeconds = 0.8;
+constexpr double kSeconds = 0.5;
 #endif
 
 int presses() {
@@ -63,7 +63,7 @@ std::vector<PathRow> random_path(const PathRow& start, double speed, bool jumps,
     const dvec3 axis(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
     next.rotation = rotation_of(uniform(0.0, 0.7) * normalize(axis));
     const double way = length(next.position - rows.back().position);
-    next.time = rows.back().time + (jumps && uniform(0.0, 1.0) < 0.3 ? kTick : std::max(way / speed, 0.02));
+    next.time = rows.back().time + (jumps && uniform(0.0, 1.0) < 0.3 ? kPressTick : std::max(way / speed, 0.02));
     rows.push_back(next);
     if (uniform(0.0, 1.0) < 0.3) {
       rows.push_back(next);
@@ -93,11 +93,11 @@ Felt press(World world, double speed, bool jumps, unsigned seed) {
   Felt out;
   std::uint64_t steps = 0;
   Hash hash;
-  for (std::uint64_t tick = 0; static_cast<double>(tick) * kTick < kSeconds; ++tick) {
-    const double time = static_cast<double>(tick) * kTick;
+  for (std::uint64_t tick = 0; static_cast<double>(tick) * kPressTick < kSeconds; ++tick) {
+    const double time = static_cast<double>(tick) * kPressTick;
     for (; static_cast<double>(steps) * T <= time + 1e-9; ++steps)
       run_soft_step(soft, world, {steps, T, static_cast<double>(steps) * T});
-    touch.run(world, {tick, kTick, time});
+    touch.run(world, {tick, kPressTick, time});
     hash_forces(world, hash);
     out.most_force = std::max(out.most_force, length(device.force_sent));
     if (!tool.placed) continue;

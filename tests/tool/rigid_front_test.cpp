@@ -15,8 +15,8 @@ namespace {
 
 using scenes::ToolStage;
 
-constexpr double kSoftStep = 1.0 / 60.0;  // [s]
-constexpr double kSlew = 100.0;           // [N/s] of the devices
+constexpr double kFrontStep = 1.0 / 60.0;  // [s]
+constexpr double kSlew = 100.0;            // [N/s] of the devices
 
 // A block of 30 mm, which is rigid below y = 1 mm of its own frame or above it.
 enum class Rigid : std::uint8_t { kFront, kBack, kAll };
@@ -60,7 +60,7 @@ Entity add_tool(ToolStage& stage, Rigid rigid, Pose pose, double young = 2e4) {
   return tool;
 }
 
-ToolTouchState& state_of(ToolStage& stage, Entity tool) {
+ToolTouchState& front_state(ToolStage& stage, Entity tool) {
   for (const auto& candidate : stage.world.tools->tools)
     if (candidate->entity == tool) return *candidate;
   std::abort();
@@ -68,7 +68,7 @@ ToolTouchState& state_of(ToolStage& stage, Entity tool) {
 
 // [m] along y, from the handle to where the device wants it.
 double behind(ToolStage& stage, Entity tool) {
-  const ToolTouchState& state = state_of(stage, tool);
+  const ToolTouchState& state = front_state(stage, tool);
   return (state.sensed.at(state.model.read().centre).pose.position - state.handle.pose.position).y;
 }
 
@@ -77,7 +77,7 @@ double coupling_law(double stretch) {
   return handle.max_force * std::tanh(handle.translation[0] * stretch / handle.max_force);
 }
 
-void add_floor(ToolStage& stage) {
+void add_front_floor(ToolStage& stage) {
   RigidBody floor;
   floor.fixed = true;
   stage.add_rigid(scenes::box(dvec3(0.2, 0.02, 0.2)), floor, Pose{dvec3(0, -0.01, 0), {1, 0, 0, 0}});
@@ -86,15 +86,15 @@ void add_floor(ToolStage& stage) {
 // A tool pressed `depth` [m] into a fixed floor in `way` [s] and held there.
 void expect_the_coupling_is_felt_on_a_floor(Rigid rigid, double young, double depth, double way = 0.3) {
   SCOPED_TRACE(testing::Message() << "young " << young << ", depth " << depth);
-  ToolStage stage(kSoftStep);
+  ToolStage stage(kFrontStep);
   stage.world.simulation.gravity = dvec3(0);
-  add_floor(stage);
+  add_front_floor(stage);
   Watch watch{add_tool(stage, rigid, Pose{dvec3(0, 0.02, 0), {1, 0, 0, 0}}, young)};
   stage.prepare();
   double deepest = 0.0;
   const auto look = [&] {
     watch.look(stage);
-    if (state_of(stage, watch.tool).placed)
+    if (front_state(stage, watch.tool).placed)
       deepest = std::max(deepest, 0.015 - (stage.device_of(watch.tool).position.y - behind(stage, watch.tool)));
   };
   stage.lead(watch.tool, dvec3(0, 0.02, 0), 0.1, look);
@@ -105,7 +105,7 @@ void expect_the_coupling_is_felt_on_a_floor(Rigid rigid, double young, double de
   EXPECT_NEAR(force.y, coupling_law(depth), 0.01 * coupling_law(depth));
   EXPECT_LT(length(force - dvec3(0, force.y, 0)), 0.01 * force.y);
   const double speed = (depth + 5e-3) / way;
-  EXPECT_LT(deepest, speed * (kSoftStep + stage.dt())) << "the way until a soft step sees the floor";
+  EXPECT_LT(deepest, speed * (kFrontStep + stage.dt())) << "the way until a soft step sees the floor";
   EXPECT_LT(std::abs(behind(stage, watch.tool) + depth), 2e-5) << "then it is brought back";
   EXPECT_LE(watch.most_rise, kSlew * stage.dt() * (1 + 1e-9));
   EXPECT_LT(watch.most_force, 1.01 * (coupling_law(depth) + Handle6{}.translation[1] * speed)) << "spring and damper";
@@ -127,7 +127,7 @@ TEST(RigidFront, TissueAsHardAsStoneIsOne) {
 }
 
 TEST(RigidFront, TwoToolsPressedTogetherFeelTheirCouplings) {
-  ToolStage stage(kSoftStep);
+  ToolStage stage(kFrontStep);
   stage.world.simulation.gravity = dvec3(0);
   const dquat turned(0, 0, 0, 1);  // about z: its front upwards
   Watch above{add_tool(stage, Rigid::kFront, Pose{dvec3(0, 0.02, 0), {1, 0, 0, 0}})};
@@ -141,8 +141,8 @@ TEST(RigidFront, TwoToolsPressedTogetherFeelTheirCouplings) {
   // 6 mm too near: that is what the two are left behind, between them.
   const double above_stretch = -behind(stage, above.tool), below_stretch = behind(stage, below.tool);
   EXPECT_NEAR(above_stretch + below_stretch, 6e-3, 5e-4);
-  EXPECT_NEAR(linear(state_of(stage, above.tool).device_wrench).y, coupling_law(above_stretch), 1e-3);
-  EXPECT_NEAR(linear(state_of(stage, below.tool).device_wrench).y, -coupling_law(below_stretch), 1e-3);
+  EXPECT_NEAR(linear(front_state(stage, above.tool).device_wrench).y, coupling_law(above_stretch), 1e-3);
+  EXPECT_NEAR(linear(front_state(stage, below.tool).device_wrench).y, -coupling_law(below_stretch), 1e-3);
   for (const Watch& watch : {above, below}) {
     EXPECT_LE(watch.most_rise, kSlew * stage.dt() * (1 + 1e-9));
     EXPECT_LT(watch.most_force, 1.01 * (coupling_law(6e-3) + Handle6{}.translation[1] * 8e-3 / 0.3));
@@ -151,17 +151,17 @@ TEST(RigidFront, TwoToolsPressedTogetherFeelTheirCouplings) {
 
 // Dragged along the floor, the rigid front slides with Coulomb's friction, once the handle has come to its speed.
 TEST(RigidFront, SlidesWithCoulombsFriction) {
-  ToolStage stage(kSoftStep);
+  ToolStage stage(kFrontStep);
   stage.world.simulation.gravity = dvec3(0);
-  add_floor(stage);
+  add_front_floor(stage);
   const Entity tool = add_tool(stage, Rigid::kFront, Pose{dvec3(-0.03, 0.02, 0), {1, 0, 0, 0}});
   stage.prepare();
   stage.lead(tool, dvec3(-0.03, 0.012, 0), 0.4);
   stage.lead(tool, dvec3(0.0, 0.012, 0), 1.0);
   double normal = 0.0, tangential = 0.0;
   stage.lead(tool, dvec3(0.009, 0.012, 0), 0.3, [&] {
-    normal += linear(state_of(stage, tool).device_wrench).y;
-    tangential -= linear(state_of(stage, tool).device_wrench).x;
+    normal += linear(front_state(stage, tool).device_wrench).y;
+    tangential -= linear(front_state(stage, tool).device_wrench).x;
   });
   EXPECT_NEAR(normal / 300, coupling_law(3e-3), 0.01 * coupling_law(3e-3));
   EXPECT_NEAR(tangential / normal, SoftBody{}.friction_sliding, 0.02);
@@ -169,8 +169,8 @@ TEST(RigidFront, SlidesWithCoulombsFriction) {
 
 // A rigid box between a rigid tool and the floor gives way to neither.
 TEST(RigidFront, ARigidBoxOnTheFloorIsAsGoodAsTheFloor) {
-  ToolStage stage(kSoftStep);
-  add_floor(stage);
+  ToolStage stage(kFrontStep);
+  add_front_floor(stage);
   RigidBody body;
   body.density = 500.0;
   const Entity between = stage.add_rigid(scenes::box(dvec3(0.04)), body, Pose{dvec3(0, 0.0201, 0), {1, 0, 0, 0}});
@@ -180,7 +180,7 @@ TEST(RigidFront, ARigidBoxOnTheFloorIsAsGoodAsTheFloor) {
   stage.lead(watch.tool, dvec3(0, 0.06, 0), 0.3, look);
   stage.lead(watch.tool, dvec3(0, 0.052, 0), 0.3, look);
   stage.lead(watch.tool, dvec3(0, 0.052, 0), 0.7, look);
-  EXPECT_NEAR(linear(state_of(stage, watch.tool).device_wrench).y, coupling_law(3e-3), 0.02);
+  EXPECT_NEAR(linear(front_state(stage, watch.tool).device_wrench).y, coupling_law(3e-3), 0.02);
   EXPECT_LE(watch.most_rise, kSlew * stage.dt() * (1 + 1e-9));
   EXPECT_LT(watch.most_force, 1.1 * coupling_law(3e-3));
   for (const dvec3& x : stage.body(between).surface_position)

@@ -14,10 +14,10 @@ namespace {
 
 using scenes::ToolStage;
 
-constexpr double kSoftStep = 1.0 / 60.0;  // [s]
-constexpr double kHalf = 0.015;           // [m] half the side of every block
+constexpr double kRigidToolStep = 1.0 / 60.0;  // [s]
+constexpr double kHalf = 0.015;                // [m] half the side of every block
 
-Pose at(dvec3 x) {
+Pose pose_at(dvec3 x) {
   return {x, {1, 0, 0, 0}};
 }
 
@@ -44,15 +44,15 @@ Entity add_instrument(ToolStage& stage, Pose pose, Handle6 handle = {}) {
 void add_floor(ToolStage& stage) {
   RigidBody floor;
   floor.fixed = true;
-  stage.add_rigid(scenes::box(dvec3(0.2, 0.02, 0.2)), floor, at({0, -0.01, 0}));
+  stage.add_rigid(scenes::box(dvec3(0.2, 0.02, 0.2)), floor, pose_at({0, -0.01, 0}));
 }
 
 TEST(RigidTool, CarriedItIsNotFeltAndElseWeighsWhatItWeighs) {
   for (const bool carried : {true, false}) {
-    ToolStage stage(kSoftStep);
+    ToolStage stage(kRigidToolStep);
     Handle6 handle;
     handle.carried = carried;
-    const Entity tool = add_instrument(stage, at({0, 0.1, 0}), handle);
+    const Entity tool = add_instrument(stage, pose_at({0, 0.1, 0}), handle);
     stage.prepare();
     stage.lead(tool, dvec3(0, 0.1, 0), 1.5);
     const double weight = carried ? 0.0 : 800.0 * std::pow(2 * kHalf, 3) * stage.world.simulation.gravity.y;
@@ -64,9 +64,9 @@ TEST(RigidTool, OnAFloorItsCouplingIsFelt) {
   for (const double depth : {1e-3, 3e-3, 15e-3})
     for (const double way : {0.3, 0.05, 0.02}) {
       SCOPED_TRACE(testing::Message() << depth << " m in " << way << " s");
-      ToolStage stage(kSoftStep);
+      ToolStage stage(kRigidToolStep);
       add_floor(stage);
-      const Entity tool = add_instrument(stage, at({0, 0.02, 0}));
+      const Entity tool = add_instrument(stage, pose_at({0, 0.02, 0}));
       stage.prepare();
       stage.lead(tool, dvec3(0, 0.02, 0), 0.1);
       stage.lead(tool, dvec3(0, kHalf - depth, 0), way);
@@ -83,12 +83,12 @@ TEST(RigidTool, OnAFloorItsCouplingIsFelt) {
 TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
   for (const double speed : {0.02, 0.04, 0.1, 0.3, 1.0}) {
     SCOPED_TRACE(speed);
-    ToolStage stage(kSoftStep);
+    ToolStage stage(kRigidToolStep);
     add_floor(stage);
     RigidBody cube;
     cube.density = 500.0;
-    const Entity between = stage.add_rigid(scenes::box(dvec3(0.03)), cube, at({0, 0.01501, 0}));
-    const Entity tool = add_instrument(stage, at({0, 0.055, 0}));
+    const Entity between = stage.add_rigid(scenes::box(dvec3(0.03)), cube, pose_at({0, 0.01501, 0}));
+    const Entity tool = add_instrument(stage, pose_at({0, 0.055, 0}));
     stage.prepare();
     stage.lead(tool, dvec3(0, 0.055, 0), 0.2);
     stage.lead(tool, dvec3(0, 0.045 - 0.01, 0), 0.02 / speed);
@@ -102,7 +102,7 @@ TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
 // Pressed askew and to the side, so that friction holds it all: nothing creeps, and nothing is heard of the models that
 // come 60 times a second.
 TEST(RigidTool, OnATowerTheForceIsStillForAsLongAsItIsHeld) {
-  ToolStage stage(kSoftStep);
+  ToolStage stage(kRigidToolStep);
   add_floor(stage);
   RigidBody box;
   box.density = 500.0;
@@ -129,7 +129,7 @@ TEST(RigidTool, OnATowerTheForceIsStillForAsLongAsItIsHeld) {
 // The same instrument as tetrahedra that all belong to the handle.
 TEST(RigidTool, FeelsAsAToolOfTissueThatIsRigidAllThrough) {
   const auto forces = [](bool tetrahedra) {
-    ToolStage stage(kSoftStep);
+    ToolStage stage(kRigidToolStep);
     SoftBody soft;
     soft.young = 2e4;
     soft.poisson = 0.3;
@@ -137,7 +137,7 @@ TEST(RigidTool, FeelsAsAToolOfTissueThatIsRigidAllThrough) {
     TetMesh organ = tets::box(6, 3, 6, dvec3(-0.03, -0.015, -0.03), dvec3(0.03, 0.015, 0.03));
     tets::hold(
         organ, [](dvec3 x) { return x.y < -0.0149; }, [](dvec3) { return false; });
-    stage.add_soft(std::move(organ), soft, at({0, 0, 0}));
+    stage.add_soft(std::move(organ), soft, pose_at({0, 0, 0}));
     Handle6 handle;
     TetMesh block = tets::box(2, 2, 2, dvec3(-kHalf), dvec3(kHalf));
     tets::hold(
@@ -147,8 +147,8 @@ TEST(RigidTool, FeelsAsAToolOfTissueThatIsRigidAllThrough) {
     // Lumped masses make the twin heavier to turn; straight down on the organ's middle nothing turns.
     RigidBody rigid;
     rigid.density = 800.0;
-    const Entity tool = tetrahedra ? stage.add_soft(block, mass, at({0, 0.035, 0}), &handle)
-                                   : stage.add_rigid(scenes::border(block), rigid, at({0, 0.035, 0}), &handle);
+    const Entity tool = tetrahedra ? stage.add_soft(block, mass, pose_at({0, 0.035, 0}), &handle)
+                                   : stage.add_rigid(scenes::border(block), rigid, pose_at({0, 0.035, 0}), &handle);
     stage.prepare();
     std::vector<double> out;
     const auto note = [&] { out.push_back(felt(stage, tool).y); };
@@ -166,12 +166,12 @@ TEST(RigidTool, FeelsAsAToolOfTissueThatIsRigidAllThrough) {
 
 // Two hands, one on a coupling three times as stiff as the other: what the one feels, the other feels too.
 TEST(RigidTool, TwoInstrumentsPressOnEachOther) {
-  ToolStage stage(kSoftStep);
+  ToolStage stage(kRigidToolStep);
   stage.world.simulation.gravity = dvec3(0);
   Handle6 soft, stiff;
   stiff.translation = {600.0, 4.0};
-  const Entity above = add_instrument(stage, at({0, 0.02, 0}), soft);
-  const Entity below = add_instrument(stage, at({0.002, -0.02, 0.001}), stiff);
+  const Entity above = add_instrument(stage, pose_at({0, 0.02, 0}), soft);
+  const Entity below = add_instrument(stage, pose_at({0.002, -0.02, 0.001}), stiff);
   stage.prepare();
   stage.lead(above, dvec3(0, 0.02, 0), 0.1);
   stage.lead(above, dvec3(0, 0.012, 0), 0.2);
@@ -197,7 +197,7 @@ TEST(RigidTool, TwoInstrumentsPressOnEachOther) {
 TEST(RigidTool, TwoInstrumentsPinchASoftCubeAtAnySpeed) {
   for (const double speed : {0.01, 0.1, 1.0}) {
     SCOPED_TRACE(speed);
-    ToolStage stage(kSoftStep);
+    ToolStage stage(kRigidToolStep);
     add_floor(stage);
     SoftBody soft;
     soft.young = 2e4;
@@ -205,10 +205,11 @@ TEST(RigidTool, TwoInstrumentsPinchASoftCubeAtAnySpeed) {
     soft.density = 500.0;
     soft.rayleigh = {1.0, 0.01};
     soft.friction_static = 0.8, soft.friction_sliding = 0.7;
-    const Entity cube = stage.add_soft(tets::box(3, 3, 3, dvec3(-kHalf), dvec3(kHalf)), soft, at({0, kHalf + 1e-5, 0}));
+    const Entity cube =
+        stage.add_soft(tets::box(3, 3, 3, dvec3(-kHalf), dvec3(kHalf)), soft, pose_at({0, kHalf + 1e-5, 0}));
     const double away = 0.04, near = 2 * kHalf - 0.004, height = kHalf + 0.001;
-    const Entity left = add_instrument(stage, at({-away, height, 0})),
-                 right = add_instrument(stage, at({away, height, 0}));
+    const Entity left = add_instrument(stage, pose_at({-away, height, 0})),
+                 right = add_instrument(stage, pose_at({away, height, 0}));
     stage.prepare();
     const auto both = [&](double x, double y, double seconds) {
       const dvec3 from = stage.device_of(right).position;
@@ -239,8 +240,8 @@ TEST(RigidTool, TwoInstrumentsPinchASoftCubeAtAnySpeed) {
 
 // Farther from its device than any hand reaches: nothing is felt meanwhile, and it is in the hand again.
 TEST(RigidTool, WhatGetsAwayIsSetBackIntoTheHand) {
-  ToolStage stage(kSoftStep);
-  const Entity tool = add_instrument(stage, at({0, 0.1, 0}));
+  ToolStage stage(kRigidToolStep);
+  const Entity tool = add_instrument(stage, pose_at({0, 0.1, 0}));
   stage.prepare();
   stage.lead(tool, dvec3(0, 0.1, 0), 0.2);
   EXPECT_EQ((stage.world.dropped | stage.soft().dropped) & kDroppedSetBack, 0u);

@@ -10,11 +10,11 @@
 namespace pliant {
 namespace {
 
-constexpr double T = 1.0 / 60;  // [s]
+constexpr double kHardStep = 1.0 / 60;  // [s]
 
 TEST(Tool, ArrivesWhereItsDeviceHasJumpedAndFlipped) {
   for (const Attachment attachment : kBoth)
-    for (const double dt : {T, 0.1}) {
+    for (const double dt : {kHardStep, 0.1}) {
       AirTool tool(attachment);
       const Pose jump{{1, 0, 0}, rotation_of({0, 3.14159265358979, 0})};
       tool.state->set_device(jump, join({60, 0, 0}, {0, 180, 0}));  // as a device's speed reads that jumps in a frame
@@ -30,7 +30,7 @@ TEST(Tool, ArrivesWhereItsDeviceHasJumpedAndFlipped) {
 TEST(Tool, StaysFiniteWhateverItsDeviceSays) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kHuge = 1e300;
   for (const Attachment attachment : kBoth)
-    for (const double dt : {1e-3, T, 0.1}) {
+    for (const double dt : {1e-3, kHardStep, 0.1}) {
       AirTool tool(attachment);
       tool.state->set_device({{kHuge, 0, 0}, {1, 0, 0, 0}}, Vector6::Constant(1e150));
       tool.run(3, dt, kGravity);
@@ -53,7 +53,7 @@ TEST(Tool, OfASingleRowOfHandleNodesIsSolvable) {
   for (const Attachment attachment : kBoth) {
     AirTool tool(attachment, bar);
     tool.state->set_device({{0.02, 0, 0}, rotation_of({0, 0, 1})}, Vector6::Zero());
-    tool.run(50, T, kGravity);
+    tool.run(50, kHardStep, kGravity);
     EXPECT_TRUE(tool.finite() && tool.state->solvable());
   }
 }
@@ -65,11 +65,12 @@ TEST(Tool, ThatIsAllHandleIsARigidBody) {
     SoftBodyState state(bar.tets, bar.collision_mesh, {}, &handle, Pose{}, kind);
     ASSERT_EQ(state.size(), 6);
     for (int i = 0; i < 30; ++i) {
-      state.free_step(T, kGravity);
-      state.advance(T);
+      state.free_step(kHardStep, kGravity);
+      state.advance(kHardStep);
     }
     EXPECT_TRUE(state.solvable());
-    EXPECT_LT(length(state.handle().object_pose().position - dvec3(0, -9.81 * T * T * 30 * 31 / 2, 0)), 1e-12);
+    EXPECT_LT(length(state.handle().object_pose().position - dvec3(0, -9.81 * kHardStep * kHardStep * 30 * 31 / 2, 0)),
+              1e-12);
     EXPECT_LT(state.tissue_matrix().norm(), 1e-12 * state.handle_mass().norm());
   }
 }
@@ -82,12 +83,13 @@ TEST(Tool, WithoutAHandleIsTissueThatFalls) {
   EXPECT_FALSE(state.has_handle());
   EXPECT_EQ(state.size(), 3 * static_cast<int>(bar.tets.node_count()));
   for (int i = 0; i < 30; ++i) {
-    state.free_step(T, kGravity);
-    state.advance(T);
+    state.free_step(kHardStep, kGravity);
+    state.advance(kHardStep);
   }
   // Implicit Euler falls by g T^2 n (n + 1) / 2.
   for (std::uint32_t i = 0; i < bar.tets.node_count(); ++i)
-    EXPECT_LT(length(state.tissue().position()[i] - bar.tets.nodes[i] - dvec3(0, 1 - 9.81 * T * T * 30 * 31 / 2, 0)),
+    EXPECT_LT(length(state.tissue().position()[i] - bar.tets.nodes[i] -
+                     dvec3(0, 1 - 9.81 * kHardStep * kHardStep * 30 * 31 / 2, 0)),
               1e-12);
 }
 
@@ -98,7 +100,7 @@ TEST(Tool, IsPinnedWhereItIsPinned) {
   for (const Attachment attachment : kBoth) {
     AirTool tool(attachment, bar);
     tool.state->set_device({{-0.01, 0, 0}, {1, 0, 0, 0}}, Vector6::Zero());
-    tool.run(300, T, dvec3(0));
+    tool.run(300, kHardStep, dvec3(0));
     for (std::uint32_t i = bar.tets.pinned_begin(); i < bar.tets.node_count(); ++i)
       EXPECT_EQ(tool.state->tissue().position()[i], bar.tets.nodes[i]);
     // It is stretched; the hand holds against it.

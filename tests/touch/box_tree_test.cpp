@@ -12,9 +12,9 @@
 namespace pliant {
 namespace {
 
-class Random {
+class RandomBoxes {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
+  explicit RandomBoxes(unsigned seed) : engine_(seed) {}
   float unit() { return std::uniform_real_distribution<float>(-1, 1)(engine_); }
   std::uint32_t below(std::size_t n) { return static_cast<std::uint32_t>(engine_() % n); }
   Box box(float spread, float size) {
@@ -45,7 +45,7 @@ void expect_as_brute_force(const BoxTree& tree, const std::vector<Box>& boxes, c
 
 TEST(BoxTree, FindsWhatBruteForceFindsWhileThousandsOfBoxesMove) {
   for (const std::size_t count : {1, 2, 3, 40, 4000}) {
-    Random random(static_cast<unsigned>(count));
+    RandomBoxes random(static_cast<unsigned>(count));
     std::vector<Box> boxes;
     for (std::size_t i = 0; i < count; ++i) boxes.push_back(random.box(1.0f, 0.03f));
     BoxTree tree(boxes);
@@ -93,7 +93,7 @@ TEST(BoxTree, StaysBalancedWhenEverythingMovesInOrderAndWhenAllBoxesCoincide) {
 }
 
 TEST(BoxTree, MovingAndVisitingDoNotAllocate) {
-  Random random(9);
+  RandomBoxes random(9);
   std::vector<Box> boxes;
   for (int i = 0; i < 1000; ++i) boxes.push_back(random.box(1.0f, 0.05f));
   BoxTree tree(boxes);
@@ -109,7 +109,7 @@ TEST(BoxTree, MovingAndVisitingDoNotAllocate) {
 
 TEST(BoxTree, TheSameCallsGiveTheSameOrderOfVisits) {
   const auto play = [] {
-    Random random(7);
+    RandomBoxes random(7);
     std::vector<Box> boxes;
     for (int i = 0; i < 500; ++i) boxes.push_back(random.box(1.0f, 0.05f));
     BoxTree tree(boxes);

@@ -23,10 +23,10 @@ void play(Stage& stage, Entity a, Entity b, int ticks) {
   }
 }
 
-struct Scene {
+struct TwinScene {
   Stage stage;
   Entity surface, a, b;
-  Scene(const Deformable& d, FieldPlace place) {
+  TwinScene(const Deformable& d, FieldPlace place) {
     surface = stage.add(scenes::sphere(32, 0.1), d);
     a = stage.add_probe({0, 0.11, 0.01});
     b = stage.add_probe({0.03, 0.11, -0.01});
@@ -44,7 +44,7 @@ TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSup
         d.reach = 0.03;
         d.spring = law;
         d.shape = shape;
-        Scene cpu(d, FieldPlace::kProcessor), gpu(d, FieldPlace::kGpu);
+        TwinScene cpu(d, FieldPlace::kProcessor), gpu(d, FieldPlace::kGpu);
         play(cpu.stage, cpu.a, cpu.b, ticks);
         play(gpu.stage, gpu.a, gpu.b, ticks);
         const ObjectState& object = gpu.stage.world.touch->objects[0];
@@ -77,7 +77,7 @@ TEST(FieldTwins, AgreeOnForcesHeightsAndNormalsForEveryShapeAndLawThatTheCardSup
 TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
   Deformable d;
   d.reach = 0.03;
-  Scene gpu(d, FieldPlace::kGpu);
+  TwinScene gpu(d, FieldPlace::kGpu);
   play(gpu.stage, gpu.a, gpu.b, 200);
   gpu.stage.place(gpu.a, {0, 0.2, 0});
   gpu.stage.place(gpu.b, {0, 0.2, 0});
@@ -94,7 +94,7 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   Deformable d;
   d.reach = 0.03;
   d.spring = SpringLaw::kCubic;
-  Scene gpu(d, FieldPlace::kGpu);
+  TwinScene gpu(d, FieldPlace::kGpu);
   World& world = gpu.stage.world;
   const ObjectState& object = world.touch->objects[0];
   EXPECT_FALSE(object.on_gpu);
@@ -144,7 +144,7 @@ TEST(FieldTwins, MoreReleasesThanTheListHoldsAreCountedAndSurvived) {
   d.reach = 0.008;  // dents apart from each other
   d.settling_time = 5.0;
   d.shape = Shape::kWendland;
-  Scene gpu(d, FieldPlace::kGpu);
+  TwinScene gpu(d, FieldPlace::kGpu);
   for (int i = 0; i < 400; ++i) {
     gpu.stage.place(gpu.a, (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));
     gpu.stage.tick();
@@ -159,7 +159,7 @@ TEST(FieldTwins, PressesThatOverlapOnASlowSurfaceDoNotDriveEachOthersRimsUp) {
     Deformable d;
     d.reach = 0.03;
     d.settling_time = 5.0;
-    Scene scene(d, place);
+    TwinScene scene(d, place);
     for (int i = 0; i < 400; ++i) {
       scene.stage.place(scene.a,
                         (i % 4 < 2 ? 0.104 : 0.0985 - 2e-5 * i) * dvec3(std::sin(0.05 * i), std::cos(0.05 * i), 0));

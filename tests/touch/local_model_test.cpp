@@ -98,9 +98,28 @@ TEST(LocalModel, CubicSpringFollowsTheJacobiEllipticSolution) {
   EXPECT_NEAR(std::log2(error(1000) / error(2000)), 2.0, 0.1);  // second order
 }
 
+// Below 0 the exponential law softens; next to 0 it is the linear one.
+constexpr std::pair<SpringLaw, double> kKindsAndAlphas[] = {{SpringLaw::kLinear, 0.0},
+                                                            {SpringLaw::kCubic, 0.0},
+                                                            {SpringLaw::kExponential, 200.0},
+                                                            {SpringLaw::kExponential, -80.0},
+                                                            {SpringLaw::kExponential, 1e-6}};
+
+TEST(LocalModel, AnExponentOfZeroIsTheLinearLaw) {
+  Deformable d;
+  d.spring = SpringLaw::kExponential;
+  d.stiffening = 0.0;
+  const RestoringLaw law = restoring_law(d);
+  for (const double h : {-0.05, -1e-3, -1e-9, 1e-3}) {
+    EXPECT_NEAR(law.force(h), h, 1e-7 * std::abs(h));
+    EXPECT_NEAR(law.slope(h), 1.0, 1e-7);
+    EXPECT_NEAR(law.potential(h), 0.5 * h * h, 1e-7 * h * h);
+  }
+}
+
 TEST(LocalModel, DiscreteGradientKeepsTheEnergyIdentityForEveryLawAndStep) {
-  for (const SpringLaw kind : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential}) {
-    const RestoringLaw law{kind, 1e5, 200};
+  for (const auto& [kind, alpha] : kKindsAndAlphas) {
+    const RestoringLaw law{kind, 1e5, alpha};
     const double m = 1e-3, b = 0.02, k = 300, f = -0.5;
     for (const double T : {1e-4, 5e-4, 1e-3}) {
       HeightState s{-8e-3, 0.2};
@@ -123,8 +142,8 @@ TEST(LocalModel, DiscreteGradientKeepsTheEnergyIdentityForEveryLawAndStep) {
 }
 
 TEST(LocalModel, RestoringForceIsTheDerivativeOfItsPotentialAndItsSlopeOfIt) {
-  for (const SpringLaw kind : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential}) {
-    const RestoringLaw law{kind, 1e5, 200};
+  for (const auto& [kind, alpha] : kKindsAndAlphas) {
+    const RestoringLaw law{kind, 1e5, alpha};
     for (const double h : {-9e-3, -1e-3, -1e-6, 1e-6, 1e-3, 5e-3}) {
       const double e = 1e-4 * std::abs(h);
       EXPECT_NEAR((law.potential(h + e) - law.potential(h - e)) / (2 * e), law.force(h), 1e-6 * std::abs(law.force(h)))

@@ -124,6 +124,37 @@ TEST(Publish, ASlowReaderStillSeesEveryZoneAsItFinallyIs) {
   EXPECT_EQ(shown, stage.field(surface).stream);
 }
 
+// A snapshot that nobody took is replaced by the next; what it held alone has to travel once more.
+TEST(Publish, WhoTakesUntilNothingWaitsHasAllOfASnapshotThatWasReplacedUnseen) {
+  Stage stage;
+  Deformable d;
+  d.reach = 0.03;
+  d.settling_time = 1e-3;  // at rest within a tick or two
+  const Entity surface = stage.add(scenes::sheet(60, 0.2), d);
+  const Entity probe = stage.add_probe({-0.05, 0.001, 0});
+  stage.prepare();
+  std::vector<vec4> shown(stage.field(surface).stream.size(), vec4(0));
+  const auto take_all = [&] {
+    do {
+      publish(stage.world, {});
+      while (stage.world.snapshots->acquire()) {
+        const ObjectSnapshot& o = stage.world.snapshots->read().objects[0];
+        for (std::uint32_t z = 0; z < o.zone_count; ++z)
+          std::copy_n(o.stream.begin() + z * kZoneSize, kZoneSize, shown.begin() + o.zones[z] * kZoneSize);
+      }
+    } while (waits_to_be_published(stage.world));
+  };
+  for (int ticks = 1; ticks < 16; ++ticks) {  // however snapshots fall between them
+    stage.place(probe, {-0.05, -0.003, 0});
+    stage.wait(0.01);
+    take_all();
+    stage.place(probe, {-0.05, 0.02, 0});
+    for (int n = 0; n < ticks; ++n) stage.tick();
+    take_all();
+    ASSERT_EQ(shown, stage.field(surface).stream) << ticks;
+  }
+}
+
 TEST(Publish, AReaderOnAnotherThreadSeesWholeZonesOnly) {
   Stage stage;
   Deformable d;

@@ -32,6 +32,25 @@ TEST(Touch, QuasiStaticForceIsTheLawOfTheDepthForEveryLaw) {
   }
 }
 
+TEST(Touch, ASofteningLawGivesLessAndLessPerDepthAndNeverLessForMoreDepth) {
+  Stage stage;
+  Deformable d = frictionless(SpringLaw::kExponential);
+  d.stiffening = -60.0;
+  stage.add(scenes::sheet(40, 0.2), d);
+  const Entity probe = stage.add_probe({0.013, 0.002, 0.007});
+  stage.prepare();
+  double last = 0.0, deepest = 0.0;
+  stage.move(probe, {0.013, -0.02, 0.007}, 4.0, [&](const ProbeReading& r) {
+    if (r.position.y > -1e-4) return;
+    ASSERT_NEAR(r.normal_force, law(d, r.depth), 1e-3 * law(d, r.depth));
+    ASSERT_GE(r.normal_force, last);
+    last = r.normal_force;
+    deepest = r.depth;
+  });
+  EXPECT_NEAR(last, d.stiffness / 60 * (1 - std::exp(-60 * deepest)), 1e-3 * last);
+  EXPECT_LT(last, 0.6 * d.stiffness * deepest);
+}
+
 TEST(Touch, StandardLinearSolidRelaxesByItsClosedForm) {
   Stage stage;
   Deformable d = frictionless(SpringLaw::kStandardLinearSolid);

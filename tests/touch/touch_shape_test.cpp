@@ -6,6 +6,9 @@
 #include <functional>
 #include <vector>
 
+#include "systems/touch/contact_energy.h"
+#include "systems/touch/force_field.h"
+#include "systems/touch/local_model.h"
 #include "tests/scenes/scenes.h"
 #include "tests/scenes/touch_laws.h"
 
@@ -44,6 +47,83 @@ TEST(Touch, SurfaceStandsExactlyUnderEveryProbeForEveryShapeAndStaysFarAwayAtRes
       if (near > 0.031) ASSERT_EQ(stage.field(sheet).stream[v], vec4(0)) << int(shape);
     }
   }
+}
+
+// Boussinesq: a flat punch of radius a leaves 2/pi asin(a/r) of its depth outside (the window begins at R/2).
+TEST(Touch, APunchOfItsOwnContactRadiusDentsTheSurfaceOfAHalfSpace) {
+  for (const double a : {0.006, 0.01, 0.018}) {
+    Stage stage;
+    Deformable d = frictionless();
+    d.shape = Shape::kPunch;
+    d.reach = 0.04;
+    d.contact_radius = a;
+    const Entity sheet = stage.add(scenes::sheet(60, 0.2), d);
+    const Entity probe = stage.add_probe({0, 0.001, 0});
+    stage.prepare();
+    stage.tick();
+    stage.place(probe, {0, -0.003, 0});
+    stage.wait(0.01);
+    const Mesh& mesh = stage.mesh(sheet);
+    std::size_t compared = 0;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+      const double r = length(dvec3(mesh.position(v)));
+      if (r > 0.5 * d.reach) continue;
+      const double share = r <= a ? 1.0 : 2 / M_PI * std::asin(a / r);
+      ASSERT_NEAR(static_cast<double>(stage.field(sheet).stream[v].w), -0.003 * share, 1e-5 * 0.003) << a << ' ' << r;
+      ++compared;
+    }
+    EXPECT_GT(compared, 50u);
+  }
+}
+
+// What neighbours share their load by: for every contact radius as near to the shape as for the usual one, as far as a
+// function that is positive definite can be flat.
+TEST(Touch, TheKernelOfALoadFollowsTheContactRadius) {
+  const auto half = [](const ShareKernel& kernel) {  // [1] where it has fallen to a half
+    double r = 0.0;
+    while (kernel.at(r * r) > 0.5) r += 1e-3;
+    return r;
+  };
+  for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kKelvinlet}) {
+    double last = 0.0;
+    for (const double contact : {0.1, 0.3, 0.5, 0.7}) {
+      const ShareKernel kernel = share_kernel(shape, 1.0, 1.0, contact);
+      EXPECT_NEAR(kernel.at(0), 1.0, 1e-12);
+      EXPECT_GE(half(kernel), last) << int(shape) << ' ' << contact;
+      last = half(kernel);
+    }
+    EXPECT_GT(last, half(share_kernel(shape, 1.0, 1.0, 0.1)));
+  }
+}
+
+// A sphere adds its contact circle to the reach and to the contact radius, which is a fifth of that reach where none is
+// stated.
+TEST(Touch, ASphereWidensTheContactRadiusByItsCircle) {
+  Stage stage;
+  Deformable d = frictionless();
+  d.shape = Shape::kPunch;
+  const Mesh& mesh = stage.mesh(stage.add(scenes::sheet(60, 0.2), d));
+  Contact contact;
+  contact.height = -0.002;
+  contact.normal = {0, 1, 0};
+  const double radius = 0.009, circle = std::sqrt(2 * radius * 0.002), reach = d.reach + circle;
+  for (const double stated : {0.0, 0.012}) {
+    d.contact_radius = stated;
+    FieldSource source;
+    aim(source, contact, d, mesh, radius);
+    const double inner = (stated > 0 ? stated : 0.2 * reach) + circle;
+    EXPECT_NEAR(static_cast<double>(source.parameter), inner * inner / (reach * reach), 1e-6) << stated;
+  }
+}
+
+TEST(Touch, AContactRadiusBeyondTheReachIsRefusedWithItsRange) {
+  Deformable d = frictionless();
+  d.shape = Shape::kPunch;
+  d.contact_radius = d.reach;
+  const Status refused = check(d, "sheet");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message().find("contact_radius"), std::string::npos) << refused.error().message();
+  EXPECT_NE(refused.error().message().find("0.95 of its reach"), std::string::npos) << refused.error().message();
 }
 
 TEST(Touch, VolumeShapeLeavesNoNetVolumeOnFlatAndCurvedSurfaces) {

@@ -38,7 +38,7 @@ long resident() {
   return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-struct Seen {
+struct SeenLong {
   std::atomic<double> largest{0.0};                 // [N] written
   std::atomic<double> youngest{1e9}, oldest{-1e9};  // [s] a sample's age when it was read
   std::atomic<std::uint64_t> nonsense{0}, back{0};  // writes that are no number; samples not newer than the last
@@ -47,7 +47,7 @@ struct Seen {
 // In front of a device: what goes through.
 class Watched final : public Driver {
  public:
-  Watched(std::unique_ptr<Driver> inner, Seen& seen) : inner_(std::move(inner)), seen_(seen) {}
+  Watched(std::unique_ptr<Driver> inner, SeenLong& seen) : inner_(std::move(inner)), seen_(seen) {}
   Status open(const std::string& id) override { return inner_->open(id); }
   DeviceCapabilities capabilities() const override { return inner_->capabilities(); }
   bool read(DeviceSample& sample) override {
@@ -70,7 +70,7 @@ class Watched final : public Driver {
 
  private:
   std::unique_ptr<Driver> inner_;
-  Seen& seen_;
+  SeenLong& seen_;
   double last_ = -1.0;
 };
 
@@ -98,7 +98,7 @@ struct Device {
   Device(const char* name)
       : profile(name), servo(std::make_unique<Watched>(std::make_unique<SimulatedDevice>(pressing(name)), seen)) {}
   const char* profile;
-  Seen seen;
+  SeenLong seen;
   Servo servo;
   std::array<std::uint64_t, 64> causes{};  // how often each took the force away
   std::uint64_t told = 0;                  // transitions looked at

@@ -20,11 +20,11 @@ using test::perceived_difference;
 using test::renderer_for;
 using test::snapshot_of;
 
-constexpr int kWidth = 192, kHeight = 144;
+constexpr int kFeatureWidth = 192, kFeatureHeight = 144;
 
-const Viewpoint kFront{.eye = {0, 0.8, 4}, .target = {0, 0, 0}};
-const Viewpoint kNear{.eye = {0.2, 1.0, 0.6}, .target = {-0.12, -0.1, 0}};
-const Viewpoint kSlanted{.eye = {0, 1.5, 1.4}, .target = {0, 0, 0.05}};
+const Viewpoint kFeatureFront{.eye = {0, 0.8, 4}, .target = {0, 0, 0}};
+const Viewpoint kFeatureNear{.eye = {0.2, 1.0, 0.6}, .target = {-0.12, -0.1, 0}};
+const Viewpoint kFeatureSlanted{.eye = {0, 1.5, 1.4}, .target = {0, 0, 0.05}};
 
 // A sky of soft coloured tiles over a dark chequered floor: whatever bends light bends lines.
 Panorama tiles() {
@@ -119,44 +119,44 @@ void expect_option(const std::string& name, const World& world, const Snapshot& 
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
   renderer->update(pressed);
-  const Image on = renderer->picture(view, kWidth, kHeight);
+  const Image on = renderer->picture(view, kFeatureWidth, kFeatureHeight);
   switch_off(renderer->options());
-  test::expect_golden(name, on, renderer->picture(view, kWidth, kHeight));
+  test::expect_golden(name, on, renderer->picture(view, kFeatureWidth, kFeatureHeight));
 }
 
 TEST(Feature, TheSurroundingsStandBehindEverything) {
   NEEDS_A_CONTEXT();
-  expect_option("environment", ball_of(Material{}), {}, kFront, [](RenderOptions& o) { o.background = false; });
+  expect_option("environment", ball_of(Material{}), {}, kFeatureFront, [](RenderOptions& o) { o.background = false; });
 }
 
 TEST(Feature, ChromeMirrorsTheSurroundingsAndADentBendsThem) {
   NEEDS_A_CONTEXT();
   const World world = ball_of(chrome());
   const Snapshot pressed = snapshot_of(world, dent(normalize(vec3(0.3f, 0.35f, 0.9f)), 0.15f, 0.7f));
-  expect_option("reflection", world, pressed, kFront, [](RenderOptions& o) { o.reflection = false; });
+  expect_option("reflection", world, pressed, kFeatureFront, [](RenderOptions& o) { o.reflection = false; });
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image rest = renderer->picture(kFront, kWidth, kHeight);
+  const Image rest = renderer->picture(kFeatureFront, kFeatureWidth, kFeatureHeight);
   renderer->update(pressed);
-  EXPECT_GT(perceived_difference(rest, renderer->picture(kFront, kWidth, kHeight)), kTolerance);
+  EXPECT_GT(perceived_difference(rest, renderer->picture(kFeatureFront, kFeatureWidth, kFeatureHeight)), kTolerance);
 }
 
 TEST(Feature, GlassShowsTheSurroundingsUpsideDown) {
   NEEDS_A_CONTEXT();
   const World world = ball_of(glass());
   const Snapshot pressed = snapshot_of(world, dent(normalize(vec3(-0.3f, 0.3f, 0.9f)), 0.1f, 0.6f));
-  expect_option("refraction", world, pressed, kFront, [](RenderOptions& o) { o.refraction = false; });
+  expect_option("refraction", world, pressed, kFeatureFront, [](RenderOptions& o) { o.refraction = false; });
   // The sky is blue and bright, the floor red and dark: in the ball the floor is above.
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image seen = renderer->picture(kFront, kWidth, kHeight);
+  const Image seen = renderer->picture(kFeatureFront, kFeatureWidth, kFeatureHeight);
   auto brightness = [&](int y) {
     int sum = 0;
-    for (int x = kWidth / 2 - 12; x < kWidth / 2 + 12; ++x)
-      for (std::size_t c = 0; c < 3; ++c) sum += seen.rgba[4 * static_cast<std::size_t>(y * kWidth + x) + c];
+    for (int x = kFeatureWidth / 2 - 12; x < kFeatureWidth / 2 + 12; ++x)
+      for (std::size_t c = 0; c < 3; ++c) sum += seen.rgba[4 * static_cast<std::size_t>(y * kFeatureWidth + x) + c];
     return sum;
   };
-  EXPECT_GT(brightness(kHeight / 2 + 28), 3 * brightness(kHeight / 2 - 28) / 2);
+  EXPECT_GT(brightness(kFeatureHeight / 2 + 28), 3 * brightness(kFeatureHeight / 2 - 28) / 2);
 }
 
 TEST(Feature, AHeightTextureRoughensTheSurface) {
@@ -172,13 +172,13 @@ TEST(Feature, AHeightTextureRoughensTheSurface) {
   world.images.push_back(std::move(cobbles));
   world.materials[0].height_texture = 0;
   world.materials[0].height_scale = 0.03f;
-  expect_option("bump", world, {}, kSlanted, [](RenderOptions& o) { o.bump = false; });
+  expect_option("bump", world, {}, kFeatureSlanted, [](RenderOptions& o) { o.bump = false; });
 }
 
 TEST(Feature, ADentShadowsItself) {
   NEEDS_A_CONTEXT();
   const World world = clay_sheet();
-  expect_option("self_shadow", world, snapshot_of(world, dent({-0.2f, 0, 0}, 0.25f, 0.5f)), kNear,
+  expect_option("self_shadow", world, snapshot_of(world, dent({-0.2f, 0, 0}, 0.25f, 0.5f)), kFeatureNear,
                 [](RenderOptions& o) { o.shadows = false; });
 }
 
@@ -190,9 +190,9 @@ TEST(Feature, WhatBlendsLetsTheSurroundingsThrough) {
   film.alpha = Material::Alpha::kBlend;
   film.double_sided = true;
   World world = ball_of(film);
-  const Image on = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  const Image on = renderer_for(world)->picture(kFeatureFront, kFeatureWidth, kFeatureHeight);
   world.materials[0].alpha = Material::Alpha::kOpaque;
-  test::expect_golden("transparent", on, renderer_for(world)->picture(kFront, kWidth, kHeight));
+  test::expect_golden("transparent", on, renderer_for(world)->picture(kFeatureFront, kFeatureWidth, kFeatureHeight));
 }
 
 TEST(Shadow, FallsWhereARayToTheLampMeetsTheDentAndNowhereElse) {
@@ -203,19 +203,19 @@ TEST(Shadow, FallsWhereARayToTheLampMeetsTheDentAndNowhereElse) {
   const Viewpoint above{.eye = {0, 2.2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
   const StreamCheck dented{dent({-0.2f, 0, 0}, 0.25f, 0.5f)};
   renderer->update(snapshot_of(world, dented.stream));
-  const Image with = renderer->picture(above, kWidth, kHeight);
+  const Image with = renderer->picture(above, kFeatureWidth, kFeatureHeight);
   renderer->options().shadows = false;
-  const Image without = renderer->picture(above, kWidth, kHeight);
+  const Image without = renderer->picture(above, kFeatureWidth, kFeatureHeight);
 
   // Along the middle row, where what is seen can be told from the same function that made the dent.
-  const double metre = kHeight / 2 / std::tan(0.5 * above.yfov);
+  const double metre = kFeatureHeight / 2 / std::tan(0.5 * above.yfov);
   int dark = 0, bright = 0;
   for (double x = -0.95; x < 0.95; x += 0.01) {
     bool all_open = true, all_blocked = true;  // about here: the shadow's soft edge counts for neither
     for (const double aside : {-0.03, -0.015, 0.0, 0.015, 0.03})
       (dented.open_to_lamp(x + aside) ? all_blocked : all_open) = false;
-    const double column = kWidth / 2 + metre * x / (above.eye.y - dented.height(x, 0));
-    const std::size_t i = 4 * static_cast<std::size_t>(kHeight / 2 * kWidth + static_cast<int>(column));
+    const double column = kFeatureWidth / 2 + metre * x / (above.eye.y - dented.height(x, 0));
+    const std::size_t i = 4 * static_cast<std::size_t>(kFeatureHeight / 2 * kFeatureWidth + static_cast<int>(column));
     const int taken = int{without.rgba[i]} - int{with.rgba[i]};
     if (all_open) {
       EXPECT_LE(std::abs(taken), 2) << x;
@@ -234,12 +234,12 @@ TEST(Option, WireframeShowsTheBackgroundBetweenItsLines) {
   const World world = ball_of(Material{});
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image filled = renderer->picture(kFront, 2 * kWidth, 2 * kHeight);
+  const Image filled = renderer->picture(kFeatureFront, 2 * kFeatureWidth, 2 * kFeatureHeight);
   renderer->options().wireframe = true;
-  const Image lines = renderer->picture(kFront, 2 * kWidth, 2 * kHeight);
+  const Image lines = renderer->picture(kFeatureFront, 2 * kFeatureWidth, 2 * kFeatureHeight);
   EXPECT_GT(perceived_difference(filled, lines), kTolerance);
   renderer->options().wireframe = false;
-  EXPECT_EQ(renderer->picture(kFront, 2 * kWidth, 2 * kHeight).rgba, filled.rgba);
+  EXPECT_EQ(renderer->picture(kFeatureFront, 2 * kFeatureWidth, 2 * kFeatureHeight).rgba, filled.rgba);
 }
 
 TEST(Option, EveryZoneHasAColourOfItsOwn) {
@@ -247,9 +247,9 @@ TEST(Option, EveryZoneHasAColourOfItsOwn) {
   const World world = clay_sheet();
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image plain = renderer->picture(kSlanted, kWidth, kHeight);
+  const Image plain = renderer->picture(kFeatureSlanted, kFeatureWidth, kFeatureHeight);
   renderer->options().zones = true;
-  EXPECT_GT(perceived_difference(plain, renderer->picture(kSlanted, kWidth, kHeight)), kTolerance);
+  EXPECT_GT(perceived_difference(plain, renderer->picture(kFeatureSlanted, kFeatureWidth, kFeatureHeight)), kTolerance);
 }
 
 TEST(Option, ForcesAndContactFramesComeAndGoByThemselves) {
@@ -265,7 +265,7 @@ TEST(Option, ForcesAndContactFramesComeAndGoByThemselves) {
   auto drawn = [&](bool forces, bool frames) {
     renderer->options().forces = forces;
     renderer->options().contact_frames = frames;
-    return renderer->picture(kSlanted, kWidth, kHeight);
+    return renderer->picture(kFeatureSlanted, kFeatureWidth, kFeatureHeight);
   };
   const Image bare = drawn(false, false), arrow = drawn(true, false), frame = drawn(false, true);
   EXPECT_NE(bare.rgba, arrow.rgba);
@@ -290,10 +290,13 @@ TEST(Lamp, ASecondLampAddsItsLightWhereItReaches) {
   const std::unique_ptr<Renderer> two = renderer_for(world);
   ASSERT_TRUE(one && two);
   const Viewpoint above{.eye = {0, 2.2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
-  const Image a = one->picture(above, kWidth, kHeight), b = two->picture(above, kWidth, kHeight);
-  const double metre = kHeight / 2 / std::tan(0.5 * above.yfov) / above.eye.y;
+  const Image a = one->picture(above, kFeatureWidth, kFeatureHeight),
+              b = two->picture(above, kFeatureWidth, kFeatureHeight);
+  const double metre = kFeatureHeight / 2 / std::tan(0.5 * above.yfov) / above.eye.y;
   auto at = [&](double x) {
-    return 4 * static_cast<std::size_t>(kHeight / 2 * kWidth + static_cast<int>(kWidth / 2 + metre * x)) + 2;
+    return 4 * static_cast<std::size_t>(kFeatureHeight / 2 * kFeatureWidth +
+                                        static_cast<int>(kFeatureWidth / 2 + metre * x)) +
+           2;
   };
   EXPECT_GT(b.rgba[at(0.7)], a.rgba[at(0.7)] + 20);
   EXPECT_EQ(b.rgba[at(-0.5)], a.rgba[at(-0.5)]);

@@ -74,6 +74,7 @@ struct Case {
   Response response;
   Distance distance;
   bool painted;
+  double stiffening = 100.0;
 };
 
 class FieldReplayTest : public ::testing::TestWithParam<Case> {
@@ -98,6 +99,7 @@ TEST_P(FieldReplayTest, StepsWhatTheProcessorSteps) {
   d.response = c.response;
   d.distance = c.distance;
   d.relaxation_time = 0.05;
+  d.stiffening = c.stiffening;
   Twin twin(c.painted ? painted_ball() : scenes::sphere(24, 0.1), d);
   Stage& stage = twin.stage;
   const Entity a = stage.add_probe({0, 0.11, 0.01}), b = stage.add_probe({0.03, 0.11, -0.01});
@@ -143,6 +145,7 @@ std::vector<Case> cases() {
               law == SpringLaw::kLinear && response == Response::kFollow && distance == Distance::kChord && !painted;
           if (!closed) all.push_back({law, response, distance, painted});
         }
+  all.push_back({SpringLaw::kExponential, Response::kFollow, Distance::kChord, false, -60.0});
   return all;
 }
 
@@ -150,7 +153,8 @@ std::string name_of(const ::testing::TestParamInfo<Case>& info) {
   const char* const laws[] = {"Linear", "Cubic", "Exponential", "Solid"};
   const Case& c = info.param;
   return std::string(laws[static_cast<int>(c.law)]) + (c.response == Response::kLag ? "Lag" : "Follow") +
-         (c.distance == Distance::kSurface ? "Surface" : "Chord") + (c.painted ? "Painted" : "Plain");
+         (c.distance == Distance::kSurface ? "Surface" : "Chord") + (c.painted ? "Painted" : "Plain") +
+         (c.stiffening < 0 ? "Softening" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, FieldReplayTest, ::testing::ValuesIn(cases()), name_of);

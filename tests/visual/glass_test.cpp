@@ -13,8 +13,8 @@ namespace {
 
 using test::renderer_for;
 
-constexpr int kWidth = 160, kHeight = 120;
-const Viewpoint kFront{.eye = {0, 0, 4}, .target = {0, 0, 0}};
+constexpr int kGlassWidth = 160, kGlassHeight = 120;
+const Viewpoint kGlassFront{.eye = {0, 0, 4}, .target = {0, 0, 0}};
 
 vec3 at(const Image& image, double x, double y) {
   const std::uint8_t* p = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + static_cast<std::size_t>(x))];
@@ -56,14 +56,15 @@ TEST(Glass, ATransmissionTextureIsOpaqueWhereItIsBlack) {
   world.materials[0].base_color = {0.5f, 0.02f, 0.02f, 1};
   world.materials[0].transmission_texture = add_halves(world, 0, 255);
   // The front of the sphere is u = 0 and u = 1: its right side has small u.
-  const Image half = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  const Image half = renderer_for(world)->picture(kGlassFront, kGlassWidth, kGlassHeight);
   world.materials[0].transmission_texture = -1;
-  const Image clear = renderer_for(world)->picture(kFront, kWidth, kHeight);
+  const Image clear = renderer_for(world)->picture(kGlassFront, kGlassWidth, kGlassHeight);
   world.materials[0].transmission = 0;
-  const Image opaque = renderer_for(world)->picture(kFront, kWidth, kHeight);
-  const vec3 black_side = at(half, kWidth / 2 + 15, kHeight / 2), white_side = at(half, kWidth / 2 - 15, kHeight / 2);
-  EXPECT_LT(length(black_side - at(opaque, kWidth / 2 + 15, kHeight / 2)), 3);
-  EXPECT_LT(length(white_side - at(clear, kWidth / 2 - 15, kHeight / 2)), 3);
+  const Image opaque = renderer_for(world)->picture(kGlassFront, kGlassWidth, kGlassHeight);
+  const vec3 black_side = at(half, kGlassWidth / 2 + 15, kGlassHeight / 2),
+             white_side = at(half, kGlassWidth / 2 - 15, kGlassHeight / 2);
+  EXPECT_LT(length(black_side - at(opaque, kGlassWidth / 2 + 15, kGlassHeight / 2)), 3);
+  EXPECT_LT(length(white_side - at(clear, kGlassWidth / 2 - 15, kGlassHeight / 2)), 3);
   EXPECT_GT(length(black_side - white_side), 15);
 }
 
@@ -75,13 +76,16 @@ TEST(Glass, AThicknessTextureScalesHowMuchIsAbsorbed) {
   world.materials[0].attenuation_distance = 1;
   auto red_with = [&](std::uint8_t share) {
     world.materials[0].thickness_texture = add_halves(world, share, share);
-    return at(renderer_for(world)->picture(kFront, kWidth, kHeight), kWidth / 2, kHeight / 2).r;
+    return at(renderer_for(world)->picture(kGlassFront, kGlassWidth, kGlassHeight), kGlassWidth / 2, kGlassHeight / 2)
+        .r;
   };
   const float full = red_with(255), half = red_with(128), none = red_with(0);
   EXPECT_GT(half, full + 10);
   EXPECT_GT(none, half + 10);
   world.materials[0].thickness_texture = -1;
-  EXPECT_NEAR(at(renderer_for(world)->picture(kFront, kWidth, kHeight), kWidth / 2, kHeight / 2).r, full, 1);
+  EXPECT_NEAR(
+      at(renderer_for(world)->picture(kGlassFront, kGlassWidth, kGlassHeight), kGlassWidth / 2, kGlassHeight / 2).r,
+      full, 1);
 }
 
 TEST(Glass, AProbeBehindAPaneIsSeenThroughItAndOneBeforeItOnlyOnce) {
@@ -91,15 +95,15 @@ TEST(Glass, AProbeBehindAPaneIsSeenThroughItAndOneBeforeItOnlyOnce) {
     test::add_probe(world, {0.15, 0.1, z}, 0.3);
     const std::unique_ptr<Renderer> renderer = renderer_for(world);
     ASSERT_TRUE(renderer);
-    const Image with = renderer->picture(kFront, kWidth, kHeight);
+    const Image with = renderer->picture(kGlassFront, kGlassWidth, kGlassHeight);
     renderer->options().markers = false;
-    const Image without = renderer->picture(kFront, kWidth, kHeight);
+    const Image without = renderer->picture(kGlassFront, kGlassWidth, kGlassHeight);
     renderer->options().markers = true;
     renderer->options().refraction = false;
-    const Image solid = renderer->picture(kFront, kWidth, kHeight);
+    const Image solid = renderer->picture(kGlassFront, kGlassWidth, kGlassHeight);
     // The probe's disc as a straight line of sight has it: the ball is a pane, which does not bend.
-    const double metre = kHeight / 2 / std::tan(0.5 * kFront.yfov) / (4 - z);
-    const double x = kWidth / 2 - 0.05 * metre, y = kHeight / 2 + 0.05 * metre;  // below the stylus
+    const double metre = kGlassHeight / 2 / std::tan(0.5 * kGlassFront.yfov) / (4 - z);
+    const double x = kGlassWidth / 2 - 0.05 * metre, y = kGlassHeight / 2 + 0.05 * metre;  // below the stylus
     const vec3 seen = at(with, x, y);
     EXPECT_GT(seen.r, seen.g + 40) << z << ": it is red";
     EXPECT_GT(at(without, x, y).g, seen.g + 40) << z;
@@ -119,17 +123,17 @@ TEST(Glass, TheOutlineOfAProbeInFrontIsNotSeenThroughTheBody) {
     test::add_probe(world, {0.15, 0.1, 1.6}, 0.3);
     const std::unique_ptr<Renderer> renderer = renderer_for(world);
     renderer->options().shadows = false;
-    const Image with = renderer->picture(kFront, kWidth, kHeight);
+    const Image with = renderer->picture(kGlassFront, kGlassWidth, kGlassHeight);
     renderer->options().markers = false;
-    return std::pair(with, renderer->picture(kFront, kWidth, kHeight));
+    return std::pair(with, renderer->picture(kGlassFront, kGlassWidth, kGlassHeight));
   };
   World world = glass_ball();
   world.materials[0].thickness = 1.5f;
   const auto [glass_with, glass] = pictures(std::move(world));
   const auto [clay_with, clay] = pictures(test::sphere(48));
   int covered = 0, ghosts = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kGlassHeight; ++y)
+    for (int x = 0; x < kGlassWidth; ++x) {
       const bool by_the_probe = length(at(clay, x, y) - at(clay_with, x, y)) > 0;
       covered += by_the_probe;
       ghosts += !by_the_probe && length(at(glass, x, y) - at(glass_with, x, y)) > 3;
@@ -159,14 +163,14 @@ TEST(Glass, WhatBlendsIsDrawnFromTheBackToTheFrontWhateverItsOrderInTheLevel) {
       draw.parts = {{0, 6, red ? 0 : 1}};
       world.registry.add<Drawable>(world.registry.create(), {world.draw_meshes.add(std::move(draw))});
     }
-    return renderer_for(world)->picture(view, kWidth, kHeight);
+    return renderer_for(world)->picture(view, kGlassWidth, kGlassHeight);
   };
   const Viewpoint back{.eye = {0, 0, -4}, .target = {0, 0, 0}};
-  const Image a = picture_of(true, kFront), b = picture_of(false, kFront);
+  const Image a = picture_of(true, kGlassFront), b = picture_of(false, kGlassFront);
   EXPECT_LT(test::perceived_difference(a, b), 0.5);
-  const vec3 front = at(a, kWidth / 2, kHeight / 2);
+  const vec3 front = at(a, kGlassWidth / 2, kGlassHeight / 2);
   EXPECT_GT(front.b, front.r + 20) << "blue lies nearer";
-  const vec3 from_behind = at(picture_of(true, back), kWidth / 2, kHeight / 2);
+  const vec3 from_behind = at(picture_of(true, back), kGlassWidth / 2, kGlassHeight / 2);
   EXPECT_GT(from_behind.r, from_behind.b + 20) << "red lies nearer";
   EXPECT_LT(test::perceived_difference(picture_of(true, back), picture_of(false, back)), 0.5);
 }

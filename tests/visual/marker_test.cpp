@@ -12,8 +12,8 @@ namespace {
 
 using test::renderer_for;
 
-constexpr int kWidth = 320, kHeight = 240;
-const Viewpoint kFront{.eye = {0, 0, 4}, .target = {0, 0, 0}};
+constexpr int kMarkerWidth = 320, kMarkerHeight = 240;
+const Viewpoint kMarkerFront{.eye = {0, 0, 4}, .target = {0, 0, 0}};
 
 // Pixels in the yellow of arrows.
 int yellow_pixels(const Image& image) {
@@ -36,7 +36,7 @@ class Pressed {
     Snapshot pushed;
     pushed.probes.push_back({.probe = probe_, .position = {0, 0, 1}, .force = force, .touching = true});
     renderer_->update(pushed);
-    return yellow_pixels(renderer_->picture(kFront, kWidth, kHeight));
+    return yellow_pixels(renderer_->picture(kMarkerFront, kMarkerWidth, kMarkerHeight));
   }
 
  private:

@@ -18,8 +18,8 @@ namespace {
 
 using test::renderer_for;
 
-constexpr int kWidth = 160, kHeight = 120;
-const Viewpoint kAbove{.eye = {0.3, 2.2, 0.4}, .target = {0, 0, 0}, .up = {0, 0, -1}};
+constexpr int kMovingWidth = 160, kMovingHeight = 120;
+const Viewpoint kMovingAbove{.eye = {0.3, 2.2, 0.4}, .target = {0, 0, 0}, .up = {0, 0, -1}};
 
 int changed_pixels(const Image& a, const Image& b, int than = 0) {
   int count = 0;
@@ -43,14 +43,14 @@ TEST(Moving, ATurnedSheetIsDrawnAsOneThatStandsThere) {
   const Entity sheet = test::object_of(world);
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image before = renderer->picture(kAbove, kWidth, kHeight);
+  const Image before = renderer->picture(kMovingAbove, kMovingWidth, kMovingHeight);
   const Pose turned{{0.1, 0.2, -0.1}, glm::angleAxis(0.9, normalize(dvec3(0.2, 1, 0.1)))};
   renderer->update(moved(sheet, turned.matrix()));
-  const Image after = renderer->picture(kAbove, kWidth, kHeight);
+  const Image after = renderer->picture(kMovingAbove, kMovingWidth, kMovingHeight);
   world.registry.get<Pose>(sheet) = turned;
   const std::unique_ptr<Renderer> standing = renderer_for(world);
-  EXPECT_EQ(changed_pixels(after, standing->picture(kAbove, kWidth, kHeight), 2), 0);
-  EXPECT_GT(changed_pixels(after, before), kWidth * kHeight / 20);
+  EXPECT_EQ(changed_pixels(after, standing->picture(kMovingAbove, kMovingWidth, kMovingHeight), 2), 0);
+  EXPECT_GT(changed_pixels(after, before), kMovingWidth * kMovingHeight / 20);
 }
 
 TEST(Moving, ADentGoesWithTheSheetAndIsPickedThere) {
@@ -67,8 +67,8 @@ TEST(Moving, ADentGoesWithTheSheetAndIsPickedThere) {
   // Straight down on the dent's middle, where it has gone.
   const dvec3 there = turned.to_world(dvec3(center));
   const Viewpoint down{.eye = there + dvec3(0, 2, 0), .target = there, .up = {0, 0, -1}};
-  renderer->pick({kWidth / 2.0, kHeight / 2.0, kWidth, kHeight});
-  renderer->picture(down, kWidth, kHeight);
+  renderer->pick({kMovingWidth / 2.0, kMovingHeight / 2.0, kMovingWidth, kMovingHeight});
+  renderer->picture(down, kMovingWidth, kMovingHeight);
   const std::optional<PickAnswer> answer = renderer->picked(true);
   ASSERT_TRUE(answer && answer->seen);
   EXPECT_EQ(answer->seen->object, sheet);
@@ -113,14 +113,14 @@ TEST(Moving, FromTheLevelOverTicksToThePictureWhetherItCanBeTouchedOrNot) {
     publish(*world, tick);
     ASSERT_TRUE(world->snapshots->acquire());
     renderer->update(world->snapshots->read());
-    const Image seen = renderer->picture(kAbove, kWidth, kHeight);
+    const Image seen = renderer->picture(kMovingAbove, kMovingWidth, kMovingHeight);
 
     Level standing = level;
     standing.animations.clear();
     standing.nodes[0].local.rotation = glm::angleAxis(0.25f * std::numbers::pi_v<float>, vec3(0, 1, 0));
     const Result<World> still = spawn(standing);
     ASSERT_TRUE(still.ok());
-    const Image wanted = renderer_for(*still)->picture(kAbove, kWidth, kHeight);
+    const Image wanted = renderer_for(*still)->picture(kMovingAbove, kMovingWidth, kMovingHeight);
     // Edges may fall on the other side of a sample's middle.
     EXPECT_LT(changed_pixels(seen, wanted, 8), 12) << touched;
   }

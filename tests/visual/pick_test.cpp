@@ -15,8 +15,8 @@ using test::dent;
 using test::renderer_for;
 using test::snapshot_of;
 
-constexpr int kWidth = 160, kHeight = 120;
-const Viewpoint kSlanted{.eye = {0.1, 1.0, 1.1}, .target = {-0.2, 0, 0.05}};
+constexpr int kPickWidth = 160, kPickHeight = 120;
+const Viewpoint kPickSlanted{.eye = {0.1, 1.0, 1.1}, .target = {-0.2, 0, 0.05}};
 
 struct Ray {
   dvec3 from{0}, along{0};  // [m], [1] world
@@ -24,15 +24,15 @@ struct Ray {
 
 // From the eye through a place of the picture.
 Ray ray_through(const Viewpoint& view, const World& world, double x, double y) {
-  const mat4 projection = projection_of(view, drawn_box(world, false), static_cast<float>(kWidth) / kHeight);
+  const mat4 projection = projection_of(view, drawn_box(world, false), static_cast<float>(kPickWidth) / kPickHeight);
   const dmat4 back = glm::inverse(dmat4(projection) * dmat4(view_of(view)));
-  const glm::dvec4 far = back * glm::dvec4(2 * x / kWidth - 1, 1 - 2 * y / kHeight, 1, 1);
+  const glm::dvec4 far = back * glm::dvec4(2 * x / kPickWidth - 1, 1 - 2 * y / kPickHeight, 1, 1);
   return {view.eye, normalize(dvec3(far) / far.w - view.eye)};
 }
 
 std::optional<Picked> pick(Renderer& renderer, const Viewpoint& view, double x, double y) {
-  renderer.pick({x, y, kWidth, kHeight});
-  renderer.picture(view, kWidth / 10, kHeight / 10);  // how fine the picture is does not matter
+  renderer.pick({x, y, kPickWidth, kPickHeight});
+  renderer.picture(view, kPickWidth / 10, kPickHeight / 10);  // how fine the picture is does not matter
   const std::optional<PickAnswer> answer = renderer.picked(true);
   EXPECT_TRUE(answer) << "no answer";
   if (answer) {
@@ -72,10 +72,10 @@ TEST(Picking, OnADentedPlateIsTheDentedSurfaceUnderThePixelAndItsPlaceAtRest) {
   const Snapshot pressed = snapshot_of(world, stream);
   renderer->update(pressed);
   int seen = 0, dented = 0;
-  for (double y = 10.5; y < kHeight; y += 9)
-    for (double x = 10.25; x < kWidth; x += 9) {
-      const Ray ray = ray_through(kSlanted, world, x, y);
-      const std::optional<Picked> picked = pick(*renderer, kSlanted, x, y);
+  for (double y = 10.5; y < kPickHeight; y += 9)
+    for (double x = 10.25; x < kPickWidth; x += 9) {
+      const Ray ray = ray_through(kPickSlanted, world, x, y);
+      const std::optional<Picked> picked = pick(*renderer, kPickSlanted, x, y);
       const std::optional<dvec3> twin = cast(ray, world, pressed.objects[0]);
       ASSERT_EQ(picked.has_value(), twin.has_value()) << x << ' ' << y;
       if (!picked) continue;
@@ -103,8 +103,8 @@ TEST(Picking, TellsTwoObjectsApartAndSeesTheOneInFront) {
   const Viewpoint view{.eye = {0, 0, 6}, .target = {0, 0, 0}};
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const std::optional<Picked> left = pick(*renderer, view, kWidth / 2 - 18, kHeight / 2);
-  const std::optional<Picked> right = pick(*renderer, view, kWidth / 2 + 12, kHeight / 2);
+  const std::optional<Picked> left = pick(*renderer, view, kPickWidth / 2 - 18, kPickHeight / 2);
+  const std::optional<Picked> right = pick(*renderer, view, kPickWidth / 2 + 12, kPickHeight / 2);
   ASSERT_TRUE(left && right);
   EXPECT_EQ(left->object, behind);
   EXPECT_EQ(right->object, front);
@@ -128,9 +128,9 @@ TEST(Picking, LeavesThePictureAsItIs) {
   const World world = test::sheet(32);
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image without = renderer->picture(kSlanted, kWidth, kHeight);
-  renderer->pick({80, 60, kWidth, kHeight});
-  EXPECT_EQ(without.rgba, renderer->picture(kSlanted, kWidth, kHeight).rgba);
+  const Image without = renderer->picture(kPickSlanted, kPickWidth, kPickHeight);
+  renderer->pick({80, 60, kPickWidth, kPickHeight});
+  EXPECT_EQ(without.rgba, renderer->picture(kPickSlanted, kPickWidth, kPickHeight).rgba);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ int difference(const Image& a, const Image& b, int x, int y) {
   return most;
 }
 
-int changed_pixels(const Image& a, const Image& b) {
+int differing_pixels(const Image& a, const Image& b) {
   int count = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) count += difference(a, b, x, y) > 0;
@@ -92,7 +92,7 @@ TEST(Picture, ABodyPushedOutByAnEvenHeightHasTheSilhouetteOfALargerOne) {
     const double radius = std::tan(angle) / std::tan(0.5 * kFront.yfov) * kHeight / 2;
     const double area = std::numbers::pi * radius * radius, edge = 2 * std::numbers::pi * radius;
     // A pixel that is covered in part counts whole: half of the edge, on average.
-    EXPECT_NEAR(changed_pixels(nothing, picture_at(height)), area + 0.5 * edge, 0.5 * edge) << height;
+    EXPECT_NEAR(differing_pixels(nothing, picture_at(height)), area + 0.5 * edge, 0.5 * edge) << height;
   }
 }
 
@@ -107,8 +107,8 @@ TEST(Picture, ANormalCorrectionAloneChangesShadingButNotTheSilhouette) {
   renderer->update(snapshot_of(world, [](vec3, vec3) { return vec4(0, 0, 0, -1); }));
   const Image nothing = renderer->picture(kFront, kWidth, kHeight);
 
-  EXPECT_NEAR(changed_pixels(rest, nothing), changed_pixels(tilted, nothing), 2);
-  EXPECT_GT(changed_pixels(rest, tilted), changed_pixels(rest, nothing) * 8 / 10);
+  EXPECT_NEAR(differing_pixels(rest, nothing), differing_pixels(tilted, nothing), 2);
+  EXPECT_GT(differing_pixels(rest, tilted), differing_pixels(rest, nothing) * 8 / 10);
 }
 
 TEST(Picture, NothingTravelsButAwakeZonesAndTheFramesConstants) {
@@ -189,9 +189,9 @@ TEST(Picture, WhatDoesNotGiveWayIsDrawnTooAndStaysAtRest) {
   ASSERT_TRUE(renderer);
   const Image rest = renderer->picture(kFront, kWidth, kHeight);
   renderer->update(pressed);
-  EXPECT_EQ(changed_pixels(rest, renderer->picture(kFront, kWidth, kHeight)), 0);
+  EXPECT_EQ(differing_pixels(rest, renderer->picture(kFront, kWidth, kHeight)), 0);
   world.registry.remove<Drawable>(object);
-  EXPECT_GT(changed_pixels(rest, renderer_for(world)->picture(kFront, kWidth, kHeight)), 3000);
+  EXPECT_GT(differing_pixels(rest, renderer_for(world)->picture(kFront, kWidth, kHeight)), 3000);
 }
 
 TEST(Picture, HeightsThatStandBeforeTheFirstSnapshotAreDrawn) {
@@ -253,9 +253,9 @@ TEST(Picture, LeavingOutTheBackOfAClosedBodyChangesNothing) {
   const Image both = renderer_for(world)->picture(kFront, kWidth, kHeight);
   Mesh& mesh = world.meshes[world.registry.get<Deformable>(test::object_of(world)).mesh];
   mesh.closed = true;
-  EXPECT_LE(changed_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 4);
+  EXPECT_LE(differing_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 4);
   for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);  // inside out: its back is all there is to see
-  EXPECT_EQ(changed_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 0);
+  EXPECT_EQ(differing_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 0);
 }
 
 TEST(Picture, ABlendedBodyWithoutTransparencyLooksLikeAnOpaqueOneAndAClearOneLikeNone) {
@@ -281,8 +281,8 @@ TEST(Picture, ABlendedBodyWithoutTransparencyLooksLikeAnOpaqueOneAndAClearOneLik
   const Image nothing = renderer_for(world)->picture(kFront, kWidth, kHeight);
 
   // The edge's samples may lie over the far side instead of the background.
-  EXPECT_LT(changed_pixels(opaque, blended), 150);
-  EXPECT_GT(changed_pixels(opaque, nothing), 3000);
+  EXPECT_LT(differing_pixels(opaque, blended), 150);
+  EXPECT_GT(differing_pixels(opaque, nothing), 3000);
   int seen = 0;  // the light's exposure knows the scene's size, the background's rays the clip planes: to a step of 255
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) seen += difference(clear, nothing, x, y) > 2;

@@ -9,8 +9,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 120;
-const Viewpoint kAbove{.eye = {0, 2.2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
+constexpr int kShadowWidth = 160, kShadowHeight = 120;
+const Viewpoint kShadowAbove{.eye = {0, 2.2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
 
 // A sheet under a lamp 45 degrees over the left.
 World lit_sheet() {
@@ -34,29 +34,29 @@ TEST(ShadowPass, IsLeftOutWhileNothingThatCastsOneMoves) {
   ASSERT_TRUE(renderer);
   auto drawn = [&](const Viewpoint& view) {
     FrameStats stats;
-    renderer->picture(view, kWidth, kHeight, &stats);
+    renderer->picture(view, kShadowWidth, kShadowHeight, &stats);
     return stats.shadow_drawn;
   };
   Snapshot moved;
   moved.probes.push_back({.probe = probe, .position = {0.31, 0.2, 0}});
-  EXPECT_TRUE(drawn(kAbove)) << "the first";
-  EXPECT_FALSE(drawn(kAbove)) << "nothing happened";
+  EXPECT_TRUE(drawn(kShadowAbove)) << "the first";
+  EXPECT_FALSE(drawn(kShadowAbove)) << "nothing happened";
   EXPECT_FALSE(drawn({.eye = {1, 2, 1}, .target = {0, 0, 0}})) << "only the eye moved";
   renderer->update(snapshot_of(world, test::dent({0, 0, 0}, 0.05f, 0.3f)));
-  EXPECT_TRUE(drawn(kAbove)) << "a dent";
-  EXPECT_FALSE(drawn(kAbove));
+  EXPECT_TRUE(drawn(kShadowAbove)) << "a dent";
+  EXPECT_FALSE(drawn(kShadowAbove));
   renderer->update(moved);
-  EXPECT_TRUE(drawn(kAbove)) << "a probe";
+  EXPECT_TRUE(drawn(kShadowAbove)) << "a probe";
   renderer->update(moved);
-  EXPECT_FALSE(drawn(kAbove)) << "a probe that stays";
+  EXPECT_FALSE(drawn(kShadowAbove)) << "a probe that stays";
   renderer->options().markers = false;
-  EXPECT_TRUE(drawn(kAbove)) << "no probe any more";
+  EXPECT_TRUE(drawn(kShadowAbove)) << "no probe any more";
   renderer->options().shadows = false;
-  EXPECT_FALSE(drawn(kAbove));
+  EXPECT_FALSE(drawn(kShadowAbove));
   renderer->update(snapshot_of(world, test::dent({0, 0, 0}, 0.02f, 0.3f)));
-  EXPECT_FALSE(drawn(kAbove));
+  EXPECT_FALSE(drawn(kShadowAbove));
   renderer->options().shadows = true;
-  EXPECT_TRUE(drawn(kAbove)) << "a dent while shadows were off";
+  EXPECT_TRUE(drawn(kShadowAbove)) << "a dent while shadows were off";
 }
 
 TEST(ShadowPass, APictureWithoutItIsTheSame) {
@@ -65,8 +65,8 @@ TEST(ShadowPass, APictureWithoutItIsTheSame) {
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
   renderer->update(snapshot_of(world, test::dent({-0.2f, 0, 0}, 0.2f, 0.4f)));
-  const Image first = renderer->picture(kAbove, kWidth, kHeight);
-  EXPECT_EQ(first.rgba, renderer->picture(kAbove, kWidth, kHeight).rgba);
+  const Image first = renderer->picture(kShadowAbove, kShadowWidth, kShadowHeight);
+  EXPECT_EQ(first.rgba, renderer->picture(kShadowAbove, kShadowWidth, kShadowHeight).rgba);
 }
 
 TEST(ShadowPass, AProbeCastsItsShadowWhereTheLampSaysAndNowhereElse) {
@@ -76,13 +76,13 @@ TEST(ShadowPass, AProbeCastsItsShadowWhereTheLampSaysAndNowhereElse) {
   test::add_probe(world, {-0.2, kUp, 0}, 0.08);
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image with = renderer->picture(kAbove, kWidth, kHeight);
+  const Image with = renderer->picture(kShadowAbove, kShadowWidth, kShadowHeight);
   renderer->options().shadows = false;
-  const Image without = renderer->picture(kAbove, kWidth, kHeight);
-  const double metre = kHeight / 2 / std::tan(0.5 * kAbove.yfov) / kAbove.eye.y;
+  const Image without = renderer->picture(kShadowAbove, kShadowWidth, kShadowHeight);
+  const double metre = kShadowHeight / 2 / std::tan(0.5 * kShadowAbove.yfov) / kShadowAbove.eye.y;
   auto darker = [&](double x, double z) {
-    const auto pixel = static_cast<std::size_t>(static_cast<int>(kHeight / 2 + metre * z) * kWidth +
-                                                static_cast<int>(kWidth / 2 + metre * x));
+    const auto pixel = static_cast<std::size_t>(static_cast<int>(kShadowHeight / 2 + metre * z) * kShadowWidth +
+                                                static_cast<int>(kShadowWidth / 2 + metre * x));
     return int{without.rgba[4 * pixel]} - int{with.rgba[4 * pixel]};
   };
   EXPECT_GT(darker(-0.2 + kUp, 0), 15);

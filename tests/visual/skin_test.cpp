@@ -20,8 +20,8 @@ using test::perceived_difference;
 using test::renderer_for;
 using test::soft_snapshot_of;
 
-constexpr int kWidth = 192, kHeight = 144;
-const Viewpoint kSlanted{.eye = {1.6, 2.0, 3.4}, .target = {0, 0.45, 0}};
+constexpr int kSkinWidth = 192, kSkinHeight = 144;
+const Viewpoint kSkinSlanted{.eye = {1.6, 2.0, 3.4}, .target = {0, 0.45, 0}};
 
 // Squeezed from above, bulging, and twisted about the vertical.
 vec3 squeezed(vec3 p) {
@@ -97,9 +97,9 @@ TEST(Skin, ASqueezedBlockLooksAsItDidWhenSomebodyLooked) {
   const World world = block_on_floor();
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image rest = renderer->picture(kSlanted, kWidth, kHeight);
+  const Image rest = renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight);
   renderer->update(soft_snapshot_of(world, squeezed));
-  expect_golden("skin", renderer->picture(kSlanted, kWidth, kHeight), rest);
+  expect_golden("skin", renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight), rest);
 }
 
 TEST(Skin, ABlockThatDidNotMoveLooksLikeTheSameBlockAtRest) {
@@ -107,9 +107,9 @@ TEST(Skin, ABlockThatDidNotMoveLooksLikeTheSameBlockAtRest) {
   const World world = block_on_floor();
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
-  const Image rest = renderer->picture(kSlanted, kWidth, kHeight);
+  const Image rest = renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight);
   renderer->update(soft_snapshot_of(world, [](vec3 p) { return p; }));
-  EXPECT_LT(perceived_difference(rest, renderer->picture(kSlanted, kWidth, kHeight)), 0.1);
+  EXPECT_LT(perceived_difference(rest, renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight)), 0.1);
 }
 
 TEST(Skin, ThatMovesAsAWholeLooksLikeARigidBodyThere) {
@@ -124,9 +124,10 @@ TEST(Skin, ThatMovesAsAWholeLooksLikeARigidBodyThere) {
   snapshot.objects[0].normal.clear();
   snapshot.objects[0].pose = pose;
   rigid->update(snapshot);
-  const Image a = skin->picture(kSlanted, kWidth, kHeight), b = rigid->picture(kSlanted, kWidth, kHeight);
+  const Image a = skin->picture(kSkinSlanted, kSkinWidth, kSkinHeight),
+              b = rigid->picture(kSkinSlanted, kSkinWidth, kSkinHeight);
   EXPECT_LT(perceived_difference(a, b), 0.1);
-  EXPECT_GT(perceived_difference(a, renderer_for(world)->picture(kSlanted, kWidth, kHeight)), 2.0);
+  EXPECT_GT(perceived_difference(a, renderer_for(world)->picture(kSkinSlanted, kSkinWidth, kSkinHeight)), 2.0);
 }
 
 TEST(Skin, ItsShadowGoesWhereItGoes) {
@@ -137,17 +138,18 @@ TEST(Skin, ItsShadowGoesWhereItGoes) {
   const Viewpoint above{.eye = {0, 6, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}};
   // Red of the floor at (x, 0, z).
   auto floor_at = [&](const Image& image, double x, double z) {
-    const double metre = kHeight / 2 / std::tan(0.5 * above.yfov) / above.eye.y;
-    const auto column = static_cast<int>(kWidth / 2 + metre * x), row = static_cast<int>(kHeight / 2 + metre * z);
-    return int{image.rgba[4 * static_cast<std::size_t>(row * kWidth + column)]};
+    const double metre = kSkinHeight / 2 / std::tan(0.5 * above.yfov) / above.eye.y;
+    const auto column = static_cast<int>(kSkinWidth / 2 + metre * x),
+               row = static_cast<int>(kSkinHeight / 2 + metre * z);
+    return int{image.rgba[4 * static_cast<std::size_t>(row * kSkinWidth + column)]};
   };
   // The lamp stands at (-1, 0.9, 0.3): a point at height y throws its shadow (y / 0.9) (1, -0.3) further.
   renderer->update(soft_snapshot_of(world, [](vec3 p) { return p; }));
-  const Image low = renderer->picture(above, kWidth, kHeight);
+  const Image low = renderer->picture(above, kSkinWidth, kSkinHeight);
   renderer->update(soft_snapshot_of(world, [](vec3 p) { return p * vec3(1, 0.3f, 1); }));
-  const Image flat = renderer->picture(above, kWidth, kHeight);
+  const Image flat = renderer->picture(above, kSkinWidth, kSkinHeight);
   renderer->options().shadows = false;
-  const Image none = renderer->picture(above, kWidth, kHeight);
+  const Image none = renderer->picture(above, kSkinWidth, kSkinHeight);
   const double far = 0.5 + 0.7 / 0.9, z = -0.3 * 0.7 / 0.9;  // in the shadow of the block at rest, not of the flat one
   EXPECT_LT(floor_at(low, far, z), floor_at(none, far, z) - 20);
   EXPECT_NEAR(floor_at(flat, far, z), floor_at(none, far, z), 4);
@@ -160,8 +162,8 @@ TEST(Skin, IsPickedWhereItIs) {
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
   renderer->update(soft_snapshot_of(world, [](vec3 p) { return p + vec3(0, 0, 0.8f); }));
-  renderer->pick({kWidth / 2.0, kHeight / 2.0, kWidth, kHeight});
-  renderer->picture({.eye = {0, 0.5, 5}, .target = {0, 0.5, 0}}, kWidth, kHeight);
+  renderer->pick({kSkinWidth / 2.0, kSkinHeight / 2.0, kSkinWidth, kSkinHeight});
+  renderer->picture({.eye = {0, 0.5, 5}, .target = {0, 0.5, 0}}, kSkinWidth, kSkinHeight);
   const std::optional<PickAnswer> answer = renderer->picked(true);
   ASSERT_TRUE(answer && answer->seen);
   EXPECT_LT(length(answer->seen->point - dvec3(0, 0.5, 1.3)), 1e-5);
@@ -174,15 +176,15 @@ TEST(Skin, SixteenBytesAVertexTravelAndNoneWhileItStandsStill) {
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);
   FrameStats stats;
-  renderer->picture(kSlanted, kWidth, kHeight, &stats);
+  renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);
   const std::uint64_t constants = stats.upload_bytes;
   renderer->update(soft_snapshot_of(world, squeezed));
-  renderer->picture(kSlanted, kWidth, kHeight, &stats);  // and the placement, which now says that it rides
+  renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);  // and the placement, which now says that it rides
   EXPECT_EQ(stats.upload_bytes - constants, 16u * 6 * 17 * 17 + 144u);
   renderer->update(soft_snapshot_of(world, squeezed));
-  renderer->picture(kSlanted, kWidth, kHeight, &stats);
+  renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);
   EXPECT_EQ(stats.upload_bytes - constants, 16u * 6 * 17 * 17);
-  renderer->picture(kSlanted, kWidth, kHeight, &stats);
+  renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);
   EXPECT_EQ(stats.upload_bytes, constants);
 }
 
@@ -193,12 +195,12 @@ TEST(Skin, OfAnotherBodyThanTheLevelsIsLeftOut) {
   ASSERT_TRUE(renderer);
   SoftSnapshot snapshot = soft_snapshot_of(world, squeezed);
   snapshot.objects[0].position.pop_back();  // not whole: drawn at rest, by its pose
-  const Image rest = renderer->picture(kSlanted, kWidth, kHeight);
+  const Image rest = renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight);
   renderer->update(snapshot);
-  EXPECT_EQ(renderer->picture(kSlanted, kWidth, kHeight).rgba, rest.rgba);
+  EXPECT_EQ(renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight).rgba, rest.rgba);
   snapshot.objects[0].object = kNoEntity;
   renderer->update(snapshot);
-  EXPECT_EQ(renderer->picture(kSlanted, kWidth, kHeight).rgba, rest.rgba);
+  EXPECT_EQ(renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight).rgba, rest.rgba);
 }
 
 }  // namespace

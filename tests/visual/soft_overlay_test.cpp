@@ -13,7 +13,7 @@ namespace {
 
 using test::renderer_for;
 
-constexpr int kWidth = 192, kHeight = 144;
+constexpr int kOverlayWidth = 192, kOverlayHeight = 144;
 const Viewpoint kNear{.eye = {0.5, 1.9, 1.5}, .target = {0, 1, 0}};
 const Viewpoint kSlanted{.eye = {1.6, 2.0, 3.4}, .target = {0, 0.45, 0}};
 
@@ -40,14 +40,14 @@ TEST(SoftOverlay, TetrahedraStandWhereTheNodesAre) {
   ASSERT_TRUE(renderer);
   renderer->update(test::soft_snapshot_of(world, leaning));
   FrameStats off, on, again;
-  const Image without = renderer->picture(kSlanted, kWidth, kHeight, &off);
+  const Image without = renderer->picture(kSlanted, kOverlayWidth, kOverlayHeight, &off);
   renderer->options().tetrahedra = true;
-  const Image with = renderer->picture(kSlanted, kWidth, kHeight, &on);
+  const Image with = renderer->picture(kSlanted, kOverlayWidth, kOverlayHeight, &on);
   test::expect_golden("tetrahedra", with, without);
-  renderer->picture(kSlanted, kWidth, kHeight, &again);
+  renderer->picture(kSlanted, kOverlayWidth, kOverlayHeight, &again);
   EXPECT_EQ(on.upload_bytes - again.upload_bytes, 27u * 12u) << "nodes travel once";
   renderer->options().tetrahedra = false;
-  EXPECT_EQ(renderer->picture(kSlanted, kWidth, kHeight).rgba, without.rgba);
+  EXPECT_EQ(renderer->picture(kSlanted, kOverlayWidth, kOverlayHeight).rgba, without.rgba);
 }
 
 TEST(SoftOverlay, ContactsShowTheirNormalsAndForces) {
@@ -62,17 +62,17 @@ TEST(SoftOverlay, ContactsShowTheirNormalsAndForces) {
   snapshot.contacts = {{{-0.3f, 1, 0}, {0, 1, 0}, {0, 0, 0}, false}, {{0.3f, 1, 0}, {0, 1, 0}, {0, 0, 0}, true}};
   snapshot.contact_count = 2;
   renderer->update(snapshot);
-  const Image without = renderer->picture(kNear, kWidth, kHeight);
+  const Image without = renderer->picture(kNear, kOverlayWidth, kOverlayHeight);
   renderer->options().contacts = true;
-  const Image normals = renderer->picture(kNear, kWidth, kHeight);
+  const Image normals = renderer->picture(kNear, kOverlayWidth, kOverlayHeight);
   EXPECT_GT(leading(normals, 1, without), 2) << "what sticks is green";
   EXPECT_GT(leading(normals, 0, without), 2) << "what slides is red";
   snapshot.contacts[0].force = {0, 2, 0};
   renderer->update(snapshot);
-  EXPECT_GT(test::perceived_difference(normals, renderer->picture(kNear, kWidth, kHeight)), 0.05);
+  EXPECT_GT(test::perceived_difference(normals, renderer->picture(kNear, kOverlayWidth, kOverlayHeight)), 0.05);
   snapshot.contact_count = 0;
   renderer->update(snapshot);
-  EXPECT_EQ(renderer->picture(kNear, kWidth, kHeight).rgba, without.rgba);
+  EXPECT_EQ(renderer->picture(kNear, kOverlayWidth, kOverlayHeight).rgba, without.rgba);
 }
 
 TEST(SoftOverlay, MoreContactsThanThereIsRoomForAreCutShort) {
@@ -87,7 +87,7 @@ TEST(SoftOverlay, MoreContactsThanThereIsRoomForAreCutShort) {
   snapshot.handles.resize(9);  // of tools that this level does not have
   renderer->update(snapshot);
   FrameStats stats;
-  renderer->picture(kSlanted, kWidth, kHeight, &stats);
+  renderer->picture(kSlanted, kOverlayWidth, kOverlayHeight, &stats);
   EXPECT_LT(stats.upload_bytes, 3 * kMaxShownContacts * 64 + 4096);
 }
 
@@ -105,13 +105,14 @@ TEST(SoftOverlay, AHandleShowsItsFrameAndWhatHoldsIt) {
   mark.middle = mark.wanted = {0, 1.1f, 0};
   snapshot.handles = {mark};
   renderer->update(snapshot);
-  const Image without = renderer->picture(kNear, kWidth, kHeight);
+  const Image without = renderer->picture(kNear, kOverlayWidth, kOverlayHeight);
   renderer->options().handles = true;
-  const Image frame = renderer->picture(kNear, kWidth, kHeight);
+  const Image frame = renderer->picture(kNear, kOverlayWidth, kOverlayHeight);
   for (const int axis : {0, 1, 2}) EXPECT_GT(leading(frame, axis, without), 1) << axis;
   snapshot.handles[0].wanted = {-0.9f, 1.1f, 0};
   renderer->update(snapshot);
-  EXPECT_GT(test::perceived_difference(frame, renderer->picture(kNear, kWidth, kHeight)), 0.1) << "the coupling";
+  EXPECT_GT(test::perceived_difference(frame, renderer->picture(kNear, kOverlayWidth, kOverlayHeight)), 0.1)
+      << "the coupling";
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 TEST(Viewpoint, WithoutACameraEveryVertexIsInTheMiddleOfThePicture) {
   for (const vec3 scale : {vec3(1), vec3(1e-3f, 5e-3f, 1e-3f), vec3(300, 10, 20)}) {
@@ -46,7 +46,8 @@ TEST(Viewpoint, TheLevelsCameraIsTakenWhereItStandsAndLooks) {
   const Entity camera = world.registry.create();
   world.registry.add<Camera>(camera, {.yfov = 0.5f});
   // At (5, 0, 0), turned left by a quarter: looks along -X.
-  const mat4 placed = glm::translate(mat4(1), vec3(5, 0, 0)) * glm::rotate(mat4(1), 0.5f * float(kPi), vec3(0, 1, 0));
+  const mat4 placed =
+      glm::translate(mat4(1), vec3(5, 0, 0)) * glm::rotate(mat4(1), 0.5f * float(kHalfTurn), vec3(0, 1, 0));
   world.registry.add<WorldTransform>(camera, {placed});
   const Viewpoint view = default_viewpoint(world);
   EXPECT_LT(length(view.eye - dvec3(5, 0, 0)), 1e-6);
@@ -59,7 +60,7 @@ Panorama panorama_of(std::uint32_t width, vec3 (*radiance)(vec3)) {
   Panorama p{.name = "made", .width = width, .height = width / 2, .rgb = {}};
   for (std::uint32_t y = 0; y < p.height; ++y)
     for (std::uint32_t x = 0; x < p.width; ++x) {
-      const double azimuth = 2 * kPi * ((x + 0.5) / p.width - 0.5), polar = kPi * (y + 0.5) / p.height;
+      const double azimuth = 2 * kHalfTurn * ((x + 0.5) / p.width - 0.5), polar = kHalfTurn * (y + 0.5) / p.height;
       const vec3 c =
           radiance(vec3(std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)));
       p.rgb.insert(p.rgb.end(), {c.r, c.g, c.b});
@@ -74,9 +75,9 @@ TEST(Environment, IrradianceHasItsClosedFormForEveryDegreeOfTheHarmonics) {
       irradiance_of(panorama_of(256, [](vec3 d) { return vec3(1, 1 + 0.5f * d.x, d.y * d.y); }));
   for (const vec3 n : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), normalize(vec3(1, -2, 3))}) {
     const vec3 e = irradiance_on(c, n);
-    EXPECT_NEAR(e.r, kPi, 1e-3);
-    EXPECT_NEAR(e.g, kPi + 0.5 * 2 * kPi / 3 * n.x, 1e-3);
-    EXPECT_NEAR(e.b, kPi / 4 * (1 + double{n.y} * n.y), 1e-3);
+    EXPECT_NEAR(e.r, kHalfTurn, 1e-3);
+    EXPECT_NEAR(e.g, kHalfTurn + 0.5 * 2 * kHalfTurn / 3 * n.x, 1e-3);
+    EXPECT_NEAR(e.b, kHalfTurn / 4 * (1 + double{n.y} * n.y), 1e-3);
   }
 }
 

@@ -1,0 +1,138 @@
+// The panel of error budgets as a hand uses it, in a window that nobody sees.
+#include "content/level_file.h"
+#include "tests/editor/small_level.h"
+#include "tests/player/command.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant::testing {
+namespace {
+
+class BudgetWindowTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
+      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+    Level level = sheet_and_finger();
+    level.nodes[0].deformable->reach = 0.03;
+    level.meshes.push_back({"slab", {scenes::slab(6, 0.1, 0.05)}});
+    LevelNode slab;
+    slab.name = "slab";
+    slab.mesh = 1;
+    slab.soft_body.emplace();
+    slab.soft_body->young = 1e4;
+    slab.soft_body->rayleigh = {0.0, 0.01};
+    slab.soft_body->error = 0.8;
+    slab.local.translation.y = -0.2f;
+    level.nodes.push_back(slab);
+    for (const char* name : {"small.glb", "other.glb"}) ASSERT_TRUE(save_level(level, folder / name).ok());
+  }
+  Said edited(const std::string& script) const {
+    write_text(folder / "script.txt", script);
+    return pliant(
+        {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
+        // Displays' drivers leak, say leak sanitizers.
+        "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
+            " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+  }
+  Level saved() const {
+    Result<Level> level = load_level(folder / "small.glb");
+    EXPECT_TRUE(level.ok()) << level.error().message();
+    return level ? *std::move(level) : Level();
+  }
+};
+
+TEST_F(BudgetWindowTest, ASurfaceIsMeasuredForATypedBudgetAndWhatItChoosesIsUsedAndUndone) {
+  const Said said = edited(R"(
+click Tab/Error budget
+expect-no Error budget/Measure
+click Scene/sheet/row
+expect-no Error budget/No budget
+set Error budget/error 0.4
+click Error budget/Measure
+await Error budget/Use it
+expect Candidates/shape wendland, distance chord, reach 30 mm
+expect Points/shape wendland, distance chord, reach 30 mm
+move Points/shape wendland, distance chord, reach 30 mm
+screenshot measured.png
+click Error budget/Give it this budget
+click Error budget/Use it
+expect Error budget/Let the budget choose
+expect Error budget/No budget
+key Ctrl+Z
+expect Error budget/Use it
+key Ctrl+Shift+Z
+key Ctrl+S
+say Saved
+close
+)");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Level level = saved();
+  ASSERT_TRUE(level.nodes[0].deformable);
+  EXPECT_EQ(level.nodes[0].deformable->error, 0.4);
+  EXPECT_TRUE(level.nodes[0].stated.contains("deformable.shape"));
+  EXPECT_TRUE(level.nodes[0].stated.contains("deformable.distance"));
+  // What `pliant inspect --fit` says of the file is what was used, and nothing else is left to choose.
+  const Said fit = pliant({"inspect", "small.glb", "--fit", "--json"});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_NE(fit.out.find("the level itself says shape, distance"), std::string::npos) << fit.out;
+}
+
+TEST_F(BudgetWindowTest, ABudgetOfTheLevelIsEditedAndAnObjectThatChangedIsMeasuredAgain) {
+  const Said said = edited(R"(
+click Scene/slab/row
+click Tab/Error budget
+expect Error budget/No budget
+click Error budget/Measure
+await Error budget/Measure again 120
+set Error budget/error 2
+key Ctrl+S
+set Inspector/soft_body/poisson 0.3
+screenshot stale.png
+click Error budget/Measure again
+await Error budget/Use it 120
+click Error budget/Use it
+expect Error budget/Let the budget choose
+key Ctrl+S
+say Saved
+close
+)");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Level level = saved();
+  EXPECT_EQ(level.nodes[2].soft_body->error, 2.0);
+  EXPECT_EQ(level.nodes[2].soft_body->poisson, 0.3);
+  EXPECT_GT(level.nodes[2].soft_body->cell, 0.0);
+  EXPECT_TRUE(level.stated.contains("simulation.soft_step"));
+}
+
+TEST_F(BudgetWindowTest, NothingHappensWhereTheObjectOrTheDocumentGoesWhileItIsMeasured) {
+  const Said said = edited(R"(
+click Tab/Error budget
+click Scene/slab/row
+click Error budget/Measure
+click Error budget/Cancel
+expect Error budget/Measure
+click Error budget/Measure
+key Delete
+expect-no Scene/slab/row
+key Ctrl+Z
+click Scene/slab/row
+expect Error budget/Measure
+click Error budget/Measure
+click Scene/sheet/row
+expect Error budget/Cancel
+drop other.glb
+await Scene/slab/row
+click Scene/slab/row
+expect Error budget/Measure
+click Error budget/Measure
+click Tab/Console
+key Ctrl+N
+wait 0.2
+close
+)");
+  EXPECT_EQ(said.status, 0) << said.err;
+}
+
+}  // namespace
+}  // namespace pliant::testing

@@ -1,0 +1,127 @@
+// What an error budget chooses of a tool: how the touch clock makes its force, by a press of that very tool.
+#include <gtest/gtest.h>
+
+#include "content/level_file.h"
+#include "engine/choice/model_choice.h"
+#include "engine/choice/tool_press.h"
+#include "pliant/scene.h"
+#include "tests/scenes/scenes.h"
+
+namespace pliant {
+namespace {
+
+MeshData slab(double size, double thickness) {
+  const Primitive primitive = scenes::slab(6, size, thickness);
+  MeshData mesh;
+  mesh.position = primitive.position;
+  mesh.index = primitive.index;
+  return mesh;
+}
+
+// A pad of tissue under a rigid plate that a hand holds.
+Level pad_level(double error) {
+  Scene scene;
+  SoftBodyParameters body;
+  body.young = 2e4;
+  body.poisson = 0.4;
+  body.rayleigh = {0.0, 0.01};
+  body.cell = 0.0125;
+  body.error = error;
+  scene.add_soft_body("pad", slab(0.05, 0.02), body);
+  HandleParameters handle;
+  handle.box.add(vec3(-1, -0.006f, -1));
+  handle.box.add(vec3(1, 1, 1));
+  handle.translation = {1000.0, 10.0};
+  handle.max_force = 10.0;
+  EXPECT_TRUE(scene.add_handle("pad", handle));
+  return scene.level();
+}
+
+double difference(const std::vector<Vector6>& felt, const std::vector<Vector6>& truth) {
+  double off = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    off += (felt[i] - truth[i]).head<3>().squaredNorm();
+    size += (truth[i] - truth[0]).head<3>().squaredNorm();
+  }
+  return std::sqrt(off / size);
+}
+
+const ModelChoice* tool_of(const std::vector<ModelChoice>& choices) {
+  for (const ModelChoice& each : choices)
+    if (each.kind == "tool") return &each;
+  return nullptr;
+}
+
+TEST(ToolChoice, ThePressIsFeltAndContactsSolvedAgainComeToSoftStepsAtTheTouchRate) {
+  Level level = pad_level(0.1);
+  std::vector<Vector6> truth;
+  std::vector<double> errors;
+  for (const double step : {1.0 / 30, 1.0 / 100, 1.0 / 500}) {
+    level.simulation.soft_step = step;
+    ChoiceProgress progress;
+    auto press = ToolPress::make(level, 0);
+    ASSERT_TRUE(press) << press.error().message();
+    if (truth.empty()) truth = press->truth(progress)->wrench;  // the same for every soft step
+    const auto felt = press->touched(ToolForce::kContacts);
+    ASSERT_TRUE(felt);
+    EXPECT_GT(felt->contacts, 3);
+    errors.push_back(difference(felt->wrench, truth));
+  }
+  EXPECT_GT(truth.back()[1] - truth.front()[1], 0.2) << "[N] up, from the plate below";
+  EXPECT_LT(truth.back()[0], -0.02) << "[N] friction, against the way along the plate";
+  // Short steps leave what a tick and a soft step of the same length move a handle differently by.
+  EXPECT_LT(errors[1], errors[0]);
+  EXPECT_LT(errors[1], 0.05);
+  EXPECT_LT(errors[2], 0.05);
+}
+
+TEST(ToolChoice, ATightBudgetSolvesContactsAgainAndALooseOneHoldsTheForce) {
+  Level level = pad_level(1e-3);
+  level.simulation.soft_step = 1.0 / 50;  // said: the body's choice leaves it
+  const auto choices = choose_models(level);
+  ASSERT_TRUE(choices) << choices.error().message();
+  const ModelChoice* tool = tool_of(*choices);
+  ASSERT_TRUE(tool);
+  ASSERT_EQ(tool->tried.size(), 3u);
+  EXPECT_EQ(tool->within, tool->tried[tool->chosen].error <= 1e-3);
+  EXPECT_EQ(level.nodes[0].handle->force, ToolForce::kContacts) << tool->sentence();
+  EXPECT_EQ(cheapest_within(tool->tried, 10.0), 0u);
+  EXPECT_EQ(tool->tried[0].label.find("force held"), 0u) << tool->tried[0].label;
+  EXPECT_GT(tool->tried[2].cost, tool->tried[1].cost);
+  EXPECT_LT(tool->tried[2].error, 0.5 * tool->tried[0].error) << "contacts solved again against a held force";
+  // As measured by a press of one's own, to the bit.
+  ChoiceProgress progress;
+  auto press = ToolPress::make(level, 0);
+  ASSERT_TRUE(press);
+  const auto held = press->touched(ToolForce::kHeld);
+  const auto truth = press->truth(progress);
+  ASSERT_TRUE(truth && held);
+  EXPECT_NEAR(difference(held->wrench, truth->wrench), tool->tried[0].error, 1e-12);
+}
+
+TEST(ToolChoice, AStatedForceStaysAndARigidToolTakesTheLeastBudgetOfTheLevel) {
+  Scene scene;
+  DeformableParameters d;
+  d.reach = 0.03;
+  d.error = 0.7;
+  const Primitive sheet = scenes::sheet(20, 0.16);
+  MeshData mesh;
+  mesh.position = sheet.position;
+  mesh.index = sheet.index;
+  scene.add_surface("sheet", mesh, d, {.position = dvec3(0, -0.2, 0)});
+  scene.add_rigid_body("block", slab(0.04, 0.02));
+  ASSERT_TRUE(scene.add_handle("block"));
+  Level level = scene.level();
+  ASSERT_TRUE(set_key(level, "block.handle.force=linear"));
+  const auto choices = choose_models(level);
+  ASSERT_TRUE(choices) << choices.error().message();
+  const ModelChoice* tool = tool_of(*choices);
+  ASSERT_TRUE(tool);
+  EXPECT_EQ(tool->budget, 0.7);
+  ASSERT_EQ(tool->tried.size(), 1u);
+  EXPECT_EQ(level.nodes[1].handle->force, ToolForce::kLinear);
+  EXPECT_NE(tool->sentence().find("the level itself says force"), std::string::npos) << tool->sentence();
+}
+
+}  // namespace
+}  // namespace pliant
