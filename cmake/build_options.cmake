@@ -10,6 +10,14 @@ target_compile_options(pliant_options INTERFACE
 target_compile_options(pliant_options INTERFACE "$<BUILD_INTERFACE:-fno-math-errno;-fno-trapping-math>")
 # GCC 12 sees overlaps in std::string that cannot be (its bug 105651).
 target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>)
+# Twelve source files are compiled as one (CMAKE_UNITY_BUILD, set by the presets): most of the time of a small file goes
+# into the headers that it includes. A name in an unnamed namespace must then be unique within its library. What one file
+# names so is then outside the next, where a local of that name is no mistake: shadowing is looked for by the debug build,
+# file by file. GCC takes an unnamed namespace in an included file for one in a header.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(pliant_options INTERFACE
+    $<BUILD_INTERFACE:-Wno-shadow> $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>>)
+endif()
 # A driver's thread may have a function of its own that is called as the maker's loop is (Driver::run).
 target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:-Wno-overloaded-virtual>>)
 target_include_directories(pliant_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -23,9 +31,9 @@ if(PLIANT_SANITIZE)
   target_link_options(pliant_options INTERFACE -fsanitize=${PLIANT_SANITIZE})
   target_compile_definitions(pliant_options INTERFACE PLIANT_SANITIZED)
   if(PLIANT_SANITIZE MATCHES "undefined" AND NOT PLIANT_FUZZ)
-    # Checks of every pointer that is followed: they double the time that Eigen takes to compile, and what they find the
-    # address sanitizer mostly stops at too. Fuzzers, which compile little, keep them.
-    target_compile_options(pliant_options INTERFACE -fno-sanitize=null,object-size,alignment)
+    # Checks of every pointer that is followed or computed: they double the time that Eigen takes to compile, and what
+    # they find the address sanitizer mostly stops at too. Fuzzers, which compile little, keep them.
+    target_compile_options(pliant_options INTERFACE -fno-sanitize=null,object-size,alignment,pointer-overflow)
   endif()
 endif()
 if(PLIANT_FUZZ)
