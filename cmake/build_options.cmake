@@ -30,15 +30,24 @@ if(PLIANT_SANITIZE)
   target_compile_options(pliant_options INTERFACE -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(pliant_options INTERFACE -fsanitize=${PLIANT_SANITIZE})
   target_compile_definitions(pliant_options INTERFACE PLIANT_SANITIZED)
-  if(PLIANT_SANITIZE MATCHES "undefined" AND NOT PLIANT_FUZZ)
+  if(PLIANT_SANITIZE MATCHES "undefined")
     # Checks of every pointer that is followed or computed: they double the time that Eigen takes to compile, and what
-    # they find the address sanitizer mostly stops at too. Fuzzers, which compile little, keep them.
+    # they find the address sanitizer mostly stops at too.
     target_compile_options(pliant_options INTERFACE -fno-sanitize=null,object-size,alignment,pointer-overflow)
+    # What is found ends the program: nobody reads what a test that passes has printed.
+    target_compile_options(pliant_options INTERFACE -fno-sanitize-recover=undefined)
   endif()
 endif()
-if(PLIANT_FUZZ)
-  target_compile_options(pliant_options INTERFACE -fsanitize=fuzzer-no-link)
-endif()
+
+# Code that runs a few times, where the compiler's time weighs more than its own: tests, and under the sanitizers all that
+# stands around the engine.
+function(pliant_compile_fast target)
+  if(PLIANT_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)
+  else()
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+endfunction()
 
 # A library of one folder and its subfolders:
 #   pliant_library(NAME DEPENDS libraries... EXCEPT folders... ALSO other folders or files...)

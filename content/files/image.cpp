@@ -56,6 +56,39 @@ bool png_chunks_fit(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
+// Every Huffman table of a JPEG names at most 256 codes: stb_image writes beyond its own table otherwise. Segments are
+// walked as it walks them; what stands between two is a scan, in which 0xff means itself before 0 alone.
+bool jpeg_tables_fit(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint8_t kTables = 0xc4;
+  const auto byte = [&](std::size_t at) { return at < bytes.size() ? std::size_t{bytes[at]} : 0; };
+  for (std::size_t at = 2; at < bytes.size();) {
+    while (at < bytes.size() && bytes[at] != 0xff) ++at;
+    while (at < bytes.size() && bytes[at] == 0xff) ++at;
+    const std::size_t marker = byte(at++);
+    if (marker == 0 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // of a scan, or with nothing behind it
+    const std::size_t end = at + std::max<std::size_t>(2, byte(at) << 8 | byte(at + 1));
+    if (marker == kTables)
+      for (std::size_t table = at + 2; table < end;) {
+        std::size_t codes = 0;
+        for (std::size_t length = 1; length <= 16; ++length) codes += byte(table + length);
+        if (codes > 256) return false;
+        table += 17 + codes;
+      }
+    at = end;
+  }
+  return true;
+}
+
+// Whether the decoder may see it.
+bool is_sound(std::span<const std::uint8_t> bytes) {
+  switch (image_format(bytes)) {
+    case ImageFormat::kPng: return png_chunks_fit(bytes);
+    case ImageFormat::kJpeg: return jpeg_tables_fit(bytes);
+    case ImageFormat::kUnknown: return false;
+  }
+  return false;
+}
+
 struct FreePixels {
   void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
@@ -90,7 +123,7 @@ ImageFormat image_format(std::span<const std::uint8_t> bytes) {
 
 std::uint64_t decoded_size(std::span<const std::uint8_t> bytes) {
   int width = 0, height = 0, channels = 0;
-  if (image_format(bytes) == ImageFormat::kUnknown || bytes.size() > 0x7fffffff ||
+  if (bytes.size() > 0x7fffffff || !is_sound(bytes) ||
       !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
     return 0;
   return std::uint64_t{4} * static_cast<std::uint64_t>(std::max(width, 0)) *
@@ -101,8 +134,9 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   if (image_format(bytes) == ImageFormat::kUnknown)
     return Error{name, "is neither PNG nor JPEG; convert the picture to one of them"};
   if (bytes.size() > 0x7fffffff) return Error{name, "is too large a picture; use one below 2 GB"};
-  if (image_format(bytes) == ImageFormat::kPng && !png_chunks_fit(bytes))
-    return Error{name, "is a PNG that is cut off or damaged; save it again"};
+  if (!is_sound(bytes))
+    return Error{name, fmt::format("is a {} that is cut off or damaged; save it again",
+                                   image_format(bytes) == ImageFormat::kPng ? "PNG" : "JPEG")};
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) || width <= 0 || height <= 0)

@@ -267,7 +267,7 @@ Status study_fidelity(OutputFolder& out, bool quick, const Interrupt& interrupt)
   both.sentences = said;
   for (const auto& [part, what, error] : {std::tuple{"fidelity_force", "force error", &FidelityRow::force},
                                           std::tuple{"fidelity_surface", "surface error", &FidelityRow::surface}}) {
-    const ParetoTable one = table_of(rows, part, what, [error](const FidelityRow& row) { return row.*error; });
+    const ParetoTable one = table_of(rows, part, what, [error = error](const FidelityRow& row) { return row.*error; });
     if (const Status done = plot_pareto(out, part, one); !done) return done;
   }
   return write_study(out, both);

@@ -1,6 +1,9 @@
 #include "content/files/image.h"
 
 #include <gtest/gtest.h>
+#include <stb_image_write.h>
+
+#include <algorithm>
 
 namespace pliant::test {
 namespace {
@@ -33,6 +36,55 @@ TEST(Image, AHeaderThatClaimsImmenseSizeIsRefusedBeforeMemoryIsTaken) {
     const Result<Image> image = decode_image(png, "claims");
     ASSERT_FALSE(image.ok());
   }
+}
+
+Bytes gray_jpeg() {
+  Bytes jpeg;
+  const std::vector<std::uint8_t> pixels(16 * 16 * 3, 128);
+  stbi_write_jpg_to_func(
+      [](void* out, void* data, int size) {
+        const auto* begin = static_cast<const std::uint8_t*>(data);
+        static_cast<Bytes*>(out)->insert(static_cast<Bytes*>(out)->end(), begin, begin + size);
+      },
+      &jpeg, 16, 16, 3, pixels.data(), 90);
+  return jpeg;
+}
+
+Bytes with_segment(const Bytes& jpeg, const Bytes& segment) {  // right behind the start of the image
+  Bytes out = jpeg;
+  out.insert(out.begin() + 2, segment.begin(), segment.end());
+  return out;
+}
+
+// The decoder writes such a table beyond its own (stb_image 2.27, stbi__build_huffman).
+TEST(Image, AJpegWhoseHuffmanTableNamesMoreThan256CodesIsRefused) {
+  const Bytes jpeg = gray_jpeg();
+  ASSERT_TRUE(decode_image(jpeg, "gray").ok());
+  for (const int too_many : {1, 2, 255}) {
+    Bytes table = {0x00};  // of DC 0: 255 codes of 16 bits, and some of 15
+    table.resize(15, 0);
+    table.insert(table.end(), {static_cast<std::uint8_t>(too_many), 255});
+    Bytes segment = {0xff, 0xff, 0xc4, 0x02, 0x14};  // 2 + 17 + 513 bytes, behind a byte of padding
+    segment.insert(segment.end(), table.begin(), table.end());
+    Bytes full = segment;
+    full.resize(full.size() + 513, 0);
+    for (const Bytes& damaged : {full, segment}) {
+      const Result<Image> image = decode_image(with_segment(jpeg, damaged), "picture.jpg");
+      if (too_many == 1 && image.ok()) continue;  // 256: as many as there are
+      ASSERT_FALSE(image.ok()) << too_many;
+      if (too_many > 1)
+        EXPECT_EQ(image.error().message(), "picture.jpg: is a JPEG that is cut off or damaged; save it again");
+      EXPECT_EQ(decoded_size(with_segment(jpeg, damaged)) == 0, !image.ok());
+    }
+  }
+}
+
+TEST(Image, WhatLooksLikeATableInsideAnotherSegmentOfAJpegIsNone) {
+  Bytes note = {0xff, 0xe2, 0x00, 0x20, 0xff, 0xc4, 0x02, 0x14};
+  note.resize(2 + 0x20, 0xff);
+  const Result<Image> image = decode_image(with_segment(gray_jpeg(), note), "profile");
+  ASSERT_TRUE(image.ok()) << image.error().message();
+  EXPECT_NEAR(image->rgba[0], 128, 1);
 }
 
 TEST(Image, OtherFormatsAreRefusedByName) {

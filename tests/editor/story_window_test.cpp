@@ -9,7 +9,7 @@ namespace {
 class StoryWindowTest : public CommandTest {};
 
 TEST_F(StoryWindowTest, AnOrganBecomesALevelThatRuns) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PLIANT_SANITIZED
   GTEST_SKIP() << "pictures of an organ take longer under the sanitizer than a step of the story waits";
 #endif
   if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)

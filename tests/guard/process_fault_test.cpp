@@ -134,7 +134,7 @@ TEST(ProcessFault, AStoppedProcessIsZeroedByItsGuardProcessAndTripsWhenItGoesOn)
 }
 
 // Sanitizers have handlers of their own.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef PLIANT_SANITIZED
 void expect_zero_at_death(const std::function<void(Servo&)>& death, int signal) {
   Child child;
   start(child, false, death);

@@ -168,7 +168,7 @@ const Contact& Stage::contact(Entity probe, std::size_t object) const {
     if (contact.probe == probe && i++ == object) return contact;
   static const Contact none;
   if (i == 0) return none;  // nothing is touched
-  ASSERT(!"no such contact");
+  ASSERT(false && "no such contact");
   std::abort();
 }
 

@@ -141,7 +141,7 @@ void ToolStage::lead(Entity tool, dvec3 to, double seconds, const std::function<
 Body& ToolStage::body(Entity entity) {
   for (const std::unique_ptr<Body>& candidate : soft().bodies)
     if (candidate->entity == entity) return *candidate;
-  ASSERT(!"no such body");
+  ASSERT(false && "no such body");
   std::abort();
 }
 

@@ -132,7 +132,7 @@ TEST(Coupling, StiffnessIsTheForcesDerivativeToSecondOrder) {
                         return std::abs(angular(along).x * change(h)[3] + angular(along).y * change(h)[4] +
                                         angular(along).z * change(h)[5]);
                       },
-                      0.1),
+                      0.02),
                   2.0, 0.2);
     }
 }

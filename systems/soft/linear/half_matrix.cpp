@@ -1,6 +1,7 @@
 #include "systems/soft/linear/half_matrix.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "runtime/kernel.h"
 
@@ -35,17 +36,22 @@ std::vector<std::uint32_t> cuthill_mckee(const BlockMatrix& a) {
 template <class Scalar>
 inline __attribute__((always_inline)) void multiply_half(const HalfPattern& pattern, const HalfMatrix<Scalar>& a,
                                                          const Scalar* x, Scalar* y) {
-  typedef Scalar Pack __attribute__((vector_size(4 * sizeof(Scalar)), aligned(sizeof(Scalar)), may_alias));
-  const auto at = [](const Scalar* p) { return reinterpret_cast<const Pack*>(p); };
+  typedef Scalar Pack __attribute__((vector_size(4 * sizeof(Scalar))));
+  const auto load = [](Pack& four, const Scalar* p) { std::memcpy(&four, p, sizeof four); };  // from any address
   for (std::uint32_t row = 0; row < pattern.size(); ++row) {
-    const Pack own = *at(x + 4 * row);
+    Pack own, d0, d1, d2;
+    load(own, x + 4 * row);
     const Scalar* d = a.diagonal.data() + 9 * row;
-    Pack sum0 = *at(d) * own, sum1 = *at(d + 3) * own, sum2 = *at(d + 6) * own;
+    load(d0, d), load(d1, d + 3), load(d2, d + 6);
+    Pack sum0 = d0 * own, sum1 = d1 * own, sum2 = d2 * own;
     for (std::uint32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
       const Scalar* const b = a.block.data() + 9 * k;
-      const Pack b0 = *at(b), b1 = *at(b + 3), b2 = *at(b + 6), other = *at(x + 4 * pattern.column[k]);
+      Pack b0, b1, b2, other, there;
+      load(b0, b), load(b1, b + 3), load(b2, b + 6), load(other, x + 4 * pattern.column[k]);
       sum0 += b0 * other, sum1 += b1 * other, sum2 += b2 * other;
-      *reinterpret_cast<Pack*>(y + 4 * pattern.column[k]) += (b0 * own[0] + b1 * own[1]) + b2 * own[2];
+      load(there, y + 4 * pattern.column[k]);
+      there += (b0 * own[0] + b1 * own[1]) + b2 * own[2];
+      std::memcpy(y + 4 * pattern.column[k], &there, sizeof there);
     }
     Scalar* const out = y + 4 * row;
     out[0] = (sum0[0] + sum0[1]) + sum0[2];

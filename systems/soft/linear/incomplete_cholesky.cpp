@@ -3,16 +3,20 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cstring>
 
 namespace pliant {
 namespace {
 
-typedef float Pack __attribute__((vector_size(16), aligned(4), may_alias));
-const Pack& at(const float* p) {
-  return *reinterpret_cast<const Pack*>(p);
+// Four floats in a register. They stand at any address: a reference would promise one that is a multiple of 16.
+typedef float Pack __attribute__((vector_size(16)));
+Pack at(const float* p) {
+  Pack four;
+  std::memcpy(&four, p, sizeof four);
+  return four;
 }
-Pack& at(float* p) {
-  return *reinterpret_cast<Pack*>(p);
+void put(float* p, Pack four) {
+  std::memcpy(p, &four, sizeof four);
 }
 
 // Inverse of a symmetric block; false unless it is positive definite and finite.
@@ -92,14 +96,15 @@ void IncompleteCholesky::apply(const HalfPattern& pattern, const float* r, float
   std::vector<float>& u = rest_;
   u.assign(4 * pattern.size(), 0.0f);
   for (std::uint32_t i = pattern.size(); i-- > 0;) {
-    Pack own{};
-    times(inverse_.data() + 9 * i, reinterpret_cast<float*>(&own), at(u.data() + 4 * i));
-    own = at(z + 4 * i) - own;
+    float change[4] = {};
+    times(inverse_.data() + 9 * i, change, at(u.data() + 4 * i));
+    Pack own = at(z + 4 * i) - at(change);
     own[3] = 0;
-    at(z + 4 * i) = own;
+    put(z + 4 * i, own);
     for (std::uint32_t k = pattern.first[i]; k < pattern.first[i + 1]; ++k) {
       const float* const b = block_.data() + 9 * k;
-      at(u.data() + 4 * pattern.column[k]) += (at(b) * own[0] + at(b + 3) * own[1]) + at(b + 6) * own[2];
+      float* const there = u.data() + 4 * pattern.column[k];
+      put(there, at(there) + ((at(b) * own[0] + at(b + 3) * own[1]) + at(b + 6) * own[2]));
     }
   }
 }

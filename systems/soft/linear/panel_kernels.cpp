@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 // Every kernel is compiled for plain x86-64 and for AVX2, and picks when it is called: GCC's own picking among versions
 // of one name works only for callers that see them all, and gives everybody else the plain one. AVX-512 was no faster
@@ -36,7 +37,6 @@ namespace {
 template <int kBytes>
 struct Machine {
   typedef double Pack __attribute__((vector_size(kBytes), may_alias));
-  typedef double Loose __attribute__((vector_size(kBytes), may_alias, aligned(8)));  // the same where none is aligned
   static constexpr int kLanes = kBytes / 8;
   static constexpr int kPacks = kStrip / kLanes;  // packs in a strip
   static constexpr int kGroup = kBytes / 8;  // columns of a tile summed at a time: as many as sixteen registers allow
@@ -52,7 +52,6 @@ PLIANT_INLINE void add_products(const double* a, const double* b, int length, in
                                 int width = kStrip, int step = kStrip) {
   using M = Machine<kBytes>;
   using Pack = typename M::Pack;
-  using Loose = typename M::Loose;
   constexpr int kRun = kRead == Read::kRow ? 1 : kStrip, kNext = kRead == Read::kRow ? 1 : kStrip;
   for (int group = 0; group < width; group += M::kGroup) {
     Pack sum[M::kGroup][M::kPacks];
@@ -63,7 +62,8 @@ PLIANT_INLINE void add_products(const double* a, const double* b, int length, in
     for (int p = 0; p < length; p += kRun, scalar += stride)
       for (int run = 0; run < kRun; ++run)
         for (int l = 0; l < M::kPacks; ++l) {
-          const Pack strip = *reinterpret_cast<const Loose*>(a + (p + run) * step + l * M::kLanes);
+          Pack strip;  // at any address
+          std::memcpy(&strip, a + (p + run) * step + l * M::kLanes, sizeof strip);
           for (int j = 0; j < M::kGroup; ++j) sum[j][l] += strip * scalar[j * kNext + run];
         }
     for (int j = 0; j < M::kGroup; ++j)
