@@ -82,9 +82,12 @@ bool jpeg_tables_fit(std::span<const std::uint8_t> bytes) {
 // Whether the decoder may see it.
 bool is_sound(std::span<const std::uint8_t> bytes) {
   switch (image_format(bytes)) {
-    case ImageFormat::kPng: return png_chunks_fit(bytes);
-    case ImageFormat::kJpeg: return jpeg_tables_fit(bytes);
-    case ImageFormat::kUnknown: return false;
+    case ImageFormat::kPng:
+      return png_chunks_fit(bytes);
+    case ImageFormat::kJpeg:
+      return jpeg_tables_fit(bytes);
+    case ImageFormat::kUnknown:
+      return false;
   }
   return false;
 }
