@@ -34,6 +34,8 @@ if(PLIANT_SANITIZE)
     # Checks of every pointer that is followed or computed: they double the time that Eigen takes to compile, and what
     # they find the address sanitizer mostly stops at too.
     target_compile_options(pliant_options INTERFACE -fno-sanitize=null,object-size,alignment,pointer-overflow)
+    # A maker's library is called through types of ours, which are not the ones that it was compiled with.
+    target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=function>>)
     # What is found ends the program: nobody reads what a test that passes has printed.
     target_compile_options(pliant_options INTERFACE -fno-sanitize-recover=undefined)
   endif()
