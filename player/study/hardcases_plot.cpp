@@ -45,6 +45,7 @@ void draw_row(Pen& pen, double y, const JudgedCase& each) {
     pen.line(across(each.figure.low() / each.hard.bound), y + 11, across(each.figure.high() / each.hard.bound), y + 11,
              3);
   }
+  pen.color(color);
   pen.text(kFigures, y + 16, 14, 0, name_of(each.verdict()), true);
   pen.color(kInk);
   if (each.figure.is_absent()) return;

@@ -381,7 +381,7 @@ std::vector<HardCase> hard_places() {
       {"AProbeLedFromVertexToVertexFeelsTheSphere", kVertexOrEdge,
        "400 lines between neighbours of 866 vertices, 3 mm deep: the force of the sphere", "of it [1]", 0.02,
        from_vertex_to_vertex},
-      {"ASphereOverTheCornersOfABoxAndAnOctahedronFeelsItsDistance", kVertexOrEdge,
+      {"ASphereOverCornersOfABoxAndAnOctahedronFeelsItsDistance", kVertexOrEdge,
        "led over corner, edges and sides, 3 mm deep: the law of its distance, along it", "of the law [1]", 1e-3,
        over_corners},
       {"UnderCornersTipsAndRidgesTheForceIsTheGradientOfTheEnergy", kVertexOrEdge,
