@@ -104,17 +104,13 @@ void Pen::upright_text(double x, double y, double size, const std::string& words
 }
 
 void Pen::as_pixels(double x, double y, double w, double h, const std::function<void(Pen&)>& draw) {
-  constexpr double kFine = 2.0;
   if (cairo_surface_get_type(surface_) == CAIRO_SURFACE_TYPE_IMAGE) return draw(*this);
-  Pen picture(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, static_cast<int>(std::ceil(kFine * w)),
-                                         static_cast<int>(std::ceil(kFine * h))));
-  cairo_scale(picture.cairo_, kFine, kFine);
+  Pen picture(
+      cairo_image_surface_create(CAIRO_FORMAT_ARGB32, static_cast<int>(std::ceil(w)), static_cast<int>(std::ceil(h))));
   cairo_translate(picture.cairo_, -x, -y);
   draw(picture);
   cairo_save(cairo_);
-  cairo_translate(cairo_, x, y);
-  cairo_scale(cairo_, 1 / kFine, 1 / kFine);
-  cairo_set_source_surface(cairo_, picture.surface_, 0, 0);
+  cairo_set_source_surface(cairo_, picture.surface_, x, y);
   cairo_paint(cairo_);
   cairo_restore(cairo_);
 }

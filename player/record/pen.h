@@ -41,8 +41,8 @@ class Pen {
   // Broken at blanks, so that no line is wider, unless one word is.
   std::vector<std::string> lines(double size, const std::string& words, double widest);
   void upright_text(double x, double y, double size, const std::string& words);
-  // In an SVG what is drawn there becomes a picture within it, two pixels a pixel: for marks so many that each as lines
-  // of text would make the file huge.
+  // In an SVG what is drawn there becomes a picture within it: for marks so many that each as lines of text would make
+  // the file huge.
   void as_pixels(double x, double y, double w, double h, const std::function<void(Pen&)>& draw);
   bool save(const std::filesystem::path& file);  // as a PNG: whole, or not at all
   bool finish();                                 // of an SVG: the file is whole

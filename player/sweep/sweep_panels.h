@@ -18,7 +18,7 @@ struct Figure {
   std::vector<double> of_row;  // NaN where a run has none
 };
 
-inline constexpr std::size_t kMostDots = 5000;  // of a panel: they cover it long before
+inline constexpr std::size_t kMostDots = 2000;  // of a panel, which they cover
 
 // Mean over the other axes at each step, and the range in which they lie; of samples every run is a dot.
 void draw_curve(Pen& pen, const PlotArea& area, const Figure& figure, const AxisValues& axis, bool sampled);

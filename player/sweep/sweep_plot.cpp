@@ -94,6 +94,7 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
   std::size_t done = 0;
   for (const SweepRow& row : table.rows) done += row.done();
   const std::string runs = fmt::format("; {} run{}", done, done == 1 ? "" : "s");
+  const std::string dots = done > kMostDots ? fmt::format("{} runs as dots, at most", kMostDots) : "every run";
   std::vector<AxisValues> along;
   std::vector<std::size_t> varied;
   for (std::size_t a = 0; a < table.axes.size(); ++a) {
@@ -104,7 +105,7 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
     if (plots == kMostCurves) break;
     const bool sampled = table.axes[a].sampled, alone = varied.size() == 1;
     const std::string subtitle = "along " + table.axes[a].name +
-                                 (sampled ? ": every run"
+                                 (sampled ? ": " + dots
                                   : alone ? ""
                                           : ": the mean over the other axes, and their range shaded") +
                                  runs;
@@ -124,7 +125,7 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
       for (const Figure& figure : figures)
         if (!is_flat(figure, along[a], along[b], sampled)) uneven.push_back(figure);
       if (uneven.empty()) continue;
-      const std::string subtitle = (sampled              ? "every run"
+      const std::string subtitle = (sampled              ? dots
                                     : varied.size() == 2 ? ""
                                                          : "the mean over the other axes") +
                                    (sampled || varied.size() > 2 ? runs : runs.substr(2));

@@ -692,7 +692,7 @@ TEST_F(Sweep, PlotsOfManySamplesAndAxesAreBoundedAndSaid) {
   const Said said = pliant({"sweep", "merge", "out", "--out", "m"});
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_NE(said.err.find("curves are along the first 10 of 12 axes; maps are of the first 10 of 66 pairs of axes; at "
-                          "most 5000 of 6000 runs are dots; results.csv has them all"),
+                          "most 2000 of 6000 runs are dots; results.csv has them all"),
             std::string::npos)
       << said.err;
   std::size_t pictures = 0;
