@@ -472,4 +472,14 @@ const Key* find_key(const Extension& extension, const std::string& name) {
   return nullptr;
 }
 
+const Key* find_key_of_path(const std::string& path) {
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
+    const std::size_t end = path.find('.', dot + 1);
+    if (end == std::string::npos) break;
+    const Extension* extension = find_extension(path.substr(dot + 1, end - dot - 1));
+    if (const Key* key = extension ? find_key(*extension, path.substr(end + 1)) : nullptr) return key;
+  }
+  return nullptr;
+}
+
 }  // namespace pliant
