@@ -21,15 +21,16 @@ Tick RealtimeClock::next() {
   // From the index: a period that is no whole number of nanoseconds adds up no error.
   const auto due = start_ + std::chrono::nanoseconds(std::llround(static_cast<double>(index_) * 1e9 / rate_));
   const auto now = clock::now();
+  std::uint64_t late = 0;
   if (now < due) {
     std::this_thread::sleep_until(due);
   } else {
-    const auto late = static_cast<std::uint64_t>(std::chrono::duration<double>(now - due).count() * rate_);
+    late = static_cast<std::uint64_t>(std::chrono::duration<double>(now - due).count() * rate_);
     overruns_ += late;
     index_ += late;
   }
   const double dt = 1.0 / rate_;
-  return {index_, dt, static_cast<double>(index_) * dt};
+  return {index_, dt, static_cast<double>(index_) * dt, static_cast<double>(late) * dt};
 }
 
 bool request_realtime_priority() {

@@ -12,6 +12,9 @@ struct Tick {
   std::uint64_t index = 0;  // 0, 1, 2, ...
   double dt = 1e-3;         // [s] length of the step
   double time = 0.0;        // [s] since the start, at the step's beginning
+  double skipped = 0.0;     // [s] of ticks before it that could not begin in time
+  // [s] Since the tick before: over which what comes from outside has moved.
+  double elapsed() const { return dt + skipped; }
 };
 
 // Virtual time.

@@ -94,7 +94,7 @@ void read_devices(World& world, Tick tick) {
     probe.previous_rotation = probe.placed ? probe.rotation : glm::normalize(device.rotation);
     probe.position = device.position;
     probe.rotation = glm::normalize(device.rotation);
-    probe.velocity = (probe.position - probe.previous) / tick.dt;
+    probe.velocity = (probe.position - probe.previous) / tick.elapsed();
     probe.placed = true;
     if (length(probe.position - probe.previous) > world.touch->extent) world.dropped |= kDroppedTravel;
   }
@@ -106,7 +106,7 @@ void write_devices(World& world, Tick tick) {
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
     soften(world, state.entity, device, state.safety);
     SafetyLimits limits = force_limits(device);
-    limits.carried = surface_displacement(world, state.entity, tick.dt);
+    limits.carried = surface_displacement(world, state.entity, tick.elapsed());
     const ToolTouchState* const among_bodies = find_tool(world, state.entity);
     const dvec3 pressed =
         state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0)));

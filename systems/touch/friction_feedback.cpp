@@ -105,7 +105,7 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
   const double damping = painted(place, mesh, mesh.damping_factor).value;
   const double c = damping * (deformable.contact_damping_material ? object.motion.damping * deformable.stiffness
                                                                   : deformable.contact_damping);
-  const double rate = (contact.previous_height - contact.height) / tick.dt;
+  const double rate = (contact.previous_height - contact.height) / tick.elapsed();
   const double damped = std::max(-normal, loaded.share * c * rate);
   normal += damped;
   dvec3 force = loaded.force + (along > 0 ? damped / along : 0.0) * place.gradient;
@@ -119,14 +119,14 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
   const dvec3 at = tip_position(probe, tip);
   // Friction in the tangent plane of this tick; the deflection is carried over from the last one's.
   const dvec3 moving =
-      (at - tip_position_before(probe, tip)) / tick.dt - surface_velocity(registry, contact.object, at);
+      (at - tip_position_before(probe, tip)) / tick.elapsed() - surface_velocity(registry, contact.object, at);
   const dvec3 velocity = glm::conjugate(pose.rotation) * moving;
   const double factor = painted(place, mesh, mesh.friction_factor).value;
   const double K = kBristleStiffness * deformable.stiffness * pressing.stiffness.value, B = K * kBristleDampingTime;
   Bristle bristle{contact.bristle - dot(contact.bristle, contact.normal) * contact.normal, contact.sliding};
   force -= step_bristle(bristle, velocity - dot(velocity, contact.normal) * contact.normal, K, B,
                         factor * deformable.friction_static * normal, factor * deformable.friction_sliding * normal,
-                        tick.dt);
+                        tick.elapsed());
   contact.bristle = bristle.deflection;
   contact.sliding = bristle.sliding;
   contact.force = pose.rotation * force;

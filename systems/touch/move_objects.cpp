@@ -103,7 +103,7 @@ void move_objects(World& world, Tick tick) {
     node.placed = true;
     node.time = tick.time;
     if (world.registry.has<Pose>(node.entity))
-      place_object(world, node, tick.dt);
+      place_object(world, node, tick.elapsed());
     else if (WorldTransform* transform = world.registry.find<WorldTransform>(node.entity))
       transform->matrix = mat4(node.world);
   }

@@ -66,6 +66,8 @@ TEST(RealtimeClock, NeverGoesBackAndSkipsWhatItMissed) {
   const Tick late = clock.next();
   ++asked;
   EXPECT_GE(late.index, last.index + 19);
+  EXPECT_NEAR(late.elapsed(), late.time - last.time, 1e-9);
+  EXPECT_EQ(last.elapsed() > last.dt, last.skipped > 0);
   EXPECT_EQ(late.index + 1, asked + clock.overruns()) << "every index was handed out or counted as an overrun";
 }
 

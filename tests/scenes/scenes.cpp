@@ -144,8 +144,9 @@ void Stage::place(Entity probe, dvec3 position) {
 
 void Stage::tick(double age) {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) device.sensed_at = time() - age;
-  schedule_.run(world, {ticks_, dt_, time()});
+  schedule_.run(world, {ticks_, dt_, time(), static_cast<double>(skipped_) * dt_});
   ++ticks_;
+  skipped_ = 0;
 }
 
 void Stage::move(Entity probe, dvec3 to, double seconds, const std::function<void(const ProbeReading&)>& each) {

@@ -40,7 +40,7 @@ class Stage {
   // `age` [s]: how old the poses are.
   void tick(double age = 0.0);
   // Ticks that do not run because the machine was late: index and time go on as those of RealtimeClock do.
-  void skip(std::uint64_t ticks) { ticks_ += ticks; }
+  void skip(std::uint64_t ticks) { ticks_ += ticks, skipped_ += ticks; }
   // Moves a probe along a straight line at constant speed for `seconds`, calling `each` after every tick.
   void move(Entity probe, dvec3 to, double seconds, const std::function<void(const ProbeReading&)>& each = {});
   void wait(double seconds);
@@ -59,7 +59,7 @@ class Stage {
 
  private:
   double dt_;
-  std::uint64_t ticks_ = 0;
+  std::uint64_t ticks_ = 0, skipped_ = 0;
   Schedule<World> schedule_;
 };
 

@@ -55,6 +55,35 @@ TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
   }
 }
 
+// Rates are over the time since the tick before, however many were skipped: else a late tick would feel a hand that
+// moved ten times as fast.
+TEST(Tick, AfterSkippedTicksRatesAreOverTheTimeThatPassed) {
+  for (const bool slides : {false, true}) {
+    const auto press = [&](bool late) {
+      Stage stage;
+      Deformable d;
+      d.reach = 0.04;
+      d.contact_damping = 5.0;
+      stage.add(scenes::sphere(16, 0.1), d);
+      const Entity probe = stage.add_probe({0, 0.101, 0});
+      stage.prepare();
+      const dvec3 way = slides ? dvec3(1e-4, -1e-5, 0) : dvec3(0, -1e-4, 0);  // [m] a tick
+      for (int i = 0; i < 60; ++i) {
+        stage.place(probe, dvec3(0, 0.099, 0) + double(i) * way);
+        if (late && i > 40 && i < 50) {
+          stage.skip(1);
+          continue;
+        }
+        stage.tick();
+        if (i == 50) break;
+      }
+      return stage.read(probe).force;
+    };
+    const dvec3 even = press(false), late = press(true);
+    EXPECT_LT(length(late - even), 0.02 * length(even)) << "slides: " << slides;
+  }
+}
+
 TEST(Tick, NeverAllocatesOverSeamsAndBehindCreases) {
   for (const FieldPlace place : {FieldPlace::kProcessor, FieldPlace::kGpu}) {
     for (const SpringLaw kind : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
