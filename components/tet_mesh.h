@@ -28,7 +28,8 @@ struct TetQuality {
 
 // How tetrahedra came out of a surface, for whoever looks at them before they are simulated. Zeros: from a file.
 struct TetReport {
-  double cell = 0.0;                  // [m] of the lattice
+  double cell = 0.0;                  // [m] of the lattice, in its focus where it has one
+  double coarsest = 0.0;              // [m] cell farthest from the focus; `cell` where there is none
   double wall = 0.0;                  // [m] median thickness of the thin wall that the surface is; 0: it is none
   std::uint32_t parts_dropped = 0;    // too small to keep
   double volume_dropped = 0.0;        // [1] share of the tissue that they were

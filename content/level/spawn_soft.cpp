@@ -197,9 +197,8 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
     const bool outer = filled && leave_out_covered(parts.surface, parts.tets, touched);
     const double longest = kLongestEdge * (focus ? kEdgeOverCell * parts.tets.report.cell : mean_edge(parts.tets));
-    const bool finer = refine(touched, to_object, [&](dvec3 at) {
-      return focus ? longest * focus->width(focus->inward(length(at - focus->center))) : longest;
-    });
+    const bool finer =
+        refine(touched, to_object, [&](dvec3 at) { return focus ? longest * focus->width_at(at) : longest; });
     if (outer || finer)
       if (Status s = build(touched, to_object); !s) return s.error();
   }

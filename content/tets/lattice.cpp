@@ -145,9 +145,12 @@ Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish) {
   mesh.tets = std::move(found->stuffing.tets);
   put_in_order(mesh, {});
   mesh.quality = measure_quality(mesh.nodes, mesh.tets);
-  mesh.report.cell = found->cell;
+  mesh.report.cell = mesh.report.coarsest = found->cell;
+  if (wish.focus)
+    for (const dvec3& node : mesh.nodes)
+      mesh.report.coarsest = std::max(mesh.report.coarsest, found->cell * wish.focus->width_at(node));
   report_wall(shape, wish.fill, wish.thickness, mesh.report);
-  report_thin_places(shape, region, total_volume(mesh), wish.cell > 0.0, mesh.report);
+  report_thin_places(shape, region, wish, mesh);
   return mesh;
 }
 

@@ -62,6 +62,8 @@ struct LatticeFocus {
     }
     return high;
   }
+  // [1] The same at a place in space.
+  double width_at(dvec3 place) const { return width(inward(length(place - center))); }
   dvec3 outward(dvec3 q) const { return center + axes * (q * width(length(q))); }
 
  private:

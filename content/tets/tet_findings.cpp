@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "content/tets/lattice.h"
+#include "content/tets/tet_quality.h"
 
 namespace pliant {
 namespace {
@@ -61,13 +61,14 @@ void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetRepo
         "is no thin wall, so \"fill\": \"wall\" changes nothing; give it a `thickness`, or leave `fill` out");
 }
 
-void report_thin_places(const SurfaceShape& shape, const FillRegion& region, double volume, bool named,
-                        TetReport& report) {
+void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeWish& wish, TetMesh& mesh) {
   if (shape.samples.empty()) return;
+  TetReport& report = mesh.report;
+  const double cells = wish.cell > 0.0 ? kThinCellsOfNamed : kThinCells;
+  const auto width_at = [&](dvec3 place) { return wish.focus ? wish.focus->width_at(place) : 1.0; };
   std::vector<std::pair<double, const ThicknessSample*>> thin;
   for (const ThicknessSample& sample : shape.samples)
-    if (const double t = region.thickness_at(sample);
-        t > 0.0 && t < (named ? kThinCellsOfNamed : kThinCells) * report.cell)
+    if (const double t = region.thickness_at(sample); t > 0.0 && t < cells * report.cell * width_at(sample.place))
       thin.emplace_back(t, &sample);
   report.thin = static_cast<double>(thin.size()) / static_cast<double>(shape.samples.size());
   if (report.thin < kThinShare) return;
@@ -76,12 +77,14 @@ void report_thin_places(const SurfaceShape& shape, const FillRegion& region, dou
   const auto& [least, at] = thin[thin.size() / 2];
   report.least_thickness = least;
   report.thinnest = vec3(at->place);
-  const double cell = least / kHeldCells;
+  const double width = width_at(at->place), cell = least / kHeldCells / width;
+  const double tets = wish.focus ? static_cast<double>(mesh.tets.size()) * std::pow(report.cell / cell, 3)
+                                 : kTetsPerCube * total_volume(mesh) / (cell * cell * cell);
   report.findings.push_back(fmt::format(
       "is thin over {:.0f} % of its surface, {} at ({:.3g}, {:.3g}, {:.3g}) m, for a cell of {}: it bends there as "
       "single elements do, or crumples; a `cell` of {:.2g} m holds it, with some {:.0f} tetrahedra",
-      1e2 * report.thin, length_text(least), at->place.x, at->place.y, at->place.z, length_text(report.cell), cell,
-      kTetsPerCube * volume / (cell * cell * cell)));
+      1e2 * report.thin, length_text(least), at->place.x, at->place.y, at->place.z, length_text(report.cell * width),
+      cell, tets));
 }
 
 void report_parts(std::uint32_t kept, std::uint32_t of_surface, TetReport& report) {

@@ -5,6 +5,7 @@
 
 #include "components/tet_mesh.h"
 #include "content/tets/fill_region.h"
+#include "content/tets/lattice.h"
 
 namespace pliant {
 
@@ -24,8 +25,8 @@ void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetRepo
 inline constexpr double kThinCells = 1.5, kThinCellsOfNamed = 1.0;  // [cells]
 inline constexpr double kHeldCells = 2.0;                           // [cells] across it hold a wall or an ear
 inline constexpr double kThinShare = 0.02;                          // [1] of the area: edges of every body have some
-void report_thin_places(const SurfaceShape& shape, const FillRegion& region, double volume, bool named,
-                        TetReport& report);
+// `mesh`: filled as `wish` says, its report's cell known.
+void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeWish& wish, TetMesh& mesh);
 
 // Parts that were dropped (tet_parts.h), and such as are still apart.
 void report_parts(std::uint32_t kept, std::uint32_t of_surface, TetReport& report);

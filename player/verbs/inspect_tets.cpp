@@ -39,11 +39,19 @@ OrderedJson describe(const TetMesh& mesh) {
           {"median_ratio", mesh.quality.median_ratio},
           {"bounds_m", {{"min", corner(box.min)}, {"max", corner(box.max)}}},
           {"cell_m", mesh.report.cell},
+          {"coarsest_cell_m", mesh.report.coarsest},
           {"wall_m", mesh.report.wall},
           {"parts_lost", mesh.report.parts_dropped},
           {"tissue_lost", mesh.report.volume_dropped},
           {"thin_share", mesh.report.thin},
           {"step_ms", step_ms(mesh.tets.size(), machine_slowness())}};
+}
+
+// "a cell of 2.1 cm, "; empty: from a file.
+std::string cells_text(double cell, double coarsest) {
+  if (!(cell > 0.0)) return "";
+  if (!(coarsest > cell)) return "a cell of " + length_text(cell) + ", ";
+  return "cells of " + length_text(cell) + " in its focus and up to " + length_text(coarsest) + " elsewhere, ";
 }
 
 // A level of the tissue alone: what else is in it takes its time, and its faults are not the tissue's.
@@ -100,7 +108,7 @@ void print_tissue(const OrderedJson& tissue) {
           body["smallest_dihedral_deg"].get<double>(), body["largest_dihedral_deg"].get<double>(),
           body["worst_ratio"].get<double>(), body["median_ratio"].get<double>());
     print("    {}about {:.2g} ms a soft step (an estimate)\n",
-          body["cell_m"].get<double>() > 0.0 ? "a cell of " + length_text(body["cell_m"].get<double>()) + ", " : "",
+          cells_text(body["cell_m"].get<double>(), body["coarsest_cell_m"].get<double>()),
           body["step_ms"].get<double>());
     for (const OrderedJson& problem : body.value("problems", OrderedJson::array()))
       print("    {}\n", problem.get<std::string>());

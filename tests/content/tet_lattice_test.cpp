@@ -277,7 +277,7 @@ TEST(TetFocus, FillsTheSameVolumeWithFineCellsWhereItIsAskedTo) {
       for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t k = i + 1; k < 4; ++k) {
           const dvec3 a = mesh->nodes[tet[i]], b = mesh->nodes[tet[k]];
-          const double width = wish.cell * focus.width(focus.inward(length(0.5 * (a + b) - center)));
+          const double width = wish.cell * focus.width_at(0.5 * (a + b));
           EXPECT_LT(length(b - a), 2.2 * width);
           if (length(0.5 * (a + b) - center) < 0.02) shortest = std::min(shortest, length(b - a));
         }
