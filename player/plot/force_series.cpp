@@ -183,9 +183,11 @@ Spectrum spectrum_of(const ForceSeries& s) {
     hann[i] = 0.5 - 0.5 * std::cos(2 * kPiOfWindow * static_cast<double>(i) / static_cast<double>(window));
     energy += hann[i] * hann[i];
   }
-  std::size_t windows = 0;
+  // Evenly from the first row to the last, each over half of the one before or more.
+  const std::size_t left = n - window, windows = 1 + (left + window / 2 - 1) / (window / 2);
   std::vector<std::complex<double>> part(window);
-  for (std::size_t begin = 0; begin + window <= n; begin += window / 2, ++windows) {
+  for (std::size_t k = 0; k < windows; ++k) {
+    const std::size_t begin = windows > 1 ? k * left / (windows - 1) : 0;
     double mean = 0.0;
     for (std::size_t i = 0; i < window; ++i) mean += s.normal[begin + i];
     mean /= static_cast<double>(window);

@@ -192,7 +192,7 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
   }
   // The table.
   double y = kTop + kHigh + 92;
-  constexpr double kFirst = 86, kColumn = 122;
+  constexpr double kFirst = 86, kColumn = 132;
   const double right = 1570;
   pen.color(kInk);
   for (std::size_t c = 0; c < std::size(kSummaryColumns); ++c)
@@ -207,7 +207,8 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
     pen.color(kInk);
     std::string name = all[i].name;
     while (name.size() > 4 && pen.width(13, name) > right - kColumn * (std::size(kSummaryColumns) - 1) - kFirst - 100)
-      name.erase(0, 1);
+      do name.erase(0, 1);
+      while (!name.empty() && (static_cast<unsigned char>(name[0]) & 0xc0) == 0x80);  // a whole character
     pen.text(kFirst, y, 13, 0, name.size() < all[i].name.size() ? ".." + name : name);
     for (std::size_t c = 0; c < std::size(kSummaryColumns); ++c)
       pen.text(right - kColumn * static_cast<double>(std::size(kSummaryColumns) - 1 - c), y, 13, 1.0,

@@ -93,6 +93,19 @@ TEST(PlotRuns, TheSpectrumHasTheToneAndItsPower) {
   EXPECT_NEAR(summary_of(s).fast, 0.2 / std::sqrt(2.0), 1e-3);
 }
 
+TEST(PlotRuns, TheSpectrumHasTheLastRowsToo) {
+  ForceSeries s;
+  for (int i = 0; i < 6000; ++i) {  // one whole window of 4096 and a part of one
+    s.time.push_back(i * 1e-3);
+    s.depth.push_back(0.001);
+    s.normal.push_back(i < 4500 ? 1.0 : 1.0 + 0.2 * std::sin(2 * M_PI * 125 * s.time.back()));
+  }
+  const Spectrum spectrum = spectrum_of(s);
+  const auto most = std::max_element(spectrum.density.begin(), spectrum.density.end());
+  EXPECT_NEAR(spectrum.frequency[static_cast<std::size_t>(most - spectrum.density.begin())], 125, 0.5);
+  EXPECT_GT(summary_of(s).fast, 0.02);
+}
+
 class PlotCommandTest : public CommandTest {};
 
 TEST_F(PlotCommandTest, RunsAreDrawnAndWhatDiffersIsSaid) {
