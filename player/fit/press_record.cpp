@@ -111,7 +111,7 @@ Status find_column(const std::vector<std::string>& heads, std::size_t q, const s
       unit.clear();
     }
     const auto known =
-        std::find_if(words.units.begin(), words.units.end(), [&](const Unit& u) { return unit == u.word; });
+        std::find_if(words.units.begin(), words.units.end(), [&word = unit](const Unit& u) { return u.word == word; });
     if (known == words.units.end()) {
       other.emplace_back(i, unit);
       continue;

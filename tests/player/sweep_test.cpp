@@ -718,8 +718,11 @@ TEST_F(Sweep, ASweepThatIsKilledTakesItsRunsWithIt) {
              "cd " + quoted(folder.string()) + "\n" + kNoRank + quoted(PLIANT_BINARY) +
                  " sweep plan.json --out out --jobs 2 >/dev/null 2>&1 &\npid=$!\n"
                  "runs() { grep -l -- \"$PWD/out/[.]work\" /proc/[0-9]*/cmdline 2>/dev/null | wc -l; }\n"
-                 "for i in $(seq 500); do [ $(runs) = 2 ] && break; sleep 0.01; done\n"
-                 "runs >before\nkill -9 $pid\nwait $pid 2>/dev/null\n"
+                 // The sweep's own children: a run's importer has the command line of its run.
+                 "own() { grep -l \"^PPid:.$pid$\" /proc/[0-9]*/status 2>/dev/null | sed s/status$/cmdline/ |\n"
+                 "  xargs -r grep -l -- \"$PWD/out/[.]work\" 2>/dev/null | wc -l; }\n"
+                 "for i in $(seq 500); do [ $(own) = 2 ] && break; sleep 0.01; done\n"
+                 "own >before\nkill -9 $pid\nwait $pid 2>/dev/null\n"
                  "for i in $(seq 500); do [ $(runs) = 0 ] && break; sleep 0.01; done\nruns >after\n");
   ASSERT_EQ(std::system(("bash " + quoted((folder / "kill.sh").string()) + " 2>/dev/null").c_str()), 0);
   EXPECT_EQ(read_text(folder / "before"), "2\n");
