@@ -89,9 +89,9 @@ std::string to_csv(const std::vector<JudgedCase>& cases) {
   return csv;
 }
 
-Status study_hardcases(OutputFolder& out, bool quick, const Interrupt& interrupt) {
+Status study_hardcases(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
   Progress progress("study hardcases");
-  const HardSetting setting{corpus_folder(), quick};
+  const HardSetting setting{corpus_folder(), size != StudySize::kFull};
   std::vector<JudgedCase> cases;
   for (const HardCase& hard : hard_cases()) {
     if (interrupt.requested()) return interrupted();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -99,7 +100,7 @@ WallCell measure(const WallFigures& figures, const DeviceProfile& profile, WallC
 }
 
 // Counts without friction, so that the balance says how fast a limit cycle may be.
-std::vector<WallCycle> measure_cycles() {
+std::vector<WallCycle> measure_cycles(double seconds) {
   std::vector<WallCycle> cycles;
   for (double K = 400.0; K <= 3600.0; K += 400.0) {
     WallLoop loop;
@@ -107,7 +108,7 @@ std::vector<WallCycle> measure_cycles() {
     loop.wall = {K, 0.0};
     loop.both_ways = true;
     loop.push = 20.5 * K * loop.plant.encoder;  // between two counts: no force of the wall holds it at rest
-    const WallResult result = run_wall(loop, {.depth = 1.013e-3}, 4.0);
+    const WallResult result = run_wall(loop, {.depth = 1.013e-3}, seconds);
     cycles.push_back({K, balance(loop.plant, K).speed, result.speed, result.amplitude});
   }
   return cycles;
@@ -206,7 +207,7 @@ Result<WallFigures> measure_walls(std::size_t stiffnesses, std::size_t dampings,
         for (const double K : figures.stiffnesses) figures.cells.push_back({model, delay, {K, B}});
   Progress progress("study walls");
   for (std::size_t begin = 0; begin < figures.cells.size(); begin += 64) {
-    if (interrupt.requested()) return Error{"study walls", "interrupted; nothing was written"};
+    if (interrupt.requested()) return interrupted();
     const std::size_t count = std::min<std::size_t>(64, figures.cells.size() - begin);
     parallel_for(count, 4, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = begin + from; i < begin + to; ++i)
@@ -219,22 +220,23 @@ Result<WallFigures> measure_walls(std::size_t stiffnesses, std::size_t dampings,
     ++figures.compared;
     figures.agree += (c.result.verdict == Verdict::kStable) == c.linear_stable;
   }
-  figures.cycles = measure_cycles();
+  figures.cycles = measure_cycles(std::min(4.0, 4.0 * seconds));
   return figures;
 }
 
-Status study_walls(OutputFolder& out, bool quick, const Interrupt& interrupt) {
-  const auto figures = quick ? measure_walls(24, 13, 1.0, interrupt) : measure_walls(48, 25, 4.0, interrupt);
+Status study_walls(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
+  const auto figures = size == StudySize::kFull    ? measure_walls(48, 25, 4.0, interrupt)
+                       : size == StudySize::kQuick ? measure_walls(24, 13, 1.0, interrupt)
+                                                   : measure_walls(6, 3, 0.25, interrupt);
   if (!figures) return figures.error();
   const std::vector<std::string> sentences = explain_figures(*figures);
-  for (const std::string& sentence : sentences) print("walls: {}\n", sentence);
+  for (const std::string& sentence : sentences) print("{}\n", sentence);
   for (const WallCycle& c : figures->cycles)
     print("  counts alone, {:>5.0f} N/m: limit cycle {:.4f} m/s, balance allows {:.4f} m/s\n", c.stiffness, c.speed,
           c.predicted);
   if (const Status s = write_text(out, "walls.csv", to_csv(*figures)); !s) return s;
-  if (const Status s = write_text(out, "walls.json", to_json(*figures, sentences).dump(2, ' ', true) + "\n"); !s)
-    return s;
-  return plot_walls(out.stage("walls.png"), out.stage("walls.svg"), *figures);
+  if (const Status s = write_json(out, "walls.json", to_json(*figures, sentences)); !s) return s;
+  return plot_walls(out, *figures, sentences);
 }
 
 }  // namespace pliant

@@ -47,8 +47,7 @@ struct WallFigures {
 // `many` stiffnesses. Deterministic, whatever the number of threads.
 Result<WallFigures> measure_walls(std::size_t stiffnesses, std::size_t dampings, double seconds,
                                   const Interrupt& interrupt);
-Status plot_walls(const std::filesystem::path& png, const std::filesystem::path& svg, const WallFigures& figures);
-
-// walls.csv, walls.json, walls.png, walls.svg.
+// walls.svg and walls.png.
+Status plot_walls(OutputFolder& out, const WallFigures& figures, const std::vector<std::string>& sentences);
 
 }  // namespace pliant

@@ -9,7 +9,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kWallsWidth = 1600, kWallsHeight = 1360;  // [pixel]
+constexpr double kWallsWidth = 1600, kWallsFoot = 1400;              // [pixel]
+constexpr double kWallsText = 20, kWallsTick = 18, kWallsLine = 27;  // [pixel]
 constexpr Color kGoodColor{0.80, 0.91, 0.84}, kRings{0.98, 0.80, 0.42}, kGoneColor{0.86, 0.52, 0.40},
     kDark{0.75, 0.80, 0.88};
 
@@ -74,17 +75,18 @@ class Map {
     cairo_set_line_width(pen.get(), 1.5);
     cairo_rectangle(pen.get(), area_.x, area_.y, area_.w, area_.h);
     cairo_stroke(pen.get());
-    pen.text(area_.x, area_.y - 10, 15, 0, title);
+    pen.text(area_.x, area_.y - 12, kWallsText, 0, title);
     for (double e = std::ceil(low_); e <= high_ + 1e-9; e += 1.0) {
       pen.line(x(e), area_.y + area_.h, x(e), area_.y + area_.h + 5, 1.5);
-      pen.text(x(e), area_.y + area_.h + 22, 14, 0.5, decade_number(std::pow(10.0, e)));
+      pen.text(x(e), area_.y + area_.h + 25, kWallsTick, 0.5, decade_number(std::pow(10.0, e)));
     }
     for (double b = 0; b <= top_ + 1e-9; b += 2.0) {
       pen.line(area_.x - 5, y(b), area_.x, y(b), 1.5);
-      pen.text(area_.x - 10, y(b) + 5, 14, 1.0, fmt::format("{:g}", b));
+      pen.text(area_.x - 10, y(b) + 6, kWallsTick, 1.0, fmt::format("{:g}", b));
     }
-    if (bottom) pen.text(area_.x + area_.w / 2, area_.y + area_.h + 46, 15, 0.5, "stiffness K of the wall [N/m]");
-    if (left) pen.upright_text(area_.x - 44, area_.y + area_.h / 2, 15, "damping B of the wall [N s/m]");
+    if (bottom)
+      pen.text(area_.x + area_.w / 2, area_.y + area_.h + 54, kWallsText, 0.5, "stiffness K of the wall [N/m]");
+    if (left) pen.upright_text(area_.x - 50, area_.y + area_.h / 2, kWallsText, "damping B of the wall [N s/m]");
   }
 
  private:
@@ -97,7 +99,7 @@ void swatch(Pen& pen, double& x, double y, Color color, const std::string& words
   cairo_rectangle(pen.get(), x, y - 14, 26, 16);
   cairo_fill(pen.get());
   pen.color(kInk);
-  x += 34 + pen.text(x + 34, y, 15, 0, words) + 26;
+  x += 34 + pen.text(x + 34, y, kWallsText, 0, words) + 26;
 }
 
 void stroke(Pen& pen, double& x, double y, Color color, bool dashed, const std::string& words) {
@@ -107,34 +109,34 @@ void stroke(Pen& pen, double& x, double y, Color color, bool dashed, const std::
   pen.line(x, y - 5, x + 36, y - 5, 2.6);
   cairo_set_dash(pen.get(), nullptr, 0, 0.0);
   pen.color(kInk);
-  x += 44 + pen.text(x + 44, y, 15, 0, words) + 26;
+  x += 44 + pen.text(x + 44, y, kWallsText, 0, words) + 26;
 }
 
 void draw(Pen& pen, const WallFigures& figures) {
   pen.color(kInk);
   const double width = pen.text(84, 46, 26, 0, "virtual walls", true);
-  pen.text(84 + width + 20, 46, 16, 0,
+  pen.text(84 + width + 20, 46, kWallsText, 0,
            fmt::format("{}: {:g} g, {:g} N s/m, friction {:g} N, counts of {:g} um, 1 kHz; pressed with 0.7 N",
                        figures.profile, figures.plant.mass * 1e3, figures.plant.damping, figures.plant.friction,
                        figures.plant.encoder * 1e6));
   double x = 84;
   for (const Verdict v : {Verdict::kStable, Verdict::kCycle, Verdict::kDivergent})
-    swatch(pen, x, 82, color_of(v), name_of(v));
-  swatch(pen, x, 82, color_of(Verdict::kOff), "force taken away by the guard");
+    swatch(pen, x, 86, color_of(v), name_of(v));
+  swatch(pen, x, 86, color_of(Verdict::kOff), "force taken away by the guard");
   x = 84;
-  stroke(pen, x, 110, kInk, false, "exact limit of the linear wall");
-  stroke(pen, x, 110, kBlue, true, "passive: b > K(T/2 + d) + |B|");
-  stroke(pen, x, 110, kPurple, true, "counts: K < 2c/D");
+  stroke(pen, x, 120, kInk, false, "exact limit of the linear wall");
+  stroke(pen, x, 120, kBlue, true, "passive: b > K(T/2 + d) + |B|");
+  stroke(pen, x, 120, kPurple, true, "counts: K < 2c/D");
 
   const struct {
     WallModel model;
     const char* what;
-  } rows[] = {{WallModel::kLinear, "linear, nobody holds it"},
-              {WallModel::kDevice, "friction and counts, light hand"},
-              {WallModel::kGuarded, "the same with the guard"}};
+  } rows[] = {{WallModel::kLinear, "linear, in no hand"},
+              {WallModel::kDevice, "friction, counts, light hand"},
+              {WallModel::kGuarded, "guarded"}};
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t d = 0; d < figures.delays.size(); ++d) {
-      const Map map({100.0 + 505.0 * static_cast<double>(d), 160.0 + 400.0 * static_cast<double>(r), 430, 310},
+      const Map map({100.0 + 505.0 * static_cast<double>(d), 180.0 + 404.0 * static_cast<double>(r), 430, 310},
                     figures);
       const double delay = figures.delays[d];
       for (const WallCell& c : figures.cells)
@@ -152,8 +154,20 @@ void draw(Pen& pen, const WallFigures& figures) {
 
 }  // namespace
 
-Status plot_walls(const std::filesystem::path& png, const std::filesystem::path& svg, const WallFigures& figures) {
-  return draw_png_and_svg(png, svg, kWallsWidth, kWallsHeight, [&](Pen& pen) { draw(pen, figures); });
+Status plot_walls(OutputFolder& out, const WallFigures& figures, const std::vector<std::string>& sentences) {
+  std::vector<std::string> foot;
+  Pen measure(1, 1);
+  for (const std::string& sentence : sentences)
+    for (std::string& line : measure.lines(kWallsText, sentence, kWallsWidth - 168)) foot.push_back(std::move(line));
+  const double height = kWallsFoot + kWallsLine * static_cast<double>(foot.size());
+  return draw_png_and_svg(out.stage("walls.png"), out.stage("walls.svg"), kWallsWidth, height, [&](Pen& pen) {
+    draw(pen, figures);
+    double y = kWallsFoot;
+    for (const std::string& line : foot) {
+      pen.text(84, y, kWallsText, 0, line);
+      y += kWallsLine;
+    }
+  });
 }
 
 }  // namespace pliant
