@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kBeginsAbove = 0.001;    // [m] that a press begins above the surface
 constexpr double kSoftStep = 1.0 / 60.0;  // [s]
+constexpr double kEdges = 4.0;            // [1] of the surface a lattice cell: the punch's rim rests on edges, too
 constexpr double kTop = 0.98;             // [1] of the half width: beyond are the sides
 const dvec3 kDown(0, -1, 0);
 
@@ -145,7 +146,7 @@ Result<Indentation> press_tissue(const Indented& what, PressWish& wish) {
   const auto wide = static_cast<float>(2 * what.half_width), deep = static_cast<float>(what.thickness);
   body.pinned.add(vec3(-wide, -2 * deep, -wide));
   body.pinned.add(vec3(wide, -0.999f * deep, wide));
-  scene.add_soft_body("tissue", slab(what, what.radius / 2, true), body);
+  scene.add_soft_body("tissue", slab(what, std::min(what.radius / 2, wish.cell / kEdges), true), body);
   scene.add_rigid_body("punch", punch(what.radius), {}, {.position = -kBeginsAbove * kDown});
   HandleParameters held;
   held.translation = {1e5, 20.0};

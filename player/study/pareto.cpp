@@ -117,6 +117,14 @@ nlohmann::ordered_json to_json(const ParetoTable& table) {
   return json;
 }
 
+std::string two_digits(double value) {
+  if (!(std::abs(value) >= 99.5)) return fmt::format("{:.2g}", value);
+  const double digit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 1);
+  std::string digits = fmt::format("{:.0f}", std::round(value / digit) * digit);
+  for (std::size_t at = digits.size(); at > (value < 0 ? 4 : 3);) digits.insert(at -= 3, ",");
+  return digits;
+}
+
 Error interrupted(const char* verb) {
   return {verb, "was interrupted and wrote nothing; run it again"};
 }

@@ -57,6 +57,9 @@ std::string to_csv(const ParetoTable& table);
 // Study, title, units, rows, front, sentences. Numbers that are not finite are null.
 nlohmann::ordered_json to_json(const ParetoTable& table);
 
+// With two digits, for sentences: 0.0031, 37, 6,200.
+std::string two_digits(double value);
+
 // STUDY.csv, STUDY.json, STUDY.svg and STUDY.png; prints the front and the sentences. `further`: members of the JSON
 // between the front and the sentences.
 Status write_study(OutputFolder& out, const ParetoTable& table, const nlohmann::ordered_json& further);

@@ -187,7 +187,7 @@ std::string range_of(const std::vector<Row>& rows, Search search) {
   double low = 1e30, high = 0.0;
   for (const Row& row : rows)
     if (row.search == search) low = std::min(low, row.figures.us), high = std::max(high, row.figures.us);
-  return fmt::format("{} {:.2g} to {:.2g}", name_of(search), low, high);
+  return fmt::format("{} {} to {}", name_of(search), two_digits(low), two_digits(high));
 }
 
 std::vector<std::string> sentences_of(const std::vector<Row>& rows, const std::vector<ScatteredRow>& scattered) {

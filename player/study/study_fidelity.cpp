@@ -62,7 +62,7 @@ FidelityPlan fidelity_plan(StudySize size) {
     case StudySize::kFull:
       return {{2, 3, 4, 5},
               {0.01, 0.005, 0.01 / 3, 0.0025},
-              {2.0, 1.0, 0.5, 1.0 / 3, 0.25, 0.2},
+              {2.0, 1.0, 0.5, 1.0 / 3, 0.25, 2.0 / 9},
               0.25,
               {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}};
     case StudySize::kQuick:
@@ -169,7 +169,7 @@ class Fidelity {
   Status find_truth() {
     std::vector<double> depths = what_.depths;
     depths.insert(depths.end(), what_.fit_depths.begin(), what_.fit_depths.end());
-    depths.insert(depths.end(), {what_.radius / 100, what_.radius / 3});
+    depths.push_back(what_.radius / 100);  // small strains
     std::sort(depths.begin(), depths.end());
     std::vector<std::vector<PressedBlock>> all;
     auto truths = limits_of(what_, depths, all, 0.0, 0.6);
@@ -348,8 +348,8 @@ const FidelityRow& least_row(const std::vector<FidelityRow>& rows, const std::st
 }
 
 std::string words(const FidelityRow& row) {
-  return fmt::format("{} ({:.2g} % force, {:.2g} % surface, {:.2g} us a tick)", row.label, 100 * row.force,
-                     100 * row.surface, row.us);
+  return fmt::format("{} ({} % force, {} % surface, {} us a tick)", row.label, two_digits(100 * row.force),
+                     two_digits(100 * row.surface), two_digits(row.us));
 }
 
 // What lattice is needed for 20 and 10 %, or what the finest does.
@@ -362,7 +362,7 @@ std::string lattice_words(const Fidelity& study) {
   }
   const FidelityRow& finest = study.lattice_rows().back();
   if (out.empty() || !std::isfinite(study.lattice_for(0.1)))
-    out += fmt::format("{} {} radii for {:.2g} %", out.empty() ? "" : " and", finest.label, 100 * finest.force);
+    out += fmt::format("{} {} radii for {} %", out.empty() ? "" : " and", finest.label, two_digits(100 * finest.force));
   return out;
 }
 

@@ -122,17 +122,15 @@ std::vector<std::string> sentences_of(const std::vector<HandRun>& plotted, const
     most = std::max(most, run.buzz);
   }
   std::string first = fmt::format(
-      "Behind the guard, in a firm hand, {} of {} runs of the levels as they ship are stable: their fast motion is "
-      "{:.2g} "
-      "to {:.2g} um RMS, a limit cycle's is more than {:.0f} um.",
-      stable, levels.size(), 1e6 * least, 1e6 * most, 1e6 * kQuietBuzz);
+      "Behind the guard, in a firm hand, {} of {} runs of the levels as they ship are stable: their fast motion is {} "
+      "to "
+      "{} um RMS, a limit cycle's is more than {:.0f} um.",
+      stable, levels.size(), two_digits(1e6 * least), two_digits(1e6 * most), 1e6 * kQuietBuzz);
   const HandRun &bare = plotted[plotted.size() - 2], &held = plotted.back();
   std::string second = fmt::format(
       "In a light finger, with {:g} ms of more delay, the {} shakes by {:.2g} mm on an organ of {:.0f} N/m, and by "
-      "{:.2g} "
-      "mm behind the guard, which makes the organ {:.2g} times softer; on the organ as it ships, of {:.0f} N/m, it "
-      "shakes "
-      "by",
+      "{:.2g} mm behind the guard, which makes the organ {:.2g} times softer; on the organ as it ships, of {:.0f} N/m, "
+      "it shakes by",
       1e3 * bare.delay, bare.profile.substr(0, bare.profile.find(',')), 1e3 * bare.buzz, bare.stiffest, 1e3 * held.buzz,
       held.softened(), plotted[0].stiffest);
   for (std::size_t i = 0; i + 2 < plotted.size(); ++i)

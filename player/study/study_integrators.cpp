@@ -196,14 +196,16 @@ std::vector<IntegratorCase> integrate_grid(const std::vector<double>& stiffness,
 }
 
 bool is_stable(Integrator integrator, const VertexProblem& problem, double dt) {
+  const double period = 2 * M_PI * std::sqrt(problem.m / problem.k);
+  const int count = std::max(kStableSteps, static_cast<int>(std::ceil(kStablePeriods * period / dt)));
   VertexStepper stepper(integrator, problem, dt);
   stepper.begin({kDent});
   double half[2] = {std::abs(kDent), 0.0};
-  for (int i = 1; i <= kStableSteps; ++i) {
+  for (int i = 1; i <= count; ++i) {
     stepper.step();
     const double h = std::abs(stepper.state().h);
     if (!(h <= kGone * std::abs(kDent))) return false;
-    half[i > kStableSteps / 2] = std::max(half[i > kStableSteps / 2], h);
+    half[i > count / 2] = std::max(half[i > count / 2], h);
   }
   return half[1] <= kRounding * half[0];
 }

@@ -24,9 +24,10 @@ struct IntegratorCase {
   double error = 0.0;                     // [1] RMS over the steps, of the dent; infinite: unstable
 };
 
-// Stable, here and in the maps: over 2,000 steps no height exceeds a thousand dents, and the second half of the swing
-// is no larger than the first.
+// Stable, here and in the maps: over 2,000 steps, and over four natural periods at least, no height exceeds a thousand
+// dents, and the second half of the swing is no larger than the first.
 inline constexpr int kStableSteps = 2000;
+inline constexpr double kStablePeriods = 4.0;
 bool is_stable(Integrator integrator, const VertexProblem& problem, double dt);
 
 // [1] RMS over the steps, of the dent. `truth`: true_heights() every `every` [s]; dt is a multiple of it.

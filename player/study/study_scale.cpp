@@ -36,14 +36,6 @@ constexpr const char* kMicroseconds = "time [us]";
 constexpr const char* kScaleTitle =
     "how costs grow, and the powers of the larger half of the sizes with their 95 % intervals";
 
-// 1,000 for 1016.
-std::string size_words(double size) {
-  const double digit = std::pow(10.0, std::floor(std::log10(size)));
-  std::string digits = fmt::format("{:.0f}", std::round(size / digit * 10) * digit / 10);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits;
-}
-
 // What draws, if anything does.
 struct Drawing {
   std::unique_ptr<HeadlessContext> context;
@@ -77,8 +69,8 @@ Drawing start_drawing() {
 
 GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake, bool drawn) {
   GrowthPanel panel;
-  panel.title = by_awake ? fmt::format("{} vertices, by those that move", size_words(costs[0].vertices))
-                         : fmt::format("about {} move, by all vertices", size_words(costs.back().awake));
+  panel.title = by_awake ? fmt::format("{} vertices, by those that move", two_digits(costs[0].vertices))
+                         : fmt::format("about {} move, by all vertices", two_digits(costs.back().awake));
   panel.across = by_awake ? "vertices that move" : "vertices";
   panel.up = kMicroseconds;
   GrowthCurve half{"tick, p50", {}, {}}, most{"tick, p99", {}, {}}, told{"frame: publishing", {}, {}},
@@ -100,7 +92,7 @@ GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake, bool 
 GrowthPanel steps_panel(const std::vector<StepCost>& costs, bool by_contacts) {
   GrowthPanel panel;
   panel.title = by_contacts ? fmt::format("a soft step, {} tetrahedra, by contacts",
-                                          size_words(static_cast<double>(costs[0].tetrahedra)))
+                                          two_digits(static_cast<double>(costs[0].tetrahedra)))
                             : fmt::format("a soft step, about {:.0f} contacts, by tetrahedra", costs[0].contacts);
   panel.across = by_contacts ? "contacts" : "tetrahedra";
   panel.up = "time [ms]";
@@ -177,14 +169,15 @@ std::vector<std::string> sentences_of(const std::vector<GrowthPanel>& panels, co
   std::string first = fmt::format(
       "Where {} to {} vertices move a tick takes {:.3g} us on a mesh of {} and {:.3g} us on one of {} (power {}), and "
       "with {:.3g} times as many that move {:.3g} times as long (power {}); ",
-      size_words(*least), size_words(*most), tick.cost.front(), size_words(sizes.size.front()), tick.cost.back(),
-      size_words(sizes.size.back()), words_of(tick.law), awake.size.back() / awake.size.front(),
+      two_digits(*least), two_digits(*most), tick.cost.front(), two_digits(sizes.size.front()), tick.cost.back(),
+      two_digits(sizes.size.back()), words_of(tick.law), awake.size.back() / awake.size.front(),
       awake.curves[1].cost.back() / awake.curves[1].cost.front(), words_of(awake.curves[1].law));
   if (drawing.not_drawn.empty()) {
     const GrowthCurve& by_size = sizes.curves.back();
     const std::size_t last = by_size.last();
-    first += fmt::format("a drawn frame takes {:.0f} to {:.0f} ms, {:.2g} us a vertex of the largest mesh drawn: ",
-                         by_size.cost.front() * 1e-3, by_size.cost[last] * 1e-3, by_size.cost[last] / sizes.size[last]);
+    first += fmt::format("a drawn frame takes {} to {} ms, {} us a vertex of the largest mesh drawn: ",
+                         two_digits(by_size.cost.front() * 1e-3), two_digits(by_size.cost[last] * 1e-3),
+                         two_digits(by_size.cost[last] / sizes.size[last]));
   }
   first += drawing.words();
   return {first + ".",

@@ -128,11 +128,11 @@ std::vector<std::string> sentences(const std::vector<StepRow>& all, const std::v
   std::string usual = fmt::format("In steps of {:.3g} ms, the default, a level is off by", 1000.0 / kUsualRate);
   for (const StepRow& row : all)
     if (row.way == kEngineStep && row.rate == kUsualRate)
-      usual += fmt::format("{} {:.2g} % ({})", usual.ends_with("by") ? "" : ",", 100 * row.error, row.scene);
+      usual += fmt::format("{} {} % ({})", usual.ends_with("by") ? "" : ",", two_digits(100 * row.error), row.scene);
   usual += "; the mean over the motions is";
   for (const char* way : kWays)
-    usual +=
-        fmt::format("{} {:.2g} % ({})", usual.ends_with("is") ? "" : ",", 100 * find(mean, way, kUsualRate).error, way);
+    usual += fmt::format("{} {} % ({})", usual.ends_with("is") ? "" : ",",
+                         two_digits(100 * find(mean, way, kUsualRate).error), way);
   std::string slopes = "Between the two shortest steps the error falls with the power";
   const int shortest = plan.rates.back(), next = plan.rates[plan.rates.size() - 2];
   for (const char* way : kWays)

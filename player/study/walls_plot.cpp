@@ -12,7 +12,7 @@ namespace {
 constexpr double kWallsWidth = 1600, kWallsFoot = 1400;              // [pixel]
 constexpr double kWallsText = 20, kWallsTick = 18, kWallsLine = 27;  // [pixel]
 constexpr Color kGoodColor{0.80, 0.91, 0.84}, kRings{0.98, 0.80, 0.42}, kGoneColor{0.86, 0.52, 0.40},
-    kDark{0.75, 0.80, 0.88};
+    kDark{0.75, 0.80, 0.88}, kFades{0.90, 0.93, 0.62};
 
 struct WallArea {
   double x, y, w, h;  // [pixel]
@@ -46,7 +46,7 @@ class Map {
   double y(double b) const { return area_.y + area_.h - area_.h * (b + half_b_) / (top_ + 2 * half_b_); }
   void cell(Pen& pen, const WallCell& c) const {
     const double k = std::log10(c.wall.stiffness), b = c.wall.damping;
-    pen.color(color_of(c.result.verdict));
+    pen.color(c.fades ? kFades : color_of(c.result.verdict));
     cairo_rectangle(pen.get(), x(k - half_k_), y(b + half_b_), x(k + half_k_) - x(k - half_k_) + 0.6,
                     y(b - half_b_) - y(b + half_b_) + 0.6);
     cairo_fill(pen.get());
@@ -122,6 +122,7 @@ void draw(Pen& pen, const WallFigures& figures) {
   double x = 84;
   for (const Verdict v : {Verdict::kStable, Verdict::kCycle, Verdict::kDivergent})
     swatch(pen, x, 86, color_of(v), name_of(v));
+  swatch(pen, x, 86, kFades, "a still hand's force fades: less than a count");
   swatch(pen, x, 86, color_of(Verdict::kOff), "force taken away by the guard");
   x = 84;
   stroke(pen, x, 120, kInk, false, "exact limit of the linear wall");
