@@ -11,8 +11,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kGrowthWidth = 1240, kPanelW = 300, kPanelH = 330, kGrowthTop = 116, kGapY = 112;  // [pixel]
-constexpr double kGrowthLeft = 92, kNames = 204;      // [pixel] beside a panel
+constexpr double kGrowthWidth = 1240, kPanelW = 290, kPanelH = 330, kGrowthTop = 116, kGapY = 112;  // [pixel]
+constexpr double kGrowthLeft = 92, kNames = 228;      // [pixel] beside a panel
 constexpr double kSentenceText = 17, kTickText = 15;  // [pixel]
 constexpr std::array kGrowthColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kInk};
 
@@ -33,6 +33,7 @@ AxisRange range_of(double least, double most, double begin, double end) {
 
 void draw_axis(Pen& pen, const AxisRange& range, bool across, double from, double to) {
   const bool few = range.high - range.low > 2.2;
+  double free_from = -1e9;  // [pixel] where the next number across has room
   for (int decade = static_cast<int>(std::floor(range.low)); decade <= range.high; ++decade)
     for (const int factor : {1, 2, 5}) {
       const double value = factor * std::pow(10.0, decade), e = std::log10(value);
@@ -41,8 +42,13 @@ void draw_axis(Pen& pen, const AxisRange& range, bool across, double from, doubl
       pen.color(kFaint);
       across ? pen.line(p, from, p, to, 1) : pen.line(from, p, to, p, 1);
       pen.color(kInk);
-      across ? pen.text(p, to + 20, kTickText, 0.5, decade_number(value))
-             : pen.text(from - 7, p + 5, kTickText, 1.0, decade_number(value));
+      const std::string number = decade_number(value);
+      if (!across) {
+        pen.text(from - 7, p + 5, kTickText, 1.0, number);
+      } else if (const double half = 0.5 * pen.width(kTickText, number); p - half > free_from) {
+        pen.text(p, to + 20, kTickText, 0.5, number);
+        free_from = p + half + 6;
+      }
     }
 }
 

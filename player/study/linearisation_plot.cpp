@@ -13,7 +13,8 @@ namespace {
 
 constexpr Color kSky{0.337, 0.706, 0.914};
 constexpr double kForcesWidth = 1240, kForcesHeight = 620, kForcesLeft = 96;  // [pixel]
-constexpr double kForcesText = 17, kTickText = 16;                            // [pixel]
+constexpr double kAboveTruth = 1.5;                 // [1] of the largest true force, where the axis ends at the latest
+constexpr double kForcesText = 17, kTickText = 16;  // [pixel]
 
 // The way's colour is the same in both panels.
 struct Way {
@@ -38,11 +39,22 @@ void frame(Pen& pen, const Area& area, const std::string& across, const std::str
   pen.upright_text(area.x - 62, area.y + area.h / 2, kForcesText, up);
 }
 
-void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures) {
+// [N] The axis ends above the true force; `cut`: another way's goes beyond it.
+double top_of(const LinearisationFigures& figures, bool& cut) {
+  double truth = 0.0, all = 0.0;
+  for (const ForceSample& s : figures.samples) {
+    truth = std::max(truth, s.full.head<3>().norm());
+    for (const Way& way : kWays) all = std::max(all, (s.*way.force).head<3>().norm());
+  }
+  const double most = std::min(1.05 * all, kAboveTruth * truth), step = tick_step(most, 5),
+               top = step * std::ceil(most / step);
+  cut = all > top;
+  return top;
+}
+
+void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures, double high) {
   const double begin = figures.samples.front().time, end = figures.samples.back().time;
-  double peak = 0.0;
-  for (const ForceSample& s : figures.samples) peak = std::max(peak, s.full.head<3>().norm());
-  const double step_y = tick_step(peak * 1.05, 5), high = step_y * std::ceil(peak * 1.05 / step_y);
+  const double step_y = tick_step(high, 5);
   const double step_x = tick_step(end - begin, 10);
   const auto px = [&](double t) { return area.x + area.w * (t - begin) / std::max(end - begin, 1e-9); };
   const auto py = [&](double f) { return area.y + area.h - area.h * f / high; };
@@ -84,15 +96,18 @@ void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures
 }  // namespace
 
 Status plot_linearisation(OutputFolder& out, const std::string& stem, const LinearisationFigures& figures) {
+  bool cut = false;
+  const double top = figures.samples.empty() ? 0.0 : top_of(figures, cut);
   return draw_png_and_svg(
       out.stage(stem + ".png"), out.stage(stem + ".svg"), kForcesWidth, kForcesHeight, [&](Pen& pen) {
         pen.color(kInk);
         pen.text(kForcesLeft, 44, 26, 0, fmt::format("linearisation, {:g} x its pace", figures.pace), true);
         pen.text(kForcesLeft, 74, kForcesText, 0,
-                 fmt::format("{}: {} tetrahedra, up to {} contacts; soft steps of {:.1f} ms, models one step late",
-                             figures.level, figures.tetrahedra, figures.contacts, figures.soft_step * 1e3));
+                 fmt::format("{}: {} tetrahedra, up to {} contacts; soft steps of {:.1f} ms, models one step late{}",
+                             figures.level, figures.tetrahedra, figures.contacts, figures.soft_step * 1e3,
+                             cut ? "; what is above the axis is cut off" : ""));
         if (!figures.samples.empty())
-          draw_forces(pen, {kForcesLeft, 140, kForcesWidth - kForcesLeft - 28, kForcesHeight - 140 - 70}, figures);
+          draw_forces(pen, {kForcesLeft, 140, kForcesWidth - kForcesLeft - 28, kForcesHeight - 140 - 70}, figures, top);
       });
 }
 

@@ -355,14 +355,13 @@ std::string words(const FidelityRow& row) {
 // What lattice is needed for 20 and 10 %, or what the finest does.
 std::string lattice_words(const Fidelity& study) {
   std::string out;
-  for (const double error : {0.2, 0.1}) {
-    const double radii = study.lattice_for(error);
-    if (std::isfinite(radii))
-      out += fmt::format("{} {:.2g} radii for {:g} %", out.empty() ? "" : " and", radii, 100 * error);
-  }
+  for (const double error : {0.2, 0.1})
+    if (const double radii = study.lattice_for(error); std::isfinite(radii))
+      out += fmt::format("{} {:.2g} radii for {:g} %", out.empty() ? "needs cells of" : " and", radii, 100 * error);
   const FidelityRow& finest = study.lattice_rows().back();
-  if (out.empty() || !std::isfinite(study.lattice_for(0.1)))
-    out += fmt::format("{} {} radii for {} %", out.empty() ? "" : " and", finest.label, two_digits(100 * finest.force));
+  if (!std::isfinite(study.lattice_for(0.1)))
+    out += fmt::format("{} off by {} % with cells of {} radii", out.empty() ? "is" : ", and is",
+                       two_digits(100 * finest.force), finest.label);
   return out;
 }
 
@@ -372,9 +371,8 @@ std::vector<std::string> sentences(const Fidelity& study) {
               words(least_row(rows, "P1, law")) + "; " + words(least_row(rows, "FEM, in")) + "; " +
               words(least_row(rows, "FEM, fitted")) + ".",
           study.truth_words() +
-              fmt::format(
-                  "; a level's lattice is even, and on a block of 3 radii about the punch its force needs cells of{}.",
-                  lattice_words(study))};
+              fmt::format("; a level's lattice is even, and on a block of 3 radii about the punch its force {}.",
+                          lattice_words(study))};
 }
 
 }  // namespace

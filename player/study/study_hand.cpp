@@ -227,7 +227,7 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
 }
 
 Status plot_hand_runs(OutputFolder& out, const std::vector<HandRun>& runs) {
-  constexpr double kWidth = 1240, kRow = 230, kLeft = 90, kTop = 100, kWords = 17, kTicks = 16;
+  constexpr double kWidth = 1240, kRow = 230, kLeft = 90, kTop = 112, kWords = 17, kTicks = 16;
   const double height = kTop + kRow * static_cast<double>(runs.size()) + 20;
   return draw_png_and_svg(out.stage("hand_runs.png"), out.stage("hand_runs.svg"), kWidth, height, [&](Pen& pen) {
     pen.color(kInk);

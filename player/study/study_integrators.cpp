@@ -70,8 +70,11 @@ std::vector<std::string> sentences_of(const ParetoTable& table) {
     if (row.error < 0.01 && (!best || row.cost < best->cost)) best = &row;
   std::vector<std::string> out;
   out.push_back(best ? fmt::format("The cheapest way to a median error below 1 % of the dent is {} in steps of {}: "
-                                   "{:.2g} %, {:.3g} ns a vertex and millisecond simulated.",
-                                   best->group, best->label, 100 * best->error, best->cost)
+                                   "{}, {:.3g} ns a vertex and millisecond simulated.",
+                                   best->group, best->label,
+                                   best->error < 1e-9 ? std::string("rounding alone")
+                                                      : fmt::format("{:.2g} %", 100 * best->error),
+                                   best->cost)
                      : std::string("No scheme at these steps has a median error below 1 % of the dent."));
   out.push_back(fmt::format("Stable in every case: {}; the least stable, {}, is unstable in {:.0f} % of them.",
                             stable.empty() ? "none" : stable, worst, 100 * most));
@@ -132,7 +135,9 @@ Status draw_stability(OutputFolder& out, StudySize size, const Interrupt& interr
   maps.line = "Stable share of each map's column:";
   for (std::size_t i = 0; i < kIntegrators.size(); ++i)
     maps.line += fmt::format("{} {} {:.0f} %", i == 0 ? "" : ",", name_of(kIntegrators[i]), 100 * stable[i] / cells);
-  maps.line += ". Steps of 1 ms from a dent of 20 mm, 2,000 of them; mass 1 g, stiffness from the frequency.";
+  maps.line +=
+      ". Steps of 1 ms from a dent of 20 mm, 2,000 of them and four periods at least; mass 1 g, stiffness from the "
+      "frequency.";
   if (const Status done = write_text(out, "integrators_stability.csv", csv); !done) return done;
   return plot_heat_maps(out, "integrators_stability", maps);
 }

@@ -178,13 +178,12 @@ std::string nearest_of(const ParetoTable& table) {
       if (std::get<std::string>(table.rows[i].more[0]) == "best" && (!least || table.rows[i].error < least->error))
         least = &table.rows[i];
     if (std::get<bool>(least->more[3]))
-      exact += fmt::format("{}that of the {} (reaches from {:.1f} a on)", exact.empty() ? "" : " and ",
-                           truth.substr(truth.find(", ") + 2), std::get<double>(least->more[1]));
+      exact += fmt::format("{}{}", exact.empty() ? "" : " and ", least->label);
     else
       out += fmt::format("{}{}, {} ({:.2g} %)", out.empty() ? "" : "; ", truth, least->label, 100 * least->error);
   }
-  return "The nearest shape to each block's surface, with its reach in contact radii: " + out +
-         "; exact by construction, on a half-space, are " + exact + ".";
+  return "The nearest shape to each block's surface, with its reach in contact radii: " + out + "; on a half-space " +
+         exact + " are exact by construction, with these reaches or longer ones.";
 }
 
 std::string forces_of(const std::vector<ForceRow>& rows) {

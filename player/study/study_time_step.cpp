@@ -270,7 +270,9 @@ Status study_time_step(OutputFolder& out, StudySize size, const Interrupt& inter
     done += 1.0;
   }
   const std::vector<StepRow> mean = means(rows, plan.rates);
-  ParetoTable table = table_of("time_step", "soft steps by scheme and length: free swing, press, slide and impact");
+  ParetoTable table = table_of("time_step",
+                               "soft steps by scheme and length: free swing, press, slide and impact; a level's step "
+                               "against its own in steps that are short");
   table.error_axis += ", geometric mean";
   for (const StepRow& row : mean) table.rows.push_back(row_of(row));
   table.sentences = sentences(rows, mean, plan, worst, engine_worst);

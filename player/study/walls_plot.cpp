@@ -9,6 +9,7 @@
 namespace pliant {
 namespace {
 
+constexpr int kCurvePoints = 4000;
 constexpr double kWallsWidth = 1600, kWallsFoot = 1400;              // [pixel]
 constexpr double kWallsText = 20, kWallsTick = 18, kWallsLine = 27;  // [pixel]
 constexpr Color kGoodColor{0.80, 0.91, 0.84}, kRings{0.98, 0.80, 0.42}, kGoneColor{0.86, 0.52, 0.40},
@@ -32,6 +33,10 @@ Color color_of(Verdict verdict) {
   return kPaper;
 }
 
+Color color_of(const WallCell& cell) {
+  return cell.fades ? kFades : color_of(cell.result.verdict);
+}
+
 // Stiffness across by powers of ten, damping up.
 class Map {
  public:
@@ -44,12 +49,27 @@ class Map {
         half_b_(0.5 * top_ / static_cast<double>(figures.dampings.size() - 1)) {}
   double x(double log_k) const { return area_.x + area_.w * (log_k - low_ + half_k_) / (high_ - low_ + 2 * half_k_); }
   double y(double b) const { return area_.y + area_.h - area_.h * (b + half_b_) / (top_ + 2 * half_b_); }
-  void cell(Pen& pen, const WallCell& c) const {
-    const double k = std::log10(c.wall.stiffness), b = c.wall.damping;
-    pen.color(c.fades ? kFades : color_of(c.result.verdict));
-    cairo_rectangle(pen.get(), x(k - half_k_), y(b + half_b_), x(k + half_k_) - x(k - half_k_) + 0.6,
-                    y(b - half_b_) - y(b + half_b_) + 0.6);
-    cairo_fill(pen.get());
+  // Cells of one model and delay, damping by damping, K ascending: what is alike stands in one rectangle.
+  void cells(Pen& pen, const std::vector<WallCell>& all, WallModel model, double delay) const {
+    const WallCell* first = nullptr;
+    const WallCell* last = nullptr;
+    const auto put = [&] {
+      if (!first) return;
+      const double begin = x(std::log10(first->wall.stiffness) - half_k_),
+                   end = x(std::log10(last->wall.stiffness) + half_k_), b = last->wall.damping;
+      pen.color(color_of(*last));
+      cairo_rectangle(pen.get(), begin, y(b + half_b_), end - begin + 0.6, y(b - half_b_) - y(b + half_b_) + 0.6);
+      cairo_fill(pen.get());
+    };
+    for (const WallCell& c : all) {
+      if (c.model != model || c.delay != delay) continue;
+      if (!last || last->wall.damping != c.wall.damping || !(color_of(*last) == color_of(c))) {
+        put();
+        first = &c;
+      }
+      last = &c;
+    }
+    put();
   }
   // K(B), where there is one; dashed where it is not the truth but a bound.
   template <class Limit>
@@ -62,8 +82,8 @@ class Map {
     cairo_rectangle(pen.get(), area_.x, area_.y, area_.w, area_.h);
     cairo_clip(pen.get());
     cairo_new_path(pen.get());
-    for (int i = 0; i <= 8000; ++i) {
-      const double b = top_ * i / 8000.0, k = limit(b);
+    for (int i = 0; i <= kCurvePoints; ++i) {
+      const double b = top_ * i / kCurvePoints, k = limit(b);
       if (k > 0.0) cairo_line_to(pen.get(), x(std::clamp(std::log10(k), low_ - 1.0, high_ + 1.0)), y(b));
     }
     cairo_stroke(pen.get());
@@ -140,8 +160,7 @@ void draw(Pen& pen, const WallFigures& figures) {
       const Map map({100.0 + 505.0 * static_cast<double>(d), 180.0 + 404.0 * static_cast<double>(r), 430, 310},
                     figures);
       const double delay = figures.delays[d];
-      for (const WallCell& c : figures.cells)
-        if (c.model == rows[r].model && c.delay == delay) map.cell(pen, c);
+      map.cells(pen, figures.cells, rows[r].model, delay);
       WallPlant plant = figures.plant;
       plant.delay = delay;
       if (r == 0) map.curve(pen, kInk, false, [&](double B) { return stability_limit(plant, B); });
