@@ -1,5 +1,7 @@
 #include "components/deformable.h"
 
+#include <algorithm>
+
 #include "components/registered.h"
 
 namespace pliant {
@@ -15,6 +17,19 @@ bool gpu_knows(const Deformable& d) {
 
 double default_reach(const Mesh& mesh) {
   return kDefaultReach * static_cast<double>(mesh.box.diagonal());
+}
+
+// A dent is bent where the contact ends, as far as that is across: with edges of a third of this radius two of them go
+// from the middle to there.
+constexpr double kRadiusOverContact = 1.5;
+
+double DentSize::radius(const Mesh& mesh) const {
+  const double whole = reach > 0.0 ? reach : default_reach(mesh);
+  return contact > 0.0 ? std::min(whole, kRadiusOverContact * contact) : whole;
+}
+
+DentSize dent_size(const DeformableParameters& d) {
+  return {std::max(d.reach, 0.0), depends_on_contact(d.shape) ? std::max(d.contact_radius, 0.0) : 0.0};
 }
 
 }  // namespace pliant

@@ -40,6 +40,15 @@ inline constexpr double kDefaultReach = 0.08;      // [1] of the diagonal of the
 // [m] The reach of a deformable that says none.
 double default_reach(const Mesh& mesh);
 
+// What dents ask of the mesh that is to show them. Lengths as DeformableParameters has them.
+struct DentSize {
+  double reach = 0.0;    // [m] 0: the default one
+  double contact = 0.0;  // [m] of a shape that depends on it; 0: none is said
+  bool operator==(const DentSize&) const = default;
+  double radius(const Mesh& mesh) const;  // [m] of a dent without an edge of its own that asks for the same
+};
+DentSize dent_size(const DeformableParameters& deformable);
+
 // Whether a released dent has a closed form in time: then the GPU evaluates a list of sources (systems/touch/field.h),
 // else it takes every step (components/field_feed.h).
 bool has_closed_form(const Deformable& deformable, const Mesh& mesh);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kMagic[8] = {'p', 'l', 'i', 'a', 'n', 't', 'r', 'c'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3, kOfSettings = 2;  // kOfSettings: the first that has them
 constexpr std::uint32_t kMaxProbes = 4096, kMaxName = 4096, kMaxSettings = 4096;
 constexpr std::size_t kPoseBytes = 7 * sizeof(double) + 1;
 
@@ -81,7 +81,7 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
     return Error{name, "is not a recording; give a file that --record wrote"};
   HashingReader in{{bytes, sizeof kMagic}};
   const std::uint32_t version = in.get<std::uint32_t>();
-  if (version != 1 && version != kVersion)
+  if (version < 1 || version > kVersion)
     return Error{name, "has format version " + std::to_string(version) + ", this is " + std::to_string(kVersion) +
                            "; record it again"};
 
@@ -93,8 +93,9 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
     return short_file;
   recording.header.level = in.text();
   for (std::uint32_t i = 0; i < probes && in.ok; ++i) recording.header.probes.push_back(in.text());
-  if (version > 1) {
-    recording.header.scene = in.get<std::uint64_t>();
+  if (version >= kOfSettings) {
+    const std::uint64_t scene = in.get<std::uint64_t>();
+    if (version == kVersion) recording.header.scene = scene;
     const std::uint32_t settings = in.get<std::uint32_t>();
     if (settings > kMaxSettings) return short_file;
     for (std::uint32_t i = 0; i < settings && in.ok; ++i) recording.header.settings.push_back(in.text());

@@ -3,8 +3,8 @@
 // The file, little-endian: 8 bytes "pliantrc", u32 version, u32 probes, f64 rate [Hz], level name, a name per probe
 // (u32 length and bytes each), u64 scene_hash() of the scene it was made with, u32 settings and a text for each; then
 // per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the device was ready; 2: it was,
-// and its guard let nothing leave); last a u64 hash of all before it. Format 1, which is read as well, has neither
-// scene nor settings.
+// and its guard let nothing leave); last a u64 hash of all before it. Older formats are read as well: 1 has neither
+// scene nor settings, the hash of 2 saw less of a scene and is passed over.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,15 @@ struct RecordingHeader {
   std::string level;
   double rate = 1000.0;  // [Hz]
   std::vector<std::string> probes;
-  std::uint64_t scene = 0;  // scene_hash() (engine/scene_check.h); 0: not known, of format 1
-  // NODE.EXT.KEY=VALUE that were set on top of the level; --unit=METRES; limits of drivers (engine/driver_limits.h).
+  std::uint64_t scene = 0;  // scene_hash() (engine/scene_hash.h); 0: not known, of an older format
+  // NODE.EXT.KEY=VALUE that were set on top of the level; --unit=METRES; --error=BUDGET; limits of drivers
+  // (engine/driver_limits.h).
   std::vector<std::string> settings;
 };
+
+// Behind the name of a recording whose `scene` is 0.
+inline constexpr const char* kUnknownScene =
+    " has an older format, which does not say whether the level is as it was: forces may differ; record it anew";
 
 struct Recording {
   RecordingHeader header;

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "content/keys/extension_table.h"
-#include "runtime/hash.h"
 
 namespace pliant {
 namespace {
@@ -57,25 +55,6 @@ Status check_keys(const std::string& name, const Extension& extension, void* own
   return Done{};
 }
 
-void add_text(Hash& hash, const std::string& text) {
-  hash.add(text.size());
-  hash.add_bytes(text.data(), text.size());
-}
-
-// A probe that a window adds for its mouse has a colour of its own, and a replay of it has not. An error budget is felt
-// by what was chosen for it, in other keys.
-bool is_not_felt(const Extension& extension, const Key& key) {
-  return (extension.name == "probe" && key.name == "color") || key.name == "error";
-}
-
-void add_keys(Hash& hash, const Extension& extension, const void* owner) {
-  if (!extension.present(owner)) return;
-  add_text(hash, extension.name);
-  for (const Key& key : extension.keys)
-    if (!key.alias && !is_not_felt(extension, key))
-      add_text(hash, key.get(owner).dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
 }  // namespace
 
 Status check_device(const std::string& name, const DeviceParameters& device) {
@@ -99,34 +78,6 @@ Status check_scene(Level& level) {
       if (Status ok = check_keys(node.name, extension, &node); !ok) return ok;
   }
   return Done{};
-}
-
-std::uint64_t scene_hash(const Level& level) {
-  Hash hash;
-  for (const LevelMesh& mesh : level.meshes)
-    for (const Primitive& p : mesh.primitives) {
-      hash.add_bytes(p.position.data(), p.position.size() * sizeof(vec3));
-      hash.add_bytes(p.index.data(), p.index.size() * sizeof(std::uint32_t));
-      for (const std::vector<float>* painted :
-           {&p.stiffness, &p.friction, &p.damping, &p.relaxation, &p.pinned, &p.handle})
-        hash.add_bytes(painted->data(), painted->size() * sizeof(float));
-    }
-  for (const LevelNode& node : level.nodes) {
-    add_text(hash, node.name);
-    for (const float number : {node.local.translation.x, node.local.translation.y, node.local.translation.z,
-                               node.local.rotation.x, node.local.rotation.y, node.local.rotation.z,
-                               node.local.rotation.w, node.local.scale.x, node.local.scale.y, node.local.scale.z})
-      hash.add(number);
-  }
-  for (const Extension& extension : extension_table()) {
-    if (extension.name == "environment") continue;  // is seen, not felt
-    if (extension.on_scene) {
-      add_keys(hash, extension, &level);
-      continue;
-    }
-    for (const LevelNode& node : level.nodes) add_keys(hash, extension, &node);
-  }
-  return std::max<std::uint64_t>(hash.value(), 1);
 }
 
 }  // namespace pliant

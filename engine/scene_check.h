@@ -1,8 +1,5 @@
-// What a reader has checked of a file, of a scene that was made in code (pliant/scene.h); and what makes two scenes the
-// same to a recording.
+// What a reader has checked of a file, of a scene that was made in code (pliant/scene.h).
 #pragma once
-
-#include <cstdint>
 
 #include "content/level/level.h"
 #include "runtime/result.h"
@@ -15,8 +12,5 @@ Status check_scene(Level& level);
 
 // Whether a device may have these limits: a force that leaves for a hand is clamped by them.
 Status check_device(const std::string& name, const DeviceParameters& device);
-
-// Of everything that is felt: meshes, placements, keys. Never 0.
-std::uint64_t scene_hash(const Level& level);
 
 }  // namespace pliant

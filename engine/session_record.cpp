@@ -9,7 +9,7 @@
 
 #include "content/files/file_io.h"
 #include "engine/driver_limits.h"
-#include "engine/scene_check.h"
+#include "engine/scene_hash.h"
 #include "engine/session_parts.h"
 #include "runtime/printable.h"
 #include "systems/device/softening.h"
@@ -127,7 +127,9 @@ Status Session::replay(const std::filesystem::path& file) {
                                             header.rate, p.world.simulation.touch_rate)};
   if (header.probes != effectors())
     return Error{file.string(), "was made with other probes and tools, or in another order; use its own scene"};
-  if (header.scene != 0 && header.scene != scene_hash(p.scene.level()))
+  if (header.scene == 0)
+    p.notes.push_back(file.string() + kUnknownScene);
+  else if (header.scene != scene_hash(p.scene.level()))
     p.notes.push_back(file.string() + " was recorded in another scene: forces will differ");
   if (!recording->ticks.empty() && recording->ticks.front() != 0)
     p.notes.push_back(fmt::format("{} begins at tick {}: what was felt before is not in it", file.string(),

@@ -15,6 +15,7 @@ void prepare_standard_streams() {
     if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF && ::open("/dev/null", O_RDWR) != stream) ::_exit(1);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGCHLD, SIG_DFL);  // whoever began this may have ignored it: then nobody learns how a process ended
 }
 
 std::optional<Error> close_stdout() {

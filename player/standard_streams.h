@@ -10,7 +10,8 @@ namespace pliant {
 
 // Call first. A closed standard stream becomes /dev/null: the next file that is opened would otherwise get its number,
 // and what is printed would land in that file. A broken pipe and a file at its size limit (`ulimit -f`) become errors
-// of a write instead of signals that kill.
+// of a write instead of signals that kill. Where the parent ignored SIGCHLD this does not: else nobody would learn how
+// a process of ours ended.
 void prepare_standard_streams();
 
 // Call last. What was printed and could not be written.

@@ -273,6 +273,9 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
                         fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
+  keys.push_back(box("focus", s(&S::focus),
+                     "where the lattice is finer, a box in the object frame: cells in it are as large as `cell` says, "
+                     "and grow with the distance to six times that; left out: the same all over"));
   keys.push_back(
       choice("fill", s(&S::fill),
              "what is filled: all that the surface encloses, the cavity of a thin wall too, or only the wall"));
@@ -466,6 +469,16 @@ void note_stated(const Extension& extension, const Key& key, void* owner) {
 const Key* find_key(const Extension& extension, const std::string& name) {
   for (const Key& each : extension.keys)
     if (each.name == name) return &each;
+  return nullptr;
+}
+
+const Key* find_key_of_path(const std::string& path) {
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
+    const std::size_t end = path.find('.', dot + 1);
+    if (end == std::string::npos) break;
+    const Extension* extension = find_extension(path.substr(dot + 1, end - dot - 1));
+    if (const Key* key = extension ? find_key(*extension, path.substr(end + 1)) : nullptr) return key;
+  }
   return nullptr;
 }
 

@@ -43,6 +43,8 @@ const Extension* find_extension(const std::string& name);
 // That its author has said a key: into LevelNode::stated or Level::stated.
 void note_stated(const Extension& extension, const Key& key, void* owner);
 const Key* find_key(const Extension& extension, const std::string& name);
+// The key of NODE.EXTENSION.KEY, where the node's name may hold dots; null: none.
+const Key* find_key_of_path(const std::string& path);
 
 // "" or what is wrong with the value.
 std::string check_value(const Key& key, const Json& value);

@@ -54,6 +54,8 @@ constexpr UnusedRow kRows[] = {
      "write the path as large as it shall be, or remove the key"},
     {"soft_body", "cell", [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
      "is not needed where `mesh` gives the tetrahedra; remove one of them"},
+    {"soft_body", "focus", [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
+     "is of a lattice, and `mesh` gives the tetrahedra; remove one of them"},
     {"handle", "box", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
      "has no effect on a rigid body, all of which is its handle; remove it"},
     {"handle", "attachment", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },

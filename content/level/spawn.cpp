@@ -54,8 +54,8 @@ mat4 matrix_of(const TouchShape& shape) {
 
 // A mesh as some node wants it.
 struct Baked {
-  std::optional<double> reach;  // [m] of the dents that must show, 0: the default; nothing: none need
-  bool refined = false;         // cut finer for that
+  std::optional<DentSize> dents;  // that must show; nothing: none need
+  bool refined = false;           // cut finer for that
   Handle<Mesh> touch;
   Handle<DrawMesh> draw;
 };
@@ -274,17 +274,17 @@ class Spawner {
 
   // Whether what was built for one node's dents is what another node wants.
   bool serves(const Baked& built, const Baked& wanted) const {
-    if (built.reach == wanted.reach) return true;
-    if (built.refined || !wanted.reach) return !built.refined;
+    if (built.dents == wanted.dents) return true;
+    if (built.refined || !wanted.dents) return !built.refined;
     const Mesh& mesh = world_.meshes[built.touch];
-    return !is_coarse(mesh, *wanted.reach > 0.0 ? *wanted.reach : default_reach(mesh));
+    return !is_coarse(mesh, wanted.dents->radius(mesh));
   }
 
   Result<Baked> bake(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     const TouchShape shape = shape_of(n);
     Baked wanted;
-    if (node.deformable) wanted.reach = std::max(node.deformable->reach, 0.0);
+    if (node.deformable) wanted.dents = dent_size(*node.deformable);
     std::vector<Baked>& known = baked_[static_cast<std::size_t>(node.mesh)][shape];
     for (const Baked& b : known)
       if (serves(b, wanted)) return b;
@@ -293,7 +293,7 @@ class Spawner {
     progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
     if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s.error();
     Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, matrix_of(shape),
-                                         {shape.crease_angle, wanted.reach, shape.touchable});
+                                         {shape.crease_angle, wanted.dents, shape.touchable});
     if (!built) return at(n, built.error().message());
     note_winding(node.mesh, *built);
     note_refinement(node, *built);

@@ -21,6 +21,9 @@ namespace {
 // [mean edges of the tetrahedra] Tissue is touched through its collision mesh's vertices: where they are farther apart,
 // whatever presses between them moves those far away and sinks through the tissue below it.
 constexpr double kLongestEdge = 2.0;
+constexpr double kEdgeOverCell = 0.91;  // [1] mean edge of the lattice's tetrahedra
+constexpr double kLeastFocus = 0.01;    // [1] of the diagonal: half of that of the author's box is not taken for less
+constexpr double kFocusOverBox = 2.0;   // [1] radius of the lattice's focus over half the diagonal of the body's
 
 // The tetrahedra of the body's file, in the object frame.
 Result<TetMesh> read_tets(const std::string& name, const std::string& file, const mat4& to_object,
@@ -73,6 +76,17 @@ Error in_crumbs(const TetMesh& tets, const SoftBody& body, const Mesh& surface) 
                                           (body.fill == Fill::kWall ? ", or `thickness` larger" : "")};
 }
 
+// Cells within the author's box are at most 1.5 times as wide and 2.4 times as long as in its middle.
+std::optional<LatticeFocus> focus_of(const SoftBody& body, const Mesh& surface) {
+  if (body.focus.empty() || !body.mesh.empty()) return std::nullopt;
+  const double half =
+      std::max(0.5 * length(dvec3(body.focus.size())), kLeastFocus * static_cast<double>(surface.box.diagonal()));
+  return LatticeFocus{dvec3(body.focus.center()), kFocusOverBox * half, dmat3(1.0)};
+}
+bool meet(const Box& a, const Box& b) {
+  return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
+}
+
 Primitive boundary_primitive(const TetMesh& mesh) {
   Primitive p;
   p.position.assign(mesh.nodes.begin(), mesh.nodes.end());
@@ -82,9 +96,11 @@ Primitive boundary_primitive(const TetMesh& mesh) {
 
 }  // namespace
 
-Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
-                               const std::stop_token& stop) {
-  Result<TetMesh> tets = fill_surface(surface.mesh, {body.cell, body.fill, body.thickness, stop});
+namespace {
+
+Result<FilledBody> fill_body(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                             const std::optional<LatticeFocus>& focus, const std::stop_token& stop) {
+  Result<TetMesh> tets = fill_surface(surface.mesh, {body.cell, body.fill, body.thickness, stop, focus});
   if (!tets) return tets.error();
   Result<std::vector<NodeGroup>> group = group_nodes(tets->nodes, surface, body, handle);
   if (!group) return group.error();
@@ -95,6 +111,21 @@ Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, c
   if (std::find(tissue.group.begin(), tissue.group.end(), NodeGroup::kFree) == tissue.group.end())
     return Error{"PLIANT_soft_body", "has no free node: what is not pinned or on the handle was too small to keep"};
   return tissue;
+}
+
+}  // namespace
+
+Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                               const std::stop_token& stop) {
+  if (!body.focus.empty() && !meet(body.focus, surface.mesh.box))
+    return Error{"PLIANT_soft_body/focus",
+                 "lies beside the tissue, which reaches from " + text_of(surface.mesh.box) + "; move its box"};
+  return fill_body(surface, body, handle, focus_of(body, surface.mesh), stop);
+}
+
+Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                               const LatticeFocus& focus, const std::stop_token& stop) {
+  return fill_body(surface, body, handle, focus, stop);
 }
 
 std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
@@ -161,10 +192,14 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     report_parts(count_parts(parts.tets), count_parts(parts.surface.mesh), parts.tets.report);
   }
   if (mesh) {
+    const std::optional<LatticeFocus> focus = focus_of(body, parts.surface.mesh);
     std::vector<Primitive> touched = mesh->primitives;
     const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
     const bool outer = filled && leave_out_covered(parts.surface, parts.tets, touched);
-    const bool finer = refine(touched, to_object, kLongestEdge * mean_edge(parts.tets));
+    const double longest = kLongestEdge * (focus ? kEdgeOverCell * parts.tets.report.cell : mean_edge(parts.tets));
+    const bool finer = refine(touched, to_object, [&](dvec3 at) {
+      return focus ? longest * focus->width(focus->inward(length(at - focus->center))) : longest;
+    });
     if (outer || finer)
       if (Status s = build(touched, to_object); !s) return s.error();
   }

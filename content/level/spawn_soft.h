@@ -36,6 +36,9 @@ struct FilledBody {
 };
 Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
                                const std::stop_token& stop = {});
+// ... with a lattice that is finer elsewhere than the body's author says.
+Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
+                               const LatticeFocus& focus, const std::stop_token& stop = {});
 
 // `mesh`: the node's surface, or null: the boundary of the tetrahedra file is taken. `to_object` takes the node's frame
 // to the object frame. Errors: no surface, no inside, a file that cannot be read, boxes and paint that hold no node.

@@ -239,9 +239,9 @@ Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive>
   built.mesh = std::move(touch->mesh);
   built.report = touch->report;
   touch->corners = {};
-  if (options.reach) {
-    const double reach = *options.reach > 0.0 ? *options.reach : default_reach(built.mesh);
-    const FinerMesh finer = make_finer(primitives, to_object, touch->gathered, touch->welded, built.mesh, reach);
+  if (options.dents) {
+    const FinerMesh finer = make_finer(primitives, to_object, touch->gathered, touch->welded, built.mesh,
+                                       options.dents->radius(built.mesh));
     if (!finer.primitives.empty()) return build_finer(finer, std::move(built));
   }
   if (Status s = finish(primitives, to_object, touch->gathered, touch->welded, built); !s) return s.error();

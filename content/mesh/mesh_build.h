@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "components/deformable.h"
 #include "components/mesh.h"
 #include "content/level/level.h"
 #include "runtime/result.h"
@@ -44,10 +45,9 @@ struct BuiltMesh {
 };
 
 struct MeshOptions {
-  double crease_angle = 0.0;  // [rad] edges that turn by more are creases; 0: mesh_crease.h decides
-  // [m] Cut finer until dents of this radius show (mesh_finer.h), 0: of the default reach; nothing: as the file has it.
-  std::optional<double> reach;
-  bool mend_winding = true;  // false: only drawn, as the file has it (a room is seen from within)
+  double crease_angle = 0.0;      // [rad] edges that turn by more are creases; 0: mesh_crease.h decides
+  std::optional<DentSize> dents;  // cut finer until they show (mesh_finer.h); nothing: as the file has it
+  bool mend_winding = true;       // false: only drawn, as the file has it (a room is seen from within)
 };
 
 // `to_object` takes the primitives' mesh frame to the object frame (scale, shear; a mirroring one flips the winding).

@@ -12,7 +12,7 @@ using RefinedCorners = std::array<std::uint32_t, 3>;
 
 class Pass {
  public:
-  Pass(Primitive& primitive, const mat4& to_object, double longest)
+  Pass(Primitive& primitive, const mat4& to_object, const LongestEdge& longest)
       : p_(primitive), to_object_(to_object), longest_(longest) {}
 
   // Triangles that there will be.
@@ -52,8 +52,10 @@ class Pass {
 
  private:
   bool is_long(std::uint32_t a, std::uint32_t b) const {
-    const dvec3 along = dmat3(to_object_) * (dvec3(p_.position[b]) - dvec3(p_.position[a]));
-    return dot(along, along) > longest_ * longest_;
+    const dvec3 first(p_.position[a]), second(p_.position[b]);
+    const dvec3 along = dmat3(to_object_) * (second - first);
+    const double most = longest_(dvec3(dmat4(to_object_) * glm::dvec4(0.5 * (first + second), 1.0)));
+    return dot(along, along) > most * most;
   }
 
   std::uint32_t middle(std::uint32_t a, std::uint32_t b) {
@@ -78,7 +80,7 @@ class Pass {
 
   Primitive& p_;
   const mat4& to_object_;
-  const double longest_;
+  const LongestEdge& longest_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles_;
 };
 
@@ -90,7 +92,7 @@ std::size_t triangles_of(const std::vector<Primitive>& primitives) {
 
 }  // namespace
 
-bool refine(std::vector<Primitive>& primitives, const mat4& to_object, double longest) {
+bool refine(std::vector<Primitive>& primitives, const mat4& to_object, const LongestEdge& longest) {
   for (int pass = 0; pass < kMostPasses; ++pass) {
     std::size_t wanted = 0;
     for (Primitive& p : primitives) wanted += Pass(p, to_object, longest).count();

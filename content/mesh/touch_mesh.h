@@ -17,7 +17,7 @@ struct TouchMesh {
   MeshReport report;
 };
 
-// As build_mesh, and fails as it does; MeshOptions::reach is not looked at. Once `stop` is set it soon returns an
+// As build_mesh, and fails as it does; MeshOptions::dents is not looked at. Once `stop` is set it soon returns an
 // error, which nobody needs to read.
 Result<TouchMesh> build_touch_mesh(const std::string& name, std::span<const Primitive> primitives,
                                    const mat4& to_object, const MeshOptions& options = {},

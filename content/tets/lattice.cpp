@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "content/files/limits.h"
-#include "content/tets/lattice_grid.h"
 #include "content/tets/lattice_stuffing.h"
 #include "content/tets/tet_embed.h"
 #include "content/tets/tet_findings.h"
@@ -53,8 +52,7 @@ struct Found {
 // The cell whose stuffing has about kUsualTets tetrahedra: their number goes with the cube of the cell. Begins where a
 // box filled by a third would need no change. What is thinner than its cell makes numbers that jump about: the nearest
 // one of all tries then counts.
-Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, LongWork& progress,
-                          const std::stop_token& stop) {
+Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, const LatticeWish& wish, LongWork& progress) {
   const Box box = region.box();
   const dvec3 size(box.size());
   const double longest = std::max({size.x, size.y, size.z});
@@ -63,8 +61,9 @@ Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, LongWor
   double cell = std::cbrt(12.0 * 0.33 * volume / static_cast<double>(kUsualTets));
   Found best;
   for (int n = 0; n < kTries; ++n) {
-    if (LatticeGrid::node_count(box, cell) > kMostUsualNodes) break;
-    Result<Stuffing> stuffing = stuff(surface, region, cell, kMostUsualTets, progress, stop);
+    if (LatticeGrid::node_count(box, cell, wish.focus) > kMostUsualNodes) break;
+    const LatticeGrid grid(box, cell, wish.focus);
+    Result<Stuffing> stuffing = stuff(surface, region, grid, kMostUsualTets, progress, wish.stop);
     if (!stuffing) return stuffing.error();
     const double share = static_cast<double>(stuffing->tets.size()) / static_cast<double>(kUsualTets);
     const auto off = [](std::size_t tets) {
@@ -80,19 +79,20 @@ Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, LongWor
   return best;
 }
 
-Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, double cell, LongWork& progress,
-                         const std::stop_token& stop) {
+Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const LatticeWish& wish, LongWork& progress) {
+  const double cell = wish.cell;
   const auto too_many = [&](const std::string& how_many) {
     return Error{"mesh `" + surface.name + "`", fmt::format("a cell of {:.3g} m makes {}", cell, how_many)};
   };
   const auto count = [&](const Limit& limit, double found) {
     return too_many(beyond(limit, std::ceil(found), "choose a larger one"));
   };
-  const double nodes = LatticeGrid::node_count(region.box(), cell);
+  const double nodes = LatticeGrid::node_count(region.box(), cell, wish.focus);
   if (nodes > static_cast<double>(most(limits::kLatticeNodes))) return count(limits::kLatticeNodes, nodes);
-  const double tets = estimated_tets(region, cell);
+  const double tets = wish.focus ? 0.0 : estimated_tets(region, cell);
   if (tets > kSure * static_cast<double>(most(limits::kTets))) return count(limits::kTets, tets);
-  Result<Stuffing> stuffing = stuff(surface, region, cell, most(limits::kTets), progress, stop);
+  const LatticeGrid grid(region.box(), cell, wish.focus);
+  Result<Stuffing> stuffing = stuff(surface, region, grid, most(limits::kTets), progress, wish.stop);
   if (!stuffing) return stuffing.error();
   if (stuffing->beyond)
     return too_many(
@@ -135,8 +135,8 @@ Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish) {
   const FillRegion region(surface, inside, shape, wish.fill, wish.thickness);
   if (shape.kind == SurfaceKind::kSheet && wish.fill == Fill::kWall && !(wish.thickness > 0.0))
     return nothing_held(surface, shape, wish);
-  Result<Found> found = wish.cell > 0.0 ? stuff_cell(surface, region, wish.cell, progress, wish.stop)
-                                        : stuff_usual(surface, region, progress, wish.stop);
+  Result<Found> found =
+      wish.cell > 0.0 ? stuff_cell(surface, region, wish, progress) : stuff_usual(surface, region, wish, progress);
   if (!found) return found.error();
   if (found->stuffing.tets.empty()) return nothing_held(surface, shape, wish);
   TetMesh mesh;

@@ -11,6 +11,7 @@
 
 #include "components/mesh.h"
 #include "components/tet_mesh.h"
+#include "content/tets/lattice_grid.h"
 #include "pliant/parameters.h"
 #include "runtime/result.h"
 
@@ -27,7 +28,8 @@ struct LatticeWish {
   double cell = 0.0;         // [m] 0: the one that makes about kUsualTets
   Fill fill = Fill::kSolid;  // ... and `thickness` [m]: as SoftBodyParameters
   double thickness = 0.0;
-  std::stop_token stop;  // a filling that is no longer wanted ends with an error
+  std::stop_token stop;               // a filling that is no longer wanted ends with an error
+  std::optional<LatticeFocus> focus;  // where it is finer: `cell` is the one in its middle
 };
 
 // Fills a surface (small holes do not matter) with tetrahedra, without embedding it in them: a wall's cavity as `fill`

@@ -2,10 +2,17 @@
 // coordinates, half a cell apart: corners have three even ones, centres three odd ones. Its tetrahedra are all alike:
 // around each face of a cube, the two centres beside it and one of its four edges; dihedral angles of 60 and 90
 // degrees.
+//
+// A lattice may be finer around a place: its own coordinates q are even, and a node at the distance q from that place
+// there lies at r = q w from it, w = 1 + (g - 1) q^2 / (q^2 + a^2). So cells are of the size `cell` around the place,
+// and grow to g times that; on the way they are at most 1.8 times as long as wide.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "components/math.h"
 
@@ -37,19 +44,52 @@ inline bool is_long(std::size_t step) {
   return step < 3 || step >= kSteps - 3;
 }
 
+// Where a lattice is finer, and how it lies: the center is a corner of its cubes.
+struct LatticeFocus {
+  dvec3 center{0};      // [m]
+  double radius = 0.0;  // [m] a > 0
+  dmat3 axes{1.0};      // [1] a rotation: the lattice's axes
+
+  static constexpr double kGrowth = 6.0;  // [1] g
+  // [1] How wide cells are, by those in the middle: q [m] from it in the lattice's coordinates.
+  double width(double q) const { return 1.0 + (kGrowth - 1.0) * q * q / (q * q + radius * radius); }
+  // [m] How far from the center in the lattice's coordinates lies what is this far [m] from it in space.
+  double inward(double r) const {
+    double low = r / kGrowth, high = r;
+    for (int n = 0; n < kHalvings; ++n) {
+      const double middle = 0.5 * (low + high);
+      (middle * width(middle) < r ? low : high) = middle;
+    }
+    return high;
+  }
+  dvec3 outward(dvec3 q) const { return center + axes * (q * width(length(q))); }
+
+ private:
+  static constexpr int kHalvings = 52;
+};
+
 class LatticeGrid {
  public:
-  // Covers the box, centred on it, with at least two cells to spare on every side: neighbours of neighbours exist.
-  LatticeGrid(const Box& box, double cell) : cell_(cell) {
+  // Covers the box with at least two cells to spare on every side: neighbours of neighbours exist. Without a focus it
+  // is centred on the box.
+  LatticeGrid(const Box& box, double cell, const std::optional<LatticeFocus>& focus = {}) : cell_(cell), focus_(focus) {
+    const auto [low, high] = bounds(box, focus);
     for (int i = 0; i < 3; ++i) {
-      cubes_[i] = static_cast<int>(std::ceil(static_cast<double>(box.size()[i]) / cell)) + 4;
-      origin_[i] = static_cast<double>(box.center()[i]) - 0.5 * cell * cubes_[i];
+      if (focus) {
+        const double first = std::floor(low[i] / cell) - 2;
+        cubes_[i] = static_cast<int>(std::ceil(high[i] / cell) + 2 - first);
+        origin_[i] = first * cell;
+        continue;
+      }
+      cubes_[i] = static_cast<int>(std::ceil((high[i] - low[i]) / cell)) + 4;
+      origin_[i] = 0.5 * (low[i] + high[i]) - 0.5 * cell * cubes_[i];
     }
   }
   // [1] for a box and a cell, before anything is built; a double, since it may be beyond any integer.
-  static double node_count(const Box& box, double cell) {
+  static double node_count(const Box& box, double cell, const std::optional<LatticeFocus>& focus = {}) {
+    const auto [low, high] = bounds(box, focus);
     double count = 2.0;
-    for (int i = 0; i < 3; ++i) count *= std::ceil(static_cast<double>(box.size()[i]) / cell) + 5.0;
+    for (int i = 0; i < 3; ++i) count *= std::ceil((high[i] - low[i]) / cell) + (focus ? 6.0 : 5.0);
     return count;
   }
 
@@ -68,12 +108,34 @@ class LatticeGrid {
     const int row = cube / (cubes_.x + 1);
     return 2 * Place(cube % (cubes_.x + 1), row % (cubes_.y + 1), row / (cubes_.y + 1)) + centre;
   }
-  dvec3 position(Place p) const { return origin_ + 0.5 * cell_ * dvec3(p); }
+  dvec3 position(Place p) const {
+    const dvec3 y = origin_ + 0.5 * cell_ * dvec3(p);
+    return focus_ ? focus_->outward(y) : y;
+  }
 
  private:
+  // What holds the box in the lattice's coordinates: no point of a face lies farther away there, along the face's axis,
+  // than the point right above the center.
+  static std::array<dvec3, 2> bounds(const Box& box, const std::optional<LatticeFocus>& focus) {
+    if (!focus) return {dvec3(box.min), dvec3(box.max)};
+    dvec3 low(0), high(0);
+    for (int corner = 0; corner < 8; ++corner) {
+      const dvec3 at(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                     corner & 4 ? box.max.z : box.min.z);
+      const dvec3 away = glm::transpose(focus->axes) * (at - focus->center);
+      low = glm::min(low, away);
+      high = glm::max(high, away);
+    }
+    for (int i = 0; i < 3; ++i) {
+      low[i] = -focus->inward(-low[i]);
+      high[i] = focus->inward(high[i]);
+    }
+    return {low, high};
+  }
   int rows() const { return (cubes_.x + 1) * (cubes_.y + 1); }
 
-  double cell_;      // [m]
+  double cell_;  // [m]
+  std::optional<LatticeFocus> focus_;
   dvec3 origin_{0};  // [m]
   Place cubes_{0};
 };

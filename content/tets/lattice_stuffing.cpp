@@ -5,7 +5,6 @@
 #include <unordered_map>
 
 #include "content/files/limits.h"
-#include "content/tets/lattice_grid.h"
 #include "content/tets/tet_quality.h"
 #include "runtime/parallel.h"
 
@@ -30,14 +29,9 @@ struct Cut {
 
 class Stuffer {
  public:
-  Stuffer(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, LongWork& progress,
+  Stuffer(const Mesh& surface, const FillRegion& region, const LatticeGrid& grid, std::size_t most, LongWork& progress,
           const std::stop_token& stop)
-      : grid_(region.box(), cell),
-        region_(region),
-        most_(most),
-        progress_(progress),
-        stop_(stop),
-        name_(surface.name) {}
+      : grid_(grid), region_(region), most_(most), progress_(progress), stop_(stop), name_(surface.name) {}
 
   Result<Stuffing> run() {
     if (Status s = find_sides(); !s) return s.error();
@@ -270,7 +264,7 @@ class Stuffer {
     prism(a, b, {first, second, third});
   }
 
-  const LatticeGrid grid_;
+  const LatticeGrid& grid_;
   const FillRegion& region_;
   const std::size_t most_;
   LongWork& progress_;
@@ -285,9 +279,9 @@ class Stuffer {
 
 }  // namespace
 
-Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, LongWork& progress,
-                       const std::stop_token& stop) {
-  return Stuffer(surface, region, cell, most, progress, stop).run();
+Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, const LatticeGrid& grid, std::size_t most,
+                       LongWork& progress, const std::stop_token& stop) {
+  return Stuffer(surface, region, grid, most, progress, stop).run();
 }
 
 }  // namespace pliant

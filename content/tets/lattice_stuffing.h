@@ -1,4 +1,4 @@
-// One isosurface stuffing at one cell size: nodes and tetrahedra, in the order of the lattice.
+// One isosurface stuffing of one lattice: nodes and tetrahedra, in the order of the lattice.
 #pragma once
 
 #include <stop_token>
@@ -7,6 +7,7 @@
 #include "components/tet_mesh.h"
 #include "content/level/progress.h"
 #include "content/tets/fill_region.h"
+#include "content/tets/lattice_grid.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -18,7 +19,7 @@ struct Stuffing {
 };
 
 // Empty where no lattice point lies in the region. Error: whoever waits wants no more of it.
-Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, double cell, std::size_t most, LongWork& progress,
-                       const std::stop_token& stop = {});
+Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, const LatticeGrid& grid, std::size_t most,
+                       LongWork& progress, const std::stop_token& stop = {});
 
 }  // namespace pliant

@@ -155,17 +155,24 @@ class Embedder {
 
 }  // namespace
 
-std::vector<Embedding> embed(const Mesh& surface, const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) {
+std::vector<Embedding> embed(const std::vector<dvec3>& points, const std::vector<dvec3>& normals,
+                             const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) {
   ASSERT(!tets.empty());
   const Embedder embedder(nodes, tets);
-  std::vector<Embedding> collision_mesh(surface.vertex_count);
-  parallel_for(collision_mesh.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const auto vertex = static_cast<std::uint32_t>(v);
-      collision_mesh[v] = embedder.find(dvec3(surface.position(vertex)), dvec3(surface.normal(vertex)));
-    }
+  std::vector<Embedding> found(points.size());
+  parallel_for(found.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) found[i] = embedder.find(points[i], normals[i]);
   });
-  return collision_mesh;
+  return found;
+}
+
+std::vector<Embedding> embed(const Mesh& surface, const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) {
+  std::vector<dvec3> points, normals;
+  for (std::uint32_t v = 0; v < surface.vertex_count; ++v) {
+    points.emplace_back(surface.position(v));
+    normals.emplace_back(surface.normal(v));
+  }
+  return embed(points, normals, nodes, tets);
 }
 
 std::vector<std::uint8_t> are_inside(const std::vector<dvec3>& points, const std::vector<dvec3>& nodes,

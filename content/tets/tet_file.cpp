@@ -33,7 +33,7 @@ Result<TetFile> read_tetgen(const fs::path& path, const fs::path& within) {
   const bool is_node = lower_extension(path) == ".node";
   Result<Bytes> bytes = read_file(path, limits::kTetFile);
   if (!bytes) return bytes.error();
-  const fs::path beside = is_node ? partner(path, ".ele", ".ELE") : partner(path, ".node", ".NODE");
+  const fs::path beside = tetgen_partner(path);
   if (!within.empty()) {
     std::error_code error;
     const fs::path name = fs::relative(beside.parent_path(), within, error) / beside.filename();
@@ -68,6 +68,12 @@ const Format* format_of(const fs::path& path) {
 
 bool is_tet_file(const fs::path& path) {
   return format_of(path) != nullptr;
+}
+
+fs::path tetgen_partner(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".node") return partner(path, ".ele", ".ELE");
+  return extension == ".ele" ? partner(path, ".node", ".NODE") : fs::path();
 }
 
 Result<TetFile> load_named_tets(const fs::path& folder, const std::string& name) {

@@ -19,6 +19,8 @@ struct TetFile {
 };
 
 bool is_tet_file(const std::filesystem::path& path);  // by its extension
+// Of TetGen's pair the other file; empty for other formats.
+std::filesystem::path tetgen_partner(const std::filesystem::path& path);
 
 // Of TetGen's pair either file may be named; the other lies beside it, and not outside of `within` where that is said
 // (confined_file). Errors name the line or the byte.

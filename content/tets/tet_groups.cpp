@@ -12,11 +12,6 @@ namespace {
 constexpr float kPaintedShare = 0.5f;
 constexpr double kRounding = 1e-6;  // [1] of the diagonal: a box drawn through nodes holds them
 
-std::string text(const Box& box) {
-  return fmt::format("({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g}) m", box.min.x, box.min.y, box.min.z,
-                     box.max.x, box.max.y, box.max.z);
-}
-
 bool is_painted(const std::vector<float>& paint) {
   return std::any_of(paint.begin(), paint.end(), [](float value) { return value >= kPaintedShare; });
 }
@@ -59,10 +54,15 @@ bool claim(const std::vector<dvec3>& nodes, const BuiltMesh& surface, const Box&
 
 }  // namespace
 
+std::string text_of(const Box& box) {
+  return fmt::format("({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g}) m", box.min.x, box.min.y, box.min.z,
+                     box.max.x, box.max.y, box.max.z);
+}
+
 Result<std::vector<NodeGroup>> group_nodes(const std::vector<dvec3>& nodes, const BuiltMesh& surface,
                                            const SoftBody& body, const Handle6* handle) {
   std::vector<NodeGroup> group(nodes.size(), NodeGroup::kFree);
-  const std::string extent = "the tissue reaches from " + text(surface.mesh.box);
+  const std::string extent = "the tissue reaches from " + text_of(surface.mesh.box);
   if (!body.pinned.empty() || is_painted(surface.pinned)) {
     if (!claim(nodes, surface, body.pinned, surface.pinned, NodeGroup::kPinned, group))
       return Error{"PLIANT_soft_body/pinned",

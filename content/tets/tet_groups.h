@@ -8,6 +8,9 @@
 
 namespace pliant {
 
+// "(0, 0, 0) to (1, 1, 1) m"
+std::string text_of(const Box& box);
+
 // A node belongs to a box that it lies in; without a box, to the paint of the surface vertex nearest to it, from 0.5 up
 // (BuiltMesh::handle and pinned). What handle and pins both claim is the handle's. `handle`: null where the body has
 // none. Errors, one sentence each: a handle without box or paint, a box or paint that holds no node, nothing left free.

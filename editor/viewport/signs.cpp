@@ -172,6 +172,8 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
       rigid[3] = glm::dvec4(at, 1.0);
       if (node.soft_body && !node.soft_body->pinned.empty())
         SignPen(lines, colors.pinned).box(rigid, node.soft_body->pinned);
+      if (node.soft_body && !node.soft_body->focus.empty())
+        SignPen(lines, selected[i] ? colors.selected : colors.plain).box(rigid, node.soft_body->focus);
       if (node.handle && !node.handle->box.empty()) SignPen(lines, colors.handle).box(rigid, node.handle->box);
     }
   }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "content/keys/enum_words.h"
+#include "content/tets/lattice.h"
 #include "content/tets/step_cost.h"
 #include "engine/choice/choice_parts.h"
 #include "engine/choice/solver_choice.h"
@@ -17,6 +19,11 @@ constexpr std::uint32_t kPresses = 6;                   // places, along the sur
 constexpr std::array kCells{2.0, 1.6, 1.25, 1.0, 0.8};  // [1] of the usual cell
 constexpr double kFinest = 0.6;                         // [1] the truth's
 constexpr std::array<double, 5> kStepsTried{1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480};  // [s]
+
+// What is measured has this size at most, whatever the level says: seconds each, as with the usual cell, which never
+// makes more than kMostUsualTets. An answer is a factor and six solutions; a press is some 500 steps.
+constexpr std::size_t kMostAnswerTets = 5 * kMostUsualTets, kMostPressTets = kMostUsualTets;
+constexpr int kCoarsenings = 4;  // tries to find a cell that makes so few
 
 // How far apart two lattices are is not what either is off by: the finer one has an error of its own, a quarter of one
 // of twice the cell (order 2). The difference is scaled to what is left to cells of no size.
@@ -45,41 +52,132 @@ Error unpressed(const LevelNode& node) {
   return {node.name, "could not be pressed to measure an error; leave out `error`"};
 }
 
-// Lattices with their errors; from a file the only one there is.
-Result<std::vector<TriedLattice>> try_lattices(Level& alone, std::size_t index, const LevelNode& node, Patches& patches,
-                                               ChoiceProgress& progress) {
-  std::vector<TriedLattice> out;
-  const auto say = [&] { progress.say("choosing a model for `" + node.name + "`"); };
-  auto usual = make_lattice(alone, index, node.soft_body->cell, patches);
+// One body's choice while it is made.
+class BodyChooser {
+ public:
+  BodyChooser(const Level& level, std::size_t index, ModelChoice& choice, ChoiceProgress& progress)
+      : alone_(level_alone(level, index)),
+        index_(index),
+        node_(level.nodes[index]),
+        choice_(choice),
+        progress_(progress) {}
+
+  // Lattices with their errors; from a file the only one there is.
+  Status try_lattices();
+  // What soft steps are measured on: coarse, also where the level says a finer cell, else opening would take minutes.
+  Status find_press_lattice();
+  std::vector<TriedLattice> lattices;
+  Patches patches;
+  const Answers& at_rest() const { return *at_rest_; }  // of pressed(), once it was found
+  const Lattice& pressed() const { return coarse_ ? *coarse_ : lattices.front().its; }
+  bool from_file() const { return !node_.soft_body->mesh.empty(); }
+
+ private:
+  Result<Lattice> lattice(double cell) { return make_lattice(alone_, index_, cell, patches); }
+  // Of this cell, or of the larger one that makes at most so many tetrahedra. Nothing: what is thin in it does not
+  // take so coarse a lattice.
+  std::optional<Lattice> lattice_within(double cell, std::size_t most);
+  Error too_large() const;
+  void say(const std::string& doing) { progress_.say(doing + " for `" + node_.name + "`"); }
+
+  Level alone_;
+  std::size_t index_;
+  const LevelNode& node_;
+  ModelChoice& choice_;
+  ChoiceProgress& progress_;
+  std::optional<Lattice> coarse_;
+  std::optional<Answers> at_rest_;
+};
+
+std::optional<Lattice> BodyChooser::lattice_within(double cell, std::size_t most) {
+  for (int i = 0; i < kCoarsenings; ++i) {
+    say("choosing a model");
+    auto made = lattice(cell);
+    if (!made) return std::nullopt;
+    const std::size_t count = made->tets.tets.size();
+    if (count <= most) return std::move(made).value();
+    cell = 1.02 * made->cell * std::cbrt(static_cast<double>(count) / static_cast<double>(most));
+  }
+  return std::nullopt;
+}
+
+Error BodyChooser::too_large() const {
+  return {node_.name, fmt::format("has {} tetrahedra, more than can be pressed in seconds to measure an error, and a "
+                                  "coarser lattice cannot be made of it; leave out `error`, or {}",
+                                  lattices.front().its.tets.tets.size(),
+                                  from_file() ? "take a file with fewer" : "name a larger `cell`")};
+}
+
+Status BodyChooser::try_lattices() {
+  auto usual = lattice(node_.soft_body->cell);
   if (!usual) return usual.error();
   const Mesh& surface = patches.surface;
   patches.radius = kDefaultReach * static_cast<double>(surface.box.diagonal());
   for (std::uint32_t k = 0; k < kPresses; ++k)
     patches.vertices.push_back(
         static_cast<std::uint32_t>((2 * std::uint64_t{k} + 1) * surface.vertex_count / (2 * kPresses)));
-  if (!node.soft_body->mesh.empty()) {
-    out.push_back({0.0, std::move(*usual)});
-    return out;
+  if (from_file()) {
+    lattices.push_back({0.0, std::move(*usual)});
+    return Done{};
   }
-  say();
+  const bool cell_said = states(node_, "soft_body", "cell");
   const double cell = usual->cell;
-  const auto finest = make_lattice(alone, index, kFinest * cell, patches);
+  const std::size_t count = usual->tets.tets.size();
+  // The finest cell whose refinement can be answered.
+  const double share = std::cbrt(static_cast<double>(count) / static_cast<double>(kMostAnswerTets)) / kFinest;
+  if (cell_said && share > 1.0) {
+    lattices.push_back({0.0, std::move(*usual)});
+    const auto tried = lattice_within(share * cell, kMostAnswerTets);
+    const auto finest = tried ? lattice_within(kFinest * tried->cell, kMostAnswerTets) : std::nullopt;
+    const auto truth = finest ? answers(*finest, *node_.soft_body, patches) : std::nullopt;
+    const auto answer = truth ? answers(*tried, *node_.soft_body, patches) : std::nullopt;
+    if (!answer || !(finest->cell < tried->cell)) return too_large();
+    const double error = to_truth(difference(*answer, *truth, surface), tried->cell, finest->cell);
+    const double finer = cell / tried->cell;
+    lattices.front().error = error * finer * finer;
+    choice_.presses.push_back(
+        fmt::format("its {} tetrahedra are too many to be refined in seconds: the error of its lattice is that of {} "
+                    "({:.2g}), scaled as of order 2; name a larger `cell` for a measured one",
+                    count, tried->tets.tets.size(), error));
+    return Done{};
+  }
+  const auto finest = lattice(kFinest * cell);
   if (!finest) return finest.error();
-  say();
-  const auto truth = answers(*finest, *node.soft_body, patches);
-  if (!truth) return unpressed(node);
-  for (const double share : kCells) {
-    say();
-    if (share != 1.0 && states(node, "soft_body", "cell")) continue;
-    auto tried = share == 1.0 ? std::move(usual) : make_lattice(alone, index, share * cell, patches);
+  say("choosing a model");
+  const auto truth = answers(*finest, *node_.soft_body, patches);
+  if (!truth) return unpressed(node_);
+  for (const double each : kCells) {
+    say("choosing a model");
+    if (each != 1.0 && cell_said) continue;
+    auto tried = each == 1.0 ? std::move(usual) : lattice(each * cell);
     if (!tried) continue;  // too coarse for what is thin in it
-    const auto answer = answers(*tried, *node.soft_body, patches);
+    const auto answer = answers(*tried, *node_.soft_body, patches);
     if (!answer) continue;
     const double error = to_truth(difference(*answer, *truth, surface), tried->cell, finest->cell);
-    out.push_back({error, std::move(*tried)});
+    lattices.push_back({error, std::move(*tried)});
   }
-  if (out.empty()) return Error{node.name, "has no lattice whose error could be measured; leave out `error`"};
-  return out;
+  if (lattices.empty()) return Error{node_.name, "has no lattice whose error could be measured; leave out `error`"};
+  return Done{};
+}
+
+Status BodyChooser::find_press_lattice() {
+  say("choosing a soft step");
+  const std::size_t count = lattices.front().its.tets.tets.size();
+  if (from_file() && count > kMostPressTets) {
+    alone_.nodes[index_].soft_body->mesh.clear();
+    coarse_ = lattice_within(0.0, kMostPressTets);
+    if (!coarse_) return too_large();
+    choice_.presses.push_back(
+        fmt::format("its {} tetrahedra are too many to be pressed in seconds: soft steps were measured on a lattice "
+                    "of {} in the same surface; take a file with fewer for measured ones",
+                    count, coarse_->tets.tets.size()));
+  }
+  if (!from_file() && states(node_, "soft_body", "cell")) {
+    coarse_ = lattice_within(kCells[0] * lattices.front().its.cell, kMostPressTets);
+    if (!coarse_ && count > kMostPressTets) return too_large();
+  }
+  at_rest_ = answers(pressed(), *node_.soft_body, patches);
+  return at_rest_ ? Status(Done{}) : Status(unpressed(node_));
 }
 
 }  // namespace
@@ -92,53 +190,59 @@ Result<ModelChoice> choose_body(Level& level, std::size_t index, double& step, C
   for (const char* key : {"cell", "mesh", "solver"})
     if (states(node, "soft_body", key)) choice.kept.emplace_back(key);
   if (from_file) choice.presses.emplace_back("its tetrahedra come from a file, whose own error was not measured");
-  std::vector<double> steps(kStepsTried.begin(), kStepsTried.end());
-  if (states_step(level)) steps = {level.simulation.soft_step}, choice.kept.emplace_back("soft_step");
+  std::vector<double> wanted(kStepsTried.begin(), kStepsTried.end());
+  if (states_step(level)) wanted = {level.simulation.soft_step}, choice.kept.emplace_back("soft_step");
+  if (!make_solver(body.solver, 1))
+    return Error{node.name, "its solver is not in this build, or its factory makes none; use `auto`"};
 
-  Patches patches;
-  Level alone = level_alone(level, index);
-  auto lattices = try_lattices(alone, index, node, patches, progress);
-  if (!lattices) return lattices.error();
-  progress.say("choosing a soft step for `" + node.name + "`");
-  // Steps are measured on a coarse lattice, also where the level says a finer one: else opening would take minutes.
-  std::optional<Lattice> coarse;
-  if (!from_file && states(node, "soft_body", "cell")) {
-    auto made = make_lattice(alone, index, kCells[0] * lattices->front().its.cell, patches);
-    if (made) coarse = std::move(made).value();
-  }
-  const Lattice& coarsest = coarse ? *coarse : lattices->front().its;
-  const auto at_rest = answers(coarsest, body, patches);
-  if (!at_rest) return unpressed(node);
-  const auto errors = step_errors(coarsest, body, patches, *at_rest, steps);
-  const std::uint32_t vertex = softest(*at_rest, patches).first;
+  BodyChooser chooser(level, index, choice, progress);
+  if (const Status tried = chooser.try_lattices(); !tried) return tried.error();
+  if (const Status found = chooser.find_press_lattice(); !found) return found.error();
+  const std::vector<TriedLattice>& lattices = chooser.lattices;
+  const Patches& patches = chooser.patches;
+  const Answers& at_rest = chooser.at_rest();
+  const std::vector<StepFigures> steps = step_errors(chooser.pressed(), body, patches, at_rest, wanted);
+  if (wanted.front() < kShortestStep)
+    choice.presses.push_back(
+        fmt::format("a soft step of {:.3g} ms is too short to be measured in seconds: the error of "
+                    "{:.3g} ms, which is larger, stands for it; name a longer one",
+                    1e3 * wanted.front(), 1e3 * kShortestStep));
+  const std::uint32_t vertex = softest(at_rest, patches).first;
   const auto solvers = [&](const Lattice& its, double T, const std::vector<SolverKind>& kinds) {
     return measure_solvers(its.tets, material_of(body, Strain::kCorotational), patch_load(patches, its.tets, vertex), T,
                            kinds);
   };
+  // Of several lattices none is so large (try_lattices).
+  const bool solvable = lattices.front().its.tets.tets.size() <= kMostAnswerTets;
+  if (!solvable)
+    choice.presses.push_back(fmt::format("with so many tetrahedra no solver was measured; {}",
+                                         from_file ? "take a file with fewer" : "name a larger `cell`"));
 
   std::vector<std::pair<ModelCandidate, BodyModel>> tried;
   const auto add = [&](std::size_t l, std::size_t s, const SolverFigures& solver) {
-    const Lattice& its = (*lattices)[l].its;
+    const Lattice& its = lattices[l].its;
     ModelCandidate candidate;
-    candidate.label = label_of(its, from_file, steps[s], solver.kind);
-    candidate.error = (*lattices)[l].error + errors[s].first + solver.error;
-    candidate.cost = (step_ms(its.tets.tets.size(), 1.0) + solver.more_ms) / steps[s];
-    candidate.ms = &its == &coarsest && solver.kind == SolverKind::kAuto ? errors[s].second : 0.0;
+    candidate.label = label_of(its, from_file, steps[s].step, solver.kind);
+    candidate.error = lattices[l].error + steps[s].error + solver.error;
+    candidate.cost = (step_ms(its.tets.tets.size(), 1.0) + solver.more_ms) / steps[s].step;
+    candidate.ms = &its == &chooser.pressed() && solver.kind == SolverKind::kAuto ? steps[s].ms : 0.0;
     tried.push_back({candidate, {l, s, solver.kind}});
   };
   // By the solver that the level says, or `auto`; where it is open the others come after, with the lattice and step
   // that are taken: no solver is cheaper than `auto`, and none nearer by what a budget could tell.
-  for (std::size_t l = 0; l < lattices->size(); ++l)
+  for (std::size_t l = 0; l < lattices.size(); ++l)
     for (std::size_t s = 0; s < steps.size(); ++s)
-      for (const SolverFigures& figures : solvers((*lattices)[l].its, steps[s], {body.solver})) add(l, s, figures);
+      for (const SolverFigures& figures :
+           solvable ? solvers(lattices[l].its, steps[s].step, {body.solver}) : std::vector{SolverFigures{body.solver}})
+        add(l, s, figures);
   if (tried.empty()) return unpressed(node);
-  if (!solver_said) {
+  if (!solver_said && solvable) {
     ModelChoice before = choice;
     auto sorted = tried;
     const BodyModel taken = take_cheapest(before, sorted);
     std::vector<SolverKind> others = solvers_to_choose();
     std::erase(others, body.solver);
-    for (const SolverFigures& figures : solvers((*lattices)[taken.lattice].its, steps[taken.step], others)) {
+    for (const SolverFigures& figures : solvers(lattices[taken.lattice].its, steps[taken.step].step, others)) {
       add(taken.lattice, taken.step, figures);
       choice.remarks.push_back(fmt::format(
           "solver {}: {:.1e} off the direct solution, {:+.3g} ms a step beyond `auto`, with 60 contacts; {:.2g} ms on "
@@ -149,9 +253,9 @@ Result<ModelChoice> choose_body(Level& level, std::size_t index, double& step, C
   const BodyModel taken = take_cheapest(choice, tried);
   for (const ChoosableKey& key : choosable_keys(level, index))
     if (!key.said && key.extension != "handle") choice.keys.push_back(key);
-  if (!from_file && !states(node, "soft_body", "cell")) node.soft_body->cell = (*lattices)[taken.lattice].its.cell;
+  if (!from_file && !states(node, "soft_body", "cell")) node.soft_body->cell = lattices[taken.lattice].its.cell;
   if (!solver_said) node.soft_body->solver = taken.solver;
-  step = std::min(step, steps[taken.step]);
+  step = std::min(step, steps[taken.step].step);
   return choice;
 }
 

@@ -11,10 +11,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kTruthStep = 1.0 / 480, kEvery = 1.0 / 30;  // [s] the midpoint rule's, and when it is looked at
-constexpr double kRise = 0.2, kHold = 0.1, kLast = 0.5;      // [s] of a press: it comes, holds, is let go
-constexpr double kHeldShare = 0.15;                          // [1] of the height, where nothing is pinned
-constexpr double kStrain = 0.1;                              // [1] deepest dent over the patch's radius
+constexpr double kTruthStep = 1.0 / 480;                 // [s] the midpoint rule's
+constexpr double kRise = 0.2, kHold = 0.1, kLast = 0.5;  // [s] of a press: it comes, holds, is let go
+constexpr int kLooks = 15;                               // moments of a press that are compared, equally far apart
+constexpr double kHeldShare = 0.15;                      // [1] of the height, where nothing is pinned
+constexpr double kStrain = 0.1;                          // [1] deepest dent over the patch's radius
 
 // A body that nothing holds is held at its lowest part, so that there is an answer to a press.
 void hold(TetMesh& tets) {
@@ -48,22 +49,31 @@ double pressed(double time) {  // [1] of the load
   return t * t * (3 - 2 * t) - (time > kRise + kHold ? 1.0 : 0.0);
 }
 
-// The body pressed and let go in steps of T [s]: where its nodes are at each kEvery. `ms`: of a step.
+// The body pressed and let go in steps of T [s]: where its nodes are at each of kLooks moments, between the ends of
+// steps on the straight line. Empty: a step cannot be solved. `ms`: of a step.
 std::vector<std::vector<dvec3>> motion(const Lattice& lattice, const SoftBody& body, const std::vector<dvec3>& load,
                                        Scheme scheme, double T, double* ms = nullptr) {
   Tissue tissue(lattice.tets, material_of(body, Strain::kCorotational), lattice.tets.free_count);
   const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);
   solver->analyse(tissue.inner());
-  std::vector<dvec3> push = load;
+  std::vector<dvec3> push = load, before = tissue.position();
   const TissueStep step{.scheme = scheme, .iterations = scheme == Scheme::kEuler ? 1 : 2, .push = &push};
   const double at = scheme == Scheme::kEuler ? 1.0 : 0.5;  // [1] of the step: when the load counts
-  const auto steps = static_cast<int>(std::lround(kLast / T)), looked = static_cast<int>(std::lround(kEvery / T));
   std::vector<std::vector<dvec3>> out;
   const std::uint64_t begin = now_ns();
-  for (int i = 0; i < steps; ++i) {
-    for (std::size_t n = 0; n < push.size(); ++n) push[n] = pressed((i + at) * T) * load[n];
+  int steps = 0;
+  while (out.size() < kLooks) {
+    for (std::size_t n = 0; n < push.size(); ++n) push[n] = pressed((steps + at) * T) * load[n];
     if (!step_tissue(tissue, *solver, T, dvec3(0), step).solved) return {};
-    if ((i + 1) % looked == 0) out.push_back(tissue.position());
+    ++steps;
+    for (; out.size() < kLooks;) {
+      // [1] of this step, when the next moment is; one that falls on its end may round beyond it.
+      const double share = static_cast<double>(out.size() + 1) * (kLast / kLooks) / T - (steps - 1);
+      if (share > 1 + 1e-9) break;
+      std::vector<dvec3>& look = out.emplace_back(tissue.position());
+      for (std::size_t n = 0; n < look.size(); ++n) look[n] = before[n] + share * (look[n] - before[n]);
+    }
+    before = tissue.position();
   }
   if (ms) *ms = static_cast<double>(now_ns() - begin) * 1e-6 / steps;
   return out;
@@ -156,23 +166,24 @@ std::pair<std::uint32_t, double> softest(const Answers& answers, const Patches& 
   return out;
 }
 
-std::vector<std::pair<double, double>> step_errors(const Lattice& lattice, const SoftBody& body, const Patches& patches,
-                                                   const Answers& at_rest, const std::vector<double>& steps) {
+std::vector<StepFigures> step_errors(const Lattice& lattice, const SoftBody& body, const Patches& patches,
+                                     const Answers& at_rest, const std::vector<double>& steps) {
   const auto [vertex, deepest] = softest(at_rest, patches);
   std::vector<dvec3> load = patch_load(patches, lattice.tets, vertex);
   for (dvec3& f : load) f *= kStrain * patches.radius / deepest;
   const auto truth = motion(lattice, body, load, Scheme::kMidpoint, kTruthStep);
-  std::vector<std::pair<double, double>> out;
+  std::vector<StepFigures> out;
+  if (truth.empty()) return out;
   for (const double T : steps) {
     double ms = 0.0, off = 0.0, size = 0.0;
-    const auto trace = motion(lattice, body, load, Scheme::kEuler, T, &ms);
-    for (std::size_t k = 0; k < std::min(trace.size(), truth.size()); ++k)
+    const auto trace = motion(lattice, body, load, Scheme::kEuler, std::max(T, kShortestStep), &ms);
+    for (std::size_t k = 0; k < trace.size(); ++k)
       for (std::uint32_t i = 0; i < lattice.tets.free_count; ++i) {
         const dvec3 d = trace[k][i] - truth[k][i], way = truth[k][i] - lattice.tets.nodes[i];
         off += dot(d, d);
         size += dot(way, way);
       }
-    out.emplace_back(trace.size() == truth.size() && size > 0 ? std::sqrt(off / size) : 1e9, ms);
+    if (size > 0.0 && std::isfinite(off)) out.push_back({T, std::sqrt(off / size), ms});
   }
   return out;
 }

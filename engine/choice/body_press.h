@@ -41,9 +41,17 @@ double difference(const Answers& a, const Answers& truth, const Mesh& surface);
 // The most compliant patch of the tissue, and its displacement. [m] for one newton
 std::pair<std::uint32_t, double> softest(const Answers& answers, const Patches& patches);
 
-// Of each of `steps` [s], on this lattice, pressed and released at its most compliant patch: [1] the RMS difference
-// from the midpoint rule in short steps over the RMS of the way; and [ms] what a step took.
-std::vector<std::pair<double, double>> step_errors(const Lattice& lattice, const SoftBody& body, const Patches& patches,
-                                                   const Answers& at_rest, const std::vector<double>& steps);
+inline constexpr double kShortestStep = 1e-3;  // [s] shorter ones are not measured: 500 of these fill a press
+
+struct StepFigures {
+  double step = 0.0;   // [s]
+  double error = 0.0;  // [1]
+  double ms = 0.0;     // [ms] of a step on this machine
+};
+// Of each of `steps` [s], on this lattice, pressed and released at its most compliant patch: the RMS difference from
+// the midpoint rule in short steps over the RMS of the way, at the same moments whatever the step. Of a step below
+// kShortestStep that of kShortestStep, which is larger. Steps that cannot be solved are left out.
+std::vector<StepFigures> step_errors(const Lattice& lattice, const SoftBody& body, const Patches& patches,
+                                     const Answers& at_rest, const std::vector<double>& steps);
 
 }  // namespace pliant

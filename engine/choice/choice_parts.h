@@ -38,8 +38,10 @@ Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t node, Mo
                                               ChoiceProgress& progress);
 // `step` [s] is what the bodies of the level need.
 Result<ModelChoice> choose_body(Level& level, std::size_t node, double& step, ChoiceProgress& progress);
-// After all bodies: with the level's soft step. `budget`: [1].
-Result<ModelChoice> choose_tool(Level& level, std::size_t node, double budget, ChoiceProgress& progress);
+// After all bodies: with the level's soft step. `whose`: the choice whose budget it has. Nothing where it would take
+// too long to measure, and `whose` says so.
+Result<std::optional<ModelChoice>> choose_tool(Level& level, std::size_t node, ModelChoice& whose,
+                                               ChoiceProgress& progress);
 
 // What a candidate stands for goes with it while they are sorted: the cheapest first, and the one to take.
 template <class What>

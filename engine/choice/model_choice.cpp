@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <map>
 
 #include "engine/choice/choice_parts.h"
 #include "engine/choice/surface_truth.h"
@@ -87,25 +89,34 @@ std::size_t cheapest_within(const std::vector<ModelCandidate>& tried, double bud
 Result<std::vector<ModelChoice>> choose_models(Level& level) {
   std::vector<ModelChoice> all;
   ChoiceProgress progress;
-  double step = 1.0, least = 0.0;  // least: of the budgets, for what has none of its own
+  double step = 1.0;
   bool any_body = false;
+  std::map<std::size_t, std::size_t> body_of;  // node -> its body's choice
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene || !(has_surface_budget(node) || has_body_budget(node))) continue;
     if (const Status done = choose_object(level, i, step, progress, all); !done) return done.error();
-    any_body = any_body || !has_surface_budget(node);
-    least = least > 0.0 ? std::min(least, all.back().budget) : all.back().budget;
+    if (has_surface_budget(node)) continue;
+    any_body = true;
+    body_of[i] = all.size() - 1;
   }
   if (any_body && !states_step(level)) level.simulation.soft_step = step;
-  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+  std::vector<ModelChoice> tools;
+  for (std::size_t i = 0; i < level.nodes.size() && !all.empty(); ++i) {
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene || !is_tool(node)) continue;
-    const double budget = has_body_budget(node) ? node.soft_body->error : node.rigid_body ? least : 0.0;
-    if (!(budget > 0.0)) continue;
-    auto choice = choose_tool(level, i, budget, progress);
+    // A soft tool has its body's budget, a rigid one the least of the level's.
+    const auto body = body_of.find(i);
+    if (body == body_of.end() && !node.rigid_body) continue;
+    ModelChoice& whose = body != body_of.end()
+                             ? all[body->second]
+                             : *std::min_element(all.begin(), all.end(),
+                                                 [](const auto& a, const auto& b) { return a.budget < b.budget; });
+    auto choice = choose_tool(level, i, whose, progress);
     if (!choice) return choice.error();
-    all.push_back(std::move(*choice));
+    if (*choice) tools.push_back(std::move(**choice));
   }
+  all.insert(all.end(), std::make_move_iterator(tools.begin()), std::make_move_iterator(tools.end()));
   return all;
 }
 
@@ -122,9 +133,9 @@ Result<std::vector<ModelChoice>> choose_model(Level& level, std::size_t index, c
     if (has_surface_budget(node)) return all;
     if (!states_step(level)) level.simulation.soft_step = step;
     if (!is_tool(node)) return all;
-    auto tool = choose_tool(level, index, node.soft_body->error, progress);
+    auto tool = choose_tool(level, index, all.back(), progress);
     if (!tool) return tool.error();
-    all.push_back(std::move(*tool));
+    if (*tool) all.push_back(std::move(**tool));
     return all;
   } catch (const ChoiceStopped&) {
     return Error{node.name, "was not measured to the end"};

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "components/range.h"
 #include "content/level/level.h"
 #include "runtime/result.h"
 
@@ -71,6 +72,7 @@ Result<std::vector<ModelChoice>> choose_model(Level& level, std::size_t node, co
 // a surface nor a soft body.
 std::vector<ChoosableKey> choosable_keys(const Level& level, std::size_t node);
 
+inline constexpr Range kErrorBudget{1e-6, 10.0};  // [1] of --error
 // --error of a command: the budget of every surface and soft body of the level. An error where there is none.
 Status set_error_budget(Level& level, double budget);
 

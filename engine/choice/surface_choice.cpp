@@ -54,6 +54,24 @@ OpenKeys open_keys(const LevelNode& node, const SurfaceTruth& truth) {
   return open;
 }
 
+// Models that share a mesh: it is cut finer for the reach, and for the contact of shapes that depend on it.
+struct Meshed {
+  double reach, contact;  // [m]
+  std::vector<Shape> shapes;
+};
+std::vector<Meshed> meshes_of(const OpenKeys& open, double diagonal) {
+  std::vector<Shape> depending, others;
+  for (const Shape shape : open.shapes) (depends_on_contact(shape) ? depending : others).push_back(shape);
+  std::vector<Meshed> meshes;
+  for (const double said : open.reaches) {
+    const double reach = said > 0.0 ? said : kDefaultReach * diagonal;
+    for (const double contact : open.contacts)
+      if (!depending.empty() && contact <= kMostContactShare * reach) meshes.push_back({reach, contact, depending});
+    if (!others.empty()) meshes.push_back({reach, 0.0, others});
+  }
+  return meshes;
+}
+
 std::string label_of(const SurfaceModel& it) {
   std::string label =
       fmt::format("shape {}, distance {}, reach {:.3g} mm", word_of(it.shape), word_of(it.distance), 1e3 * it.reach);
@@ -116,27 +134,26 @@ Result<ModelChoice> choose_surface(Level& level, std::size_t index, ChoiceProgre
     if (states(node, "deformable", key)) choice.kept.emplace_back(key);
 
   const OpenKeys open = open_keys(node, truth);
-  std::optional<PressPlaces> places;  // of the finest mesh: a shorter reach has more vertices
+  std::optional<PressPlaces> places;  // of the finest mesh, which comes first
   std::vector<std::pair<ModelCandidate, SurfaceModel>> tried;
   std::optional<PressBench> bench;
-  for (const double wanted : open.reaches) {
-    alone.nodes[index].deformable->reach = wanted;
-    alone.nodes[index].deformable->contact_radius = 0.0;
+  for (const Meshed& of : meshes_of(open, diagonal)) {
+    Deformable& asks = *alone.nodes[index].deformable;
+    asks.reach = of.reach;
+    asks.contact_radius = of.contact;
+    asks.shape = of.shapes.front();
     auto made = PressBench::make(alone, places ? &*places : nullptr, 0.0);
     if (!made) return made.error();
     bench = std::move(made).value();
     if (!places) places = bench->places();
-    const double reach = bench->surface().reach;
     for (const Distance distance : open.ways) {
       bench->surface().distance = distance;
       if (const Status ready = bench->prepare(); !ready) return ready.error();
-      for (const Shape shape : open.shapes)
-        for (const double contact : depends_on_contact(shape) ? open.contacts : std::vector{0.0}) {
-          say();
-          if (contact > kMostContactShare * reach) continue;
-          const SurfaceModel model{shape, distance, reach, contact, static_cast<double>(bench->mesh().tree.bulge)};
-          if (const auto candidate = measure(*bench, model, truth)) tried.emplace_back(*candidate, model);
-        }
+      for (const Shape shape : of.shapes) {
+        say();
+        const SurfaceModel model{shape, distance, of.reach, of.contact, static_cast<double>(bench->mesh().tree.bulge)};
+        if (const auto candidate = measure(*bench, model, truth)) tried.emplace_back(*candidate, model);
+      }
     }
   }
   if (tried.empty()) return Error{node.name, "could not be pressed to measure an error; leave out `error`"};

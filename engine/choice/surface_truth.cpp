@@ -34,24 +34,30 @@ double least_sphere(const Level& level) {
   return least;
 }
 
-SurfaceTruth::SurfaceTruth(const Level& level, std::size_t index, double diagonal) {
+UsualPunch usual_punch(const Level& level, std::size_t index, double diagonal) {
   const LevelNode& node = level.nodes[index];
-  const Deformable& its = *node.deformable;
-  if (its.contact_radius > 0.0) {
-    radius_ = its.contact_radius, why_ = "`contact_radius`";
-  } else if (states(node, "deformable", "reach") && its.reach > 0.0) {
-    radius_ = kShareOfReach * its.reach, why_ = "a fifth of `reach`";
-  } else {
-    if (const double sphere = least_sphere(level); sphere > 0.0)
-      radius_ = sphere, why_ = "as the probe";
-    else if (its.young > 0.0)
-      radius_ = kYoungRadius, why_ = "as `young` assumes";
-    else
-      radius_ = kShareOfReach * kDefaultReach * diagonal, why_ = "a fifth of the usual reach";
-    const double kept = std::clamp(radius_, kLeastShare * diagonal, kMostShare * diagonal);
-    if (kept != radius_) why_ += kept > radius_ ? ", made wider for this object" : ", made narrower for this object";
-    radius_ = kept;
-  }
+  const Deformable its = node.deformable.value_or(Deformable{});
+  if (its.contact_radius > 0.0) return {its.contact_radius, "`contact_radius`"};
+  if (states(node, "deformable", "reach") && its.reach > 0.0) return {kShareOfReach * its.reach, "a fifth of `reach`"};
+  UsualPunch out;
+  if (const double sphere = least_sphere(level); sphere > 0.0)
+    out = {sphere, "as the probe"};
+  else if (its.young > 0.0)
+    out = {kYoungRadius, "as `young` assumes"};
+  else
+    out = {kShareOfReach * kDefaultReach * diagonal, "a fifth of the usual reach"};
+  const double kept = std::clamp(out.radius, kLeastShare * diagonal, kMostShare * diagonal);
+  if (kept != out.radius)
+    out.why += kept > out.radius ? ", made wider for this object" : ", made narrower for this object";
+  out.radius = kept;
+  return out;
+}
+
+SurfaceTruth::SurfaceTruth(const Level& level, std::size_t index, double diagonal) {
+  const Deformable& its = *level.nodes[index].deformable;
+  const UsualPunch punch = usual_punch(level, index, diagonal);
+  radius_ = punch.radius;
+  why_ = punch.why;
   if (!(its.young > 0.0 && its.thickness > 0.0)) return;
   const BondedLayer layer(radius_ / its.thickness, its.poisson);
   for (std::size_t i = 0; i < kPlaces; ++i) {

@@ -10,11 +10,19 @@
 
 namespace pliant {
 
+// The indenter that an object is pressed with, as wide as the level says: `contact_radius`; a fifth of `reach`; the
+// least radius of a spherical probe that meets surfaces; with `young` of a surface the 4 mm that it assumes; else a
+// fifth of the usual reach. What no key of the object says is kept within 0.4 to 5 % of its diagonal [m], so that a
+// press has room and meets several vertices.
+struct UsualPunch {
+  double radius = 0.0;  // [m]
+  std::string why;      // "a fifth of `reach`"
+};
+UsualPunch usual_punch(const Level& level, std::size_t node, double diagonal);
+
 class SurfaceTruth {
  public:
-  // The punch is as wide as the level says: `contact_radius`; a fifth of `reach`; the least radius of a spherical probe
-  // that meets surfaces; with `young` the 4 mm that it assumes; else a fifth of the usual reach. What no key of the
-  // object says is kept within 0.4 to 5 % of its diagonal [m], so that a press has room and meets several vertices.
+  // `diagonal` [m] of the object: its punch is the usual one.
   SurfaceTruth(const Level& level, std::size_t node, double diagonal);
 
   double radius() const { return radius_; }      // [m] of the punch

@@ -21,11 +21,12 @@ double cost_us(ToolForce force, int contacts, int modes) {
   return kHeldUs + kLinearUs + kEntryUs * 3.0 * contacts * (modes + 6.0);
 }
 
-// [1] RMS of the difference of the forces over the RMS of what the truth feels beyond how it began.
-double difference(const std::vector<Vector6>& felt, const std::vector<Vector6>& truth) {
+// [1] RMS of the difference of the forces over the RMS of what the truth feels beyond how it began. The truth has every
+// `every`-th tick.
+double difference(const std::vector<Vector6>& felt, const std::vector<Vector6>& truth, std::size_t every) {
   double off = 0.0, size = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    off += (felt[i] - truth[i]).head<3>().squaredNorm();
+    off += (felt[i * every] - truth[i]).head<3>().squaredNorm();
     size += (truth[i] - truth[0]).head<3>().squaredNorm();
   }
   return size > 0.0 ? std::sqrt(off / size) : 0.0;
@@ -33,11 +34,17 @@ double difference(const std::vector<Vector6>& felt, const std::vector<Vector6>& 
 
 }  // namespace
 
-Result<ModelChoice> choose_tool(Level& level, std::size_t index, double budget, ChoiceProgress& progress) {
+Result<std::optional<ModelChoice>> choose_tool(Level& level, std::size_t index, ModelChoice& whose,
+                                               ChoiceProgress& progress) {
   LevelNode& node = level.nodes[index];
-  ModelChoice choice{node.name, "tool", budget, {}, 0, false, {}, {}};
+  ModelChoice choice{node.name, "tool", whose.budget, {}, 0, false, {}, {}};
   auto press = ToolPress::make(level, index);
   if (!press) return press.error();
+  if (!press->unmeasured().empty()) {
+    whose.presses.push_back(fmt::format("the force of the tool `{}` was not measured, and stays {}: {}", node.name,
+                                        word_of(node.handle->force), press->unmeasured()));
+    return std::optional<ModelChoice>();
+  }
   const auto truth = press->truth(progress);
   if (!truth) return truth.error();
   double most = 0.0;
@@ -55,23 +62,25 @@ Result<ModelChoice> choose_tool(Level& level, std::size_t index, double budget, 
     if (!felt) return felt.error();
     ModelCandidate candidate;
     candidate.label = fmt::format("force {}, soft step {:.3g} ms", word_of(force), 1e3 * level.simulation.soft_step);
-    candidate.error = difference(felt->wrench, truth->wrench);
+    candidate.error = difference(felt->wrench, truth->wrench, press->truth_ticks());
     candidate.cost = cost_us(force, felt->contacts, felt->modes);
     candidate.ms = felt->ms;
     tried.emplace_back(candidate, force);
     last = std::move(*felt);
   }
   choice.remarks.push_back(fmt::format(
-      "truth: what the hand feels, up to {:.2g} N, by soft steps at the touch rate ({:.2g} ms each on this machine), "
+      "truth: what the hand feels, up to {:.2g} N, by soft steps of {:.3g} ms ({}; {:.2g} ms each on this machine), "
       "pressed {:.2g} mm beyond a plate below it and drawn along; models come one soft step late",
-      most, truth->ms, 1e3 * press->depth()));
+      most, 1e3 * press->truth_step(),
+      press->truth_ticks() == 1 ? "the touch rate's" : "those of the touch rate would take too long", truth->ms,
+      1e3 * press->depth()));
   choice.remarks.push_back(fmt::format(
       "modes: up to {} of {} that a model has room for, at {} contacts; what they leave out of the contacts' static "
       "flexibility, at most {:.2g} of it, is kept without inertia, so there is nothing to choose",
       last.modes, kMaxModes, last.contacts, last.left_out));
   if (!states(node, "handle", "force")) choice.keys.push_back({"handle", "force"});
   node.handle->force = take_cheapest(choice, tried);
-  return choice;
+  return std::optional(std::move(choice));
 }
 
 }  // namespace pliant

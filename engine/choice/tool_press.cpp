@@ -1,9 +1,12 @@
 #include "engine/choice/tool_press.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "content/tets/step_cost.h"
 #include "engine/choice/alone.h"
 #include "runtime/clock.h"
 #include "systems/device/path.h"
@@ -24,6 +27,9 @@ constexpr double kRestTime = 0.01, kPress = 0.1, kDraw = 0.14;  // [s] it rests,
 constexpr double kDepth = 0.02;                                 // [1] of the tool's diagonal
 constexpr double kGap = 0.1, kWay = 2.0;                        // [1] of the depth: above the plate; along it
 constexpr double kPlate = 2.0;                                  // [1] of the tool's diagonal: half its side
+constexpr std::size_t kMostTruthSteps = 500;                    // 0.5 ms each
+constexpr double kMostWork = 60e3;                              // [ms] of all soft steps, counted (step_cost.h)
+constexpr std::size_t kForces = 3;  // models that are pressed as well, in steps of the level's
 
 struct PressFrame {
   dvec3 down, along, across;
@@ -56,6 +62,18 @@ LevelMesh plate(dvec3 top, const PressFrame& f, double half) {
 double smooth(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * (3 - 2 * t);
+}
+
+// How many ticks a step of the truth has; 0: too many steps to measure. It must be shorter than the step that it is
+// compared with, unless it has the touch rate.
+std::size_t stride_of(std::size_t ticks, std::size_t length, std::size_t tetrahedra) {
+  const double step = step_ms(tetrahedra, 1.0);
+  const double models = static_cast<double>(kForces * (ticks / length + 1)) * step;
+  const double room = std::max(0.0, kMostWork - models) / step;  // steps
+  const double steps = std::min(static_cast<double>(kMostTruthSteps), room);
+  if (steps < 1.0) return 0;
+  const auto stride = static_cast<std::size_t>(std::ceil(static_cast<double>(ticks) / steps));
+  return stride <= 1 ? 1 : 2 * stride <= length ? stride : 0;
 }
 
 Status prepare_all(World& world) {
@@ -124,6 +142,19 @@ Result<ToolPress> ToolPress::make(const Level& level, std::size_t node) {
   out.length_ =
       static_cast<std::size_t>(std::max(1LL, std::llround(level.simulation.soft_step * level.simulation.touch_rate)));
   out.ticks_ = static_cast<std::size_t>(std::lround((kRestTime + kPress + kDraw) / out.tick_));
+  std::size_t tetrahedra = 0;
+  for (auto [entity, body] : bare->registry.view<const SoftBody>())
+    tetrahedra += bare->tet_meshes[body.tets].tets.size();
+  out.stride_ = stride_of(out.ticks_, out.length_, tetrahedra);
+  const double step = level.simulation.soft_step;
+  if (step < (1 - 1e-9) * out.tick_)
+    out.unmeasured_ = fmt::format("a soft step of {:.3g} ms is shorter than a tick; name a longer one", 1e3 * step);
+  else if (out.stride_ == 0)
+    out.unmeasured_ = fmt::format(
+        "{} tetrahedra in soft steps of {:.3g} ms cannot be measured in a minute; name a "
+        "longer soft_step or a larger `cell`",
+        tetrahedra, 1e3 * step);
+  if (!out.unmeasured_.empty()) return out;
 
   if (const Status ready = prepare_all(out.world_); !ready) return ready.error();
   out.tool_ = tool_of(out.world_).entity;
@@ -152,20 +183,21 @@ Result<ToolPress::Felt> ToolPress::truth(ChoiceProgress& progress) {
   ToolTouchState& tool = tool_of(world_);
   const Handle6& settings = world_.registry.get<Handle6>(tool_);
   const std::uint64_t begin = now_ns();
-  for (std::size_t i = 0; i < ticks_; ++i) {
+  const double step = truth_step();
+  for (std::size_t i = 0; i < ticks_ / stride_; ++i) {
     progress.say("measuring the force of a tool");
-    const double time = static_cast<double>(i) * tick_;
-    const RigidMotion device = device_at(world_, tool.device, time, tick_);
+    const double time = static_cast<double>(i) * step;
+    const RigidMotion device = device_at(world_, tool.device, time, step);
     ToolInput& input = tool.input.write();
     input.status = DeviceStatus::kReady;
     input.time = time;
     input.device = device;
     tool.input.publish();
-    run_soft_step(schedule, world_, {i, tick_, time});
+    run_soft_step(schedule, world_, {i, step, time});
     const HandleModel& model = tool.pending;
     out.wrench.push_back(-coupling_force(settings, model.handle, device.at(model.centre)).wrench);
   }
-  out.ms = static_cast<double>(now_ns() - begin) * 1e-6 / static_cast<double>(ticks_);
+  out.ms = static_cast<double>(now_ns() - begin) * 1e-6 / static_cast<double>(out.wrench.size());
   return out;
 }
 

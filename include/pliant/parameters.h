@@ -74,6 +74,7 @@ struct SoftBodyParameters {
   double density = 1000.0;               // [kg/m3]
   std::array<double, 2> rayleigh{0, 0};  // alpha [1/s], beta [s]
   double cell = 0.0;                     // [m] lattice cell; 0: sized for some 2,000 tetrahedra
+  Box focus;                             // [m] object frame: where cells are that large; they grow away from it
   Fill fill = Fill::kSolid;              // what the lattice fills
   double thickness = 0.0;                // [m] of a wall, inwards from the surface; 0: the wall as the surface has it
   std::string mesh;                      // tetrahedra file, instead of `cell`

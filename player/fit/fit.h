@@ -20,7 +20,7 @@ struct FitOptions {
   std::string level;  // that the keys are written into; empty: they are only said
   std::string probe;  // of a forces.csv
   std::string law = "auto";
-  double radius = 0.0;  // [m] of the indenter; 0: a point or punch (finite elements: two cells)
+  double radius = 0.0;  // [m] of the indenter; 0: a point (finite elements: as the level says)
   double hold_out = 0.25, confidence = 0.95;
   bool damping = false, contact = false;
 

@@ -8,9 +8,11 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kBlocks = 20;  // a record is cut into, for the rows held out
-constexpr double kAlike = 1.02;      // [1] errors that near are the same: the law with fewer parameters wins
-constexpr double kCorrelated = 0.3;  // [1]
+constexpr std::size_t kLeastStretches = 5;  // that are held out, where there are as many rows
+constexpr double kStretch = 0.05;           // [1] of the record: none is longer
+constexpr std::size_t kFewHeld = 5;         // rows
+constexpr double kAlike = 1.02;             // [1] errors that near are the same: the law with fewer parameters wins
+constexpr double kCorrelated = 0.3;         // [1]
 
 struct Shares {
   double rms = 0.0, share = 0.0;
@@ -55,8 +57,9 @@ LawFit fit_law(const PressModel& model, const PressRecord& record, const std::ve
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double half = t * std::sqrt(std::max(0.0, best.covariance(k, k)));
-    out.parameters.push_back({model.parameters[i].key, model.parameters[i].unit, best.p[k], best.p[k] - half,
-                              best.p[k] + half, best.on_bound[i]});
+    out.parameters.push_back({model.parameters[i].key, model.parameters[i].unit, best.p[k],
+                              std::max(best.p[k] - half, boxes[i].low), std::min(best.p[k] + half, boxes[i].high),
+                              best.on_bound[i]});
   }
   model.predict(record, out.p, out.force);
   const Shares fitted = error_on(record, out.force, held, false), unseen = error_on(record, out.force, held, true);
@@ -78,10 +81,17 @@ LawFit fit_law(const PressModel& model, const PressRecord& record, const std::ve
 
 std::vector<bool> held_rows(std::size_t rows, double share) {
   std::vector<bool> held(rows, false);
-  if (!(share > 0)) return held;
-  const auto period = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(1 / share)));
-  const std::size_t blocks = std::min(rows, kBlocks);
-  for (std::size_t i = 0; i < rows; ++i) held[i] = i * blocks / rows % period == period / 2;
+  if (!(share > 0) || rows == 0) return held;
+  const auto wanted =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(share * static_cast<double>(rows))), 1, rows);
+  const std::size_t stretches =
+      std::min(wanted, std::max(kLeastStretches, static_cast<std::size_t>(std::ceil(share / kStretch))));
+  for (std::size_t k = 0; k < stretches; ++k) {
+    // In the middle of the k-th part of the record.
+    const std::size_t begin = k * rows / stretches, end = (k + 1) * rows / stretches,
+                      count = (k + 1) * wanted / stretches - k * wanted / stretches, first = (begin + end - count) / 2;
+    for (std::size_t i = first; i < first + count; ++i) held[i] = true;
+  }
   return held;
 }
 
@@ -102,13 +112,17 @@ Result<RecordFit> fit_record(const PressRecord& record, const RecordWish& wish) 
     out.laws.push_back(fit_law(*model, record, out.held, wish.confidence));
   }
   if (out.laws.empty()) return Error{record.name, why};
-  const auto error = [&](const LawFit& fit) { return wish.hold_out > 0 ? fit.held_rms : fit.rms; };
+  const std::size_t unseen = record.size() - out.fitted;
+  const auto error = [&](const LawFit& fit) { return unseen > 0 ? fit.held_rms : fit.rms; };
   double least = error(out.laws[0]);
   for (const LawFit& fit : out.laws) least = std::min(least, error(fit));
   const LawFit* best = nullptr;
   for (const LawFit& fit : out.laws)
     if (error(fit) <= kAlike * least && (!best || fit.parameters.size() < best->parameters.size())) best = &fit;
   out.best = static_cast<std::size_t>(best - out.laws.data());
+  if (unseen > 0 && unseen < kFewHeld && out.laws.size() > 1)
+    out.notes.push_back(fmt::format("{} row{} held out: too few to tell laws apart; hold out more, or measure more",
+                                    unseen, unseen == 1 ? " is" : "s are"));
   if (!best->converged)
     out.notes.push_back("the fit of " + best->model.law + " did not converge; its intervals mean little");
   if (best->singular)

@@ -12,14 +12,14 @@ namespace pliant {
 struct RecordWish {
   std::string law = "auto";  // auto: the one with the least error on the rows held out
   ModelWish model;
-  double hold_out = 0.25;    // [1] share of the rows, in blocks; 0: none
+  double hold_out = 0.25;    // [1] share of the rows, in stretches; 0: none
   double confidence = 0.95;  // [1] of the intervals
 };
 
 struct FittedParameter {
   std::string key, unit;
   double value = 0.0;
-  double low = 0.0, high = 0.0;  // of the interval; both the value where there is none
+  double low = 0.0, high = 0.0;  // of the interval, within the key's range; both the value where there is none
   bool on_bound = false;
 };
 
@@ -42,7 +42,7 @@ struct RecordFit {
   std::vector<std::string> notes;
 };
 
-// Whether a row is held out: every n-th of the record's blocks.
+// Whether a row is held out: so many as the share says, but one at least, in stretches that lie evenly apart.
 std::vector<bool> held_rows(std::size_t rows, double share);
 
 Result<RecordFit> fit_record(const PressRecord& record, const RecordWish& wish);

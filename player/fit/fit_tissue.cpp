@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <mutex>
+#include <optional>
 
 #include "components/kinematic.h"
 #include "content/author/object_frame.h"
@@ -12,6 +15,7 @@
 #include "player/exit.h"
 #include "player/fit/fit.h"
 #include "player/fit/fit_level.h"
+#include "player/fit/press_bodies.h"
 #include "player/fit/surface_check.h"
 #include "player/fit/tissue_fit.h"
 #include "player/interrupt.h"
@@ -20,97 +24,76 @@
 #include "player/record/output_folder.h"
 #include "player/study/pareto.h"
 #include "player/verbs/left_behind.h"
+#include "runtime/parallel.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::size_t kTets = 16'000;        // aimed at
-constexpr double kRadiusOverCell = 2.0;      // [1] what a press must span to be smooth
-constexpr std::size_t kMapPlaces = 1000;     // at most, that the stiffness map is computed at
+constexpr std::size_t kMapPlaces = 256;      // at most, that the stiffness map is computed at
 constexpr int kDepths = 4;                   // a quarter of the reach is gone to in so many parts
 constexpr std::ptrdiff_t kEnoughPlaces = 6;  // away from edges, for law and shape
+constexpr double kUsualReach = 3.5;          // [1] radii of the indenter, that a fit presses for
 constexpr double kDeepestShare = 0.25;       // [1] of the reach
-constexpr double kHardest = 3.0;             // [1] of the usual stiffness: beyond it lies what is held
+constexpr double kHardest = 6.0;             // [1] of the usual stiffness: the most that is painted
+constexpr double kSeenApart = 0.3;           // [1] of the indenter's radius: points that a dent is compared at
+constexpr std::size_t kRefined = 4;          // places that a finer lattice is tried at
+constexpr double kFiner = 2.0 / 3.0;         // [1] its cells
 
-// A body as its elements are made.
-struct TissueBody {
-  LevelNode node;  // with a soft body
-  SoftParts parts;
-  double cell = 0.0;
+// Work at places, several at a time where each has a body of its own. Ends early when it is no longer wanted.
+class EachPlace {
+ public:
+  EachPlace(const PressBodies& bodies, const Interrupt& interrupt, Progress& progress)
+      : bodies_(bodies), interrupt_(interrupt), progress_(progress) {}
+  // work(i, body): the body to press at place i. Errors: of a body; interrupted. `share`: of all that there is to do.
+  Status operator()(const std::vector<PressPlace>& places, double finer, double share,
+                    const std::function<void(std::size_t, TissuePress&)>& work) {
+    std::mutex mutex;
+    std::optional<Error> error;
+    std::size_t done = 0;
+    parallel_for(places.size(), bodies_.is_one() ? places.size() : 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        {
+          const std::lock_guard lock(mutex);
+          if (error || interrupt_.requested()) return;
+        }
+        auto body = bodies_.at(places[i], finer);
+        if (body) work(i, **body);
+        const std::lock_guard lock(mutex);
+        if (!body && !error) error = body.error();
+        progress_.update(so_far_ + share * static_cast<double>(++done) / static_cast<double>(places.size()));
+      }
+    });
+    so_far_ += share;
+    if (interrupt_.requested()) return interrupted("fit");
+    if (error) return *error;
+    return Done{};
+  }
+
+ private:
+  const PressBodies& bodies_;
+  const Interrupt& interrupt_;
+  Progress& progress_;
+  double so_far_ = 0.0;  // [1]
 };
 
-// The node as tissue, with what the options say instead of the level.
-Result<LevelNode> tissue_node(const Level& level, std::int32_t number, const FitOptions& options) {
-  Level copy = level;
-  LevelNode& node = copy.nodes[static_cast<std::size_t>(number)];
-  const bool was_soft = node.soft_body.has_value();
-  SoftBodyParameters soft;
-  if (was_soft)
-    soft = *node.soft_body;
-  else if (node.deformable && node.deformable->young > 0)
-    soft.young = node.deformable->young, soft.poisson = std::min(node.deformable->poisson, 0.49);
-  else if (options.young < 0)
-    return Error{"--object " + node.name,
-                 "says no modulus: it is no soft body and has no `young`; say --young and --poisson"};
-  if (options.young > 0) soft.young = options.young;
-  if (options.poisson >= 0) soft.poisson = options.poisson;
-  if (options.thickness > 0) soft.thickness = options.thickness, soft.fill = Fill::kWall;
-  if (options.cell > 0) soft.cell = options.cell, soft.mesh.clear();
-  if (const Status made = make_soft(copy, number, soft); !made) return made.error();
-  if (options.pin.empty() && was_soft) return node;
-  const std::string word = options.pin.empty() ? "bottom" : options.pin;
-  node.soft_body->pinned = {};
-  if (const Status pinned = pin(copy, number, *side_of(word)); !pinned) return pinned.error();
-  if (options.pin.empty()) note(fmt::format("`{}` is taken to be held at its bottom; --pin says otherwise", node.name));
-  return node;
-}
-
-Result<TissueBody> make_body(const Level& level, std::int32_t number, const FitOptions& options) {
-  Result<LevelNode> node = tissue_node(level, number, options);
-  if (!node) return node.error();
-  TissueBody out{std::move(*node), {}, 0.0};
-  const LevelMesh& mesh = level.meshes[static_cast<std::size_t>(out.node.mesh)];
-  const mat4 to_object = mat4(object_frame(level, number).to_object);
-  const auto make = [&]() -> Status {
-    Result<SoftParts> parts = make_soft_parts(out.node, &mesh, to_object, level.path.parent_path());
-    if (!parts) return parts.error();
-    out.parts = std::move(*parts);
-    return Done{};
-  };
-  if (const Status made = make(); !made) return made.error();
-  if (out.node.soft_body->mesh.empty() && options.cell <= 0 && out.parts.tets.tets.size() < kTets) {
-    out.node.soft_body->cell =
-        out.parts.tets.report.cell * std::cbrt(static_cast<double>(out.parts.tets.tets.size()) / kTets);
-    if (const Status made = make(); !made) return made.error();
-  }
-  const TetMesh& tets = out.parts.tets;
-  double volume = 0.0;
-  for (const Tet& t : tets.tets)
-    volume += dot(cross(tets.nodes[t[1]] - tets.nodes[t[0]], tets.nodes[t[2]] - tets.nodes[t[0]]),
-                  tets.nodes[t[3]] - tets.nodes[t[0]]) /
-              6;
-  // Twelve tetrahedra of a body-centred cubic lattice fill a cell.
-  out.cell = tets.report.cell > 0 ? tets.report.cell : std::cbrt(12 * volume / static_cast<double>(tets.tets.size()));
-  return out;
-}
-
 void compare(HeldPlace& held, const Mesh& mesh, double radius) {
+  const std::vector<PressedTissue>& presses = held.truth.presses;
+  const std::size_t count = std::min(presses.size(), held.model.size());
+  if (count == 0) return;
   double sum = 0.0;
-  const std::size_t count = std::min(held.truth.size(), held.model.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const double off = held.model[i].force / held.truth[i].force - 1;
+    const double off = held.model[i].force / presses[i].force - 1;
     sum += off * off;
     held.force_worst = std::max(held.force_worst, std::abs(off));
   }
-  if (count == 0) return;
   held.force_error = std::sqrt(sum / static_cast<double>(count));
-  const PressedTissue &truth = held.truth[count - 1], &model = held.model[count - 1];
-  const SurfaceDifference d = surface_difference(mesh, held.place, kAroundPress * radius, model.height, truth.height);
+  const PressedTissue &truth = presses[count - 1], &model = held.model[count - 1];
+  const SurfaceDifference d = surface_difference(held.truth.seen, model.height, truth.height);
   held.surface_error = d.size > 0 ? std::sqrt(d.off / d.size) : 0.0;
   held.surface_of_depth = d.area > 0 ? std::sqrt(d.off / d.area) / truth.depth : 0.0;
-  const SurfaceDifference left = radial_remainder(mesh, held.place, radius, truth.height);
+  const SurfaceDifference left = radial_remainder(held.truth.seen, held.truth.place, radius, truth.height);
   held.not_radial = left.area > 0 ? std::sqrt(left.off / left.area) / truth.depth : 0.0;
-  held.near_edge = is_near_an_edge(mesh, held.place, truth.depth);
+  held.near_edge = is_near_an_edge(mesh, held.truth.place, truth.depth);
 }
 
 Side side_of_normal(const Level& level, dvec3 world) {
@@ -121,6 +104,13 @@ Side side_of_normal(const Level& level, dvec3 world) {
     if (along > most) most = along, best = side;
   }
   return best;
+}
+
+template <class T>
+T median(std::vector<T> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 // The mesh in the object frame, with these factors painted on the vertices of the file.
@@ -145,148 +135,193 @@ std::vector<Primitive> painted_primitives(const LevelMesh& mesh, const mat4& to_
   return out;
 }
 
-// All but files.
-Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions& options, const Interrupt& interrupt) {
-  Result<TissueBody> body = make_body(level, number, options);
-  if (!body) return body.error();
-  const SoftBody& soft = *body->node.soft_body;
-  if (const std::string doubt = locking_doubt(soft, body->parts.tets.tets.size()); !doubt.empty())
-    note("`" + body->node.name + "` " + doubt);
-  LevelNode& node = level.nodes[static_cast<std::size_t>(number)];
-  const mat4 to_object = mat4(object_frame(level, number).to_object);
-  const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
-  const auto build = [&](double reach) {
-    return build_mesh(node.name, level.meshes[static_cast<std::size_t>(node.mesh)].primitives, to_object,
-                      {crease, reach});
-  };
-  TissueFit out;
-  out.object = node.name;
-  out.young = soft.young;
-  out.poisson = soft.poisson;
-  out.linear = options.linear;
-  out.tets = body->parts.tets.tets.size();
-  out.cell = body->cell;
-  out.radius = options.radius > 0 ? options.radius : kRadiusOverCell * body->cell;
-  if (out.radius < 1.5 * body->cell)
-    note(
-        fmt::format("the indenter's radius, {:.3g} mm, spans fewer than 1.5 cells of {:.3g} mm: the elements are too "
-                    "coarse for it; make --cell smaller",
-                    out.radius * 1e3, body->cell * 1e3));
-  Result<BuiltMesh> built = build(options.reach > 0 ? options.reach : 4 * out.radius);
-  if (!built) return built.error();
-  const Mesh& mesh = built->mesh;
-  TissueMaterial material;
-  material.young = soft.young;
-  material.poisson = soft.poisson;
-  material.strain = options.linear ? Strain::kLinear : Strain::kCorotational;
-  Progress progress("fit " + node.name);
-  Result<TissuePress> tissue = TissuePress::make(body->parts.tets, mesh, material);
-  if (!tissue) return tissue.error();
-
-  // How stiff a small press is, all over.
-  std::vector<std::uint32_t> one_of(mesh.vertex_count, kBorder);  // a triangle of each vertex
+// How stiff a small press is all over the object, and where it may be pressed.
+struct StiffnessMap {
+  std::vector<double> at_vertex;     // [N/m]
+  double usual = 0.0;                // [N/m] the median of the places
+  std::size_t places = 0, tets = 0;  // tets: the median of the bodies
+};
+Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_place) {
+  const Mesh& mesh = bodies.surface();
+  std::vector<std::uint32_t> vertices;
+  std::vector<PressPlace> places;
+  std::vector<std::uint32_t> one_of(mesh.vertex_count, kBorder);  // a triangle's corner of each vertex
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int i = 0; i < 3; ++i)
       if (one_of[mesh.triangles[t][i]] == kBorder) one_of[mesh.triangles[t][i]] = 3 * t + static_cast<std::uint32_t>(i);
-  std::vector<std::uint32_t> at;
-  std::vector<double> stiffness;
-  const std::vector<std::uint32_t> wanted = farthest_vertices(mesh, kMapPlaces);
-  for (const std::uint32_t v : wanted) {
-    if (interrupt.requested()) return interrupted("fit");
-    if (one_of[v] == kBorder) continue;
+  const std::vector<std::uint8_t> free = bodies.is_free(mesh, bodies.radius());
+  for (const std::uint32_t v : farthest_vertices(mesh, kMapPlaces)) {
+    if (one_of[v] == kBorder || !free[v]) continue;
     dvec3 corner(0);
     corner[static_cast<int>(one_of[v] % 3)] = 1.0;
-    const double k = tissue->stiffness(place_at(mesh, one_of[v] / 3, corner), out.radius);
-    if (!(k > 0)) continue;
-    at.push_back(v);
-    stiffness.push_back(k);
-    progress.update(0.3 * static_cast<double>(at.size()) / static_cast<double>(wanted.size()));
+    vertices.push_back(v);
+    places.push_back(place_at(mesh, one_of[v] / 3, corner));
   }
+  std::vector<double> stiffness(places.size());
+  std::vector<std::size_t> tets(places.size());
+  const Status pressed = each_place(places, 1.0, 0.4, [&](std::size_t i, TissuePress& body) {
+    stiffness[i] = body.punch(mesh, places[i], bodies.radius()).stiffness();
+    tets[i] = body.tets().tets.size();
+  });
+  if (!pressed) return pressed.error();
+  StiffnessMap out;
+  std::vector<std::uint32_t> at;
+  std::vector<double> value;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (stiffness[i] > 0) at.push_back(vertices[i]), value.push_back(stiffness[i]);
   if (at.empty())
-    return Error{"--object " + node.name, "cannot be pressed anywhere: what is held leaves no surface free; see --pin"};
-  std::vector<double> sorted = stiffness;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double usual = sorted[sorted.size() / 2];
-  for (double& k : stiffness) k = std::min(k, 2 * kHardest * usual);
-  const std::vector<double> map = spread(mesh, at, stiffness);
-  std::vector<std::uint8_t> allowed(mesh.vertex_count);
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    allowed[v] = map[v] < kHardest * usual;
-    out.left_out += !allowed[v];
+    return Error{"--object " + mesh.name, "cannot be pressed anywhere: what is held leaves no surface free; see --pin"};
+  out.usual = median(value);
+  out.tets = median(tets);
+  out.places = at.size();
+  for (double& k : value) k = std::min(k, kHardest * out.usual);
+  out.at_vertex = spread(mesh, at, value);
+  return out;
+}
+
+// The places pressed, in four steps to this depth [m].
+Status press_all(const PressBodies& bodies, EachPlace& each_place, double depth, double share,
+                 std::vector<PressedPlace>& places, const Mesh& mesh) {
+  std::vector<PressPlace> at;
+  for (const PressedPlace& each : places) at.push_back(each.place);
+  const double radius = bodies.radius();
+  return each_place(at, 1.0, share, [&](std::size_t i, TissuePress& body) {
+    PressedPlace& each = places[i];
+    const TissuePress::Punch punch = body.punch(mesh, each.place, radius);
+    each.stiffness = punch.stiffness();
+    each.seen = samples_around(mesh, each.place, kAroundPress * radius, kSeenApart * radius);
+    each.presses = body.press_to(punch, each.seen, depth, kDepths);
+  });
+}
+
+// By how much the elements are too stiff: two lattices at the same places, of order two.
+Status extrapolate(const PressBodies& bodies, EachPlace& each_place, const std::vector<PressedPlace>& places,
+                   TissueFit& out) {
+  std::vector<PressPlace> at;
+  std::vector<double> coarse;
+  for (std::size_t i = 0; i < places.size() && at.size() < kRefined;
+       i += std::max<std::size_t>(1, places.size() / kRefined))
+    if (!places[i].presses.empty()) at.push_back(places[i].place), coarse.push_back(places[i].stiffness);
+  std::vector<double> share(at.size());
+  const Status pressed = each_place(at, kFiner, 0.2, [&](std::size_t i, TissuePress& body) {
+    const double fine = body.punch(bodies.surface(), at[i], bodies.radius()).stiffness();
+    share[i] = coarse[i] / (fine - (coarse[i] - fine) * kFiner * kFiner / (1 - kFiner * kFiner));
+  });
+  if (!pressed || at.empty()) return pressed;
+  out.too_stiff = median(share);
+  double squares = 0.0;
+  for (const double each : share)
+    squares += (each / out.too_stiff - 1) * (each / out.too_stiff - 1) / static_cast<double>(share.size());
+  out.too_stiff_off = std::sqrt(squares);
+  return Done{};
+}
+
+void divide_forces(std::vector<PressedPlace>& places, double by) {
+  for (PressedPlace& each : places) {
+    each.stiffness /= by;
+    for (PressedTissue& press : each.presses) press.force /= by;
   }
-  out.mapped = at.size();
+}
+
+// The keys of the surface, of places and map.
+void take_keys(const TissueFit& fitted, double usual, DeformableParameters& surface) {
+  surface.young = 0.0;
+  surface.thickness = 0.0;
+  surface.spring = fitted.force.spring;
+  surface.stiffness = fitted.force.factor * usual;
+  if (surface.spring == SpringLaw::kCubic) surface.cubic = fitted.force.curvature * surface.stiffness;
+  if (surface.spring == SpringLaw::kExponential) surface.stiffening = fitted.force.curvature;
+  surface.shape = fitted.shape.shape;
+  surface.reach = fitted.shape.reach;
+  surface.volume = fitted.shape.volume;
+  surface.contact_radius = fitted.shape.contact;
+}
+
+// All but files.
+Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions& options, const Interrupt& interrupt) {
+  Result<PressBodies> made = PressBodies::make(level, number, options);
+  if (!made) return made.error();
+  const PressBodies& bodies = *made;
+  const Mesh& mesh = bodies.surface();
+  LevelNode& node = level.nodes[static_cast<std::size_t>(number)];
+  TissueFit out;
+  out.object = node.name;
+  out.young = bodies.body().young;
+  out.poisson = bodies.body().poisson;
+  out.linear = options.linear;
+  out.cell = bodies.cell();
+  out.radius = bodies.radius();
+  out.why = bodies.why();
+  Progress progress("fit " + node.name);
+  EachPlace each_place(bodies, interrupt, progress);
+
+  Result<StiffnessMap> map = map_stiffness(bodies, each_place);
+  if (!map) return map.error();
+  out.mapped = map->places;
+  out.tets = map->tets;
+  if (const std::string doubt = locking_doubt(bodies.body(), out.tets); !doubt.empty())
+    note("`" + node.name + "` " + doubt);
 
   // Law and shape, from presses that are as deep as they will be used.
   std::vector<PressedPlace> places;
-  double reach = options.reach > 0 ? options.reach : 4 * out.radius;
-  for (const PressPlace& place : scatter(mesh, options.points, 1, allowed)) {
-    if (interrupt.requested()) return interrupted("fit");
-    places.push_back({place, tissue->stiffness(place, out.radius),
-                      tissue->press_to(place, out.radius, kDeepestShare * reach, kDepths)});
-    progress.update(0.3 + 0.4 * static_cast<double>(places.size()) / options.points);
-  }
+  double reach = options.reach > 0 ? options.reach : kUsualReach * out.radius;
+  const std::vector<std::uint8_t> free = bodies.is_free(mesh, reach);
+  out.left_out = static_cast<std::size_t>(std::count(free.begin(), free.end(), 0));
+  for (const PressPlace& place : scatter(mesh, options.points, 1, free)) places.push_back({place, 0.0, {}, {}});
+  if (const Status done = press_all(bodies, each_place, kDeepestShare * reach, 0.2, places, mesh); !done)
+    return done.error();
   // Near an edge the surface has no law of its own; those places count only where there are few others.
   const auto inner = std::stable_partition(places.begin(), places.end(), [&](const PressedPlace& each) {
     return each.presses.empty() || !is_near_an_edge(mesh, each.place, each.presses.back().depth);
   });
   if (inner - places.begin() >= kEnoughPlaces) places.erase(inner, places.end());
   out.places = places.size();
-  out.shape = fit_shape(mesh, places, out.radius, options.reach);
+  if (!bodies.is_one())
+    if (const Status done = extrapolate(bodies, each_place, places, out); !done) return done.error();
+  divide_forces(places, out.too_stiff);
+  const double usual = map->usual / out.too_stiff;
+  out.shape = fit_shape(places, out.radius, options.reach);
   out.force = fit_force(places);
   if (out.force.error > 1e29)
     return Error{"--object " + node.name, "gave way without a resting place at every press; try a larger --radius"};
-  DeformableParameters& surface = out.surface;
-  if (node.deformable) surface = *node.deformable;
-  surface.young = 0.0;
-  surface.thickness = 0.0;
-  surface.spring = out.force.spring;
-  surface.stiffness = out.force.factor * usual;
-  surface.cubic = out.force.spring == SpringLaw::kCubic ? out.force.curvature * surface.stiffness : surface.cubic;
-  surface.stiffening = out.force.spring == SpringLaw::kExponential ? out.force.curvature : surface.stiffening;
-  surface.shape = out.shape.shape;
-  surface.reach = reach = out.shape.reach;
-  surface.volume = out.shape.volume;
-  surface.contact_radius = out.shape.contact;
+  if (node.deformable) out.surface = *node.deformable;
+  take_keys(out, usual, out.surface);
+  reach = out.surface.reach;
   std::vector<double> factor;
-  for (const double k : map) factor.push_back(k / usual);
-  const auto [softest, stiffest] = std::minmax_element(map.begin(), map.end());
-  out.softest = *softest * out.force.factor;
-  out.stiffest = *stiffest * out.force.factor;
+  for (const double k : map->at_vertex) factor.push_back(k / map->usual);
+  const auto [softest, stiffest] = std::minmax_element(factor.begin(), factor.end());
+  out.softest = *softest * out.surface.stiffness;
+  out.stiffest = *stiffest * out.surface.stiffness;
+  const mat4 to_object = mat4(object_frame(level, number).to_object);
   const std::vector<Primitive> primitives =
       painted_primitives(level.meshes[static_cast<std::size_t>(node.mesh)], to_object, mesh.of_source, factor);
 
   // The same places in the elements and in the engine.
-  Result<BuiltMesh> final_mesh = build_mesh(node.name, primitives, mat4(1.0f), {crease, reach});
+  const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
+  Result<BuiltMesh> final_mesh = build_mesh(node.name, primitives, mat4(1.0f), {crease, dent_size(out.surface)});
   if (!final_mesh) return final_mesh.error();
   const Mesh& checked = final_mesh->mesh;
-  tissue->embed_in(checked);
-  std::vector<std::uint8_t> free(checked.vertex_count);
-  for (std::uint32_t v = 0; v < checked.vertex_count; ++v)
-    free[v] = checked.stiffness_factor.empty() || static_cast<double>(checked.stiffness_factor[v]) < kHardest;
   const Pose pose = object_frame(level, number).pose;
-  std::vector<PressPlace> unseen;
-  std::vector<std::vector<double>> depths;
-  for (const PressPlace& place : scatter(checked, options.held, 2, free)) {
-    if (interrupt.requested()) return interrupted("fit");
-    HeldPlace held{place, side_of_normal(level, pose.rotation * place.normal), {}, {}};
-    held.truth = tissue->press_to(place, out.radius, kDeepestShare * reach, kDepths);
-    unseen.push_back(place);
-    std::vector<double>& its = depths.emplace_back();
-    for (const PressedTissue& press : held.truth) its.push_back(press.depth);
-    out.held.push_back(std::move(held));
-    progress.update(0.7 + 0.3 * static_cast<double>(out.held.size()) / options.held);
-  }
-  auto model = press_surface(primitives, surface, unseen, depths);
+  std::vector<PressedPlace> unseen;
+  for (const PressPlace& place : scatter(checked, options.held, 2, bodies.is_free(checked, reach)))
+    unseen.push_back({place, 0.0, {}, {}});
+  if (const Status done = press_all(bodies, each_place, kDeepestShare * reach, 0.2, unseen, checked); !done)
+    return done.error();
+  divide_forces(unseen, out.too_stiff);
+  auto model = press_surface(primitives, out.surface, checked, unseen);
   if (!model) return model.error();
-  for (std::size_t i = 0; i < out.held.size(); ++i) {
-    out.held[i].model = std::move((*model)[i]);
-    compare(out.held[i], checked, out.radius);
+  for (std::size_t i = 0; i < unseen.size(); ++i) {
+    HeldPlace& held = out.held.emplace_back();
+    held.side = side_of_normal(level, pose.rotation * unseen[i].place.normal);
+    held.truth = std::move(unseen[i]);
+    held.model = std::move((*model)[i]);
+    compare(held, checked, out.radius);
   }
 
   // Into the level.
   LevelMesh& own = own_mesh(level, number);
   for (std::size_t i = 0; i < own.primitives.size(); ++i) own.primitives[i].stiffness = primitives[i].stiffness;
-  if (const Status made = make_touchable_surface(level, number, surface); !made) return made.error();
+  if (const Status done = make_touchable_surface(level, number, out.surface); !done) return done.error();
   return out;
 }
 

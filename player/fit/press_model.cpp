@@ -18,11 +18,12 @@ struct Sizes {
   double slope = 0.0;                                             // [N/m] of a line through zero
 };
 
-Sizes sizes_of(const PressRecord& record) {
+// Where the indenter met the surface at the depth `met` [m].
+Sizes sizes_of(const PressRecord& record, double met) {
   Sizes out;
   double fd = 0.0, dd = 0.0;
   for (std::size_t i = 0; i < record.size(); ++i) {
-    const double d = std::max(record.depth[i], 0.0);
+    const double d = std::max(record.depth[i] - met, 0.0);
     out.depth = std::max(out.depth, d);
     out.force = std::max(out.force, std::abs(record.force[i]));
     fd += record.force[i] * d;
@@ -35,6 +36,41 @@ Sizes sizes_of(const PressRecord& record) {
   for (std::size_t i = 1; i < record.size(); ++i)
     out.least_step = std::min(out.least_step, record.time[i] - record.time[i - 1]);
   return out;
+}
+
+// [m] Where it may have met the surface: before the record begins, as far as the record reaches, or anywhere in it but
+// in its last tenth; and where a fit looks first.
+struct ContactRange {
+  double low = 0.0, high = 0.0;
+  std::vector<double> starts{0.0};
+};
+ContactRange contact_range(const PressRecord& record, bool open) {
+  ContactRange out;
+  if (!open) return out;
+  const auto [least, most] = std::minmax_element(record.depth.begin(), record.depth.end());
+  out.low = std::min(*least, 0.0) - (*most - *least);
+  out.high = *most - 0.1 * (*most - *least);
+  out.starts = {std::clamp(0.0, out.low, out.high)};
+  if (*least > 0.1 * *most) out.starts.push_back(*least);
+  return out;
+}
+
+// [Pa] Of a sphere on a half-space with the record's largest force at its deepest place.
+double sphere_modulus(const Sizes& size, const ModelWish& wish) {
+  const double plane = size.force / (4.0 / 3.0 * std::sqrt(wish.radius) * std::pow(size.depth, 1.5));
+  return plane * (1 - wish.poisson * wish.poisson);
+}
+
+// Where fits of a law's own parameters begin.
+std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size, const ModelWish& wish) {
+  const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max), d = size.depth;
+  if (law == "hertz") return {{sphere_modulus(size, wish)}};
+  if (law == "cubic") return {{0.9 * k, 0.1 * k / (d * d)}, {0.3 * k, k / (d * d)}};
+  if (law == "exponential") return {{0.9 * k, 0.3 / d}, {0.2 * k, 3.0 / d}, {1.3 * k, -0.5 / d}};
+  if (law != "sls") return {{k}};
+  std::vector<std::vector<double>> starts;
+  for (const double share : {0.01, 0.05, 0.25, 1.0}) starts.push_back({0.6 * k, 0.4 * k, share * size.span});
+  return starts;
 }
 
 ModelParameter parameter(const char* key, const char* unit, Range range, double scale) {
@@ -50,7 +86,9 @@ const std::vector<std::string>& press_laws() {
 
 std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const ModelWish& wish,
                                       std::string& why) {
-  const Sizes size = sizes_of(record);
+  const ContactRange contact = contact_range(record, wish.contact);
+  // Bounds hold wherever it met the surface, starts go by where.
+  const Sizes size = sizes_of(record, contact.low);
   if (law == "sls" && record.time.empty()) {
     why = "the law sls needs a column of time";
     return std::nullopt;
@@ -67,44 +105,36 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
   model.law = law;
   model.wish = wish;
   auto& list = model.parameters;
-  const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max);
-  std::vector<std::vector<double>> starts;
-  if (law == "hertz") {
-    const double plane = size.force / (4.0 / 3.0 * std::sqrt(wish.radius) * std::pow(size.depth, 1.5));
-    list.push_back(parameter("young", "Pa", {1e-3, 1e12}, plane * (1 - wish.poisson * wish.poisson)));
-    starts = {{list[0].box.scale}};
-  } else {
+  const Sizes usual = sizes_of(record, contact.starts[0]);
+  const double k = std::clamp(usual.slope, R::kStiffness.min, R::kStiffness.max);
+  if (law == "hertz")
+    list.push_back(parameter("young", "Pa", {1e-3, 1e12}, sphere_modulus(usual, wish)));
+  else
     list.push_back(parameter("stiffness", "N/m", R::kStiffness, k));
-    starts = {{k}};
-  }
   if (law == "cubic") {
-    list.push_back(parameter("cubic", "N/m3", R::kCubic, k / (size.depth * size.depth)));
-    starts = {{0.9 * k, 0.1 * list[1].box.scale}, {0.3 * k, list[1].box.scale}};
+    list.push_back(parameter("cubic", "N/m3", R::kCubic, k / (usual.depth * usual.depth)));
   } else if (law == "exponential") {
     list.push_back(parameter("stiffening", "1/m",
                              {std::max(R::kStiffening.min, -kFlattestPress / size.depth),
                               std::min(R::kStiffening.max, kSteepest / size.depth)},
-                             1.0 / size.depth));
-    starts = {{0.9 * k, 0.3 / size.depth}, {0.2 * k, 3.0 / size.depth}, {1.3 * k, -0.5 / size.depth}};
+                             1.0 / usual.depth));
   } else if (law == "sls") {
     list.push_back(parameter("relaxation.stiffness", "N/m", R::kRelaxationStiffness, k));
     list.push_back(parameter(
         "relaxation.time", "s",
         {std::max(R::kRelaxationTime.min, 0.2 * size.least_step), std::min(R::kRelaxationTime.max, 20 * size.span)},
         0.1 * size.span));
-    for (const double share : {0.01, 0.05, 0.25, 1.0}) starts.push_back({0.6 * k, 0.4 * k, share * size.span});
-    starts.erase(starts.begin());
   }
   if (wish.damping) list.push_back(parameter("contact_damping", "N s/m", R::kContactDamping, 0.01 * k * size.span));
-  if (wish.contact) {
-    const double least = *std::min_element(record.depth.begin(), record.depth.end());
-    list.push_back(parameter("contact", "m", {least, 0.9 * size.depth}, 0.1 * size.depth));
-  }
-  for (std::vector<double>& start : starts) {
-    if (wish.damping) start.push_back(0.1 * list[start.size()].box.scale);
-    if (wish.contact) start.push_back(std::clamp(0.0, list[start.size()].box.low, list[start.size()].box.high));
-    model.starts.push_back(Eigen::Map<Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size())));
-  }
+  if (wish.contact)
+    list.push_back(parameter("contact", "m", {contact.low, contact.high}, 0.1 * (contact.high - contact.low)));
+  for (const double met : contact.starts)
+    for (std::vector<double> start : law_starts(law, sizes_of(record, met), wish)) {
+      if (wish.damping) start.push_back(0.1 * list[start.size()].box.scale);
+      if (wish.contact) start.push_back(met);
+      for (std::size_t i = 0; i < list.size(); ++i) start[i] = std::clamp(start[i], list[i].box.low, list[i].box.high);
+      model.starts.push_back(Eigen::Map<Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size())));
+    }
   for (std::size_t i = 0; i < list.size(); ++i) list[i].box.start = model.starts[0][static_cast<Eigen::Index>(i)];
   return model;
 }

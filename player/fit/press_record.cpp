@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 
 #include "content/files/file_io.h"
 #include "content/files/limits.h"
+#include "player/plot/force_series.h"
+#include "player/record/csv.h"
 #include "runtime/printable.h"
 
 namespace pliant {
@@ -44,9 +45,9 @@ const QuantityWords& quantity_words(std::size_t quantity) {
 }
 
 std::string_view trim(std::string_view s) {
-  const std::size_t begin = s.find_first_not_of(" \t\r\"");
+  const std::size_t begin = s.find_first_not_of(" \t\r");
   return begin == std::string_view::npos ? std::string_view{}
-                                         : s.substr(begin, s.find_last_not_of(" \t\r\"") - begin + 1);
+                                         : s.substr(begin, s.find_last_not_of(" \t\r") - begin + 1);
 }
 
 std::string lower(std::string_view word) {
@@ -56,18 +57,10 @@ std::string lower(std::string_view word) {
   return out;
 }
 
-// Between marks; a cell in quotes may hold marks.
-std::vector<std::string_view> cells_of(std::string_view line, char mark) {
-  std::vector<std::string_view> out;
-  for (;;) {
-    const std::size_t begin = line.find_first_not_of(' ');
-    const bool quoted = begin != std::string_view::npos && line[begin] == '"';
-    const std::size_t close = quoted ? line.find('"', begin + 1) : 0;
-    const std::size_t end = line.find(mark, quoted && close != std::string_view::npos ? close : 0);
-    out.push_back(trim(line.substr(0, end)));
-    if (end == std::string_view::npos) return out;
-    line.remove_prefix(end + 1);
-  }
+// Blanks around them are taken off.
+void read_cells(std::string_view line, char mark, std::vector<std::string>& cells) {
+  csv_cells(line, mark, cells);
+  for (std::string& cell : cells) cell = std::string(trim(cell));
 }
 
 // "depth_mm", "depth [mm]", "Depth (mm)" -> the name in small letters, and the unit as it stands.
@@ -90,49 +83,79 @@ bool is_name(std::size_t quantity, const std::string& name) {
 struct Columns {
   std::size_t at[kQuantities] = {};  // 1 and on; 0: not there
   double factor[kQuantities] = {1, 1, 1};
-  std::optional<std::size_t> probe;
-  std::size_t axis[3] = {};  // of a run's force, 1 and on
-  std::size_t count = 0;
+  std::optional<std::size_t> probe, contact;
+  std::size_t axis[3] = {}, torque[3] = {};  // of a run's force and torque, 1 and on
+  std::size_t count = 0;                     // without empty ones at the end
   char mark = ',';
+  std::vector<std::string> notes;
 };
 
-Result<Columns> read_head(std::string_view line, const std::string& where) {
-  Columns out;
-  if (line.find(',') == std::string_view::npos)
-    out.mark = line.find(';') != std::string_view::npos ? ';' : line.find('\t') != std::string_view::npos ? '\t' : ',';
-  const std::vector<std::string_view> heads = cells_of(line, out.mark);
-  out.count = heads.size();
-  bool run = std::find(heads.begin(), heads.end(), "probe") != heads.end();  // a run's forces.csv
+std::string unit_fault(const QuantityWords& words, const std::string& head, const std::string& unit) {
+  std::string all;
+  for (const Unit& each : words.units) all += (all.empty() ? "" : ", ") + std::string(each.word);
+  return unit.empty()
+             ? fmt::format("column '{}' does not say its unit; write {}, or another of {}", printable(head),
+                           words.example, all)
+             : fmt::format("column '{}' has the unit '{}'; must be one of {}", printable(head), printable(unit), all);
+}
+
+// Of one quantity, among all heads. What has its name but another unit may be something else (f_Hz, load_cell) where
+// another column is the quantity, or where it may be missing.
+Status find_column(const std::vector<std::string>& heads, std::size_t q, const std::string& where, Columns& out) {
+  const QuantityWords& words = quantity_words(q);
+  std::vector<std::pair<std::size_t, std::string>> other;  // column, unit
   for (std::size_t i = 0; i < heads.size(); ++i) {
-    if (heads[i] == "probe") out.probe = i;
-    for (std::size_t a = 0; a < 3; ++a)
-      if (run && heads[i] == std::string_view("fxfyfz").substr(2 * a, 2)) out.axis[a] = i + 1;
-    if (run && heads[i] == "fn") {
-      out.at[kForce] = i + 1;
+    auto [name, unit] = name_and_unit(heads[i]);
+    if (!is_name(q, name)) {
+      if (!is_name(q, lower(heads[i]))) continue;
+      unit.clear();
+    }
+    const auto known =
+        std::find_if(words.units.begin(), words.units.end(), [&](const Unit& u) { return unit == u.word; });
+    if (known == words.units.end()) {
+      other.emplace_back(i, unit);
       continue;
     }
-    const auto [name, unit] = name_and_unit(heads[i]);
-    for (std::size_t q = 0; q < kQuantities; ++q) {
-      const QuantityWords& words = quantity_words(q);
-      if (!is_name(q, name) && !is_name(q, lower(heads[i]))) continue;
-      if (run && q == kForce) continue;
-      if (out.at[q]) return Error{where, fmt::format("has two columns of {}; leave one", words.what)};
-      std::string all;
-      for (const Unit& each : words.units) {
-        if (unit == each.word) {
-          out.at[q] = i + 1;
-          out.factor[q] = each.factor;
-        }
-        all += (all.empty() ? "" : ", ") + std::string(each.word);
-      }
-      if (out.at[q]) continue;
-      return Error{where, unit.empty() || !is_name(q, name)
-                              ? fmt::format("column '{}' does not say its unit; write {}, or another of {}",
-                                            printable(heads[i]), words.example, all)
-                              : fmt::format("column '{}' has the unit '{}'; must be one of {}", printable(heads[i]),
-                                            printable(unit), all)};
-    }
+    if (out.at[q]) return Error{where, fmt::format("has two columns of {}; leave one", words.what)};
+    out.at[q] = i + 1;
+    out.factor[q] = known->factor;
   }
+  for (const auto& [i, unit] : other) {
+    const bool abbreviated = lower(heads[i].substr(0, 1)) == name_and_unit(heads[i]).first;
+    if (!out.at[q] && !(q == kTime && abbreviated && !unit.empty()))
+      return Error{where, unit_fault(words, heads[i], unit)};
+    out.notes.push_back(fmt::format(
+        "{}: column '{}' is not read: {}", where, printable(heads[i]),
+        unit.empty() ? "it does not say its unit" : fmt::format("'{}' is no unit of {}", printable(unit), words.what)));
+  }
+  return Done{};
+}
+
+// With this mark between cells.
+Result<Columns> read_head(std::string_view line, char mark, const std::string& where) {
+  Columns out;
+  out.mark = mark;
+  std::vector<std::string> heads;
+  read_cells(line, mark, heads);
+  while (heads.size() > 1 && heads.back().empty()) heads.pop_back();
+  out.count = heads.size();
+  const auto number = [&](std::string_view name) -> std::size_t {
+    const auto found = std::find(heads.begin(), heads.end(), name);
+    return found == heads.end() ? 0 : static_cast<std::size_t>(found - heads.begin()) + 1;
+  };
+  const bool run = number("probe") > 0;  // a run's forces.csv
+  if (run) {
+    out.probe = number("probe") - 1;
+    if (const std::size_t contact = number("in_contact")) out.contact = contact - 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      out.axis[a] = number(std::string_view("fxfyfz").substr(2 * a, 2));
+      out.torque[a] = number(std::string_view("txtytz").substr(2 * a, 2));
+    }
+    out.at[kForce] = number("fn");
+  }
+  for (std::size_t q = 0; q < kQuantities; ++q)
+    if (!(run && q == kForce))
+      if (const Status found = find_column(heads, q, where, out); !found) return found.error();
   for (const std::size_t q : {kDepth, kForce})
     if (!out.at[q])
       return Error{where, fmt::format("has no column of {}; name one {}, with its unit", quantity_words(q).what,
@@ -140,10 +163,39 @@ Result<Columns> read_head(std::string_view line, const std::string& where) {
   return out;
 }
 
+// With the mark that makes columns of it; names may hold the others.
+Result<Columns> read_head(std::string_view line, const std::string& where) {
+  std::optional<Error> wrong;
+  std::size_t most = 0;
+  for (const char mark : {',', ';', '\t'}) {
+    Result<Columns> columns = read_head(line, mark, where);
+    if (columns) return columns;
+    const auto marks = static_cast<std::size_t>(std::count(line.begin(), line.end(), mark));
+    if (wrong && marks <= most) continue;
+    wrong = columns.error();
+    most = marks;
+  }
+  return *wrong;
+}
+
 bool read_number(std::string_view cell, double& value) {
   if (cell.starts_with('+')) cell.remove_prefix(1);
   const std::from_chars_result read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   return read.ec == std::errc{} && read.ptr == cell.data() + cell.size();
+}
+
+// Where commas are not between cells they may be decimal.
+bool read_number(std::string cell, char mark, double& value) {
+  if (mark != ',' && cell.find('.') == std::string::npos)
+    if (const std::size_t comma = cell.find(','); comma != std::string::npos) cell[comma] = '.';
+  return read_number(std::string_view(cell), value) && std::isfinite(value);
+}
+
+Error of_tool(const std::string& where, const std::string& probe) {
+  return {where,
+          fmt::format("`{}` is a tool: what stands as its depth is how far its device is led past its handle, by "
+                      "the coupling, and no press of a surface; take a probe's rows, or measured presses",
+                      printable(probe))};
 }
 
 // What no fit could use.
@@ -171,47 +223,60 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
   record.name = where;
   std::optional<Columns> columns;
   std::set<std::string> probes;
+  std::vector<std::string> cells;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
+    const std::string_view whole = text.substr(0, end), line = trim(whole);
     const std::string here = where + ":" + std::to_string(number);
-    const std::string_view whole = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.front() == '#') continue;
     if (!columns) {
       Result<Columns> head = read_head(whole, here);
       if (!head) return head.error();
       columns = *head;
+      record.notes = columns->notes;
       if (!probe.empty() && !columns->probe) return Error{where, "has no column `probe`; leave --probe out"};
       continue;
     }
-    const std::vector<std::string_view> cells = cells_of(whole, columns->mark);
+    read_cells(whole, columns->mark, cells);
+    while (cells.size() > columns->count && cells.back().empty()) cells.pop_back();
     if (cells.size() != columns->count)
       return Error{here,
-                   fmt::format("has {} cells where the header has {}; correct the line", cells.size(), columns->count)};
+                   fmt::format("has {} cells where the header has {}; correct the line{}", cells.size(), columns->count,
+                               columns->mark == ',' && cells.size() > columns->count
+                                   ? ", or, where its commas are decimal, put semicolons between cells"
+                                   : "")};
     if (columns->probe) {
-      const std::string its(cells[*columns->probe]);
+      const std::string& its = cells[*columns->probe];
       probes.insert(its);
       if (probe.empty() && probes.size() > 1)
         return Error{where, fmt::format("has several probes, {} and {} among them; choose one with --probe NAME",
                                         printable(*probes.begin()), printable(*probes.rbegin()))};
       if (!probe.empty() && its != probe) continue;
+      record.probe = its;
     }
     double value[kQuantities] = {};
     for (std::size_t q = 0; q < kQuantities; ++q) {
       if (!columns->at[q]) continue;
-      const std::string_view cell = cells[columns->at[q] - 1];
-      if (!read_number(cell, value[q]) || !std::isfinite(value[q]))
-        return Error{here, fmt::format("its {} is '{}', which is no finite number; correct the row or leave it out",
-                                       quantity_words(q).what, printable(cell.substr(0, 40)))};
+      const std::string& cell = cells[columns->at[q] - 1];
+      if (!read_number(cell, columns->mark, value[q]))
+        return Error{here, fmt::format("its {} is '{}', which is no finite number{}; correct the row or leave it out",
+                                       quantity_words(q).what, printable(cell.substr(0, 40)),
+                                       cell.find(',') == std::string::npos
+                                           ? ""
+                                           : " (a decimal comma is read, marks between thousands are not)")};
       value[q] *= columns->factor[q];
     }
+    double component = 0.0;
+    for (const std::size_t axis : columns->torque)
+      if (axis && read_number(cells[axis - 1], columns->mark, component) && component != 0.0)
+        return of_tool(where, record.probe);
     if (with_friction && columns->axis[0] && columns->axis[1] && columns->axis[2]) {
-      double square = 0.0, along = 0.0;
+      double square = 0.0;
       for (const std::size_t axis : columns->axis) {
-        if (!read_number(cells[axis - 1], along) || !std::isfinite(along))
+        if (!read_number(cells[axis - 1], columns->mark, component))
           return Error{here, "its force is no finite number; correct the row or leave it out"};
-        square += along * along;
+        square += component * component;
       }
       value[kForce] = std::sqrt(square);
     }
@@ -222,6 +287,7 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
     }
     record.depth.push_back(value[kDepth]);
     record.force.push_back(value[kForce]);
+    record.contact.push_back(columns->contact ? cells[*columns->contact] == "1" : value[kDepth] > 0);
   }
   if (!columns) return Error{where, "is empty; a header such as time_s,depth_mm,force_N comes first, then rows"};
   if (!probe.empty() && !probes.contains(probe))
@@ -229,10 +295,7 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
                                     probes.empty() ? "none" : printable(*probes.begin()))};
   if (const Status status = check(record, where); !status) return status.error();
   const double deepest = *std::max_element(record.depth.begin(), record.depth.end());
-  if (deepest > 0.2)
-    record.notes.push_back(
-        fmt::format("{}: the deepest press is {:.3g} m; is the unit of depth right?", where, deepest));
-  if (deepest < 1e-6)
+  if (deepest > 0.2 || deepest < 1e-6)
     record.notes.push_back(
         fmt::format("{}: the deepest press is {:.3g} m; is the unit of depth right?", where, deepest));
   return record;
@@ -241,8 +304,12 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
 Result<PressRecord> read_press(const std::filesystem::path& file, const std::string& probe, bool with_friction) {
   const Result<Bytes> bytes = read_file(file, limits::kScriptFile);
   if (!bytes) return bytes.error();
-  return parse_press({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file.string(), probe,
-                     with_friction);
+  Result<PressRecord> record =
+      parse_press({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file.string(), probe, with_friction);
+  if (record && !record->probe.empty())
+    if (const auto tools = tools_of(file.parent_path() / "report.json"); tools.contains(record->probe))
+      if (tools.at(record->probe)) return of_tool(file.string(), record->probe);
+  return record;
 }
 
 }  // namespace pliant

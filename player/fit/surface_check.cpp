@@ -30,9 +30,8 @@ MeshData data_of(const std::vector<Primitive>& primitives) {
 }  // namespace
 
 Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<Primitive>& primitives,
-                                                              const DeformableParameters& surface,
-                                                              const std::vector<PressPlace>& places,
-                                                              const std::vector<std::vector<double>>& depths) {
+                                                              const DeformableParameters& surface, const Mesh& built,
+                                                              const std::vector<PressedPlace>& places) {
   Scene scene;
   DeformableParameters smooth = surface;
   smooth.friction_static = smooth.friction_sliding = 0.0;
@@ -45,11 +44,13 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
   std::vector<std::vector<PressedTissue>> out(places.size());
   std::vector<vec4> stream;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto to = [&](double depth) { return session->move("probe", places[i].position - depth * places[i].normal); };
+    const PressPlace& place = places[i].place;
+    const auto to = [&](double depth) { return session->move("probe", place.position - depth * place.normal); };
     Status done = to(-kAboveSurface);
     if (done) done = session->step(kRecover);
     double at = 0.0;
-    for (const double depth : depths[i]) {
+    for (const PressedTissue& press : places[i].presses) {
+      const double depth = press.depth;
       for (int k = 1; k <= kCheckParts && done; ++k) {
         done = to(at + (depth - at) * k / kCheckParts);
         if (done) done = session->step();
@@ -63,9 +64,13 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
       for (std::uint32_t c = 0; c < reading->contacts; ++c) force += reading->contact[c].force;
       PressedTissue& state = out[i].emplace_back();
       state.depth = depth;
-      state.force = dot(force, places[i].normal);
+      state.force = dot(force, place.normal);
       if (const Status told = session->stream("surface", stream); !told) return told.error();
-      for (const vec4& value : stream) state.height.push_back(value.w);
+      for (const SurfaceSample& seen : places[i].seen) {
+        const uvec3 t = built.triangles[seen.triangle];
+        double& height = state.height.emplace_back(0.0);
+        for (int c = 0; c < 3; ++c) height += seen.barycentric[c] * static_cast<double>(stream[t[c]].w);
+      }
     }
     if (done) done = to(-kAboveSurface);
     if (!done) return done.error();

@@ -5,15 +5,15 @@
 
 #include "components/deformable.h"
 #include "content/level/level.h"
-#include "player/fit/tissue_press.h"
+#include "player/fit/surface_fit.h"
 
 namespace pliant {
 
-// `primitives` in the object frame, painted. At each place a press to each of these depths [m], ascending: the force
-// along the place's normal before the safety layer, and the heights of the surface's vertices.
+// `primitives` in the object frame, painted; `built`: the mesh that the engine makes of them. At each place presses to
+// the depths of its own: the force along the place's normal before the safety layer, and the drawn surface's heights at
+// the points that it was seen at.
 Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<Primitive>& primitives,
-                                                              const DeformableParameters& surface,
-                                                              const std::vector<PressPlace>& places,
-                                                              const std::vector<std::vector<double>>& depths);
+                                                              const DeformableParameters& surface, const Mesh& built,
+                                                              const std::vector<PressedPlace>& places);
 
 }  // namespace pliant

@@ -14,8 +14,8 @@ namespace pliant {
 namespace {
 
 constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
-constexpr double kFacingAtLeast = 0.0;
-constexpr double kLeastFittedReach = 1.5, kMostReach = 4.0;  // [1] radii of the indenter
+constexpr double kLeastFittedReach = 1.5, kMostReach = 3.5;  // [1] radii of the indenter; a quarter is gone to
+constexpr int kReaches = 20;                                 // tried between them
 constexpr std::size_t kNearest = 10;                         // painted places that a vertex takes its value from
 
 // `contact` [1] of the reach.
@@ -51,44 +51,39 @@ struct Sample {
 
 }  // namespace
 
-SurfaceDifference surface_difference(const Mesh& mesh, const PressPlace& place, double around,
-                                     const std::vector<float>& heights, const std::vector<float>& truth) {
+SurfaceDifference surface_difference(const std::vector<SurfaceSample>& seen, const std::vector<double>& heights,
+                                     const std::vector<double>& truth) {
   SurfaceDifference out;
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    const dvec3 away = dvec3(mesh.position(v)) - place.position;
-    if (dot(away, away) > around * around || dot(dvec3(mesh.normal(v)), place.normal) <= kFacingAtLeast) continue;
-    const double d = static_cast<double>(heights[v]) - static_cast<double>(truth[v]), t = static_cast<double>(truth[v]),
-                 area = static_cast<double>(mesh.area[v]);
-    out.off += area * d * d;
-    out.size += area * t * t;
-    out.area += area;
-    out.largest = std::max(out.largest, std::abs(d));
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const double d = heights[i] - truth[i];
+    out.off += seen[i].area * d * d;
+    out.size += seen[i].area * truth[i] * truth[i];
+    out.area += seen[i].area;
   }
   return out;
 }
 
-SurfaceDifference radial_remainder(const Mesh& mesh, const PressPlace& place, double radius,
-                                   const std::vector<float>& heights) {
-  constexpr int kRings = 4 * static_cast<int>(kAroundPress);
-  struct Ring {
-    double area = 0.0, sum = 0.0, squares = 0.0;
-  };
-  std::array<Ring, kRings> rings;
+SurfaceDifference radial_remainder(const std::vector<SurfaceSample>& seen, const PressPlace& place, double radius,
+                                   const std::vector<double>& heights) {
+  constexpr Eigen::Index kKnots = 4 * static_cast<Eigen::Index>(kAroundPress) + 1;
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(kKnots, kKnots);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(kKnots);
   SurfaceDifference out;
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
-    const dvec3 away = dvec3(mesh.position(v)) - place.position;
-    const int ring = static_cast<int>(4 * length(away) / radius);
-    if (ring >= kRings || dot(dvec3(mesh.normal(v)), place.normal) <= kFacingAtLeast) continue;
-    const double area = static_cast<double>(mesh.area[v]), h = static_cast<double>(heights[v]);
-    Ring& its = rings[static_cast<std::size_t>(ring)];
-    its.area += area;
-    its.sum += area * h;
-    its.squares += area * h * h;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const double at = std::min(4 * length(seen[i].position - place.position) / radius, static_cast<double>(kKnots - 1));
+    const Eigen::Index k = std::min(static_cast<Eigen::Index>(at), kKnots - 2);
+    const double area = seen[i].area, h = heights[i],
+                 share[2] = {1 - (at - static_cast<double>(k)), at - static_cast<double>(k)};
+    for (Eigen::Index a = 0; a < 2; ++a) {
+      right[k + a] += area * share[a] * h;
+      for (Eigen::Index b = 0; b < 2; ++b) normal(k + a, k + b) += area * share[a] * share[b];
+    }
     out.size += area * h * h;
     out.area += area;
   }
-  for (const Ring& ring : rings)
-    if (ring.area > 0) out.off += std::max(0.0, ring.squares - ring.sum * ring.sum / ring.area);
+  normal.diagonal().array() += 1e-12 * out.area;  // a ring without a point takes nothing
+  const Eigen::VectorXd best = normal.ldlt().solve(right);
+  out.off = std::max(0.0, out.size - 2 * best.dot(right) + best.dot(normal * best));
   return out;
 }
 
@@ -105,20 +100,18 @@ bool is_near_an_edge(const Mesh& mesh, const PressPlace& place, double depth) {
   return false;
 }
 
-ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, double radius, double reach) {
+ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, double reach) {
   std::vector<const PressedPlace*> pressed;
   std::vector<std::vector<Sample>> samples;
   for (const PressedPlace& each : places) {
     if (each.presses.empty()) continue;
     pressed.push_back(&each);
     std::vector<Sample>& of = samples.emplace_back();
-    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
-      const dvec3 away = dvec3(mesh.position(v)) - each.place.position;
-      if (length(away) > kAroundPress * radius || dot(dvec3(mesh.normal(v)), each.place.normal) <= kFacingAtLeast)
-        continue;
-      Sample& sample = of.emplace_back(Sample{mesh.position(v), mesh.normal(v), static_cast<double>(mesh.area[v])});
+    for (std::size_t i = 0; i < each.seen.size(); ++i) {
+      Sample& sample =
+          of.emplace_back(Sample{vec3(each.seen[i].position), vec3(each.seen[i].normal), each.seen[i].area});
       for (const PressedTissue& press : each.presses) {
-        const double share = -static_cast<double>(press.height[v]) / press.depth;
+        const double share = -press.height[i] / press.depth;
         sample.share += share / static_cast<double>(each.presses.size());
         sample.square += share * share / static_cast<double>(each.presses.size());
       }
@@ -146,8 +139,9 @@ ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, do
   };
   const auto every_reach = [&](Shape shape, double volume, double contact) {
     if (reach > 0) return attempt(shape, volume, reach, contact);
-    for (double over = kLeastFittedReach; over <= kMostReach * 1.0001; over *= 1.04)
-      attempt(shape, volume, over * radius, contact);
+    for (int i = 0; i <= kReaches; ++i)
+      attempt(shape, volume,
+              kLeastFittedReach * std::pow(kMostReach / kLeastFittedReach, i / (kReaches * 1.0)) * radius, contact);
   };
   for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kKelvinlet})
     for (double contact = kLeastContact; contact < kMostContact + 0.01; contact += kContactStep)

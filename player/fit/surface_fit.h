@@ -13,7 +13,8 @@ namespace pliant {
 // One place with its presses, the deepest last.
 struct PressedPlace {
   PressPlace place;
-  double stiffness = 0.0;  // [N/m] of a small press
+  double stiffness = 0.0;           // [N/m] of a small press
+  std::vector<SurfaceSample> seen;  // what the heights of the presses are of
   std::vector<PressedTissue> presses;
 };
 
@@ -26,25 +27,24 @@ struct ShapeFit {
 };
 inline constexpr double kAroundPress = 3.0;  // [1] radii of the indenter that a dent is compared within
 
-// Difference of two sets of heights around a place, and the size of the second: squares times area.
+// Difference of two sets of heights of the same points, and the size of the second: squares times area.
 struct SurfaceDifference {
   double off = 0.0, size = 0.0;  // [m4]
   double area = 0.0;             // [m2]
-  double largest = 0.0;          // [m]
 };
-SurfaceDifference surface_difference(const Mesh& mesh, const PressPlace& place, double around,
-                                     const std::vector<float>& heights, const std::vector<float>& truth);
+SurfaceDifference surface_difference(const std::vector<SurfaceSample>& seen, const std::vector<double>& heights,
+                                     const std::vector<double>& truth);
 
-// What of a dent no function of the distance from its place can give, whatever its shape: squares of the difference
-// from the mean in rings of a quarter of the indenter's radius, and the area.
-SurfaceDifference radial_remainder(const Mesh& mesh, const PressPlace& place, double radius,
-                                   const std::vector<float>& heights);
+// What of a dent the best function of the distance from its place leaves: a continuous one, straight between distances
+// a quarter of the indenter's radius apart.
+SurfaceDifference radial_remainder(const std::vector<SurfaceSample>& seen, const PressPlace& place, double radius,
+                                   const std::vector<double>& heights);
 // Whether, at the end of a press of this depth [m], another side of the object is within 1.5 depths: a probe there is
 // as much inside of that.
 bool is_near_an_edge(const Mesh& mesh, const PressPlace& place, double depth);
 
 // `reach`: 0, or the one that is wanted.
-ShapeFit fit_shape(const Mesh& mesh, const std::vector<PressedPlace>& places, double radius, double reach);
+ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, double reach);
 
 struct ForceFit {
   SpringLaw spring = SpringLaw::kLinear;

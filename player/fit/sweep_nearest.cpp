@@ -13,17 +13,35 @@ namespace pliant {
 namespace {
 
 constexpr double kOtherDepth = 0.02;  // [1] from which on a run did not press as the measurement did
+constexpr double kOtherSpan = 0.1;    // [1] the same of the time in contact
 constexpr int kParts = 2000;          // a parabola is searched in
+constexpr const char *kMaxDepth = "max_depth_m", *kMaxForce = "max_force_N", *kRmsContact = "rms_contact_N",
+                     *kContactTime = "contact_s";
 
-const PlanJson* figures_of_row(const SweepRow& row) {
-  return row.done() && row.line.contains("figures") ? &row.line["figures"] : nullptr;
+// Of a probe in a row that was done; without those that it lacks.
+std::map<std::string, double> figures_of(const SweepRow& row, const std::string& probe) {
+  std::map<std::string, double> out;
+  if (!row.done()) return out;
+  const PlanJson& figures = row.line["figures"];
+  const auto number = [&](const std::string& name) {
+    return figures.contains(name) && figures[name].is_number() ? figures[name].get<double>() : std::nan("");
+  };
+  for (const char* name : {kMaxDepth, kMaxForce, kContactTime})
+    if (const double value = number(probe + "." + name); std::isfinite(value)) out[name] = value;
+  // The run's own is over all its ticks.
+  const double rms = number(probe + ".rms_force_N"), ticks = number("ticks"),
+               contact = number(probe + ".contact_ticks");
+  if (std::isfinite(rms) && std::isfinite(ticks) && std::isfinite(contact))
+    out[kRmsContact] = contact > 0 ? rms * std::sqrt(ticks / contact) : 0.0;
+  return out;
 }
 
-// Relative differences that count: depth only says whether the presses are the same.
+// Relative differences that count: depth and time in contact only say whether the presses are the same.
 double distance_of(const std::map<std::string, double>& target, const std::map<std::string, double>& run) {
   double sum = 0.0, count = 0.0;
-  for (const auto& [name, value] : target) {
-    if (name == "max_depth_m" || !(std::abs(value) > 0)) continue;
+  for (const char* name : {kMaxForce, kRmsContact}) {
+    const double value = target.at(name);
+    if (!(std::abs(value) > 0)) continue;
     const double off = (run.at(name) - value) / std::abs(value);
     sum += off * off;
     count += 1.0;
@@ -31,28 +49,42 @@ double distance_of(const std::map<std::string, double>& target, const std::map<s
   return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::infinity();
 }
 
+bool differs(double value, double target, double share) {
+  return std::abs(value - target) > share * std::abs(target);
+}
+
 }  // namespace
 
 std::map<std::string, double> figures_of(const PressRecord& record) {
-  std::map<std::string, double> out{{"max_depth_m", 0.0}, {"max_force_N", 0.0}, {"rms_force_N", 0.0}};
-  double square = 0.0;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    out["max_depth_m"] = std::max(out["max_depth_m"], record.depth[i]);
-    out["max_force_N"] = std::max(out["max_force_N"], record.force[i]);
-    square += record.force[i] * record.force[i];
+  std::map<std::string, double> out{{kMaxDepth, 0.0}, {kMaxForce, 0.0}, {kRmsContact, 0.0}};
+  const std::size_t n = record.size();
+  double square = 0.0, whole = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!record.contact[i]) continue;
+    out[kMaxDepth] = std::max(out[kMaxDepth], record.depth[i]);
+    out[kMaxForce] = std::max(out[kMaxForce], record.force[i]);
+    // [s] Half the way to the rows beside it.
+    const double weight =
+        record.time.empty() ? 1.0 : 0.5 * (record.time[std::min(i + 1, n - 1)] - record.time[i == 0 ? 0 : i - 1]);
+    square += weight * record.force[i] * record.force[i];
+    whole += weight;
   }
-  out["rms_force_N"] = std::sqrt(square / static_cast<double>(record.size()));
+  if (whole > 0) out[kRmsContact] = std::sqrt(square / whole);
+  if (!record.time.empty()) out[kContactTime] = whole;
   return out;
 }
 
 Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, const std::string& probe) {
   Nearest out;
   out.target = figures_of(target);
-  std::set<std::string> probes;
-  const std::string ending = ".max_force_N";
+  std::set<std::string> probes, tools;
   for (const std::string& figure : table.figures)
-    if (figure.ends_with(ending)) probes.insert(figure.substr(0, figure.size() - ending.size()));
-  if (probes.empty()) return Error{"--sweep", "has no run that was done with a probe or a tool; run it first"};
+    for (const auto& [ending, found] : {std::pair(std::string(".max_depth_m"), &probes), {".max_offset_m", &tools}})
+      if (figure.ends_with(ending)) found->insert(figure.substr(0, figure.size() - ending.size()));
+  if (tools.contains(probe) || (probes.empty() && !tools.empty()))
+    return Error{"--sweep", fmt::format("`{}` is a tool, whose runs say no depth of a press; compare those of a probe",
+                                        probe.empty() ? *tools.begin() : probe)};
+  if (probes.empty()) return Error{"--sweep", "has no run that was done with a probe; run it first"};
   if (!probe.empty() && !probes.contains(probe))
     return Error{"--probe " + probe, "is in none of the sweep's runs; they have " + *probes.begin()};
   if (probe.empty() && probes.size() > 1)
@@ -63,13 +95,8 @@ Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, 
   std::vector<std::map<std::string, double>> runs(table.rows.size());
   out.distance.assign(table.rows.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const PlanJson* figures = figures_of_row(table.rows[i]);
-    if (!figures) continue;
-    for (const auto& [name, value] : out.target) {
-      const std::string key = out.probe + "." + name;
-      if (figures->contains(key) && (*figures)[key].is_number()) runs[i][name] = (*figures)[key].get<double>();
-    }
-    if (runs[i].size() != out.target.size()) continue;
+    runs[i] = figures_of(table.rows[i], out.probe);
+    if (!runs[i].contains(kMaxDepth) || !runs[i].contains(kMaxForce) || !runs[i].contains(kRmsContact)) continue;
     out.distance[i] = distance_of(out.target, runs[i]);
     out.order.push_back(i);
   }
@@ -77,11 +104,17 @@ Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, 
   std::stable_sort(out.order.begin(), out.order.end(),
                    [&](std::size_t a, std::size_t b) { return out.distance[a] < out.distance[b]; });
   const std::size_t best = out.order[0];
-  if (std::abs(runs[best]["max_depth_m"] / out.target["max_depth_m"] - 1) > kOtherDepth)
+  if (differs(runs[best][kMaxDepth], out.target[kMaxDepth], kOtherDepth))
     out.notes.push_back(
         fmt::format("the runs press {:.3g} mm deep and the measurement {:.3g} mm: give the runs the path "
                     "that was measured, or their forces do not compare",
-                    runs[best]["max_depth_m"] * 1e3, out.target["max_depth_m"] * 1e3));
+                    runs[best][kMaxDepth] * 1e3, out.target[kMaxDepth] * 1e3));
+  if (out.target.contains(kContactTime) && runs[best].contains(kContactTime) &&
+      differs(runs[best][kContactTime], out.target[kContactTime], kOtherSpan))
+    out.notes.push_back(
+        fmt::format("the nearest run is in contact for {:.3g} s and the measurement for {:.3g} s: give the runs the "
+                    "path that was measured, or their RMS forces do not compare",
+                    runs[best][kContactTime], out.target[kContactTime]));
 
   for (std::size_t axis = 0; axis < table.axes.size(); ++axis) {
     const AxisValues values = values_along(table, axis);
@@ -113,7 +146,7 @@ Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, 
                    w1 = (x - x0) * (x - x2) / ((x1 - x0) * (x1 - x2)),
                    w2 = (x - x0) * (x - x1) / ((x2 - x0) * (x2 - x1));
       std::map<std::string, double> mixed;
-      for (const auto& [name, value] : out.target)
+      for (const char* name : {kMaxForce, kRmsContact})
         mixed[name] = w0 * runs[below][name] + w1 * runs[best][name] + w2 * runs[above][name];
       const double distance = distance_of(out.target, mixed);
       if (distance < found.distance) found = {axis, values.scale.log ? std::exp(x) : x, distance};

@@ -19,7 +19,7 @@ struct BetweenRuns {
 
 struct Nearest {
   std::string probe;                     // whose figures
-  std::map<std::string, double> target;  // max_depth_m, max_force_N, rms_force_N, net_work_J of what was measured
+  std::map<std::string, double> target;  // figures_of() what was measured
   std::vector<double> distance;          // [1] of each row: RMS of the relative differences; infinite: not done
   std::vector<std::size_t> order;        // rows that were done, the nearest first
   std::vector<BetweenRuns> between;
@@ -28,7 +28,8 @@ struct Nearest {
 // `probe`: empty where only one has figures.
 Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, const std::string& probe);
 
-// The same figures as a run's.
+// max_depth_m, max_force_N and rms_contact_N, the RMS in contact by time (without time by rows): what a run's figures
+// say as well, whatever time either spends in the air. With time contact_s, too.
 std::map<std::string, double> figures_of(const PressRecord& record);
 
 }  // namespace pliant

@@ -15,9 +15,9 @@ namespace pliant {
 
 // What a place not used in the fit came to.
 struct HeldPlace {
-  PressPlace place;
+  PressedPlace truth;
   Side side = Side::kTop;
-  std::vector<PressedTissue> truth, model;
+  std::vector<PressedTissue> model;             // at the same depths
   double force_error = 0.0, force_worst = 0.0;  // [1] RMS and largest of the relative differences
   double surface_error = 0.0;                   // [1] RMS difference over RMS of the dent, at the deepest
   double surface_of_depth = 0.0;                // [1] RMS difference over the depth
@@ -28,7 +28,11 @@ struct HeldPlace {
 struct TissueFit {
   std::string object;
   double radius = 0.0, cell = 0.0, young = 0.0, poisson = 0.0;
-  std::size_t tets = 0, mapped = 0, places = 0, left_out = 0;
+  std::string why;             // the radius
+  double too_stiff = 1.0;      // [1] the elements' stiffness over that of a lattice without size
+  double too_stiff_off = 0.0;  // [1] how far single places are from that, RMS
+  std::size_t tets = 0;        // median over the bodies
+  std::size_t mapped = 0, places = 0, left_out = 0;
   ShapeFit shape;
   ForceFit force;
   DeformableParameters surface;

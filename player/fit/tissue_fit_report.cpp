@@ -26,13 +26,13 @@ std::string places_csv(const TissueFit& fitted) {
       "edge\n";
   for (std::size_t i = 0; i < fitted.held.size(); ++i) {
     const HeldPlace& held = fitted.held[i];
-    for (std::size_t k = 0; k < std::min(held.truth.size(), held.model.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(held.truth.presses.size(), held.model.size()); ++k) {
       text += std::to_string(i + 1) + "," + word_of(held.side);
-      put(text, held.place.position);
-      for (const double value : {held.truth[k].depth, held.truth[k].force, held.model[k].force,
-                                 held.model[k].force / held.truth[k].force - 1})
+      put(text, held.truth.place.position);
+      for (const double value : {held.truth.presses[k].depth, held.truth.presses[k].force, held.model[k].force,
+                                 held.model[k].force / held.truth.presses[k].force - 1})
         put(text, value);
-      if (k + 1 == std::min(held.truth.size(), held.model.size())) {
+      if (k + 1 == std::min(held.truth.presses.size(), held.model.size())) {
         put(text, held.surface_error);
         put(text, held.surface_of_depth);
         put(text, held.not_radial);
@@ -51,7 +51,7 @@ std::map<std::string, PlaceErrors> sums_of(const TissueFit& fitted) {
   const bool edges =
       std::any_of(fitted.held.begin(), fitted.held.end(), [](const HeldPlace& h) { return h.near_edge; });
   for (const HeldPlace& held : fitted.held) {
-    if (held.truth.empty()) continue;
+    if (held.truth.presses.empty()) continue;
     out["all"].add(held);
     if (edges && !held.near_edge) out["inner"].add(held);
     out[word_of(held.side)].add(held);
@@ -66,7 +66,7 @@ std::string verdict_of(const TissueFit& fitted) {
   const PlaceErrors& sum = all->second;
   const auto good =
       static_cast<std::size_t>(std::count_if(fitted.held.begin(), fitted.held.end(), [](const HeldPlace& held) {
-        return !held.truth.empty() && held.force_error <= kForceGoal && held.surface_of_depth <= kSurfaceGoal;
+        return !held.truth.presses.empty() && held.force_error <= kForceGoal && held.surface_of_depth <= kSurfaceGoal;
       }));
   std::string text = fmt::format(
       "At {} places that the fit has not seen, up to a quarter of the reach, the surface's force is off by {:.1f} % "
@@ -101,8 +101,11 @@ std::string json_of(const TissueFit& f, const Level& level) {
       {"poisson", f.poisson},
       {"tetrahedra", f.tets},
       {"cell_m", f.cell},
+      {"forces_divided_by", f.too_stiff},
+      {"forces_divided_by_spread", f.too_stiff_off},
       {"strain", f.linear ? "linear" : "corotational"},
       {"indenter_radius_m", f.radius},
+      {"indenter_radius_is", f.why},
       {"map_places", f.mapped},
       {"fit_places", f.places},
       {"left_out_near_what_is_held", f.left_out},
@@ -127,9 +130,9 @@ void draw(Pen& pen, const TissueFit& f) {
   double deepest = 0.0, strongest = 0.0;
   std::vector<double> all_x, all_f, all_s;
   for (const HeldPlace& held : f.held)
-    for (std::size_t i = 0; i < std::min(held.truth.size(), held.model.size()); ++i) {
-      deepest = std::max(deepest, held.truth[i].depth * 1e3);
-      strongest = std::max({strongest, held.truth[i].force, held.model[i].force});
+    for (std::size_t i = 0; i < std::min(held.truth.presses.size(), held.model.size()); ++i) {
+      deepest = std::max(deepest, held.truth.presses[i].depth * 1e3);
+      strongest = std::max({strongest, held.truth.presses[i].force, held.model[i].force});
     }
   const PlotPanel left{110, 150, 640, 520, range_of(0, deepest, true), range_of(0, strongest, true)};
   const PlotPanel right{890, 150, 670, 520, range_of(0, static_cast<double>(f.held.size()), true), {0.1, 100, true}};
@@ -137,9 +140,9 @@ void draw(Pen& pen, const TissueFit& f) {
   std::size_t number = 0;
   for (const HeldPlace& held : f.held) {
     std::vector<double> depth{0.0}, truth{0.0}, model{0.0};
-    for (std::size_t i = 0; i < std::min(held.truth.size(), held.model.size()); ++i) {
-      depth.push_back(held.truth[i].depth * 1e3);
-      truth.push_back(held.truth[i].force);
+    for (std::size_t i = 0; i < std::min(held.truth.presses.size(), held.model.size()); ++i) {
+      depth.push_back(held.truth.presses[i].depth * 1e3);
+      truth.push_back(held.truth.presses[i].force);
       model.push_back(held.model[i].force);
     }
     draw_line(pen, left, depth, model, series_color(number), 1.6);
@@ -159,8 +162,9 @@ void draw(Pen& pen, const TissueFit& f) {
   pen.color(kInk);
   const double title = pen.text(60, 46, 26, 0, "fit", true);
   pen.text(60 + title + 18, 46, 16, 0,
-           fmt::format("{}: P1 from {} tetrahedra; indenter of radius {:.3g} mm, reach {:.3g} mm, shape {}", f.object,
-                       f.tets, f.radius * 1e3, f.surface.reach * 1e3, name_of(f.surface.shape)));
+           fmt::format(
+               "{}: P1 from presses into {} tetrahedra each; indenter of radius {:.3g} mm, reach {:.3g} mm, shape {}",
+               f.object, f.tets, f.radius * 1e3, f.surface.reach * 1e3, name_of(f.surface.shape)));
   double y = 74;
   for (const std::string& text : pen.lines(15, verdict_of(f), 1500)) {
     pen.text(60, y, 15, 0, text);
@@ -173,8 +177,13 @@ void draw(Pen& pen, const TissueFit& f) {
 }
 
 void say(const TissueFit& f) {
-  print("{}: {} tetrahedra, cell {:.3g} mm; indenter of radius {:.3g} mm; {} places mapped, {} fitted, {} held out\n",
-        f.object, f.tets, f.cell * 1e3, f.radius * 1e3, f.mapped, f.places, f.held.size());
+  print("{}: indenter of radius {:.3g} mm ({}); {} places mapped, {} fitted, {} held out\n", f.object, f.radius * 1e3,
+        f.why, f.mapped, f.places, f.held.size());
+  print("  some {} tetrahedra a press, cells of {:.3g} mm under it", f.tets, f.cell * 1e3);
+  if (f.too_stiff != 1.0)
+    print("; forces divided by {:.3f}, what cells of no size would give (places differ by {:.1f} %)", f.too_stiff,
+          100 * f.too_stiff_off);
+  print("\n");
   print("  spring {}, stiffness {:.4g} N/m ({:.3g} to {:.3g} over the surface)",
         kSprings[static_cast<std::size_t>(f.surface.spring)], f.surface.stiffness, f.softest, f.stiffest);
   if (f.surface.spring == SpringLaw::kCubic) print(", cubic {:.4g} N/m3", f.surface.cubic);

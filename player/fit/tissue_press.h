@@ -3,8 +3,8 @@
 //
 // The punch is there in a weak sense: its pressure is p(x, y) = sqrt(1 - r^2 / a^2) times a polynomial of second order,
 // whose six coefficients make the surface's displacement under it d, as far as its six moments tell. The load goes
-// through the surface as it is drawn (its vertices ride on tetrahedra), so all of it changes smoothly with the place of
-// the press, however the elements lie, and no contact is searched for. With the six loads W and their moments of a
+// through points of the smooth surface, which ride on tetrahedra, so all of it changes smoothly with the place of the
+// press, however the elements lie, and no contact is searched for. With the six loads W and their moments of a
 // displacement of 1, s, a small press is one solution with the stiffness matrix of the resting tissue,
 //   K u = W l,  W^T u = d s,  F = s . l.
 // A deep one is iterated with the same factors and the co-rotational forces f(u): u += K^-1 (f(u) + W l), l such that
@@ -16,61 +16,49 @@
 
 #include "components/mesh.h"
 #include "components/tet_mesh.h"
+#include "player/fit/press_samples.h"
 #include "runtime/result.h"
 #include "systems/soft/fem/tissue.h"
 #include "systems/soft/linear/linear_solver.h"
 
 namespace pliant {
 
-// A place on the surface, object frame.
-struct PressPlace {
-  std::uint32_t triangle = 0;
-  dvec3 barycentric{1, 0, 0};
-  dvec3 position{0};      // [m]
-  dvec3 normal{0, 1, 0};  // [1] unit, outward, interpolated
-};
-PressPlace place_at(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
-
-// What one press did. Heights are of the surface's vertices, along their normals, < 0: pushed in.
+// What one press did. Heights are of points of the surface, along their normals, < 0: pushed in.
 struct PressedTissue {
-  double force = 0.0;         // [N]
-  double depth = 0.0;         // [m]
-  std::vector<float> height;  // [m]
+  double force = 0.0;          // [N]
+  double depth = 0.0;          // [m]
+  std::vector<double> height;  // [m]
 };
 
 class TissuePress {
  public:
-  // Both are kept by reference. `tets`: nodes in the order free, handle, pinned; those behind the free ones stand
-  // still. Errors: nothing is held, or the matrix is not positive definite.
-  static Result<TissuePress> make(const TetMesh& tets, const Mesh& surface, const TissueMaterial& material);
+  // `tets`: nodes in the order free, handle, pinned; those behind the free ones stand still. Errors: nothing is held,
+  // or the matrix is not positive definite.
+  static Result<TissuePress> make(TetMesh tets, const TissueMaterial& material);
 
-  // Another surface on the same tissue.
-  void embed_in(const Mesh& surface);
-
-  // [N/m] Force over depth of a small press.
-  double stiffness(const PressPlace& place, double radius) const;
+  // A punch of this radius [m] at a place of this surface.
+  struct Punch {
+    Eigen::MatrixXd loads;                                           // W: on the moving nodes, a column a moment
+    Eigen::MatrixXd yields;                                          // K^-1 W [m/N]
+    Eigen::MatrixXd inverse;                                         // (W^T K^-1 W)^-1
+    Vector whole;                                                    // s
+    double stiffness() const { return whole.dot(inverse * whole); }  // [N/m] of a small press
+  };
+  Punch punch(const Mesh& surface, const PressPlace& place, double radius) const;
   // Presses to `steps` equal parts of this depth [m], ascending; ends early where the iteration does not come to rest.
-  std::vector<PressedTissue> press_to(const PressPlace& place, double radius, double depth, int steps);
+  // Heights are those of `seen`.
+  std::vector<PressedTissue> press_to(const Punch& punch, const std::vector<SurfaceSample>& seen, double depth,
+                                      int steps);
 
+  const TetMesh& tets() const { return *tets_; }
   std::size_t iterations() const { return iterations_; }
 
  private:
   TissuePress() = default;
-  struct Punch {
-    Eigen::MatrixXd loads;    // W: on the moving nodes, a column a moment
-    Eigen::MatrixXd yields;   // K^-1 W [m/N]
-    Eigen::MatrixXd inverse;  // (W^T K^-1 W)^-1
-    Vector whole;             // s
-  };
-  Punch punch(const PressPlace& place, double radius) const;
-  dvec3 moved(std::uint32_t vertex, const Vector& u) const;
-  std::vector<float> heights_of(const Vector& u) const;
   // The force that holds u with the punch at this depth; 0: no resting place was found.
   double settle(const Punch& punch, double depth, Vector& u);
 
-  const TetMesh* tets_ = nullptr;
-  const Mesh* surface_ = nullptr;
-  std::vector<Embedding> embedding_;  // of the surface's vertices
+  std::unique_ptr<const TetMesh> tets_;
   std::unique_ptr<Tissue> tissue_;
   std::unique_ptr<LinearSolver> solver_;
   std::size_t iterations_ = 0;

@@ -4,10 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <complex>
-#include <map>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "content/files/file_io.h"
+#include "player/record/csv.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
@@ -20,44 +21,10 @@ constexpr double kClosed = 1e-9;        // [1] of the work put in: rounding
 constexpr double kFast = 20.0;          // [Hz]
 constexpr double kPiOfWindow = 3.14159265358979323846;
 
-std::string_view next_cell(std::string_view& line, std::string& scratch) {
-  if (line.starts_with('"')) {
-    scratch.clear();
-    std::size_t at = 1;
-    for (; at < line.size(); ++at) {
-      if (line[at] == '"' && at + 1 < line.size() && line[at + 1] == '"')
-        ++at;
-      else if (line[at] == '"')
-        break;
-      scratch += line[at];
-    }
-    const std::size_t comma = line.find(',', at);
-    line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
-    return scratch;
-  }
-  const std::size_t comma = line.find(',');
-  const std::string_view cell = line.substr(0, comma);
-  line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
-  return cell;
-}
-
 double number_of(std::string_view cell) {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::from_chars(cell.data(), cell.data() + cell.size(), value);
   return value;
-}
-
-// Names of the tools by report.json; nothing where there is none.
-std::map<std::string, bool> tools_of(const fs::path& report) {
-  std::map<std::string, bool> out;
-  const Result<Bytes> bytes = read_file(report, limits::kScriptFile);
-  if (!bytes) return out;
-  const auto json = nlohmann::json::parse(bytes->begin(), bytes->end(), nullptr, /*allow_exceptions*/ false);
-  if (!json.is_object() || !json.contains("probes") || !json["probes"].is_array()) return out;
-  for (const auto& probe : json["probes"])
-    if (probe.is_object() && probe.contains("name") && probe["name"].is_string())
-      out[probe["name"].get<std::string>()] = probe.contains("tool_force");
-  return out;
 }
 
 void transform(std::vector<std::complex<double>>& x) {  // radix 2, in place (Cooley & Tukey 1965)
@@ -81,6 +48,18 @@ void transform(std::vector<std::complex<double>>& x) {  // radix 2, in place (Co
 
 }  // namespace
 
+std::map<std::string, bool> tools_of(const fs::path& report) {
+  std::map<std::string, bool> out;
+  const Result<Bytes> bytes = read_file(report, limits::kScriptFile);
+  if (!bytes) return out;
+  const auto json = nlohmann::json::parse(bytes->begin(), bytes->end(), nullptr, /*allow_exceptions*/ false);
+  if (!json.is_object() || !json.contains("probes") || !json["probes"].is_array()) return out;
+  for (const auto& probe : json["probes"])
+    if (probe.is_object() && probe.contains("name") && probe["name"].is_string())
+      out[probe["name"].get<std::string>()] = probe.contains("tool_force");
+  return out;
+}
+
 Result<RunSeries> read_series(const fs::path& run) {
   std::error_code ignored;
   const bool folder = fs::is_directory(run, ignored);
@@ -98,9 +77,10 @@ Result<RunSeries> read_series(const fs::path& run) {
     return line;
   };
   std::map<std::string, std::size_t> column;
-  std::string scratch;
-  std::string_view head = take_line();
-  for (std::size_t i = 0; !head.empty(); ++i) column[std::string(next_cell(head, scratch))] = i;
+  std::vector<std::string> cells;
+  csv_cells(take_line(), ',', cells);
+  for (std::size_t i = 0; i < cells.size(); ++i) column[cells[i]] = i;
+  const std::size_t columns = cells.size();
   for (const char* name : {"time_s", "depth_m", "fn"})
     if (!column.contains(name))
       return Error{file.string(), std::string("has no column `") + name + "`; name a forces.csv that a run wrote"};
@@ -119,14 +99,12 @@ Result<RunSeries> read_series(const fs::path& run) {
   const bool told = !tools.empty();
   std::map<std::string, std::size_t> number;
   std::size_t row = 1;
-  std::vector<std::string> cells;
   while (!text.empty()) {
-    std::string_view line = take_line();
+    const std::string_view line = take_line();
     ++row;
     if (line.empty()) continue;
-    cells.clear();
-    while (!line.empty()) cells.emplace_back(next_cell(line, scratch));
-    if (cells.size() < column.size()) cells.resize(column.size());  // empty ones at the end
+    csv_cells(line, ',', cells);
+    if (cells.size() < columns) cells.resize(columns);  // empty ones at the end
     const std::string name = probe < cells.size() ? cells[probe] : std::string("probe");
     const auto [found, fresh] = number.try_emplace(name, out.series.size());
     if (fresh) {
@@ -177,7 +155,10 @@ SeriesSummary summary_of(const ForceSeries& s) {
   }
   out.rms = pressed > 0 ? std::sqrt(square / pressed) : 0.0;
   if (std::abs(out.lost) < kClosed * out.put_in) out.lost = 0.0;
-  if (s.normal.back() > 0) out.lost = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto pressed_at = [&](std::size_t i) { return s.normal[i] > 0 && s.depth[i] > 0; };
+  if (pressed_at(0) || pressed_at(n - 1)) out.lost = kUnknown;
+  if (s.tool) out.stiffness = out.put_in = out.lost = kUnknown;
   const Spectrum spectrum = spectrum_of(s);
   double power = 0.0;
   for (std::size_t i = 0; i < spectrum.density.size(); ++i)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,14 +31,19 @@ struct RunSeries {
 // A run's folder, or its forces.csv. Whether a probe is a tool is in report.json beside it; without that, torque says.
 Result<RunSeries> read_series(const std::filesystem::path& run);
 
-// What a person compares runs by.
+// By report.json, whether each probe is a tool; nothing where there is no such file.
+std::map<std::string, bool> tools_of(const std::filesystem::path& report);
+
+// What a person compares runs by. Of a tool neither stiffness nor work: its depth is the offset of the coupling, on
+// which its force does no work, and a run's rows do not say how its device turned.
 struct SeriesSummary {
   double seconds = 0.0, contact = 0.0;  // [s]
   double depth = 0.0, force = 0.0;      // [m] [N] largest
   double rms = 0.0;                     // [N] of the normal force, in contact
-  double stiffness = 0.0;               // [N/m] largest force over the depth there
-  double lost = 0.0, put_in = 0.0;      // [J] net and positive work along the depth: the loop. NaN: it ended pressed
-  double fast = 0.0;                    // [N] RMS of what the spectrum has above 20 Hz
+  double stiffness = 0.0;               // [N/m] largest force over the depth there. NaN: a tool
+  // [J] Net and positive work along the depth: the loop. NaN: a tool; lost: it began or ended pressed.
+  double lost = 0.0, put_in = 0.0;
+  double fast = 0.0;  // [N] RMS of what the spectrum has above 20 Hz
 };
 SeriesSummary summary_of(const ForceSeries& series);
 

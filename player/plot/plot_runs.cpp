@@ -38,14 +38,14 @@ RunWords run_words(const std::vector<Drawn>& all) {
   RunWords words{.who = tool && probe ? "probes and tools"
                         : tool        ? "tools"
                                       : "probes",
-                 .loop = "force over depth",
+                 .loop = "force over depth: the loop is what is lost",
                  .depth = "depth [mm]",
                  .depth_head = "depth [mm]",
                  .force = "normal force [N]",
                  .spectrum = "normal force [N/\u221aHz]"};
   if (all.size() == 1) words.who.pop_back();
   if (!tool) return words;
-  words.loop = probe ? "force over depth or offset" : "force over offset";
+  words.loop = probe ? "force over depth (its loop: what is lost) or offset" : "force over offset";
   words.depth = probe ? "depth; of tools device-handle offset [mm]" : "device-handle offset [mm]";
   words.depth_head = probe ? "depth, offset [mm]" : "offset [mm]";
   words.force = "force along the (mean) contact normal [N]";
@@ -168,7 +168,7 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
   draw_axes(pen, over, "time [s]", words.force);
   if (dense > 0) draw_axes(pen, spectrum, "frequency [Hz]", words.spectrum);
   pen.color(kInk);
-  pen.text(loop.x, kTop - 14, 15, 0, words.loop + ": the loop is what is lost", true);
+  pen.text(loop.x, kTop - 14, 15, 0, words.loop, true);
   pen.text(over.x, kTop - 14, 15, 0, "force over time", true);
   pen.text(spectrum.x, kTop - 14, 15, 0, dense > 0 ? "spectrum" : "no spectrum: fewer than 64 rows, or no force", true);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -229,14 +229,18 @@ void say_differences(const std::vector<Drawn>& all) {
     if (!each.spectrum.even && !each.spectrum.frequency.empty())
       note(each.name +
            ": its rows are not evenly spaced (ticks were skipped): its spectrum takes them as if they were");
-    if (std::isnan(each.summary.lost))
-      note(each.name + ": its run ended pressed, so that its loop is open and nothing is known to be lost");
+    if (std::isnan(each.summary.lost) && !each.series.tool)
+      note(each.name + ": its run began or ended pressed, so that its loop is open and nothing is known to be lost");
     if (each.spectrum.frequency.empty()) note(each.name + ": has too few rows for a spectrum");
   }
   objects.erase("");
   if (objects.size() > 1) note("these touch different objects: " + joined({objects.begin(), objects.end()}));
   if (longest > 1.01 * shortest)
     note(fmt::format("they are of different lengths, {:.4g} to {:.4g} s", shortest, longest));
+  if (tool)
+    note(
+        "of tools there is neither stiffness nor work here: their offset is that of the coupling; report.json of a run "
+        "has the net work of the hand");
   if (tool && probe)
     note(
         "probes and tools stand in one plot: of a probe the depth is that below the surface, of a tool how far the "
@@ -281,10 +285,14 @@ int plot_runs(const PlotOptions& options) {
   if (const Status placed = out->commit(); !placed) return fail(kFailed, placed.error());
   say_differences(all);
   if (shown < all.size()) note(fmt::format("the picture has the first {} of {} probes and tools", shown, all.size()));
-  for (const Drawn& each : all)
-    print("{}: {:.3g} mm {}, {:.4g} N, {:.4g} N/m, {} of {:.3g} mJ lost\n", each.name, each.summary.depth * 1e3,
-          each.series.tool ? "device-handle offset" : "deep", each.summary.force, each.summary.stiffness,
-          shown_number(each.summary.lost * 1e3), each.summary.put_in * 1e3);
+  for (const Drawn& each : all) {
+    const SeriesSummary& s = each.summary;
+    print("{}: {:.3g} mm {}, {:.4g} N", each.name, s.depth * 1e3, each.series.tool ? "device-handle offset" : "deep",
+          s.force);
+    if (!each.series.tool)
+      print(", {:.4g} N/m, {} of {:.3g} mJ lost", s.stiffness, shown_number(s.lost * 1e3), s.put_in * 1e3);
+    print("\n");
+  }
   print("{}: {} files{}\n", out->shown().string(), out->written().size(),
         out->moved() ? " (the folder that was meant has results already, which stay; --force replaces them)" : "");
   return kDone;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -18,6 +19,29 @@ std::string csv_text(const std::string& name) {
     text += c;
   }
   return text + '"';
+}
+
+void csv_cells(std::string_view line, char mark, std::vector<std::string>& cells) {
+  std::size_t count = 0, at = 0;
+  for (;; ++at) {
+    if (count == cells.size()) cells.emplace_back();
+    std::string& cell = cells[count++];
+    cell.clear();
+    const std::size_t begin = line.find_first_not_of(' ', at);
+    if (begin != std::string_view::npos && line[begin] == '"') {
+      for (at = begin + 1; at < line.size(); ++at) {
+        if (line[at] == '"' && (at + 1 == line.size() || line[at + 1] != '"')) break;
+        if (line[at] == '"') ++at;
+        cell += line[at];
+      }
+      at = std::min(at + 1, line.size());
+    }
+    const std::size_t end = std::min(line.find(mark, at), line.size());
+    cell += line.substr(at, end - at);
+    at = end;
+    if (at == line.size()) break;
+  }
+  cells.resize(count);
 }
 
 void put(std::string& line, double value) {

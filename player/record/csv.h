@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "components/math.h"
 
@@ -10,6 +12,10 @@ namespace pliant {
 // RFC 4180: names come from files and may hold commas and quotes; the rest is made printable (runtime/printable.h), so
 // that a row is one line.
 std::string csv_text(const std::string& name);
+
+// The cells of a line, with `mark` between them: one more than there are marks. In a cell in quotes, which blanks may
+// stand before, marks mean nothing and two quotes are one.
+void csv_cells(std::string_view line, char mark, std::vector<std::string>& cells);
 
 // Appends a comma and the value, with nine digits: exact for a float, and 1e-9 relative for what is kept in double. -0
 // becomes 0, and so does what has decayed to (nearly) less than a double holds, so that every reader takes it.

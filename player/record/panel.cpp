@@ -34,10 +34,8 @@ std::vector<AxisTick> ticks_of(const PanelRange& range) {
   }
   const double step = tick_step(range.high - range.low, kMostTicks);
   const double large = std::max(std::abs(range.low), std::abs(range.high));
-  for (double v = step * std::ceil(range.low / step - 1e-9); v <= range.high + 1e-9 * step; v += step) {
-    const double value = std::abs(v) < 1e-9 * step ? 0.0 : v;
+  for (const double value : tick_values(range.low, range.high, step))
     out.push_back({value, large >= 1e6 || large < 1e-3 ? fmt::format("{:.3g}", value) : number(value, step)});
-  }
   return out;
 }
 
@@ -53,7 +51,7 @@ void clip(Pen& pen, const PlotPanel& panel) {
 PanelRange range_of(double least, double most, bool with_zero) {
   if (!(least <= most) || !std::isfinite(least) || !std::isfinite(most)) return {};
   if (with_zero) least = std::min(least, 0.0), most = std::max(most, 0.0);
-  if (!(most > least))
+  if (is_flat(least, most))
     return {least - 0.5 * std::max(std::abs(least), 1e-9), most + 0.5 * std::max(std::abs(most), 1e-9)};
   const double step = tick_step(most - least, kMostTicks), room = 0.03 * (most - least);
   PanelRange out{step * std::floor((least - room) / step), step * std::ceil((most + room) / step)};

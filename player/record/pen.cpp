@@ -103,6 +103,18 @@ void Pen::upright_text(double x, double y, double size, const std::string& words
   cairo_restore(cairo_);
 }
 
+void Pen::as_pixels(double x, double y, double w, double h, const std::function<void(Pen&)>& draw) {
+  if (cairo_surface_get_type(surface_) == CAIRO_SURFACE_TYPE_IMAGE) return draw(*this);
+  Pen picture(
+      cairo_image_surface_create(CAIRO_FORMAT_ARGB32, static_cast<int>(std::ceil(w)), static_cast<int>(std::ceil(h))));
+  cairo_translate(picture.cairo_, -x, -y);
+  draw(picture);
+  cairo_save(cairo_);
+  cairo_set_source_surface(cairo_, picture.surface_, x, y);
+  cairo_paint(cairo_);
+  cairo_restore(cairo_);
+}
+
 bool Pen::save(const std::filesystem::path& file) {
   if (cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS) return true;
   std::error_code ignored;

@@ -41,10 +41,14 @@ class Pen {
   // Broken at blanks, so that no line is wider, unless one word is.
   std::vector<std::string> lines(double size, const std::string& words, double widest);
   void upright_text(double x, double y, double size, const std::string& words);
+  // In an SVG what is drawn there becomes a picture within it: for marks so many that each as lines of text would make
+  // the file huge.
+  void as_pixels(double x, double y, double w, double h, const std::function<void(Pen&)>& draw);
   bool save(const std::filesystem::path& file);  // as a PNG: whole, or not at all
   bool finish();                                 // of an SVG: the file is whole
 
  private:
+  explicit Pen(cairo_surface_t* surface) : surface_(surface), cairo_(cairo_create(surface)) {}
   cairo_surface_t* surface_;
   cairo_t* cairo_;
 };

@@ -16,6 +16,10 @@ constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
 constexpr double kLeft = 84, kRight = 28, kBetween = 100, kAbove = 40, kBelow = 52;
 constexpr double kBand = 6;  // high
 
+constexpr std::size_t kMostTickValues = 100;
+constexpr double kRounding = 1e-9;   // [1]
+constexpr double kNothing = 1e-300;  // whatever the unit: smaller steps are none to a double
+
 struct PlotPanel {
   double x, y, w, h;     // [pixel] of the plotting area
   double seconds, high;  // ranges: [0, seconds] and [0, high]
@@ -45,13 +49,13 @@ void draw_frame(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt,
   pen.color(kContact);
   fill_columns(pen, panel, trace, dt, panel.y, panel.h, [](const TraceColumn& column) { return column.contact; });
   const double time_step = tick_step(panel.seconds, 8), value_step = tick_step(panel.high, 5);
-  for (double t = 0; t <= panel.seconds * (1 + 1e-9); t += time_step) {
+  for (const double t : tick_values(0, panel.seconds, time_step)) {
     pen.color(kFaint);
     pen.line(panel.px(t), panel.y, panel.px(t), panel.y + panel.h, 1);
     pen.color(kInk);
     pen.text(panel.px(t), panel.y + panel.h + 20, 14, 0.5, number(t, time_step));
   }
-  for (double v = 0; v <= panel.high * (1 + 1e-9); v += value_step) {
+  for (const double v : tick_values(0, panel.high, value_step)) {
     pen.color(kFaint);
     pen.line(panel.x, panel.py(v), panel.x + panel.w, panel.py(v), 1);
     pen.color(kInk);
@@ -186,11 +190,26 @@ void draw_row(Pen& pen, const PlotRow& row, double top, double seconds, double d
 }  // namespace
 
 double tick_step(double high, int most) {
-  if (!(high > 0.0) || !std::isfinite(high)) return 1.0;
+  if (!(high > kNothing) || !std::isfinite(high)) return 1.0;
   double step = std::pow(10.0, std::floor(std::log10(high / most)));
   for (double factor : {1.0, 2.0, 5.0, 10.0})
     if (high / (step * factor) <= most * (1 + 1e-9)) return step * factor;
   return step * 10.0;
+}
+
+std::vector<double> tick_values(double low, double high, double step) {
+  std::vector<double> ticks;
+  const double first = std::ceil(low / step - 1e-9), end = high + 1e-9 * step;
+  for (std::size_t i = 0; i < kMostTickValues; ++i) {
+    const double value = (first + static_cast<double>(i)) * step + 0.0;  // not -0
+    if (!(value <= end) || (!ticks.empty() && !(value > ticks.back()))) break;
+    ticks.push_back(value);
+  }
+  return ticks;
+}
+
+bool is_flat(double least, double most) {
+  return !(most - least > std::max(kRounding * std::max(std::abs(least), std::abs(most)), kNothing));
 }
 
 Status plot_forces(const std::filesystem::path& file, const std::string& title, const std::vector<PlotRow>& rows,

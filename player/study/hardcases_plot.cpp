@@ -40,6 +40,12 @@ void draw_row(Pen& pen, double y, const JudgedCase& each) {
     const double end = across(share_of(each));
     pen.line(kBars, y + 11, std::max(end, kBars + 2), y + 11, 11);
   }
+  if (each.figure.scatters() && each.hard.bound > 0.0) {
+    pen.color(kInk);
+    pen.line(across(each.figure.low() / each.hard.bound), y + 11, across(each.figure.high() / each.hard.bound), y + 11,
+             3);
+  }
+  pen.color(color);
   pen.text(kFigures, y + 16, 14, 0, name_of(each.verdict()), true);
   pen.color(kInk);
   if (each.figure.is_absent()) return;

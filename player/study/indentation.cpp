@@ -15,8 +15,9 @@ namespace {
 
 constexpr double kBeginsAbove = 0.001;    // [m] that a press begins above the surface
 constexpr double kSoftStep = 1.0 / 60.0;  // [s]
-constexpr double kEdges = 4.0;            // [1] of the surface a lattice cell: the punch's rim rests on edges, too
-constexpr double kTop = 0.98;             // [1] of the half width: beyond are the sides
+constexpr double kFocus = 1.2;  // [1] of the punch's radius: half as wide is the box that a lattice is fine in
+constexpr double kEdges = 4.0;  // [1] of the surface a lattice cell: the punch's rim rests on edges, too
+constexpr double kTop = 0.98;   // [1] of the half width: beyond are the sides
 const dvec3 kDown(0, -1, 0);
 
 // The block's surface: squares of `edge` on the top; without `below`, the top alone.
@@ -143,6 +144,11 @@ Result<Indentation> press_tissue(const Indented& what, PressWish& wish) {
   body.poisson = what.poisson;
   body.rayleigh = {0.0, 0.01};
   body.cell = wish.cell;
+  if (wish.focus) {
+    const auto half = static_cast<float>(kFocus * what.radius);
+    body.focus.add(vec3(-half, -half, -half));
+    body.focus.add(vec3(half, 0, half));
+  }
   const auto wide = static_cast<float>(2 * what.half_width), deep = static_cast<float>(what.thickness);
   body.pinned.add(vec3(-wide, -2 * deep, -wide));
   body.pinned.add(vec3(wide, -0.999f * deep, wide));

@@ -51,30 +51,34 @@ struct FidelityRow {
 
 // How much of it is done.
 struct FidelityPlan {
-  std::vector<int> cells;           // of the block, over the punch's radius
-  std::vector<double> level_cells;  // [m]
-  std::vector<double> lattice;      // [1] radii a cell, on the small block
-  double seconds;                   // that a press in a level takes
-  std::vector<Shape> shapes;        // of P1
+  std::vector<int> cells;                  // of the block, over the punch's radius
+  std::vector<double> level_cells, focus;  // [m] of lattices: even ones, and such that are fine under the punch alone
+  std::vector<double> lattice, lens;       // [1] radii a cell, on the small block: the same
+  double seconds;                          // that a press in a level takes
+  std::vector<Shape> shapes;               // of P1
 };
 FidelityPlan fidelity_plan(StudySize size) {
   switch (size) {
     case StudySize::kFull:
       return {{2, 3, 4, 5},
               {0.01, 0.005, 0.01 / 3, 0.0025},
+              {0.002, 0.001},
               {2.0, 1.0, 0.5, 1.0 / 3, 0.25, 2.0 / 9},
+              {0.5, 0.25, 1.0 / 6},
               0.25,
               {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}};
     case StudySize::kQuick:
       return {{1, 2, 3},
               {0.01, 0.005},
+              {0.002},
               {2.0, 1.0, 0.5},
+              {0.5},
               0.1,
               {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}};
     case StudySize::kSmall:
       break;
   }
-  return {{1, 2, 3}, {0.01}, {2.0, 1.0}, 0.05, {Shape::kPunch, Shape::kGaussian}};
+  return {{1, 2, 3}, {0.01}, {0.004}, {2.0, 1.0}, {1.0}, 0.05, {Shape::kPunch, Shape::kGaussian}};
 }
 
 // A smaller one, in radii, so that fine lattices can be pressed. All lattices fit their block: it is a whole number of
@@ -109,13 +113,14 @@ class Fidelity {
     return press_lattices();
   }
   const std::vector<FidelityRow>& rows() const { return rows_; }
-  const std::vector<FidelityRow>& lattice_rows() const { return lattice_rows_; }
+  const std::vector<FidelityRow>& lattice_rows() const { return lattice_rows_; }  // even ones first
+  const FidelityRow& finest_even() const { return lattice_rows_[plan_.lattice.size() - 1]; }
   const std::string& truth_words() const { return truth_words_; }
   const std::string& truth_csv() const { return truth_csv_; }
-  // [1] radii a cell of the lattice whose force is off by `error`, between the two around it; not a number where none
-  // is as good.
+  // [1] radii a cell of the even lattice whose force is off by `error`, between the two around it; not a number where
+  // none is as good.
   double lattice_for(double error) const {
-    for (std::size_t i = 0; i < lattice_rows_.size(); ++i) {
+    for (std::size_t i = 0; i < plan_.lattice.size(); ++i) {
       if (lattice_rows_[i].force > error) continue;
       if (i == 0) return plan_.lattice[0];
       const double share = (lattice_rows_[i - 1].force - error) / (lattice_rows_[i - 1].force - lattice_rows_[i].force);
@@ -263,15 +268,17 @@ class Fidelity {
 
   Status press_bodies() {
     double done = 0.0;
-    for (const double cell : plan_.level_cells) {
-      PressWish press{cell, plan_.seconds, 0, [&] { return !interrupt_.requested(); }};
-      auto model = press_tissue(what_, press);
-      if (!model) return model.error();
-      rows_.push_back({"FEM, in a level", fmt::format("level, cell {:.3g} mm, {} tets", 1000 * cell, press.tets),
-                       model->us, force_error(*model, truth_), surface_error(*model, judged_), press.tets});
-      if (const Status on = goes_on(0.62 + 0.08 * (done += 1.0) / static_cast<double>(plan_.level_cells.size())); !on)
-        return on;
-    }
+    for (const bool focus : {false, true})
+      for (const double cell : focus ? plan_.focus : plan_.level_cells) {
+        PressWish press{cell, plan_.seconds, 0, [&] { return !interrupt_.requested(); }, focus};
+        auto model = press_tissue(what_, press);
+        if (!model) return model.error();
+        rows_.push_back({focus ? "FEM, in a level, focus" : "FEM, in a level",
+                         fmt::format("{}, cell {:.3g} mm, {} tets", focus ? "focus" : "level", 1000 * cell, press.tets),
+                         model->us, force_error(*model, truth_), surface_error(*model, judged_), press.tets});
+        const double all = static_cast<double>(plan_.level_cells.size() + plan_.focus.size());
+        if (const Status on = goes_on(0.62 + 0.13 * (done += 1.0) / all); !on) return on;
+      }
     return Done{};
   }
 
@@ -279,21 +286,24 @@ class Fidelity {
   Status press_lattices() {
     const Indented what = small_block();
     std::vector<std::vector<PressedBlock>> all;
-    const auto truths = limits_of(what, what.depths, all, 0.7, 0.05);
+    const auto truths = limits_of(what, what.depths, all, 0.75, 0.05);
     if (!truths) return truths.error();
     Indentation truth;
     truth.force = {truths->back().limit.limit};
     double done = 0.0, whole = 0.0;
     for (const double radii : plan_.lattice) whole += std::pow(radii, -4);
-    for (const double radii : plan_.lattice) {
-      PressWish press{radii * what.radius, std::min(plan_.seconds, kLatticeSeconds), 0,
-                      [&] { return !interrupt_.requested(); }};
-      auto model = press_tissue(what, press);
-      if (!model) return model.error();
-      lattice_rows_.push_back({"FEM, in a level", fmt::format("{:.3g}", radii), model->us, force_error(*model, truth),
-                               surface_error(*model, truths->back().limit_surface()), press.tets});
-      if (const Status on = goes_on(0.75 + 0.25 * (done += std::pow(radii, -4) / whole)); !on) return on;
-    }
+    for (const bool focus : {false, true})
+      for (const double radii : focus ? plan_.lens : plan_.lattice) {
+        PressWish press{radii * what.radius, std::min(plan_.seconds, kLatticeSeconds), 0,
+                        [&] { return !interrupt_.requested(); }, focus};
+        auto model = press_tissue(what, press);
+        if (!model) return model.error();
+        lattice_rows_.push_back({focus ? "focus" : "even", fmt::format("{:.3g}", radii), model->us,
+                                 force_error(*model, truth), surface_error(*model, truths->back().limit_surface()),
+                                 press.tets});
+        if (!focus) done += std::pow(radii, -4) / whole;
+        if (const Status on = goes_on(0.8 + 0.18 * done); !on) return on;
+      }
     return Done{};
   }
 
@@ -330,9 +340,10 @@ ParetoTable table_of(const std::vector<FidelityRow>& rows, const std::string& na
 
 // The lattice's part: by radii a cell.
 std::string lattice_csv(const std::vector<FidelityRow>& rows) {
-  std::string csv = "cell_over_radius,tetrahedra,force_error,surface_error,cost_us\n";
+  std::string csv = "lattice,cell_over_radius,tetrahedra,force_error,surface_error,cost_us\n";
   for (const FidelityRow& row : rows)
-    csv += fmt::format("{},{},{:.9g},{:.9g},{:.6g}\n", row.label, row.tets, row.force, row.surface, row.us);
+    csv +=
+        fmt::format("{},{},{},{:.9g},{:.9g},{:.6g}\n", row.group, row.label, row.tets, row.force, row.surface, row.us);
   return csv;
 }
 
@@ -358,7 +369,7 @@ std::string lattice_words(const Fidelity& study) {
   for (const double error : {0.2, 0.1})
     if (const double radii = study.lattice_for(error); std::isfinite(radii))
       out += fmt::format("{} {:.2g} radii for {:g} %", out.empty() ? "needs cells of" : " and", radii, 100 * error);
-  const FidelityRow& finest = study.lattice_rows().back();
+  const FidelityRow& finest = study.finest_even();
   if (!std::isfinite(study.lattice_for(0.1)))
     out += fmt::format("{} off by {} % with cells of {} radii", out.empty() ? "is" : ", and is",
                        two_digits(100 * finest.force), finest.label);
@@ -367,12 +378,12 @@ std::string lattice_words(const Fidelity& study) {
 
 std::vector<std::string> sentences(const Fidelity& study) {
   const std::vector<FidelityRow>& rows = study.rows();
-  return {"The nearest of each kind, at depths that no law was fitted at: " + words(least_row(rows, "P1 from")) + "; " +
-              words(least_row(rows, "P1, law")) + "; " + words(least_row(rows, "FEM, in")) + "; " +
-              words(least_row(rows, "FEM, fitted")) + ".",
-          study.truth_words() +
-              fmt::format("; a level's lattice is even, and on a block of 3 radii about the punch its force {}.",
-                          lattice_words(study))};
+  return {
+      "The nearest of each kind, at depths that no law was fitted at: " + words(least_row(rows, "P1 from")) + "; " +
+          words(least_row(rows, "P1, law")) + "; " + words(least_row(rows, "FEM, in")) + "; " +
+          words(least_row(rows, "FEM, fitted")) + ".",
+      study.truth_words() + fmt::format("; in an even lattice, on a block of 3 radii about the punch, the force {}.",
+                                        lattice_words(study))};
 }
 
 }  // namespace

@@ -40,6 +40,7 @@ struct PressWish {
   double seconds = 0.25;                                // [s] that each depth takes, half of it held still
   std::size_t tets = 0;                                 // written: of the lattice
   std::function<bool()> goes_on = [] { return true; };  // asked in every tick; no: the press ends with an error
+  bool focus = false;                                   // cells are that large under the punch, and grow away from it
 };
 Result<Indentation> press_tissue(const Indented& what, PressWish& press);
 // A block's row of presses at these depths [m], solved anew in every soft step of 1/60 s: force and cost.

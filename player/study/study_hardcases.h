@@ -19,6 +19,8 @@ const char* name_of(HardVerdict verdict);  // yes, no, not judged
 // "ASliverDisturbsNobody" as "a sliver disturbs nobody".
 std::string words_of(const std::string& name);
 std::string to_csv(const std::vector<JudgedCase>& cases);
+// Two: how many hold and which do not, and which is nearest to its bound.
+std::vector<std::string> sentences_of(const std::vector<JudgedCase>& cases);
 
 // hardcases.svg and hardcases.png: each figure as a share of what it may be.
 Status plot_hardcases(OutputFolder& out, const std::vector<JudgedCase>& cases,

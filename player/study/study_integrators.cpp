@@ -19,7 +19,7 @@ namespace pliant {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTick = 1e-3;  // [s]
+constexpr double kVertexTick = 1e-3;  // [s]
 constexpr int kLeastSteps = 8;
 constexpr double kGone = 1e3;  // [1] a height beyond this many dents has left: a damped swing may grow before it decays
 constexpr double kRounding = 1.02;  // [1] a swing whose second half is larger than its first by no more does not grow
@@ -83,8 +83,9 @@ std::vector<std::string> sentences_of(const ParetoTable& table) {
 
 // RMS of the first steps' errors, those of `truth`; infinite where the swing is unstable.
 double stable_error(Integrator integrator, const VertexProblem& problem, const std::vector<double>& truth) {
-  return is_stable(integrator, problem, kTick) ? integration_error(integrator, problem, kTick, kTick, truth)
-                                               : kInfinite;
+  return is_stable(integrator, problem, kVertexTick)
+             ? integration_error(integrator, problem, kVertexTick, kVertexTick, truth)
+             : kInfinite;
 }
 
 HeatMaps map_frame(StudySize size) {
@@ -117,7 +118,7 @@ Status draw_stability(OutputFolder& out, StudySize size, const Interrupt& interr
                                 std::size(kLaws));
       for (const double x : maps.x) {
         const VertexProblem problem = problem_at(kLaws[l], x, maps.y[j]);
-        const std::vector<double> truth = true_heights(problem, kDent, kTick, kLeastSteps);
+        const std::vector<double> truth = true_heights(problem, kDent, kVertexTick, kLeastSteps);
         for (std::size_t i = 0; i < kIntegrators.size(); ++i) {
           const double error = stable_error(kIntegrators[i], problem, truth);
           row[i].values.push_back(error);
@@ -150,7 +151,7 @@ const char* name_of(SpringLaw law) {
 }
 
 VertexProblem problem_at(SpringLaw law, double omega_T, double zeta) {
-  const double omega = omega_T / kTick;
+  const double omega = omega_T / kVertexTick;
   return vertex_problem(law, VertexProblem{}.m * omega * omega, zeta);
 }
 

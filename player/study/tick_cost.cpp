@@ -57,8 +57,10 @@ TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks, in
   const int warm = ticks / 20, batch = std::max(1, ticks / batches);
   out.p50_us = out.p99_us = out.frame_us = 1e30;
   const auto end_batch = [&] {
-    out.p50_us = std::min(out.p50_us, percentile(times, 0.5));
-    out.p99_us = std::min(out.p99_us, percentile(times, 0.99));
+    out.batch_p50_us.push_back(percentile(times, 0.5));
+    out.batch_p99_us.push_back(percentile(times, 0.99));
+    out.p50_us = std::min(out.p50_us, out.batch_p50_us.back());
+    out.p99_us = std::min(out.p99_us, out.batch_p99_us.back());
     out.frame_us = std::min(out.frame_us, percentile(frames, 0.5));
     times.clear();
     frames.clear();

@@ -3,13 +3,15 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace pliant {
 
 struct TickCost {
   std::uint32_t vertices = 0, triangles = 0;
-  double awake = 0.0;                 // vertices, mean
-  double p50_us = 0.0, p99_us = 0.0;  // of a tick, processor time, the least of the batches
+  double awake = 0.0;                              // vertices, mean
+  double p50_us = 0.0, p99_us = 0.0;               // of a tick, processor time, the least of the batches
+  std::vector<double> batch_p50_us, batch_p99_us;  // the same of each batch
   double frame_us = 0.0;  // of publishing a snapshot for the picture, every 16 ticks, median, the least of the batches
   double drawn_us = 0.0;  // of a drawn frame, median; 0: none was
   std::string not_drawn;  // why, where one was asked for

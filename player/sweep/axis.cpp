@@ -63,13 +63,13 @@ Result<Span> read_span(const PlanJson& json, const std::string& pointer) {
     if (!json.contains(key)) return Error{pointer, fmt::format("has no \"{}\"; give the range both ends", key)};
     const PlanJson& value = json[key];
     if (!value.is_number() || !std::isfinite(value.get<double>()))
-      return Error{pointer + "/" + key, "must be a number; got " + value.dump()};
+      return Error{pointer + "/" + key, "must be a number; got " + brief(value)};
     *end = value.get<double>();
   }
   if (!(span.from < span.to))
     return Error{pointer, fmt::format("goes from {} to {}; \"from\" must be less than \"to\"", span.from, span.to)};
   if (json.contains("log")) {
-    if (!json["log"].is_boolean()) return Error{pointer + "/log", "must be true or false; got " + json["log"].dump()};
+    if (!json["log"].is_boolean()) return Error{pointer + "/log", "must be true or false; got " + brief(json["log"])};
     span.log = json["log"].get<bool>();
   }
   if (span.log && !(span.from > 0.0))
@@ -77,16 +77,23 @@ Result<Span> read_span(const PlanJson& json, const std::string& pointer) {
   return span;
 }
 
-Result<SweepAxis> read_list(SweepAxis axis, const PlanJson& json) {
+Error too_many(const std::string& pointer) {
+  return {pointer, fmt::format("makes more than {} runs of the plan, with the axes before it; take fewer values, or a "
+                               "Latin hypercube",
+                               kMostRuns)};
+}
+
+Result<SweepAxis> read_list(SweepAxis axis, const PlanJson& json, std::size_t room) {
   if (json.empty()) return Error{axis.pointer, "is an empty list; give it values, or leave the axis out"};
+  if (json.size() > room) return too_many(axis.pointer);
   std::set<std::string> seen;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const std::string at = axis.pointer + "/" + std::to_string(i);
     if (json[i].is_null() || json[i].is_object())
-      return Error{at, "must be a number, a text, true, false or a list of numbers; got " + json[i].dump()};
+      return Error{at, "must be a number, a text, true, false or a list of numbers; got " + brief(json[i])};
     axis.values.push_back(canonical(json[i]));
     if (!seen.insert(text_of(axis.values.back())).second)
-      return Error{at, "the value " + json[i].dump() + " stands twice; leave one of them out"};
+      return Error{at, "the value " + brief(json[i]) + " stands twice; leave one of them out"};
   }
   return axis;
 }
@@ -107,6 +114,14 @@ PlanJson canonical(const PlanJson& value) {
   return value;
 }
 
+std::string brief(const PlanJson& value) {
+  constexpr std::size_t kLongest = 80;  // [byte]
+  // Of a large one no more is written than is shown.
+  if (value.is_structured() && value.size() > kLongest) return value.is_array() ? "a long list" : "a large object";
+  std::string text = value.dump(-1, ' ', true, PlanJson::error_handler_t::replace);
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
 std::string text_of(const PlanJson& value) {
   return value.is_string() ? value.get<std::string>()
                            : canonical(value).dump(-1, ' ', false, PlanJson::error_handler_t::replace);
@@ -118,11 +133,12 @@ std::string unknown_in(const PlanJson& object, const std::vector<std::string>& k
   return {};
 }
 
-Result<SweepAxis> read_axis(const std::string& name, const PlanJson& json, const std::string& pointer) {
+Result<SweepAxis> read_axis(const std::string& name, const PlanJson& json, const std::string& pointer,
+                            std::size_t room) {
   SweepAxis axis{name, pointer, false, {}};
-  if (json.is_array()) return read_list(std::move(axis), json);
+  if (json.is_array()) return read_list(std::move(axis), json, room);
   if (!json.is_object())
-    return Error{pointer, "must be a list of values or {\"from\", \"to\", \"steps\"}; got " + json.dump()};
+    return Error{pointer, "must be a list of values or {\"from\", \"to\", \"steps\"}; got " + brief(json)};
   if (const std::string wrong = unknown_in(json, {"from", "to", "steps", "log"}, "a range"); !wrong.empty())
     return Error{pointer, wrong};
   auto span = read_span(json, pointer);
@@ -131,8 +147,9 @@ Result<SweepAxis> read_axis(const std::string& name, const PlanJson& json, const
   const PlanJson steps = canonical(json["steps"]);
   if (!steps.is_number_integer() || steps.get<double>() < 2 || steps.get<double>() > kMostRuns)
     return Error{pointer + "/steps",
-                 fmt::format("must be a whole number between 2 and {}; got {}", kMostRuns, json["steps"].dump())};
+                 fmt::format("must be a whole number between 2 and {}; got {}", kMostRuns, brief(json["steps"]))};
   const auto count = steps.get<std::size_t>();
+  if (count > room) return too_many(pointer);
   std::set<double> seen;
   for (std::size_t i = 0; i < count; ++i) {
     const double value = span->at(static_cast<double>(i) / static_cast<double>(count - 1));
@@ -148,7 +165,7 @@ Result<SweepAxis> read_axis(const std::string& name, const PlanJson& json, const
 Result<SweepAxis> read_sampled_axis(const std::string& name, const PlanJson& json, const std::string& pointer,
                                     std::size_t runs, std::uint64_t seed) {
   SweepAxis axis{name, pointer, true, {}};
-  if (!json.is_object()) return Error{pointer, "must be {\"from\", \"to\"}; got " + json.dump()};
+  if (!json.is_object()) return Error{pointer, "must be {\"from\", \"to\"}; got " + brief(json)};
   if (const std::string wrong = unknown_in(json, {"from", "to", "log"}, "a range"); !wrong.empty())
     return Error{pointer, wrong};
   auto span = read_span(json, pointer);

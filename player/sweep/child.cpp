@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,9 +20,30 @@ constexpr const char* kSaid = "stderr.txt";
 constexpr std::string_view kError = "pliant: error: ";
 constexpr std::size_t kLongestSaid = 2000;  // [byte] of a sentence in a line
 
+// What the new process does before it is `pliant`: nothing but calls to the system. The error goes to `told`.
+[[noreturn]] void become(char* const* argv, const char* from, const char* said, pid_t parent, int told) {
+  // However its parent ends it ends as well: SIGKILL of a sweep leaves nothing that goes on.
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  // A group of its own: Ctrl-C is for the sweep, which ends its runs itself.
+  ::setpgid(0, 0);
+  const int in = ::open("/dev/null", O_RDONLY), out = ::open("/dev/null", O_WRONLY),
+            error = ::open(said, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (in >= 0 && out >= 0 && error >= 0 && ::dup2(in, STDIN_FILENO) >= 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
+      ::dup2(error, STDERR_FILENO) >= 0 && ::chdir(from) == 0) {
+    for (const int file : {in, out, error})
+      if (file > STDERR_FILENO) ::close(file);
+    ::execv("/proc/self/exe", argv);
+  }
+  const int why = errno;
+  [[maybe_unused]] const ssize_t ignored = ::write(told, &why, sizeof why);
+  ::_exit(1);
+}
+
 }  // namespace
 
-Result<Child> Child::start(const std::vector<std::string>& arguments, const fs::path& folder, double timeout) {
+Result<Child> Child::start(const std::vector<std::string>& arguments, const fs::path& from, const fs::path& folder,
+                           double timeout) {
   Child child;
   child.folder_ = folder;
   child.timeout_ = timeout;
@@ -31,28 +52,26 @@ Result<Child> Child::start(const std::vector<std::string>& arguments, const fs::
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, kSaid, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  // A group of its own: Ctrl-C is for the sweep, which ends its runs itself.
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  child.begun_ = Clock::now();
-  const int error = posix_spawn(&child.process_, "/proc/self/exe", &files, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  if (error != 0) {
-    child.process_ = -1;
+  const std::string said = fs::absolute(folder / kSaid).string();
+  const auto not_started = [](int error) {
     return Error{"run", std::string("cannot be started: ") + std::strerror(error) +
-                            "; end other programs, or take a "
-                            "lower --jobs"};
-  }
+                            "; end other programs, or take a lower --jobs"};
+  };
+
+  int ends[2];  // closed by what begins well
+  if (::pipe2(ends, O_CLOEXEC) != 0) return not_started(errno);
+  child.begun_ = Clock::now();
+  const pid_t parent = ::getpid();
+  child.process_ = ::fork();
+  if (child.process_ == 0) become(argv.data(), from.c_str(), said.c_str(), parent, ends[1]);
+  const int forked = errno;
+  ::close(ends[1]);
+  int why = child.process_ < 0 ? forked : 0;
+  if (child.process_ > 0)
+    while (::read(ends[0], &why, sizeof why) < 0 && errno == EINTR) {
+    }
+  ::close(ends[0]);
+  if (why != 0) return not_started(why);
   return child;
 }
 
@@ -65,6 +84,7 @@ Child& Child::operator=(Child&& other) noexcept {
   process_ = std::exchange(other.process_, -1);
   status_ = other.status_;
   timed_out_ = other.timed_out_;
+  lost_ = other.lost_;
   timeout_ = other.timeout_;
   seconds_ = other.seconds_;
   begun_ = other.begun_;
@@ -88,7 +108,9 @@ void Child::end() {
 bool Child::is_over() {
   if (process_ < 0) return true;
   const double elapsed = std::chrono::duration<double>(Clock::now() - begun_).count();
-  if (::waitpid(process_, &status_, WNOHANG) == process_) {
+  const pid_t waited = ::waitpid(process_, &status_, WNOHANG);
+  if (waited == process_ || (waited < 0 && errno != EINTR)) {
+    lost_ = waited < 0;
     process_ = -1;
     seconds_ = elapsed;
     return true;
@@ -101,12 +123,13 @@ bool Child::is_over() {
 }
 
 std::optional<int> Child::exit_status() const {
-  if (timed_out_ || !WIFEXITED(status_)) return {};
+  if (timed_out_ || lost_ || !WIFEXITED(status_)) return {};
   return WEXITSTATUS(status_);
 }
 
 std::string Child::complaint() const {
   if (timed_out_) return fmt::format("was not done after {:g} s; raise timeout_s in the plan", timeout_);
+  if (lost_) return "ended, but the system did not say how; begin the sweep with SIGCHLD as usual, and try again";
   if (WIFSIGNALED(status_))
     return fmt::format("ended by signal {} ({}); try it with `pliant run`", WTERMSIG(status_),
                        ::strsignal(WTERMSIG(status_)));

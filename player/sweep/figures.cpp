@@ -46,17 +46,20 @@ std::string free_name(const PlanJson& figures, const std::string& name, const st
   return key;
 }
 
-void add_probe(const PlanJson& probe, const double* rms, PlanJson& figures) {
+void add_probe(const PlanJson& probe, const double* rms, double rate, PlanJson& figures) {
   const std::string name = probe.value("name", std::string());
   const auto put = [&](const char* figure, const PlanJson& value) {
     figures[free_name(figures, name, figure)] = value;
   };
-  for (const char* figure : {"max_depth_m", "max_force_N"})
-    if (probe.contains(figure)) put(figure, probe[figure]);
+  // A tool is not pressed in by so much: its device is led past its handle.
+  const bool tool = probe.contains("tool_force");
+  if (probe.contains("max_depth_m")) put(tool ? "max_offset_m" : "max_depth_m", probe["max_depth_m"]);
+  if (probe.contains("max_force_N")) put("max_force_N", probe["max_force_N"]);
   if (rms) put("rms_force_N", *rms);
   for (const char* figure :
        {"net_work_J", "contact_ticks", "max_torque_Nm", "late_ticks", "stale_ticks", "missed_by_m"})
     if (probe.contains(figure)) put(figure, probe[figure]);
+  if (rate > 0.0 && probe.contains("contact_ticks")) put("contact_s", probe["contact_ticks"].get<double>() / rate);
   for (const std::string limit : {"clipped", "withheld", "gated", "slewed"})  // the report has those that happened
     put((limit + "_ticks").c_str(), probe.contains(limit) ? probe[limit]["ticks"] : PlanJson(0));
 }
@@ -90,7 +93,7 @@ Result<RunResult> read_run(const fs::path& folder) {
   const PlanJson& probes = report["probes"];
   const std::vector<double> rms = rms_forces(folder / "forces.csv", probes.size());
   for (std::size_t i = 0; i < probes.size(); ++i)
-    add_probe(probes[i], i < rms.size() ? &rms[i] : nullptr, result.figures);
+    add_probe(probes[i], i < rms.size() ? &rms[i] : nullptr, report.value("rate_hz", 0.0), result.figures);
   for (const PlanJson& object : report["objects"])
     for (const char* which : {"mean", "max"})
       result.figures[free_name(result.figures, object.value("name", std::string()),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 
 #include "content/files/file_io.h"
@@ -30,19 +31,31 @@ bool is_line(const PlanJson& json) {
   const auto text = [&](const char* key) { return json.contains(key) && json[key].is_string(); };
   const auto object = [&](const char* key) { return json.contains(key) && json[key].is_object(); };
   return json.is_object() && text("id") && text("status") && object("axes") && object("timing") &&
-         (is_done(json) ? object("figures") : text("error"));
+         (is_done(json) ? object("figures") : text("error")) &&
+         (!json.contains("attempt") || json["attempt"].is_number_unsigned());
 }
 
-// All but what was measured.
+// What came of a run: not what was measured, nor which values of the plan meant it, of which there may be several.
 std::string compared(PlanJson line) {
-  line.erase("timing");
+  for (const char* key : {"timing", "axes", "attempt"}) line.erase(key);
   return dump(line);
+}
+
+// flock(), whatever signals come; 0 or errno.
+int lock(int file) {
+  while (::flock(file, LOCK_EX | LOCK_NB) != 0)
+    if (errno != EINTR) return errno;
+  return 0;
 }
 
 }  // namespace
 
 bool is_done(const PlanJson& line) {
   return line["status"] == "done";
+}
+
+std::uint64_t attempt_of(const PlanJson& line) {
+  return line.contains("attempt") ? line["attempt"].get<std::uint64_t>() : 1;
 }
 
 std::string sweep_json(const SweepPlan& plan, const ExpandedPlan& expanded) {
@@ -117,8 +130,14 @@ Result<LineFile> LineFile::open(const fs::path& file, bool& torn) {
   out.path_ = file;
   out.file_ = ::open(file.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   if (out.file_ < 0) return Error{file.string(), "cannot be written: " + why_not_written(errno)};
-  if (::flock(out.file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+  const int locked = lock(out.file_);
+  if (locked == EWOULDBLOCK)
     return Error{file.string(), "another sweep adds to it; wait for it, or give each process its own --shard I/N"};
+  if (locked != 0)
+    return Error{file.string(),
+                 std::string("cannot be locked: ") + std::strerror(locked) +
+                     "; choose an --out on a file system with locks, such as a local disk (`pliant sweep "
+                     "merge` takes several folders)"};
   const off_t size = ::lseek(out.file_, 0, SEEK_END);
   char last = '\n';
   torn = size > 0 && ::pread(out.file_, &last, 1, size - 1) == 1 && last != '\n';
@@ -142,11 +161,14 @@ Status LineFile::add(const PlanJson& line) {
 Status read_lines(const fs::path& folder, Lines& lines) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("runs-") && name.ends_with(".jsonl") && entry.is_regular_file(error))
-      files.push_back(entry.path());
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code no;
+    if (name.starts_with("runs-") && name.ends_with(".jsonl") && entry->is_regular_file(no))
+      files.push_back(entry->path());
   }
+  if (error && error != std::errc::no_such_file_or_directory)
+    return Error{folder.string(), "cannot be looked into: " + error.message() + "; check its permissions"};
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     std::ifstream in(file);
@@ -161,10 +183,13 @@ Status read_lines(const fs::path& folder, Lines& lines) {
       const auto [at, first] = lines.runs.try_emplace(id, json);
       if (first) continue;
       const std::string ours = compared(json), theirs = compared(at->second);
-      const bool better = is_done(json) != is_done(at->second) ? is_done(json) : ours < theirs;
       if (is_done(json) && is_done(at->second) && ours != theirs) lines.disagree.push_back(id);
+      const bool better = is_done(json) != is_done(at->second)         ? is_done(json)
+                          : attempt_of(json) != attempt_of(at->second) ? attempt_of(json) > attempt_of(at->second)
+                                                                       : ours < theirs;
       if (better) at->second = std::move(json);
     }
+    if (in.bad()) return Error{file.string(), "cannot be read to its end; check the disk, or the connection to it"};
   }
   std::sort(lines.disagree.begin(), lines.disagree.end());
   lines.disagree.erase(std::unique(lines.disagree.begin(), lines.disagree.end()), lines.disagree.end());

@@ -22,7 +22,7 @@ Status keep_sweep(const std::filesystem::path& folder, const std::string& json, 
 Result<PlanJson> read_sweep(const std::filesystem::path& folder);
 
 // A file of lines that this process adds to. Each line is one write at the end of the file, and on the disk before the
-// next. One process at a time has it.
+// next. One process at a time has it, by a lock; a file system without locks is refused.
 class LineFile {
  public:
   // `torn`: the file ended in the middle of a line, which stays behind on a line of its own.
@@ -38,15 +38,17 @@ class LineFile {
   int file_ = -1;
 };
 
-// The lines of all shards in a folder, one for each id: what was done goes before what failed, and of several the one
-// that comes first as text, whatever file it stands in.
+// The lines of all shards in a folder, one for each id: what was done goes before what failed, a later attempt before
+// an earlier one, and of several the one that comes first as text, whatever file it stands in.
 struct Lines {
   std::map<std::string, PlanJson> runs;  // by id
   std::size_t torn = 0;                  // lines that are none
   std::vector<std::string> disagree;     // ids that were done more than once, with other figures
 };
+// A folder that is not there has none.
 Status read_lines(const std::filesystem::path& folder, Lines& lines);
 
 bool is_done(const PlanJson& line);
+std::uint64_t attempt_of(const PlanJson& line);  // at a run that failed: the first is 1
 
 }  // namespace pliant

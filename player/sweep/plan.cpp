@@ -43,10 +43,13 @@ std::string argument(const std::string& name, const PlanJson& value) {
 
 // "" or what `pliant run` would say of this option.
 std::string wrong_option(const std::string& name, const PlanJson& value) {
+  // A value in the name would pass by what is refused.
+  if (name.find('=') != std::string::npos || name == "--")
+    return "'" + name + "' is no name of an option; write the name alone, and its value behind the colon";
   for (const auto& [refused, why] : kRefused)
     if (name == refused) return std::string("the option ") + refused + " " + why;
   if (value.is_object() || value.is_array() || value.is_null())
-    return "must be a number, a text, true or false; got " + value.dump();
+    return "must be a number, a text, true or false; got " + brief(value);
   const Status parsed = check_run_arguments({argument(name, value)});
   return parsed ? std::string() : parsed.error().what;
 }
@@ -65,18 +68,21 @@ Result<PlanJson> parse(const fs::path& file) {
   const std::string text(bytes->begin(), bytes->end());
   std::vector<std::set<std::string>> keys;  // of the objects that are open
   std::string twice;
-  bool deep = false;
+  bool deep = false, wide = false;
   const auto look = [&](int depth, PlanJson::parse_event_t event, PlanJson& parsed) {
     if (depth > kDeepestNesting) deep = true;
     if (event == PlanJson::parse_event_t::object_start) keys.emplace_back();
     if (event == PlanJson::parse_event_t::object_end && !keys.empty()) keys.pop_back();
     if (event == PlanJson::parse_event_t::key && !keys.empty() && !keys.back().insert(parsed.get<std::string>()).second)
       twice = parsed.get<std::string>();
-    return !deep;
+    wide = wide || (!keys.empty() && keys.back().size() > kMostKeys);
+    return !deep && !wide;  // what is passed over here is not held
   };
   try {
     PlanJson json = PlanJson::parse(text, look);
     if (deep) return Error{file.string(), "is nested deeper than any plan; see docs/sweep.md"};
+    if (wide)
+      return Error{file.string(), fmt::format("has an object with more than {} keys; see docs/sweep.md", kMostKeys)};
     if (!twice.empty())
       return Error{file.string(), fmt::format("has the key \"{}\" twice in one object; leave one of them out", twice)};
     if (!json.is_object())
@@ -84,6 +90,13 @@ Result<PlanJson> parse(const fs::path& file) {
     return json;
   } catch (const PlanJson::parse_error& error) {
     return syntax_error(file, text, error.byte);
+  } catch (const PlanJson::out_of_range& error) {
+    // Its sentence ends with the number in quotes.
+    const std::string said = error.what();
+    const std::size_t quote = said.find('\'');
+    return Error{file.string(), "has a number that no computer's number holds" +
+                                    (quote == std::string::npos ? "" : ": " + said.substr(quote, 40)) +
+                                    "; write one below 1e308"};
   }
 }
 
@@ -101,15 +114,13 @@ class Reader {
       if (Status ok = (this->*part)(); !ok) return ok;
     if (plan_.axes.empty())
       return Error{"", "varies nothing; give \"axes\" or \"latin_hypercube\", or use `pliant run`"};
-    if (const std::size_t runs = plan_.count(); runs > kMostRuns)
-      return Error{"", fmt::format("stands for more than {} runs; take fewer values, or a Latin hypercube", kMostRuns)};
     return Done{};
   }
 
  private:
   Status level() {
     if (!json_.contains("level")) return Error{"", "has no \"level\"; name a file or a shipped level"};
-    if (!json_["level"].is_string()) return Error{"/level", "must be a text; got " + json_["level"].dump()};
+    if (!json_["level"].is_string()) return Error{"/level", "must be a text; got " + brief(json_["level"])};
     const auto name = json_["level"].get<std::string>();
     if (name.empty()) return Error{"/level", "its name is empty; name a file or a shipped level"};
     std::error_code no;
@@ -126,15 +137,17 @@ class Reader {
   Status options() {
     if (!json_.contains("options")) return Done{};
     const PlanJson& options = json_["options"];
-    if (!options.is_object()) return Error{"/options", "must be an object of options; got " + options.dump()};
+    if (!options.is_object()) return Error{"/options", "must be an object of options; got " + brief(options)};
     for (const auto& [key, value] : options.items()) {
       const std::string name = "--" + key, at = "/options/" + escaped(key);
       const bool many = name == "--set" || name == "--probe";
-      if (many && !value.is_array()) return Error{at, "must be a list of texts; got " + value.dump()};
+      if (many && value.size() > kMostKeys)
+        return Error{at, fmt::format("has more than {} texts; leave some out", kMostKeys)};
+      if (many && !value.is_array()) return Error{at, "must be a list of texts; got " + brief(value)};
       for (std::size_t i = 0; i < (many ? value.size() : 1); ++i) {
         const PlanJson& one = many ? value[i] : value;
         const std::string where = many ? at + "/" + std::to_string(i) : at;
-        if (many && !one.is_string()) return Error{where, "must be a text; got " + one.dump()};
+        if (many && !one.is_string()) return Error{where, "must be a text; got " + brief(one)};
         if (const std::string wrong = wrong_option(name, one); !wrong.empty()) return Error{where, wrong};
         if (one.is_boolean() && !one.get<bool>()) continue;
         plan_.options.emplace_back(name, one.is_boolean() ? "" : text_of(one));
@@ -154,6 +167,26 @@ class Reader {
       if (option == name && name != "--probe")
         return Error{pointer, "`" + name + "` stands in /options too; leave it out there"};
     if (name == "--set") return Error{pointer, "is no axis; name the key itself: NODE.EXTENSION.KEY"};
+    if (name == "--threads")
+      return Error{pointer, "is no axis: it changes no result, so that its runs are one; give it in \"options\""};
+    if (name.find('=') != std::string::npos)
+      return Error{pointer, "has '=' in its name; write the name alone, and its values behind the colon"};
+    return Done{};
+  }
+
+  // Before anything is made of them.
+  Status check_count(const std::string& pointer, std::size_t more_axes, std::size_t times) {
+    const std::size_t axes = plan_.axes.size() + more_axes, runs = plan_.count() * times;
+    if (axes > kMostAxes)
+      return Error{pointer,
+                   fmt::format("makes {} axes, and a plan has at most {}; leave some out, or make several plans", axes,
+                               kMostAxes)};
+    if (runs > kMostRuns)
+      return Error{pointer,
+                   fmt::format("makes more than {} runs of the plan; take fewer values, or fewer samples", kMostRuns)};
+    if (axes * runs > kMostValues)
+      return Error{pointer, fmt::format("makes {} runs of {} axes, more than {} values in all; take fewer of either",
+                                        runs, axes, kMostValues)};
     return Done{};
   }
 
@@ -169,11 +202,13 @@ class Reader {
   Status axes() {
     if (!json_.contains("axes")) return Done{};
     const PlanJson& axes = json_["axes"];
-    if (!axes.is_object()) return Error{"/axes", "must be an object of axes; got " + axes.dump()};
+    if (!axes.is_object()) return Error{"/axes", "must be an object of axes; got " + brief(axes)};
+    if (Status ok = check_count("/axes", axes.size(), 1); !ok) return ok;
     for (const auto& [name, values] : axes.items()) {
       const std::string at = "/axes/" + escaped(name);
       if (Status ok = check_name(name, at); !ok) return ok;
-      if (Status ok = add(read_axis(name, values, at)); !ok) return ok;
+      if (Status ok = add(read_axis(name, values, at, kMostRuns / plan_.count())); !ok) return ok;
+      if (Status ok = check_count(at, 0, 1); !ok) return ok;
     }
     return Done{};
   }
@@ -183,7 +218,7 @@ class Reader {
     if (!object.contains(key)) return Error{"/latin_hypercube", "has no \"" + key + "\"; give it a whole number"};
     const PlanJson value = canonical(object[key]);
     if (!value.is_number_integer() || value.get<double>() < low || value.get<double>() > high)
-      return Error{at, fmt::format("must be a whole number between {} and {}; got {}", low, high, object[key].dump())};
+      return Error{at, fmt::format("must be a whole number between {} and {}; got {}", low, high, brief(object[key]))};
     return value.get<std::uint64_t>();
   }
 
@@ -192,7 +227,7 @@ class Reader {
     const PlanJson& cube = json_["latin_hypercube"];
     const std::string at = "/latin_hypercube";
     if (!cube.is_object())
-      return Error{at, "must be an object with \"runs\", \"seed\" and \"axes\"; got " + cube.dump()};
+      return Error{at, "must be an object with \"runs\", \"seed\" and \"axes\"; got " + brief(cube)};
     if (const std::string wrong = unknown_in(cube, {"runs", "seed", "axes"}, "latin_hypercube"); !wrong.empty())
       return Error{at, wrong};
     const auto runs = whole(cube, "runs", 2, kMostRuns), seed = whole(cube, "seed", 0, 0x1p53);
@@ -200,6 +235,7 @@ class Reader {
     if (!seed) return seed.error();
     if (!cube.contains("axes") || !cube["axes"].is_object() || cube["axes"].empty())
       return Error{at, "has no \"axes\"; name keys or options, each with {\"from\", \"to\"}"};
+    if (Status ok = check_count(at, cube["axes"].size(), *runs); !ok) return ok;
     plan_.samples = *runs;
     for (const auto& [name, range] : cube["axes"].items()) {
       const std::string pointer = at + "/axes/" + escaped(name);
@@ -213,7 +249,7 @@ class Reader {
     if (!json_.contains("timeout_s")) return Done{};
     const PlanJson& value = json_["timeout_s"];
     if (!value.is_number() || !(value.get<double>() >= 1e-3 && value.get<double>() <= 1e7))
-      return Error{"/timeout_s", "must be between 0.001 and 1e7 s; got " + value.dump()};
+      return Error{"/timeout_s", "must be between 0.001 and 1e7 s; got " + brief(value)};
     plan_.timeout = value.get<double>();
     return Done{};
   }
@@ -227,7 +263,7 @@ class Reader {
 std::size_t SweepPlan::count() const {
   std::size_t runs = samples;
   for (const SweepAxis& axis : axes)
-    if (!axis.sampled) runs = runs > kMostRuns ? runs : runs * axis.values.size();
+    if (!axis.sampled) runs *= axis.values.size();
   return runs;
 }
 
@@ -261,19 +297,28 @@ std::vector<std::string> arguments_of(const SweepPlan& plan, const std::vector<P
   return options;
 }
 
-fs::path file_of(const SweepPlan& plan, const std::string& argument) {
-  constexpr std::string_view kReplay = "--replay=", kProbe = "--probe=";
-  if (argument.starts_with(kReplay)) return fs::absolute(plan.file.parent_path() / argument.substr(kReplay.size()));
+ArgumentFile file_in(const SweepPlan& plan, const std::string& argument) {
+  constexpr std::string_view kReplay = "--replay=", kProbe = "--probe=", kScript = "script:", kHand = "hand:";
+  const auto at = [&](std::size_t begin, std::size_t size) {
+    return ArgumentFile{plan.file.parent_path() / argument.substr(begin, size), begin, size};
+  };
+  if (argument.starts_with(kReplay)) return at(kReplay.size(), std::string::npos);
   if (!argument.starts_with(kProbe)) return {};
   const auto source = parse_source(argument.substr(kProbe.size()));
-  return source && !source->file.empty() ? fs::absolute(plan.file.parent_path() / source->file) : fs::path();
-}
-
-std::string with_file(const SweepPlan& plan, const std::string& argument) {
-  const fs::path file = file_of(plan, argument);
-  if (file.empty()) return argument;
-  if (argument.starts_with("--replay=")) return "--replay=" + file.string();
-  return "--probe=" + parse_source(argument.substr(argument.find('=') + 1))->name + "=script:" + file.string();
+  if (!source || source->file.empty()) return {};
+  std::size_t begin = kProbe.size() + source->name.size() + 1;
+  if (!source->held) return at(begin + kScript.size(), std::string::npos);
+  // One of the hand's words: between commas, blanks aside.
+  begin += kHand.size();
+  for (std::size_t found = argument.find(source->file, begin); found != std::string::npos;
+       found = argument.find(source->file, found + 1)) {
+    const std::size_t end = found + source->file.size(), before = argument.find_last_not_of(" \t", found - 1),
+                      after = argument.find_first_not_of(" \t", end);
+    if ((before < begin || argument[before] == ',') &&
+        (after == std::string::npos || argument[after] == ',' || argument[after] == '|'))
+      return at(found, source->file.size());
+  }
+  return {};
 }
 
 Result<SweepPlan> read_plan(const fs::path& file) {

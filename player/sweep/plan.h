@@ -18,18 +18,21 @@ struct SweepPlan {
   std::size_t samples = 1;                                   // of the Latin hypercube
   double timeout = 0.0;                                      // [s] of a run by the clock on the wall; 0: none
 
-  std::size_t count() const;
+  std::size_t count() const;  // runs: at most kMostRuns
   // The value of each axis. The first axis changes slowest, the sample fastest.
   std::vector<PlanJson> values_of(std::size_t run) const;
 };
 
 // The arguments after LEVEL of a run: options, --set of the plan, --set of the axes (those of all nodes first, then by
-// name). Files are as they stand in the plan.
+// name). Files are as they stand in the plan, from whose folder runs are started.
 std::vector<std::string> arguments_of(const SweepPlan& plan, const std::vector<PlanJson>& values);
-// The same argument, with the file it names (a script, a recording) found from the plan's folder.
-std::string with_file(const SweepPlan& plan, const std::string& argument);
-// That file; empty where it names none.
-std::filesystem::path file_of(const SweepPlan& plan, const std::string& argument);
+
+// The file that an argument names (a probe's script, a recording), and where in the argument its name stands.
+struct ArgumentFile {
+  std::filesystem::path path;  // found from the plan's folder; empty: it names none
+  std::size_t begin = 0, size = 0;
+};
+ArgumentFile file_in(const SweepPlan& plan, const std::string& argument);
 
 // Unknown keys are refused by name. Options and their values are tried as `pliant run` reads them.
 Result<SweepPlan> read_plan(const std::filesystem::path& file);

@@ -16,18 +16,12 @@ namespace {
 constexpr double kLogFactor = 30.0;  // [1] from the least to the most
 constexpr int kTicks = 5;
 
-// Of NODE.EXT.KEY, where the node's name may hold dots.
 std::string unit_of(const std::string& name) {
   if (name == "--seconds") return "s";
   if (name == "--rate") return "Hz";
   if (name == "--max-force") return "N";
-  for (std::size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', dot + 1)) {
-    const std::size_t end = name.find('.', dot + 1);
-    if (end == std::string::npos) break;
-    const Extension* extension = find_extension(name.substr(dot + 1, end - dot - 1));
-    if (const Key* key = extension ? find_key(*extension, name.substr(end + 1)) : nullptr) return key->unit;
-  }
-  return {};
+  const Key* key = find_key_of_path(name);
+  return key ? key->unit : std::string();
 }
 
 }  // namespace
@@ -47,17 +41,16 @@ std::vector<std::pair<double, std::string>> PlotScale::ticks() const {
   if (!words.empty()) return out;
   if (log) {
     const bool few = std::log10(high / low) < 3.0;
-    for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high * (1 + 1e-9); decade *= 10.0)
-      for (const double factor : {1.0, 2.0, 5.0})
-        if ((factor == 1.0 || few) && decade * factor >= low * (1 - 1e-9) && decade * factor <= high * (1 + 1e-9))
-          out.emplace_back(decade * factor, short_number(decade * factor));
+    for (int e = static_cast<int>(std::floor(std::log10(low))); e <= std::log10(high) + 1e-9; ++e)
+      for (const double factor : {1.0, 2.0, 5.0}) {
+        const double value = factor * std::pow(10.0, e);
+        if ((factor == 1.0 || few) && value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9))
+          out.emplace_back(value, short_number(value));
+      }
     return out;
   }
   const double step = tick_step(high - low, kTicks);
-  for (double v = step * std::ceil(low / step - 1e-9); v <= high + step * 1e-9; v += step) {
-    const double value = std::abs(v) < step * 1e-9 ? 0.0 : v;
-    out.emplace_back(value, short_number(value));
-  }
+  for (const double value : tick_values(low, high, step)) out.emplace_back(value, short_number(value));
   return out;
 }
 
@@ -68,7 +61,7 @@ PlotScale scale_of(const std::vector<double>& values) {
   scale.low = *least;
   scale.high = *most;
   if (scale.low >= 0.0 && scale.low < 0.5 * scale.high) scale.low = 0.0;
-  const double span = scale.high > scale.low ? scale.high - scale.low : std::max(std::abs(scale.high), 1e-12);
+  const double span = is_flat(scale.low, scale.high) ? std::max(std::abs(scale.high), 1e-12) : scale.high - scale.low;
   scale.high += 0.06 * span;
   if (scale.low != 0.0) scale.low -= 0.06 * span;
   return scale;

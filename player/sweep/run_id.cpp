@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
+#include <set>
 
-#include "content/gltf/gltf_document.h"
+#include "content/files/file_io.h"
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
-#include "engine/scene_check.h"
+#include "engine/scene_hash.h"
 #include "engine/sources.h"
+#include "pliant/content.h"
 #include "runtime/hash.h"
 
 namespace pliant {
@@ -18,11 +20,6 @@ namespace {
 constexpr const char* kSet = "--set=";
 constexpr const char* kProbePath = "--probe=";
 
-void add_text(Hash& hash, const std::string& text) {
-  hash.add(text.size());
-  hash.add_bytes(text.data(), text.size());
-}
-
 Status add_file(Hash& hash, const fs::path& file) {
   const auto bytes = read_file(file);
   if (!bytes) return bytes.error();
@@ -31,31 +28,71 @@ Status add_file(Hash& hash, const fs::path& file) {
   return Done{};
 }
 
-// scene_hash() is of keys and positions. Normals make creases; animations, scripts and tetrahedra move or fill what is
-// touched: of these the bytes count, wherever a key names a file that is there.
+// scene_hash(), and what else a run goes by: scripts of devices, error budgets, and which keys they do not choose
+// because the level says them.
 std::string hash_level(const Level& level) {
   Hash hash;
   hash.add(scene_hash(level));
-  for (const LevelMesh& mesh : level.meshes)
-    for (const PrimitiveAsRead& primitive : fingerprint(mesh).primitives) hash.add(primitive.shape);
-  for (const LevelAnimation& animation : level.animations)
-    for (const LevelChannel& channel : animation.channels) {
-      hash.add(channel.node);
-      hash.add(fingerprint(channel, channel.node).track);
-    }
-  for (const Extension& extension : extension_table()) {
-    if (extension.on_scene) continue;  // a panorama is seen, not felt
-    for (const LevelNode& node : level.nodes)
-      for (const Key& key : extension.keys) {
-        if (key.type != KeyType::kText || !extension.present(&node)) continue;
-        const Json name = key.get(&node);
-        if (!name.is_string() || name.get<std::string>().empty()) continue;
-        if (const auto file = confined_file(level.path.parent_path(), name.get<std::string>()))
-          if (std::error_code no; fs::is_regular_file(*file, no)) (void)add_file(hash, *file).ok();
-      }
+  const auto add_stated = [&](const std::set<std::string>& keys) {
+    hash.add(keys.size());
+    for (const std::string& key : keys) add_text(hash, key);
+  };
+  add_stated(level.stated);
+  for (const LevelNode& node : level.nodes) {
+    add_stated(node.stated);
+    hash.add(node.deformable ? node.deformable->error : 0.0);
+    hash.add(node.soft_body ? node.soft_body->error : 0.0);
+    if (node.device) add_named_file(hash, level.path.parent_path(), node.device->file);
   }
   return fmt::format("{:016x}", hash.value());
 }
+
+// Of what arguments name: the bytes of a file, each read once.
+class FileHashes {
+ public:
+  FileHashes(const SweepPlan& plan, const Level& level) : plan_(plan), folder_(level.path.parent_path()) {}
+
+  // An argument as it counts for an id: of a file what it holds instead of where it lies.
+  Status add(Hash& hash, const std::string& argument) {
+    const ArgumentFile file = file_in(plan_, argument);
+    if (!file.path.empty()) {
+      auto known = read_.find(file.path.string());
+      if (known == read_.end()) {
+        Hash bytes;
+        if (Status ok = add_file(bytes, file.path); !ok)
+          return Error{plan_.file.string(), argument + ": " + ok.error().message()};
+        known = read_.emplace(file.path.string(), bytes.value()).first;
+      }
+      add_text(hash, std::string(argument).replace(file.begin, file.size, ""));
+      hash.add(known->second);
+      return Done{};
+    }
+    add_text(hash, argument);
+    if (argument.starts_with(kSet)) add_setting(hash, argument.substr(std::string_view(kSet).size()));
+    return Done{};
+  }
+
+ private:
+  // NODE.EXT.KEY=VALUE, where the value may be a file beside the level.
+  void add_setting(Hash& hash, const std::string& setting) {
+    const std::size_t equals = setting.find('=');
+    const Key* key = equals == std::string::npos ? nullptr : find_key_of_path(setting.substr(0, equals));
+    if (!key || key->type != KeyType::kText) return;
+    const std::string name = setting.substr(equals + 1);
+    auto known = named_.find(name);
+    if (known == named_.end()) {
+      Hash bytes;
+      add_named_file(bytes, folder_, name);
+      known = named_.emplace(name, bytes.value()).first;
+    }
+    hash.add(known->second);
+  }
+
+  const SweepPlan& plan_;
+  fs::path folder_;                             // of the level
+  std::map<std::string, std::uint64_t> read_;   // by path: of options
+  std::map<std::string, std::uint64_t> named_;  // by value of a key
+};
 
 // What settings are tried on: a level without its meshes.
 Level keys_of(const Level& level) {
@@ -63,6 +100,7 @@ Level keys_of(const Level& level) {
   out.nodes = level.nodes;
   out.environment = level.environment;
   out.simulation = level.simulation;
+  out.stated = level.stated;
   out.source = level.source;
   return out;
 }
@@ -79,6 +117,10 @@ Status try_arguments(const Level& level, bool bare, const std::vector<std::strin
     if (!source) return source.error();
     if (source->driver == DriverKind::kMouse)
       return Error{argument, "needs a window, and a sweep's runs have none; use orbit or script:FILE.csv"};
+    if (!source->device.empty())
+      return Error{argument,
+                   "is moved by a hand, never the same twice; record it with `pliant run --record FILE`, and give the "
+                   "option \"replay\""};
     sources.push_back(*source);
   }
   if (bare && sources.empty()) sources.push_back({"probe", DriverKind::kOrbit, {}});
@@ -144,7 +186,7 @@ Result<ExpandedPlan> expand_plan(const SweepPlan& plan) {
   const Level keys = keys_of(level);
   if (Status ok = try_values(plan, keys, bare); !ok) return ok.error();
 
-  std::vector<std::pair<std::string, std::uint64_t>> files;  // named by arguments, each read once
+  FileHashes files(plan, level);
   for (std::size_t i = 0; i < plan.count(); ++i) {
     SweepRun& run = out.runs.emplace_back();
     run.values = plan.values_of(i);
@@ -154,17 +196,7 @@ Result<ExpandedPlan> expand_plan(const SweepPlan& plan) {
     add_text(hash, out.level_hash);
     for (const std::string& argument : run.arguments) {
       if (argument.starts_with("--threads=")) continue;  // results do not depend on it
-      add_text(hash, argument);
-      const fs::path file = file_of(plan, argument);
-      if (file.empty()) continue;
-      auto known = std::find_if(files.begin(), files.end(), [&](const auto& each) { return each.first == argument; });
-      if (known == files.end()) {
-        Hash bytes;
-        if (Status ok = add_file(bytes, file); !ok)
-          return Error{plan.file.string(), argument + ": " + ok.error().message()};
-        known = files.insert(files.end(), {argument, bytes.value()});
-      }
-      hash.add(known->second);
+      if (Status ok = files.add(hash, argument); !ok) return ok.error();
     }
     run.id = fmt::format("{:016x}", hash.value());
   }

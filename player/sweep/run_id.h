@@ -1,4 +1,5 @@
-// What makes two runs of sweeps the same run: the level as it is felt, the files it names, the arguments, the version.
+// What makes two runs of sweeps the same run: the level as it is felt, its error budgets and what they leave open, the
+// arguments, what is in the files that these name (not where they lie), the version.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +14,12 @@ namespace pliant {
 struct SweepRun {
   std::string id;                      // 16 hexadecimal digits
   std::vector<PlanJson> values;        // of the axes
-  std::vector<std::string> arguments;  // after LEVEL; files as they stand in the plan
+  std::vector<std::string> arguments;  // after LEVEL; files from the plan's folder
 };
 
 struct ExpandedPlan {
   std::string level_name;
-  std::string level_hash;  // 16 hexadecimal digits: scene_hash(), and what the level has besides that is felt
+  std::string level_hash;  // 16 hexadecimal digits
   std::vector<SweepRun> runs;
 };
 

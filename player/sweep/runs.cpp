@@ -16,8 +16,8 @@ namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(2);  // a run takes 20 ms at least
 
-// Where runs write; gone at the end. The shard's file is locked, so that what has its name was left by a sweep that was
-// killed.
+// Where runs write; gone at the end. Whoever makes one has the shard's file locked, so that what has its name was left
+// by a sweep that was killed.
 class WorkFolder {
  public:
   static Result<WorkFolder> create(const fs::path& folder, const Shard& shard) {
@@ -54,7 +54,7 @@ struct Slot {
   Child child;
 };
 
-PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child) {
+PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child, const Lines& before) {
   PlanJson line{{"id", run.id}, {"status", "done"}, {"axes", PlanJson::object()}};
   for (std::size_t i = 0; i < plan.axes.size(); ++i) line["axes"][plan.axes[i].name] = run.values[i];
   PlanJson timing = PlanJson::object();
@@ -74,6 +74,8 @@ PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child)
     line["status"] = child.timed_out() ? "timed out" : "failed";
     line["exit"] = child.exit_status() ? PlanJson(*child.exit_status()) : PlanJson();
     line["error"] = error;
+    if (const auto earlier = before.runs.find(run.id); earlier != before.runs.end())
+      line["attempt"] = attempt_of(earlier->second) + 1;
   }
   timing["wall_s"] = child.seconds();
   line["timing"] = std::move(timing);
@@ -88,15 +90,18 @@ std::vector<std::string> command_of(const SweepPlan& plan, const SweepRun& run, 
       out};
   const auto is_threads = [](const std::string& argument) { return argument.starts_with("--threads="); };
   if (jobs > 1 && std::none_of(run.arguments.begin(), run.arguments.end(), is_threads)) words.push_back("--threads=1");
-  for (const std::string& argument : run.arguments) words.push_back(with_file(plan, argument));
+  words.insert(words.end(), run.arguments.begin(), run.arguments.end());
   return words;
 }
 
+fs::path run_folder(const SweepPlan& plan) {
+  return fs::absolute(plan.file).lexically_normal().parent_path();
+}
+
 Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, const std::vector<std::size_t>& wanted,
-                         const fs::path& folder, const Shard& shard, unsigned jobs, const Interrupt& interrupt) {
+                         const Lines& before, LineFile& lines, const fs::path& folder, const Shard& shard,
+                         unsigned jobs, const Interrupt& interrupt) {
   RunsDone done;
-  auto lines = LineFile::open(folder / shard.file(), done.torn);
-  if (!lines) return lines.error();
   auto work = WorkFolder::create(folder, shard);
   if (!work) return work.error();
   interrupt.remove_if_forced(work->path());
@@ -110,7 +115,8 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
       std::error_code error;
       fs::create_directory(place, error);
       if (error) return Error{folder.string(), "cannot be written to: " + error.message()};
-      auto child = Child::start(command_of(plan, expanded.runs[run], "out", jobs), place, plan.timeout);
+      auto child = Child::start(command_of(plan, expanded.runs[run], (place / "out").string(), jobs), run_folder(plan),
+                                place, plan.timeout);
       if (!child) return child.error();
       slots.push_back({run, std::move(child).value()});
       ++next;
@@ -122,10 +128,10 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
         continue;
       }
       any = true;
-      const PlanJson line = line_of(plan, expanded.runs[slots[i].run], slots[i].child);
+      const PlanJson line = line_of(plan, expanded.runs[slots[i].run], slots[i].child, before);
       // A batch system may signal the sweep and its runs alike: one that this has ended is to be done again.
       if (is_done(line) || !interrupt.requested()) {
-        if (Status ok = lines->add(line); !ok) return ok.error();
+        if (Status ok = lines.add(line); !ok) return ok.error();
         ++(is_done(line) ? done.done : done.failed);
       }
       std::error_code ignored;

@@ -12,15 +12,17 @@ namespace pliant {
 
 struct RunsDone {
   std::size_t done = 0, failed = 0;
-  bool torn = false;  // the shard's file ended in the middle of a line
 };
 
+// Where runs are started: arguments name files from there.
+std::filesystem::path run_folder(const SweepPlan& plan);
 // The command of a run, after `pliant`. `out`: its folder.
 std::vector<std::string> command_of(const SweepPlan& plan, const SweepRun& run, const std::string& out, unsigned jobs);
 
-// `wanted`: numbers in `expanded`. Ends early, with what was done, when that is requested.
+// `wanted`: numbers in `expanded`; `before`: what there was when `lines` had been opened. Ends early, with what was
+// done, when that is requested.
 Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, const std::vector<std::size_t>& wanted,
-                         const std::filesystem::path& folder, const Shard& shard, unsigned jobs,
-                         const Interrupt& interrupt);
+                         const Lines& before, LineFile& lines, const std::filesystem::path& folder, const Shard& shard,
+                         unsigned jobs, const Interrupt& interrupt);
 
 }  // namespace pliant

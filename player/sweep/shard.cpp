@@ -47,18 +47,33 @@ Result<ShardPlace> in_array(const Variable& variable) {
   return ShardPlace{(*number - *first) / step, *count, id + " and _COUNT"};
 }
 
-Result<ShardPlace> in_mpi(const Variable& variable) {
-  for (const auto& [rank_name, size_name, from] :
-       {std::tuple("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK and _SIZE"),
-        std::tuple("PMI_RANK", "PMI_SIZE", "PMI_RANK and PMI_SIZE")}) {
-    const std::string text = read(variable, rank_name);
-    if (text.empty()) continue;
-    const auto rank = whole(text), size = whole(read(variable, size_name));
-    if (!rank || !size || *rank >= *size)
-      return Error{rank_name, "is '" + text + "' and " + size_name + " '" + read(variable, size_name) +
-                                  "', which is no rank of so many" + kSay};
-    return ShardPlace{*rank, *size, from};
-  }
+Result<ShardPlace> rank_of(const Variable& variable, const char* rank_name, const char* size_name) {
+  const std::string text = read(variable, rank_name), size_text = read(variable, size_name);
+  const auto rank = whole(text), size = whole(size_text);
+  if (!rank || !size || *rank >= *size)
+    return Error{rank_name,
+                 "is '" + text + "' and " + size_name + " '" + size_text + "', which is no rank of so many" + kSay};
+  return ShardPlace{*rank, *size, std::string(rank_name) + " and " + size_name};
+}
+
+// Whether srun started this: the batch script itself, of which there is one whatever --ntasks says, has SLURM_PROCID 0
+// and SLURM_NTASKS as well, but no step; nor has an interactive shell, or one with a number from the end of the range.
+bool in_step(const Variable& variable) {
+  constexpr std::size_t kSpecial = 0xfffffff0;
+  const auto step = whole(read(variable, "SLURM_STEP_ID"));
+  return step && *step < kSpecial && !read(variable, "SLURM_PROCID").empty();
+}
+
+// MPI's own variables come first: mpirun may run within a step, and start several processes in each of its tasks.
+Result<ShardPlace> in_ranks(const Variable& variable) {
+  for (const auto& [rank, size] : {std::pair("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), {"PMI_RANK", "PMI_SIZE"}})
+    if (!read(variable, rank).empty()) return rank_of(variable, rank, size);
+  // SLURM_NTASKS may be the job's, of which the step is a part.
+  if (in_step(variable))
+    return rank_of(variable, "SLURM_PROCID",
+                   read(variable, "SLURM_STEP_NUM_TASKS").empty() ? "SLURM_NTASKS" : "SLURM_STEP_NUM_TASKS");
+  if (const std::string rank = read(variable, "PMIX_RANK"); !rank.empty())
+    return Error{"PMIX_RANK", "is '" + rank + "', and no variable says of how many" + kSay};
   return ShardPlace{};
 }
 
@@ -80,7 +95,7 @@ Result<Shard> choose_shard(const std::string& argument, const Variable& variable
     shard.count = *count;
     return shard;
   }
-  const auto array = in_array(variable), mpi = in_mpi(variable);
+  const auto array = in_array(variable), mpi = in_ranks(variable);
   if (!array) return array.error();
   if (!mpi) return mpi.error();
   if (array->count > kMostShards || mpi->count > kMostShards / array->count)

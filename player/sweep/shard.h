@@ -16,8 +16,9 @@ struct Shard {
   std::string file() const;  // of its lines
 };
 
-// I/N where `argument` has it. Else a Slurm array's task, a rank of MPI's, or both (each task of the array has its own
-// ranks), by `variable`, which is the environment; nullptr is a variable that is not set. Else everything.
+// I/N where `argument` has it. Else a Slurm array's task, a rank (of MPI, or a task of srun), or both (each task of the
+// array has its own ranks), by `variable`, which is the environment; nullptr is a variable that is not set. Else
+// everything.
 Result<Shard> choose_shard(const std::string& argument, const std::function<const char*(const char*)>& variable);
 
 }  // namespace pliant

@@ -60,9 +60,13 @@ std::string quoted(const std::string& word) {
 }
 
 void print_commands(const SweepPlan& plan, const ExpandedPlan& expanded, const Work& work, unsigned jobs) {
+  std::error_code no;
+  const bool here = fs::equivalent(run_folder(plan), ".", no);
+  const std::string begin = here ? "" : "cd " + quoted(run_folder(plan).string()) + " && ";
+  const fs::path out = here ? "out" : fs::absolute("out");
   for (const std::size_t i : work.wanted) {
-    std::string line = "pliant";
-    for (const std::string& word : command_of(plan, expanded.runs[i], "out/" + expanded.runs[i].id, jobs))
+    std::string line = begin + "pliant";
+    for (const std::string& word : command_of(plan, expanded.runs[i], (out / expanded.runs[i].id).string(), jobs))
       line += " " + quoted(word);
     print("{}\n", line);
   }
@@ -102,9 +106,9 @@ int sweep(const SweepOptions& options) {
 
   const fs::path folder = options.out.empty() ? "out" / plan->file.stem() : fs::path(options.out);
   Lines lines;
-  if (const Status read = read_lines(folder, lines); !read) return fail(kFailed, read.error());
-  const Work work = find_work(*expanded, lines, *shard, options.retry_failed);
   if (options.list || options.dry_run) {
+    if (const Status read = read_lines(folder, lines); !read) return fail(kFailed, read.error());
+    const Work work = find_work(*expanded, lines, *shard, options.retry_failed);
     if (options.list) print_list(*plan, *expanded, work, *shard);
     if (options.dry_run) print_commands(*plan, *expanded, work, options.jobs);
     print("{}: {} runs{}: {} done, {} failed, {} would be done now\n", folder.string(), work.mine, shard_text(*shard),
@@ -115,11 +119,17 @@ int sweep(const SweepOptions& options) {
   if (const Status kept = keep_sweep(folder, sweep_json(*plan, *expanded), replaced); !kept)
     return fail(kFailed, kept.error());
   if (!replaced.empty()) note(replaced);
+  // What there is to do is looked up under the lock: whoever had it before may just have added lines.
+  bool torn = false;
+  auto file = LineFile::open(folder / shard->file(), torn);
+  if (!file) return fail(kFailed, file.error());
+  if (const Status read = read_lines(folder, lines); !read) return fail(kFailed, read.error());
+  const Work work = find_work(*expanded, lines, *shard, options.retry_failed);
   const Interrupt interrupt({"ending; runs under way are left out; press Ctrl-C again to quit at once",
                              "quit at once; what was done before stays"});
-  const auto done = do_runs(*plan, *expanded, work.wanted, folder, *shard, options.jobs, interrupt);
+  const auto done = do_runs(*plan, *expanded, work.wanted, lines, *file, folder, *shard, options.jobs, interrupt);
   if (!done) return fail(kFailed, done.error());
-  if (done->torn)
+  if (torn)
     note((folder / shard->file()).string() + " ended in the middle of a line, which is left behind; its run was to do");
   return report(folder, work, *done, *shard, interrupt);
 }

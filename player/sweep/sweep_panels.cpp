@@ -6,12 +6,17 @@
 #include <cmath>
 #include <limits>
 
+#include "player/record/plot.h"
+
 namespace pliant {
 namespace {
 
 constexpr double kBar = 16, kBarRoom = 86;  // [pixel]
 constexpr std::size_t kLongWord = 14;       // letters of a tick
-constexpr double kFlat = 1e-9;              // [1] what means over the same values may differ by
+// Dots of a panel: beyond the first as many as stand for the rest, beyond the second as pixels in a vector file, where
+// each takes some 300 bytes.
+constexpr std::size_t kMostVectorDots = 500;
+constexpr double kDotRoom = 6;  // [pixel] that dots reach beyond their panel
 
 Color mixed(Color a, Color b, double t) {
   return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};
@@ -65,6 +70,20 @@ void draw_frame(Pen& pen, const PlotArea& area, const std::string& title, const 
   pen.line(area.x, area.y + area.h, area.x + area.w, area.y + area.h, 1.5);
   pen.text(area.x, area.y - 13, 15, 0, title, true);
   pen.text(area.x + area.w / 2, area.y + area.h + 42, 14, 0.5, across);
+}
+
+// Calls draw(pen, row) of every row that has the figure; of very many, of each n-th.
+template <class Draw>
+void draw_run_dots(Pen& pen, const PlotArea& area, const Figure& figure, const Draw& draw) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < figure.of_row.size(); ++row)
+    if (std::isfinite(figure.of_row[row])) rows.push_back(row);
+  const std::size_t every = (rows.size() + kMostDots - 1) / kMostDots;
+  const auto all = [&](Pen& on) {
+    for (std::size_t i = 0; i < rows.size(); i += every) draw(on, rows[i]);
+  };
+  if (rows.size() <= kMostVectorDots) return all(pen);
+  pen.as_pixels(area.x - kDotRoom, area.y - kDotRoom, area.w + 2 * kDotRoom, area.h + 2 * kDotRoom, all);
 }
 
 void dot(Pen& pen, double x, double y, double radius) {
@@ -125,7 +144,7 @@ Cell range_of(const std::vector<Cell>& cells) {
 
 bool is_flat(const Figure& figure, const AxisValues& across, const AxisValues& up, bool sampled) {
   const Cell range = range_of(cells_of(figure, across, up, sampled));
-  return !(range.most - range.least > kFlat * std::max(std::abs(range.most), std::abs(range.least)));
+  return range.count == 0 || pliant::is_flat(range.least, range.most);
 }
 
 void draw_curve(Pen& pen, const PlotArea& area, const Figure& figure, const AxisValues& axis, bool sampled) {
@@ -139,9 +158,10 @@ void draw_curve(Pen& pen, const PlotArea& area, const Figure& figure, const Axis
   draw_ticks(pen, area, shares(up), false, true);
   draw_frame(pen, area, figure.name, axis.caption);
   if (sampled) {
-    pen.color(kBlue, 0.75);
-    for (std::size_t row = 0; row < figure.of_row.size(); ++row)
-      if (std::isfinite(figure.of_row[row])) dot(pen, px(axis.of_row[row]), py(figure.of_row[row]), 3.5);
+    draw_run_dots(pen, area, figure, [&](Pen& on, std::size_t row) {
+      on.color(kBlue, 0.75);
+      dot(on, px(axis.of_row[row]), py(figure.of_row[row]), 3.5);
+    });
     return;
   }
   std::vector<Cell> cells(axis.steps.size());
@@ -187,15 +207,16 @@ void draw_map(Pen& pen, PlotArea area, const Figure& figure, const AxisValues& a
   draw_ticks(pen, area, ticks_x, true, sampled);
   draw_ticks(pen, area, ticks_y, false, sampled);
   const double cw = area.w / static_cast<double>(w), ch = area.h / static_cast<double>(h);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  if (sampled)
+    draw_run_dots(pen, area, figure, [&](Pen& on, std::size_t row) {
+      on.color(heat(share(figure.of_row[row])));
+      dot(on, area.x + area.w * across.scale.share(across.of_row[row]),
+          area.y + area.h * (1.0 - up.scale.share(up.of_row[row])), 5);
+    });
+  for (std::size_t i = 0; i < cells.size() && !sampled; ++i) {
     if (cells[i].count == 0) continue;
     const double value = cells[i].mean();
     pen.color(heat(share(value)));
-    if (sampled) {
-      dot(pen, area.x + area.w * across.scale.share(across.of_row[i]),
-          area.y + area.h * (1.0 - up.scale.share(up.of_row[i])), 5);
-      continue;
-    }
     const double x = area.x + cw * static_cast<double>(i % w),
                  y = area.y + area.h - ch * static_cast<double>(i / w + 1);
     cairo_set_antialias(pen.get(), CAIRO_ANTIALIAS_NONE);  // no seams between cells

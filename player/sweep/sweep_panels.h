@@ -18,6 +18,8 @@ struct Figure {
   std::vector<double> of_row;  // NaN where a run has none
 };
 
+inline constexpr std::size_t kMostDots = 2000;  // of a panel, which they cover
+
 // Mean over the other axes at each step, and the range in which they lie; of samples every run is a dot.
 void draw_curve(Pen& pen, const PlotArea& area, const Figure& figure, const AxisValues& axis, bool sampled);
 // Cells of two axes of steps, each the mean over the other axes; of samples a dot for each run.

@@ -1,13 +1,16 @@
 #include "player/sweep/sweep_plot.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 
+#include "player/record/plot.h"
 #include "player/sweep/sweep_panels.h"
 
 namespace pliant {
@@ -20,19 +23,22 @@ constexpr double kAbovePlot = 36, kBelowPlot = 66;
 constexpr int kPlotColumns = 3;
 constexpr std::size_t kMostPanels = 24;  // of a picture
 constexpr std::size_t kMostMaps = 10;    // pairs of axes
+constexpr std::size_t kMostCurves = 10;  // axes
 
-// Numbers that are not the same in every run.
+// Numbers that are not the same in every run, rounding aside.
 std::vector<Figure> figures_of(const SweepTable& table) {
   std::vector<Figure> out;
   for (const std::string& name : table.figures) {
     Figure figure{name, {}};
-    std::set<double> seen;
+    double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const SweepRow& row : table.rows) {
       const bool has = row.done() && row.line["figures"].contains(name) && row.line["figures"][name].is_number();
       figure.of_row.push_back(has ? row.line["figures"][name].get<double>() : std::nan(""));
-      if (has) seen.insert(figure.of_row.back());
+      if (!has) continue;
+      least = std::min(least, figure.of_row.back());
+      most = std::max(most, figure.of_row.back());
     }
-    if (seen.size() > 1) out.push_back(std::move(figure));
+    if (most > least && !is_flat(least, most)) out.push_back(std::move(figure));
   }
   return out;
 }
@@ -88,6 +94,7 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
   std::size_t done = 0;
   for (const SweepRow& row : table.rows) done += row.done();
   const std::string runs = fmt::format("; {} run{}", done, done == 1 ? "" : "s");
+  const std::string dots = done > kMostDots ? fmt::format("{} runs as dots, at most", kMostDots) : "every run";
   std::vector<AxisValues> along;
   std::vector<std::size_t> varied;
   for (std::size_t a = 0; a < table.axes.size(); ++a) {
@@ -95,9 +102,10 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
     if (along[a].steps.size() > 1) varied.push_back(a);
   }
   for (const std::size_t a : varied) {
+    if (plots == kMostCurves) break;
     const bool sampled = table.axes[a].sampled, alone = varied.size() == 1;
     const std::string subtitle = "along " + table.axes[a].name +
-                                 (sampled ? ": every run"
+                                 (sampled ? ": " + dots
                                   : alone ? ""
                                           : ": the mean over the other axes, and their range shaded") +
                                  runs;
@@ -117,7 +125,7 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
       for (const Figure& figure : figures)
         if (!is_flat(figure, along[a], along[b], sampled)) uneven.push_back(figure);
       if (uneven.empty()) continue;
-      const std::string subtitle = (sampled              ? "every run"
+      const std::string subtitle = (sampled              ? dots
                                     : varied.size() == 2 ? ""
                                                          : "the mean over the other axes") +
                                    (sampled || varied.size() > 2 ? runs : runs.substr(2));
@@ -129,12 +137,15 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
       if (!ok) return ok.error();
       ++maps;
     }
+  std::vector<std::string> less;
   if (figures.size() > kMostPanels)
-    left_out = fmt::format("each plot has the first {} of {} figures that vary", kMostPanels, figures.size());
-  if (pairs > kMostMaps)
-    left_out +=
-        fmt::format("{}maps are of the first {} of {} pairs of axes", left_out.empty() ? "" : "; ", kMostMaps, pairs);
-  if (!left_out.empty()) left_out += "; results.csv has them all";
+    less.push_back(fmt::format("each plot has the first {} of {} figures that vary", kMostPanels, figures.size()));
+  if (varied.size() > kMostCurves)
+    less.push_back(fmt::format("curves are along the first {} of {} axes", kMostCurves, varied.size()));
+  if (pairs > kMostMaps) less.push_back(fmt::format("maps are of the first {} of {} pairs of axes", kMostMaps, pairs));
+  if (done > kMostDots && std::any_of(varied.begin(), varied.end(), [&](auto a) { return table.axes[a].sampled; }))
+    less.push_back(fmt::format("at most {} of {} runs are dots", kMostDots, done));
+  if (!less.empty()) left_out = fmt::format("{}; results.csv has them all", fmt::join(less, "; "));
   return plots + maps;
 }
 

@@ -4,6 +4,7 @@
 #include "content/author/object_frame.h"
 #include "content/author/presets.h"
 #include "content/level_file.h"
+#include "engine/choice/model_choice.h"
 #include "player/verbs/options.h"
 
 namespace pliant {
@@ -14,7 +15,7 @@ void add_files(CLI::App& app, InspectOptions& inspection, ConvertOptions& conver
   verb->add_flag("--json", inspection.json, "as JSON");
   CLI::Option* fit = verb->add_flag("--fit", inspection.fit, "which models error budgets choose, and the evidence");
   verb->add_option("--error", inspection.error, "with --fit: error budget of every surface and soft body")
-      ->check(within(1e-6, 10.0))
+      ->check(within(kErrorBudget.min, kErrorBudget.max))
       ->needs(fit);
   add_unit(verb, inspection.unit, "what one unit of a bare mesh is (m)");
   add_limits(verb);

@@ -1,6 +1,7 @@
 #include "components/haptic_device.h"
 #include "components/world.h"
 #include "content/keys/enum_words.h"
+#include "engine/choice/model_choice.h"
 #include "player/verbs/options.h"
 
 namespace pliant {
@@ -34,7 +35,7 @@ void add_run(CLI::App& app, RunOptions& run) {
   verb->add_option("--max-force", run.max_force, "the most that the level may ask of a device [N] (10)")
       ->check(within(1e-3, DeviceRange::kMaxForce.max));
   verb->add_option("--error", run.error, "error budget of every surface and soft body: the cheapest models within it")
-      ->check(within(1e-6, 10.0));
+      ->check(within(kErrorBudget.min, kErrorBudget.max));
   add_limits(verb);
   verb->add_option("--out", run.out,
                    "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results")

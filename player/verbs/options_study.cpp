@@ -60,7 +60,8 @@ void add_fit(CLI::App& app, FitOptions& options) {
                    "folder of figures and plots (out/fit); FOLDER-2 and on where one has results")
       ->check(named());
   verb->add_flag("--force", options.force, "replace what is there");
-  verb->add_option("--radius", options.radius, "of the indenter [m]; 0: a point (finite elements: two cells)")
+  verb->add_option("--radius", options.radius,
+                   "of the indenter [m] (measured: a point; finite elements: as the level says)")
       ->check(within(0, 1));
   verb->add_option("--level", options.level, "into which level the keys go")->check(named())->group(measured);
   verb->add_option("--law", options.law, joined(laws) + " (auto)")->check(one_of(laws))->group(measured);
@@ -82,7 +83,7 @@ void add_fit(CLI::App& app, FitOptions& options) {
   verb->add_option("--thickness", options.thickness, "of a wall [m] (the level's)")
       ->check(within(0, 1e3))
       ->group(elements);
-  verb->add_option("--cell", options.cell, "of the lattice [m] (some 16000 tetrahedra)")
+  verb->add_option("--cell", options.cell, "of the lattice under the indenter [m] (half its radius)")
       ->check(within(0, 1e3))
       ->group(elements);
   verb->add_option("--pin", options.pin, "which side is held: " + joined(sides) + " (the level's, else bottom)")

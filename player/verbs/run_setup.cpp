@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "content/keys/enum_words.h"
 #include "content/keys/unused_keys.h"
@@ -13,7 +14,7 @@
 #include "content/safety_cap.h"
 #include "engine/choice/model_choice.h"
 #include "engine/driver_limits.h"
-#include "engine/scene_check.h"
+#include "engine/scene_hash.h"
 #include "engine/sources.h"
 #include "player/run/unfelt.h"
 #include "player/verbs/content_folder.h"
@@ -30,7 +31,7 @@ namespace {
 
 constexpr const char* kNeedsWindow =
     "needs a window, and none is open; set DISPLAY and leave out --headless and --lockstep, or use orbit";
-constexpr const char* kUnitSetting = "--unit=";  // among a recording's settings
+constexpr const char *kUnitSetting = "--unit=", *kErrorSetting = "--error=";  // among a recording's settings
 
 // The recording belongs to this level: same name, rate and probes.
 Outcome check_replay(const Recording& replay, const RunOptions& options, const World& world) {
@@ -145,11 +146,31 @@ void say_creeping(Prepared& run) {
   if (!sentence.empty()) say(run, sentence);
 }
 
+// --error, of this run or else of the recording.
+Outcome apply_budget(const RunOptions& options, Level& level, Prepared& run) {
+  double budget = options.error;
+  if (run.replay && !(budget > 0.0))
+    for (const std::string& setting : run.replay->header.settings) {
+      if (!setting.starts_with(kErrorSetting)) continue;
+      const std::string text = setting.substr(std::string_view(kErrorSetting).size());
+      char* end = nullptr;
+      budget = std::strtod(text.c_str(), &end);
+      if (text.empty() || *end != '\0' || !(budget >= kErrorBudget.min && budget <= kErrorBudget.max))
+        return failed({options.replay, "its setting " + setting + " is no error budget; record it again"});
+      say(run, "the recording's error budget holds: " + setting);
+    }
+  if (!(budget > 0.0)) return {};
+  if (const Status set = set_error_budget(level, budget); !set) return wrong_arguments(set.error());
+  run.settings.push_back(fmt::format("{}{}", kErrorSetting, budget));
+  return {};
+}
+
 // A replay has the settings that it was recorded with, and --set and --tool-force on top of them.
 Outcome apply_settings(const RunOptions& options, double unit, Level& level, Prepared& run) {
   if (run.replay && !run.replay->header.settings.empty()) {
     for (const std::string& setting : run.replay->header.settings)
-      if (!setting.starts_with(kUnitSetting) && !is_driver_setting(setting)) run.settings.push_back(setting);
+      if (!setting.starts_with(kUnitSetting) && !setting.starts_with(kErrorSetting) && !is_driver_setting(setting))
+        run.settings.push_back(setting);
     if (const Status status = set_keys(level, run.settings); !status)
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
     if (unit != options.unit || !run.settings.empty())
@@ -227,20 +248,21 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (options.max_force > 0.0) cap.max_force = options.max_force;
   for (const std::string& sentence : cap_safety(level, cap)) say(run, sentence);
   if (Outcome wrong = apply_settings(options, *unit, level, run)) return wrong;
-  if (options.error > 0.0)
-    if (const Status set = set_error_budget(level, options.error); !set) return wrong_arguments(set.error());
+  // Budgets are measured at the rate that the run has.
+  if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
+  if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
+  if (Outcome wrong = apply_budget(options, level, run)) return wrong;
   const auto choices = choose_models(level);
   if (!choices) return failed(choices.error());
   for (const ModelChoice& choice : *choices) say(run, choice.sentence());
-  if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
-  if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
 
   run.scene = scene_hash(level);
-  if (run.replay && run.replay->header.scene != 0 && run.replay->header.scene != run.scene)
+  if (run.replay && run.replay->header.scene == 0)
+    say(run, options.replay + kUnknownScene);
+  else if (run.replay && run.replay->header.scene != run.scene)
     say(run,
-        "the level is not as it was when the recording was made (its file, or --set, --unit or --tool-force of this "
-        "run): "
-        "forces will differ");
+        "the level is not as it was when the recording was made (its files, or --set, --unit, --error or --tool-force "
+        "of this run): forces will differ");
   auto spawned = spawn_moving_images(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();

@@ -35,9 +35,10 @@ struct Prepared {
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
-  SimulatedHands hands;               // not connected
-  std::uint64_t scene = 0;            // scene_hash() of the level that runs
-  std::vector<std::string> settings;  // for a recording: --set, --unit and --tool-force, those of a replay before them
+  SimulatedHands hands;     // not connected
+  std::uint64_t scene = 0;  // scene_hash() of the level that runs
+  // For a recording: --set, --unit, --error and --tool-force, those of a replay before them.
+  std::vector<std::string> settings;
 };
 
 // On stderr and in the report.

@@ -43,6 +43,7 @@ struct Search {
   const HeightField& field;
   Tick tick;
 
+  double early() const { return kEarly * static_cast<double>(mesh.box.diagonal()); }  // [m]
   Foot downhill(std::uint32_t triangle, dvec3 barycentric, dvec3 x) const {
     return descend(mesh, triangle, barycentric, x, true, object.closed);
   }
@@ -155,6 +156,19 @@ Foot follow_foot(const Search& s, Foot foot, dvec3 from, dvec3 to) {
   return foot;
 }
 
+// A tip that was pressed through a wall is beyond it, and still held by the side that it went in at. That wall, which
+// has the foot there behind it, is no surface to it: else it would be caught on its way back.
+bool pressed_through(const Search& s, const ProbeTip& tip, dvec3 p, dvec3 outward) {
+  const double flush = s.early() * length(outward);
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    const HeldFoot& held = s.object.sources[i].held;
+    if (held.tick == s.tick.index + 1 && held.probe == tip.probe && held.tip == tip.index &&
+        dot(p - held.p, outward) >= -flush)
+      return true;
+  }
+  return false;
+}
+
 bool is_known(const Search& s, const ProbeTip& tip, const Foot& foot) {
   const double same = 1e-3 * static_cast<double>(s.mesh.mean_edge);
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
@@ -210,6 +224,7 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   const double radius = source.tip.radius;
   const Foot before = source.place.main();
   const double last = source.place.height;
+  if (last < s.early()) source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p};
   const double moved = length(x - source.x);
   const Foot foot = follow_foot(s, before, source.x, x);
   contact.older_height = contact.previous_height;
@@ -287,16 +302,34 @@ bool inside_neighbour(const Search& s, const ProbeTip& tip) {
                                          [&](std::uint32_t slot) { return behind(s.world.touch->objects[slot]); });
 }
 
+// Of the walls on a way, the first that is entered from outside and is a surface to the tip; `along` [m] past a wall.
+struct EntryPlace {
+  std::uint32_t triangle = Foot::kNone;
+  dvec3 barycentric{1, 0, 0};
+  dvec3 x{0};  // [m]
+};
+EntryPlace entry_place(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to, dvec3 along) {
+  constexpr int kMostWalls = 8;  // that lie on the way of one tick
+  for (int wall = 0; wall < kMostWalls && dot(to - from, along) > 0; ++wall) {
+    const pliant::Entry entry = first_entry(s.mesh, from, to);
+    if (!entry.valid()) break;
+    const dvec3 x = from + entry.fraction * (to - from);
+    const uvec3 t = s.mesh.triangles[entry.triangle];
+    const dvec3 a(s.mesh.position(t.x)), b(s.mesh.position(t.y)), c(s.mesh.position(t.z));
+    if (!pressed_through(s, tip, x, cross(b - a, c - a))) return {entry.triangle, entry.barycentric, x};
+    from = x + along;
+  }
+  return {};
+}
+
 // A point has gone through the surface.
 void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
   const dvec3 d = to - from;
   if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
   Foot foot;
-  const double early = kEarly * static_cast<double>(s.mesh.box.diagonal()) / length(d);
-  const pliant::Entry entry = first_entry(s.mesh, from - early * d, to);
-  if (entry.valid()) {
-    foot =
-        s.downhill(entry.triangle, entry.barycentric, from + std::max(0.0, entry.fraction * (1 + early) - early) * d);
+  const dvec3 early = s.early() / length(d) * d;
+  if (const EntryPlace entry = entry_place(s, tip, from - early, to, early); entry.triangle != Foot::kNone) {
+    foot = s.downhill(entry.triangle, entry.barycentric, dot(entry.x - from, d) > 0 ? entry.x : from);
     foot = follow_foot(s, foot, foot.p, to);
   } else if (const double bulge = static_cast<double>(s.mesh.tree.bulge); bulge > 0 && tip.tip.radius == 0) {
     // The curved surface stands a little before or behind its triangles.
@@ -304,6 +337,7 @@ void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
     if (!near.valid()) return;
     if (s.downhill(near.triangle, near.barycentric, from).height < 0) return;
     foot = s.downhill(near.triangle, near.barycentric, to);
+    if (pressed_through(s, tip, foot.p, foot.normal)) return;
   }
   if (!foot.valid() || !(foot.height < 0) || beyond_border(s.mesh, foot, to) || is_known(s, tip, foot)) return;
   begin(s, tip, foot, from, to);
@@ -322,8 +356,7 @@ void find_inside(const Search& s, const ProbeTip& tip, dvec3 x) {
 // `searched`: where this tip last looked for walls of the object.
 void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dvec3 from, dvec3 to) {
   const double radius = tip.tip.radius, within = radius * (1 + kAhead);
-  const double band =
-      within + static_cast<double>(s.mesh.tree.bulge) + 2 * kEarly * static_cast<double>(s.mesh.box.diagonal());
+  const double band = within + static_cast<double>(s.mesh.tree.bulge) + 2 * s.early();
   const Box& box = s.mesh.box;
   const dvec3 low = glm::min(from, to) - dvec3(band), high = glm::max(from, to) + dvec3(band);
   if (low.x > box.max.x || low.y > box.max.y || low.z > box.max.z || high.x < box.min.x || high.y < box.min.y ||
@@ -344,7 +377,7 @@ void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dve
     find_walls(s, x, within, feet, count);
     for (std::size_t f = 0; f < count; ++f) {
       const Foot foot = i == steps ? feet[f] : follow_foot(s, feet[f], x, to);
-      if (foot.height > within || is_known(s, tip, foot)) continue;
+      if (foot.height > within || is_known(s, tip, foot) || pressed_through(s, tip, foot.p, foot.normal)) continue;
       begin(s, tip, foot, from, to);
     }
   }

@@ -37,6 +37,14 @@ struct SourceLink {
   bool operator==(const SourceLink&) const = default;
 };
 
+// Where a contact's tip was behind the surface: it may come back through a wall that it was pressed through.
+struct HeldFoot {
+  std::uint64_t tick = 0;  // after which it was
+  Entity probe;
+  std::uint8_t tip = 0;
+  dvec3 p{0};  // [m] object frame
+};
+
 // One place of an object's pool: a contact, where it is, and its share in the object's field.
 struct SourceState {
   Entity contact;                    // has a Contact
@@ -45,6 +53,7 @@ struct SourceState {
   dvec3 x{0};                        // [m] the tip's centre last tick, object frame
   Tip tip;                           // which the contact is of
   FootBlend place;                   // of the tip's centre
+  HeldFoot held;                     // written where its contact is followed
   bool active = false;               // the contact dented the surface in the last tick
   FieldSource now, before;           // this tick's and the last tick's: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones

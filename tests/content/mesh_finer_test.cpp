@@ -24,10 +24,10 @@ using test::level_of;
 using test::sheet;
 using test::worst_gap;
 
-BuiltMesh build(const std::vector<Primitive>& primitives, std::optional<double> reach,
+BuiltMesh build(const std::vector<Primitive>& primitives, std::optional<DentSize> dents,
                 const mat4& to_object = mat4(1.0f)) {
   MeshOptions options;
-  options.reach = reach;
+  options.dents = dents;
   Result<BuiltMesh> built = build_mesh("test", primitives, to_object, options);
   EXPECT_TRUE(built.ok()) << built.error().message();
   return std::move(*built);
@@ -59,7 +59,7 @@ void expect_drawn_where_touched(const BuiltMesh& built) {
 
 TEST(MeshFiner, ABoxKeepsItsFacesItsCreasesAndItsVolume) {
   for (const bool normals : {false, true}) {
-    const BuiltMesh built = build({box({0.5f, 0.4f, 0.3f}, normals)}, 0.25);
+    const BuiltMesh built = build({box({0.5f, 0.4f, 0.3f}, normals)}, DentSize{0.25});
     const Mesh& mesh = built.mesh;
     EXPECT_EQ(built.report.refined_from, 12u);
     EXPECT_GT(mesh.triangles.size(), 1000u);
@@ -85,7 +85,7 @@ TEST(MeshFiner, ABoxKeepsItsFacesItsCreasesAndItsVolume) {
 TEST(MeshFiner, ACoarseSmoothSphereBecomesItsPatches) {
   Primitive p = globe(6, 5);
   p.normal = p.position;
-  const BuiltMesh coarse = build({p}, std::nullopt), finer = build({p}, 0.3);
+  const BuiltMesh coarse = build({p}, std::nullopt), finer = build({p}, DentSize{0.3});
   EXPECT_EQ(finer.report.refined_from, 48u);
   EXPECT_TRUE(finer.mesh.closed);
   EXPECT_TRUE(finer.mesh.crease.empty());
@@ -119,7 +119,8 @@ TEST(MeshFiner, ACoarseSmoothSphereBecomesItsPatches) {
 
 TEST(MeshFiner, ACylinderStaysCreasedAlongItsRimsAndGetsRounder) {
   for (const bool normals : {false, true}) {
-    const BuiltMesh coarse = build({cylinder(12, normals)}, std::nullopt), built = build({cylinder(12, normals)}, 0.3);
+    const BuiltMesh coarse = build({cylinder(12, normals)}, std::nullopt),
+                    built = build({cylinder(12, normals)}, DentSize{0.3});
     EXPECT_TRUE(built.mesh.closed);
     EXPECT_GT(crease_length(built.mesh), crease_length(coarse.mesh)) << "the rim's chords become its arcs";
     EXPECT_NEAR(crease_length(built.mesh), 4 * std::numbers::pi, 0.02);
@@ -154,7 +155,7 @@ TEST(MeshFiner, PrimitivesAreCutAlikeAndWhatIsLinearStaysLinear) {
   }
   mat4 frame(1.0f);
   frame[0][0] = -3.0f;  // mirrors and stretches
-  const BuiltMesh built = build(faces, 1.0, frame);
+  const BuiltMesh built = build(faces, DentSize{1.0}, frame);
   const Mesh& mesh = built.mesh;
   EXPECT_TRUE(mesh.closed);
   EXPECT_GT(enclosed_volume(mesh), 0.0);
@@ -175,7 +176,7 @@ TEST(MeshFiner, PrimitivesAreCutAlikeAndWhatIsLinearStaysLinear) {
 
 TEST(MeshFiner, AFineMeshIsUntouchedToTheBit) {
   const Primitive p = icosphere(5);
-  const BuiltMesh before = build({p}, std::nullopt), after = build({p}, 0.0);
+  const BuiltMesh before = build({p}, std::nullopt), after = build({p}, DentSize{0.0});
   EXPECT_EQ(after.report.refined_from, 0u);
   EXPECT_EQ(after.mesh.px, before.mesh.px);
   EXPECT_EQ(after.mesh.ny, before.mesh.ny);
@@ -189,8 +190,8 @@ TEST(MeshFiner, AFineMeshIsUntouchedToTheBit) {
 }
 
 TEST(MeshFiner, WhatWasCutIsNotCoarseUnlessItWouldBecomeTooMuch) {
-  EXPECT_FALSE(is_coarse(build({icosphere(1)}, 0.4).mesh, 0.41));
-  const BuiltMesh bounded = build({box({1, 1, 1}, false)}, 0.003);
+  EXPECT_FALSE(is_coarse(build({icosphere(1)}, DentSize{0.4}).mesh, 0.41));
+  const BuiltMesh bounded = build({box({1, 1, 1}, false)}, DentSize{0.003});
   EXPECT_LE(bounded.mesh.triangles.size(), 12 + kMostAdded);
   EXPECT_GT(bounded.mesh.triangles.size(), kMostAdded / 8);
   EXPECT_TRUE(bounded.mesh.closed);
@@ -201,7 +202,7 @@ TEST(MeshFiner, AnOpenSheetStaysOpenAlongItsBorderAndItsBackIsDrawn) {
   const std::vector<std::uint32_t> front = p.index;
   for (std::size_t i = 0; i < front.size(); i += 3)
     p.index.insert(p.index.end(), {front[i], front[i + 2], front[i + 1]});
-  const BuiltMesh built = build({p}, 0.3);
+  const BuiltMesh built = build({p}, DentSize{0.3});
   EXPECT_FALSE(built.mesh.closed);
   EXPECT_EQ(built.draw.indices.size(), 6 * built.mesh.triangles.size());
   double area = 0.0;
@@ -236,6 +237,22 @@ TEST(MeshFiner, SpawnRefinesWhatGivesWayAndSaysSo) {
   EXPECT_THAT(notes[0], testing::MatchesRegex("`thing`: 12 triangles refined to [0-9]+,[0-9]+ so that dents can show"));
 }
 
+TEST(MeshFiner, AContactRadiusAsksForEdgesOfHalfOfItWhereTheShapeDependsOnIt) {
+  DeformableParameters d;
+  d.reach = 0.3;
+  d.contact_radius = 0.06;
+  const auto longest = [](const DeformableParameters& of) {
+    return longest_edge(build({box({1, 1, 1}, false)}, dent_size(of)).mesh);
+  };
+  d.shape = Shape::kVolume;
+  EXPECT_LE(longest(d), 0.3 / 3);
+  EXPECT_GT(longest(d), 0.3 / 6);
+  d.shape = Shape::kPunch;
+  EXPECT_LE(longest(d), 0.06 / 2);
+  d.contact_radius = 0.0;
+  EXPECT_GT(longest(d), 0.3 / 6) << "a fifth of the reach that nobody said asks for nothing";
+}
+
 TEST(MeshFiner, RealMeshesStayClosedAndSound) {
   namespace fs = std::filesystem;
   const fs::path corpus(PLIANT_CORPUS_DIR);
@@ -248,7 +265,7 @@ TEST(MeshFiner, RealMeshesStayClosedAndSound) {
     ASSERT_TRUE(level.ok()) << level.error().message();
     for (const LevelMesh& mesh : level->meshes) {
       SCOPED_TRACE(file.filename().string() + ": " + mesh.name);
-      const BuiltMesh before = build(mesh.primitives, std::nullopt), after = build(mesh.primitives, 0.0);
+      const BuiltMesh before = build(mesh.primitives, std::nullopt), after = build(mesh.primitives, DentSize{0.0});
       EXPECT_EQ(after.mesh.closed, before.mesh.closed);
       EXPECT_EQ(after.mesh.crease.empty(), before.mesh.crease.empty());
       // Curves leave their chords by a share of an edge, and thin ligaments have little volume beside their area.

@@ -31,14 +31,14 @@ TEST(MeshRefine, LeavesNoEdgeLongAndTheSurfaceWhereItWasAlsoAcrossSeams) {
       const Primitive coarse = seams ? unshared(icosphere(1)) : icosphere(1);
       std::vector<Primitive> finer{coarse};
       ASSERT_GT(longest_edge(coarse, to_object), 0.2);
-      ASSERT_TRUE(refine(finer, to_object, 0.2));
+      ASSERT_TRUE(refine(finer, to_object, [](dvec3) { return 0.2; }));
       EXPECT_LE(longest_edge(finer[0], to_object), 0.2);
       const Result<BuiltMesh> before = build_mesh("coarse", {&coarse, 1}, to_object),
                               after = build_mesh("finer", finer, to_object);
       ASSERT_TRUE(before && after);
       EXPECT_TRUE(after->mesh.closed) << "something opened";
       EXPECT_NEAR(enclosed_volume(after->mesh), enclosed_volume(before->mesh), 1e-6);
-      EXPECT_FALSE(refine(finer, to_object, 0.2)) << "nothing is left to cut";
+      EXPECT_FALSE(refine(finer, to_object, [](dvec3) { return 0.2; })) << "nothing is left to cut";
     }
 }
 
@@ -56,7 +56,7 @@ TEST(MeshRefine, GivesNewVerticesTheMeanOfWhatTheirEdgesCarry) {
     p.tangent.emplace_back(normalize(vec3(1, 0, -x.x)), -1.0f);
   }
   std::vector<Primitive> finer{p};
-  ASSERT_TRUE(refine(finer, mat4(1.0f), 0.3));
+  ASSERT_TRUE(refine(finer, mat4(1.0f), [](dvec3) { return 0.3; }));
   const Primitive& f = finer[0];
   ASSERT_GT(f.position.size(), p.position.size());
   for (std::size_t v = 0; v < f.position.size(); ++v) {
@@ -76,7 +76,7 @@ TEST(MeshRefine, GivesNewVerticesTheMeanOfWhatTheirEdgesCarry) {
 
 TEST(MeshRefine, StopsBeforeItMakesMoreThanItMay) {
   std::vector<Primitive> finer{icosphere(0)};
-  EXPECT_TRUE(refine(finer, mat4(1.0f), 0.0));
+  EXPECT_TRUE(refine(finer, mat4(1.0f), [](dvec3) { return 0.0; }));
   EXPECT_LE(finer[0].index.size() / 3, kMostRefined);
   EXPECT_GT(finer[0].index.size() / 3, kMostRefined / 4);
 }

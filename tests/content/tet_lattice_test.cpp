@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/lattice.h"
 #include "content/tets/lattice_inside.h"
@@ -57,7 +58,7 @@ TetMesh lattice(const Mesh& surface, double cell = 0.0) {
   return mesh ? std::move(*mesh) : TetMesh{};
 }
 
-void expect_sound(const TetMesh& mesh) {
+void expect_conforming(const TetMesh& mesh) {
   for (const Tet& t : mesh.tets) ASSERT_GT(tet_volume(mesh.nodes, t), 0.0);
   // Elements that overlapped would add up to more than their boundary encloses.
   double within = 0.0;
@@ -72,13 +73,16 @@ void expect_sound(const TetMesh& mesh) {
   const double volume = total_volume(mesh);
   EXPECT_NEAR(within, volume, 1e-12 * volume);
   for (const auto& [edge, balance] : edges) ASSERT_EQ(balance, 0) << "the boundary is not closed";
-  EXPECT_GT(mesh.quality.smallest_dihedral, 10.78 * kDegree);
-  EXPECT_LT(mesh.quality.largest_dihedral, 164.74 * kDegree);
   std::vector<int> uses(mesh.nodes.size(), 0);
   for (const Tet& t : mesh.tets)
     for (const std::uint32_t corner : t) ++uses[corner];
   EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
   EXPECT_EQ(mesh.free_count, mesh.node_count());
+}
+void expect_sound(const TetMesh& mesh) {
+  expect_conforming(mesh);
+  EXPECT_GT(mesh.quality.smallest_dihedral, 10.78 * kDegree);
+  EXPECT_LT(mesh.quality.largest_dihedral, 164.74 * kDegree);
 }
 
 TEST(Lattice, VolumeConvergesWithTheSquareOfTheCellAndElementsStayWellShaped) {
@@ -235,6 +239,85 @@ TEST(Inside, FarClustersAsDipolesAgreeWithTheSumOverEveryTriangle) {
     EXPECT_NEAR(inside.winding(p), exact, 0.05) << "0.5 decides";
     if (std::abs(length(dvec2(ring, p.z)) - 0.3) > 0.01) EXPECT_NEAR(exact, length(dvec2(ring, p.z)) < 0.3, 1e-9);
   }
+}
+
+// Lattices that are finer around a place.
+TEST(TetFocus, WhatIsBroughtOutwardComesBackInward) {
+  const LatticeFocus focus{dvec3(1, 2, 3), 0.02, dmat3(1.0)};
+  double before = 0.0;
+  for (const double q : {1e-6, 1e-3, 0.01, 0.02, 0.1, 1.0}) {
+    const dvec3 out = focus.outward(dvec3(0, q, 0)) - focus.center;
+    EXPECT_NEAR(focus.inward(out.y) / q, 1.0, 1e-9) << q;
+    EXPECT_GT(out.y, before);
+    before = out.y;
+  }
+  EXPECT_NEAR(focus.width(1e-6), 1.0, 1e-6);
+  EXPECT_NEAR(focus.width(10.0), LatticeFocus::kGrowth, 1e-4);
+}
+
+TEST(TetFocus, FillsTheSameVolumeWithFineCellsWhereItIsAskedTo) {
+  const Mesh surface = mesh_of({torus(0.10f, 0.04f, 48, 24)});
+  const double volume = enclosed_volume(surface);
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  const dmat3 turned(dvec3(c, s, 0), dvec3(-s, c, 0), dvec3(0, 0, 1));
+  for (const dvec3 center : {dvec3(0.14, 0, 0), dvec3(0, 0.1, 0.04), dvec3(0.3, 0.3, 0.3)}) {
+    const LatticeFocus focus{center, 0.02, turned};
+    LatticeWish wish;
+    wish.cell = 0.005;
+    wish.focus = focus;
+    const Result<TetMesh> mesh = fill_surface(surface, wish);
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message();
+    const TetMesh coarse = lattice(surface, LatticeFocus::kGrowth * wish.cell);
+    EXPECT_LT(std::abs(total_volume(*mesh) - volume), std::abs(total_volume(coarse) - volume));
+    expect_conforming(*mesh);
+    EXPECT_GT(mesh->quality.smallest_dihedral, 5 * kDegree) << "of a lattice drawn out by 1.8";
+    // Every edge is of its cell: at most 1.8 times as long as wide, and a node may have moved onto the surface by 0.4.
+    double shortest = 1.0;
+    for (const Tet& tet : mesh->tets)
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = i + 1; k < 4; ++k) {
+          const dvec3 a = mesh->nodes[tet[i]], b = mesh->nodes[tet[k]];
+          const double width = wish.cell * focus.width(focus.inward(length(0.5 * (a + b) - center)));
+          EXPECT_LT(length(b - a), 2.2 * width);
+          if (length(0.5 * (a + b) - center) < 0.02) shortest = std::min(shortest, length(b - a));
+        }
+    if (center.x < 0.3) EXPECT_LT(shortest, wish.cell);
+    const Result<TetMesh> even = fill_surface(surface, {wish.cell, Fill::kSolid, 0.0, {}, {}});
+    ASSERT_TRUE(even.ok());
+    EXPECT_LT(mesh->tets.size(), even->tets.size() / 4);
+  }
+}
+
+TEST(TetFocus, OfABodyIsItsBoxAndTheUsualNumberOfTetrahedraStays) {
+  LevelNode node;
+  node.name = "body";
+  node.soft_body = SoftBody{};
+  node.soft_body->focus = Box{vec3(0.09f, -0.02f, 0.0f), vec3(0.13f, 0.02f, 0.04f)};
+  const LevelMesh ring{"ring", {torus(0.10f, 0.04f, 24, 12)}};
+  const auto parts = make_soft_parts(node, &ring, mat4(1.0f), {});
+  ASSERT_TRUE(parts.ok()) << parts.error().message();
+  EXPECT_NEAR(static_cast<double>(parts->tets.tets.size()), kUsualTets, 0.3 * kUsualTets);
+  node.soft_body->focus = {};
+  const auto even = make_soft_parts(node, &ring, mat4(1.0f), {});
+  ASSERT_TRUE(even.ok());
+  EXPECT_LT(parts->tets.report.cell, 0.6 * even->tets.report.cell);
+  // Its surface is as fine as the cells behind it, there.
+  const auto longest_near = [&](const SoftParts& of, bool inside) {
+    double longest = 0.0;
+    for (const uvec3& t : of.surface.mesh.triangles)
+      for (int i = 0; i < 3; ++i) {
+        const dvec3 a(of.surface.mesh.position(t[i])), b(of.surface.mesh.position(t[(i + 1) % 3]));
+        const dvec3 away = 0.5 * (a + b) - dvec3(0.11, 0, 0.02);
+        if ((length(away) < 0.02) == inside) longest = std::max(longest, length(b - a));
+      }
+    return longest;
+  };
+  EXPECT_LT(longest_near(*parts, true), 2.6 * parts->tets.report.cell);
+  EXPECT_GT(longest_near(*parts, false), 2.6 * parts->tets.report.cell);
+  node.soft_body->focus = Box{vec3(1.0f), vec3(1.1f)};
+  const auto beside = make_soft_parts(node, &ring, mat4(1.0f), {});
+  ASSERT_FALSE(beside.ok());
+  EXPECT_THAT(beside.error().message(), testing::HasSubstr("lies beside the tissue"));
 }
 
 }  // namespace

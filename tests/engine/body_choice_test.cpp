@@ -91,11 +91,102 @@ TEST(BodyChoice, ABodyIsWithinItsBudgetAndATighterOneNeverGivesItACheaperLattice
     off += dot(taken[i] - fine[i], taken[i] - fine[i]), size += dot(fine[i], fine[i]);
   EXPECT_LT(std::sqrt(off / size), 0.8);
   EXPECT_GT(std::sqrt(off / size), 0.0);
-  double before = 0.0;
-  for (const double budget : {2.0, 1.0, 0.5, 0.3, 0.2, 0.1, 0.01}) {
-    const double cost = choice.tried[cheapest_within(choice.tried, budget)].cost;
-    EXPECT_GE(cost, before) << budget;
-    before = cost;
+  // A tighter budget, measured anew: never a cheaper lattice and step, and what is cheaper is not within it.
+  Level tight = slab_level(0.5 * choice.tried[choice.chosen].error);
+  const auto others = choose_models(tight);
+  ASSERT_TRUE(others) << others.error().message();
+  const ModelChoice& other = others->front();
+  EXPECT_GT(other.tried[other.chosen].cost, choice.tried[choice.chosen].cost);
+  EXPECT_TRUE(tight.nodes[0].soft_body->cell < cell || tight.simulation.soft_step < level.simulation.soft_step);
+  for (std::size_t i = 0; i < other.tried.size(); ++i)
+    if (other.tried[i].cost < other.tried[other.chosen].cost && other.within)
+      EXPECT_GT(other.tried[i].error, other.budget) << other.tried[i].label;
+}
+
+// Lattices of a level's only body, pressed at the same places.
+struct PressedLattices {
+  Patches patches;
+  std::vector<Lattice> its;  // of each cell
+};
+PressedLattices pressed_lattices(const Level& level, const std::vector<double>& cells) {
+  PressedLattices out;
+  Level alone = level_alone(level, 0);
+  for (const double cell : cells) {
+    auto lattice = make_lattice(alone, 0, cell, out.patches);
+    EXPECT_TRUE(lattice);
+    out.its.push_back(std::move(lattice).value());
+  }
+  const Mesh& surface = out.patches.surface;
+  out.patches.radius = kDefaultReach * static_cast<double>(surface.box.diagonal());
+  for (std::uint32_t k = 0; k < 6; ++k) out.patches.vertices.push_back((2 * k + 1) * surface.vertex_count / 12);
+  return out;
+}
+
+TEST(BodyChoice, TheErrorOfAnySoftStepIsFiniteAndGrowsWithIt) {
+  const Level level = slab_level(0.0);
+  const PressedLattices at = pressed_lattices(level, {0.02});
+  const auto at_rest = answers(at.its[0], *level.nodes[0].soft_body, at.patches);
+  ASSERT_TRUE(at_rest);
+  const std::vector<double> steps{0.0001, 0.001, 0.002, 0.0025, 0.005, 0.01, 0.02, 1.0 / 30, 0.05, 0.1, 0.3, 1.0};
+  const auto figures = step_errors(at.its[0], *level.nodes[0].soft_body, at.patches, *at_rest, steps);
+  ASSERT_EQ(figures.size(), steps.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_EQ(figures[i].step, steps[i]);
+    EXPECT_GT(figures[i].error, 0.0) << steps[i];
+    EXPECT_LT(figures[i].error, 1.5) << steps[i] << ": nothing that moves at all is farther off";
+    if (i > 0 && steps[i] <= 0.1) EXPECT_GE(figures[i].error, figures[i - 1].error) << steps[i];
+  }
+  EXPECT_EQ(figures[0].error, figures[1].error) << "steps below a millisecond have its error";
+  EXPECT_NEAR(figures.back().error, 1.0, 1e-9) << "in one second all is over: nothing moves";
+  // Euler is of order 1.
+  EXPECT_NEAR(figures[4].error / figures[3].error, 2.0, 0.3);
+  EXPECT_NEAR(figures[5].error / figures[4].error, 2.0, 0.3);
+}
+
+TEST(BodyChoice, AStatedStepOfAnyLengthHasAnError) {
+  for (const double step : {0.0001, 0.07, 0.1, 1.0}) {
+    Level level = slab_level(0.5);
+    level.nodes[0].soft_body->cell = 0.02;
+    level.simulation.soft_step = step;
+    const auto choices = choose_models(level);
+    ASSERT_TRUE(choices) << choices.error().message();
+    for (const ModelCandidate& it : choices->front().tried) EXPECT_LT(it.error, 3.0) << it.label;
+    EXPECT_EQ(choices->front().sentence().find("too short to be measured") != std::string::npos, step < 1e-3);
+  }
+}
+
+TEST(BodyChoice, AFineStatedCellHasTheErrorThatItsOwnRefinementWouldSay) {
+  Level level = slab_level(0.5);
+  level.nodes[0].soft_body->cell = 0.0062;  // refined: more tetrahedra than are answered in seconds
+  level.simulation.soft_step = 1.0 / 60;
+  const auto choices = choose_models(level);
+  ASSERT_TRUE(choices) << choices.error().message();
+  const ModelChoice& choice = choices->front();
+  EXPECT_NE(choice.sentence().find("too many to be refined in seconds"), std::string::npos) << choice.sentence();
+  // The slower twin, without the step's part, which is measured on a lattice of two cells.
+  const PressedLattices own = pressed_lattices(level, {0.0062, 0.6 * 0.0062, 2 * 0.0062});
+  ASSERT_GT(own.its[0].tets.tets.size(), 8640u);
+  const SoftBody& body = *level.nodes[0].soft_body;
+  const auto cell = answers(own.its[0], body, own.patches), finer = answers(own.its[1], body, own.patches),
+             coarse = answers(own.its[2], body, own.patches);
+  ASSERT_TRUE(cell && finer && coarse);
+  const double ratio = own.its[1].cell / own.its[0].cell;
+  const double lattice = difference(*cell, *finer, own.patches.surface) / (1 - ratio * ratio);
+  const double step = step_errors(own.its[2], body, own.patches, *coarse, {1.0 / 60}).front().error;
+  // How a lattice lies in a block counts as well: cells of 6.2 and 6.6 mm have 0.094 and 0.175.
+  const double measured = (choice.tried[choice.chosen].error - step) / lattice;
+  EXPECT_GT(measured, 0.5) << lattice << ' ' << step;
+  EXPECT_LT(measured, 2.0) << lattice << ' ' << step;
+}
+
+TEST(BodyChoice, ASolverThatThisBuildLacksIsNamed) {
+  for (const SolverKind kind : {SolverKind::kCholmod}) {
+    if (make_solver(kind, 1)) continue;
+    Level level = slab_level(0.5);
+    level.nodes[0].soft_body->solver = kind;
+    const auto choices = choose_models(level);
+    ASSERT_FALSE(choices);
+    EXPECT_NE(choices.error().what.find("solver is not in this build"), std::string::npos) << choices.error().message();
   }
 }
 
@@ -136,6 +227,8 @@ TEST(BodyChoice, TheSolverIsChosenWhereTheLevelSaysNone) {
   ASSERT_EQ(b->front().tried.size(), 1u);
   EXPECT_NE(b->front().tried[0].label.find("solver conjugate_gradient"), std::string::npos);
   EXPECT_GE(a->front().tried.size(), 4u) << "every solver";
+  for (const auto& choices : {*a, *b})
+    for (const ModelCandidate& it : choices.front().tried) EXPECT_LT(it.error, 2.0) << it.label;
   EXPECT_GT(b->front().tried[0].cost, a->front().tried[0].cost) << "60 contacts are too many right-hand sides";
 }
 

@@ -80,6 +80,7 @@ TEST(ToolChoice, ATightBudgetSolvesContactsAgainAndALooseOneHoldsTheForce) {
   level.simulation.soft_step = 1.0 / 50;  // said: the body's choice leaves it
   const auto choices = choose_models(level);
   ASSERT_TRUE(choices) << choices.error().message();
+  for (const ModelCandidate& it : choices->front().tried) EXPECT_LT(it.error, 2.0) << it.label;
   const ModelChoice* tool = tool_of(*choices);
   ASSERT_TRUE(tool);
   ASSERT_EQ(tool->tried.size(), 3u);
@@ -97,6 +98,46 @@ TEST(ToolChoice, ATightBudgetSolvesContactsAgainAndALooseOneHoldsTheForce) {
   const auto truth = press->truth(progress);
   ASSERT_TRUE(truth && held);
   EXPECT_NEAR(difference(held->wrench, truth->wrench), tool->tried[0].error, 1e-12);
+}
+
+TEST(ToolChoice, AtHighRatesTheTruthHasTheStepsOfALowerRate) {
+  Level level = pad_level(0.1);
+  level.simulation.soft_step = 1.0 / 50;
+  std::vector<std::vector<Vector6>> truths;
+  for (const double rate : {2000.0, 8000.0}) {  // 500 steps of 0.5 ms each
+    level.simulation.touch_rate = rate;
+    ChoiceProgress progress;
+    auto press = ToolPress::make(level, 0);
+    ASSERT_TRUE(press) << press.error().message();
+    EXPECT_EQ(press->unmeasured(), "");
+    const std::size_t every = press->truth_ticks();
+    EXPECT_EQ(every, rate == 2000.0 ? 1u : 4u);
+    const auto truth = press->truth(progress);
+    ASSERT_TRUE(truth);
+    EXPECT_EQ(truth->wrench.size(), 500u);
+    const auto felt = press->touched(ToolForce::kContacts);
+    ASSERT_TRUE(felt);
+    EXPECT_EQ(felt->wrench.size(), every * 500u);
+    std::vector<Vector6> looked;
+    for (std::size_t i = 0; i < felt->wrench.size(); i += every) looked.push_back(felt->wrench[i]);
+    const double error = difference(looked, truth->wrench);
+    EXPECT_LT(error, 0.02) << rate;  // 0.008 at 1 kHz
+    truths.push_back(truth->wrench);
+  }
+  EXPECT_LT(difference(truths[1], truths[0]), 1e-6);
+}
+
+TEST(ToolChoice, WhatWouldTakeTooLongIsLeftAndSaid) {
+  for (const auto& [rate, step, words] :
+       {std::tuple(1000.0, 0.0005, "shorter than a tick"), {100000.0, 0.0008, "cannot be measured in a minute"}}) {
+    Level level = pad_level(0.5);
+    level.simulation.touch_rate = rate;
+    level.simulation.soft_step = step;
+    const auto choices = choose_models(level);
+    ASSERT_TRUE(choices) << choices.error().message();
+    EXPECT_FALSE(tool_of(*choices));
+    EXPECT_NE(choices->front().sentence().find(words), std::string::npos) << choices->front().sentence();
+  }
 }
 
 TEST(ToolChoice, AStatedForceStaysAndARigidToolTakesTheLeastBudgetOfTheLevel) {

@@ -95,6 +95,48 @@ TEST(Recording, ReadsBackToTheBitWhatWasWritten) {
   EXPECT_FALSE(read->poses[7 * 3 + 2].ready);
 }
 
+// A recording of one probe and one tick, as an older program wrote it.
+std::string old_recording(std::uint32_t version) {
+  std::string bytes = "pliantrc";
+  Hash hash;
+  const auto put = [&](auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    hash.add(value);
+  };
+  const auto put_text = [&](const std::string& text) {
+    put(static_cast<std::uint32_t>(text.size()));
+    bytes += text;
+    hash.add_bytes(text.data(), text.size());
+  };
+  put(version);
+  put(std::uint32_t{1});
+  put(1000.0);
+  put_text("level");
+  put_text("tip");
+  if (version > 1) {
+    put(std::uint64_t{77});  // of the scene
+    put(std::uint32_t{1});
+    put_text("a.deformable.stiffness=3");
+  }
+  put(std::uint64_t{0});
+  for (const double value : {0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0}) put(value);
+  put(std::uint8_t{1});
+  const std::uint64_t end = hash.value();
+  bytes.append(reinterpret_cast<const char*>(&end), sizeof end);
+  return bytes;
+}
+
+TEST(Recording, OlderFormatsAreReadAndTheirSceneIsNotKnown) {
+  for (const std::uint32_t version : {1u, 2u, 3u}) {
+    const auto read = parse_recording("r", old_recording(version));
+    ASSERT_TRUE(read) << version << ": " << read.error().message();
+    EXPECT_EQ(read->header.scene, version == 3 ? 77u : 0u) << version;
+    EXPECT_EQ(read->header.settings.size(), version == 1 ? 0u : 1u) << version;
+    EXPECT_EQ(read->poses.at(0).position.z, 0.3) << version;
+  }
+  for (const std::uint32_t version : {0u, 4u}) EXPECT_FALSE(parse_recording("r", old_recording(version))) << version;
+}
+
 TEST(Recording, OneWithoutATickIsNotWrittenAndReplacesNothing) {
   const fs::path file = fs::temp_directory_path() / ("pliant-no-tick-" + std::to_string(::getpid()));
   fs::remove(file);

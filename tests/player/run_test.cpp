@@ -215,6 +215,51 @@ TEST_F(Run, AReplayHasTheSettingsAndTheUnitOfItsRecording) {
   EXPECT_NE(longer.err.find("ends after 1500 ticks"), std::string::npos) << longer.err;
 }
 
+TEST_F(Run, AReplayHasTheErrorBudgetOfItsRecording) {
+  // At its default a budget would choose another shape and reach.
+  const std::vector<std::string> run{"run",   "plate.obj", "--probe", "p=orbit",  "--error", "0.9",   "--record",
+                                     "p.rec", "--seconds", "1.5",     "--frames", "0",       "--out", "first"};
+  const Said recorded = pliant(run);
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  EXPECT_GT(report("first")["probes"][0]["contact_ticks"], 0);
+  const Said replayed = pliant({"run", "plate.obj", "--replay", "p.rec", "--frames", "0", "--out", "again"});
+  ASSERT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_EQ(report("again")["hash"], report("first")["hash"]);
+  EXPECT_NE(replayed.err.find("the recording's error budget holds: --error=0.9"), std::string::npos) << replayed.err;
+  EXPECT_EQ(replayed.err.find("forces will differ"), std::string::npos) << replayed.err;
+  // One of the replay's own stands above it, and a recording of the replay has that one.
+  const Said other = pliant({"run", "plate.obj", "--replay", "p.rec", "--error", "1e-6", "--record", "q.rec",
+                             "--frames", "0", "--out", "other"});
+  ASSERT_EQ(other.status, 0) << other.err;
+  EXPECT_NE(other.err.find("forces will differ"), std::string::npos) << other.err;
+  EXPECT_NE(report("other")["hash"], report("first")["hash"]);
+  const Said third = pliant({"run", "plate.obj", "--replay", "q.rec", "--frames", "0", "--out", "third"});
+  ASSERT_EQ(third.status, 0) << third.err;
+  EXPECT_EQ(report("third")["hash"], report("other")["hash"]);
+}
+
+// The mesh, what hangs on what and animations count for a recording as keys do.
+TEST_F(Run, AReplayOnALevelThatIsNotAsItWasSaysSo) {
+  for (const char* name : {"minimal.gltf", "minimal.bin", "minimal.csv"})
+    fs::copy(fs::path(PLIANT_SOURCE_DIR) / "content" / "levels" / name, folder / name);
+  ASSERT_EQ(pliant({"run", "minimal.gltf", "--record", "p.rec", "--seconds", "0.2", "--frames", "0"}).status, 0);
+  const auto said = [&] {
+    const Said replayed = pliant({"run", "minimal.gltf", "--replay", "p.rec", "--frames", "0", "--force"});
+    EXPECT_EQ(replayed.status, 0) << replayed.err;
+    return replayed.err.find("the level is not as it was") != std::string::npos;
+  };
+  EXPECT_FALSE(said());
+  write_text(folder / "minimal.csv", "time_s,x,y,z\n0,0,0.02,0\n");
+  EXPECT_FALSE(said()) << "the probe's script, whose poses were recorded";
+  std::string other = read_text(folder / "minimal.gltf");
+  other.replace(other.find("\"nodes\": [0, 1]"), 15, "\"nodes\": [0, 1, 2]");
+  const std::size_t end = other.find("  ],\n  \"meshes\"");
+  ASSERT_NE(end, std::string::npos);
+  other.insert(end, ",{\"name\": \"second\", \"mesh\": 0}\n");
+  write_text(folder / "minimal.gltf", other);
+  EXPECT_TRUE(said());
+}
+
 TEST_F(Run, AProbeWhoseDriverIsNotThereIsNamed) {
   ASSERT_EQ(pliant({"convert", "plate.obj", "level.gltf"}).status, 0);
   Json json = Json::parse(read_text(folder / "level.gltf"));

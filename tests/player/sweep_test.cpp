@@ -55,7 +55,8 @@ class Sweep : public CommandTest {
     words.insert(words.end(), more.begin(), more.end());
     return pliant(words, kNoRank + before);
   }
-  static inline const std::string kNoRank = "env -u SLURM_ARRAY_TASK_ID -u OMPI_COMM_WORLD_RANK -u PMI_RANK ";
+  static inline const std::string kNoRank =
+      "env -u SLURM_ARRAY_TASK_ID -u SLURM_STEP_ID -u OMPI_COMM_WORLD_RANK -u PMI_RANK -u PMIX_RANK ";
 
   // Every whole line of every shard.
   std::vector<Json> lines(const std::string& out = "out") const {
@@ -162,7 +163,8 @@ TEST_F(Sweep, AnIdChangesWithAValueAnOptionTheLevelAndTheFilesItNames) {
   const auto expect_new = [&](const char* what) { EXPECT_TRUE(seen.insert(*ids().begin()).second) << what; };
   write_plan(R"("axes": {"*.deformable.stiffness": [101]})");
   expect_new("value");
-  write_plan(R"("axes": {"*.deformable.reach": [100]})");
+  write_plan(R"("axes": {"*.deformable.settling_time": [100]})");
+  expect_new("key");
   write_text(folder / "plan.json",
              R"({"level": "plate.obj", "options": {"seconds": 0.06}, "axes": {"*.deformable.stiffness": [100]}})");
   expect_new("option");
@@ -178,6 +180,74 @@ TEST_F(Sweep, AnIdChangesWithAValueAnOptionTheLevelAndTheFilesItNames) {
   expect_new("level");
   write_text(folder / "minimal.csv", "time_s,x,y,z\n0,0,0.01,0\n1,0,-0.01,0\n");
   expect_new("script of the level");
+  // Its error budget, and which keys that leaves open because the level says nothing of them, be it the default.
+  std::string level = read_text(folder / "minimal.gltf");
+  const std::string key = "\"PLIANT_deformable\": {";
+  const auto add_key = [&](const std::string& text) {
+    ASSERT_NE(level.find(key), std::string::npos);
+    level.insert(level.find(key) + key.size(), text);
+    write_text(folder / "minimal.gltf", level);
+  };
+  add_key("\"error\": 0.5, ");
+  expect_new("error budget of the level");
+  add_key("\"distance\": \"chord\", ");
+  expect_new("a key that is said at its default");
+  // A file that only the plan's settings name.
+  write_text(folder / "other.csv", "time_s,x,y,z\n0,0,0.01,0\n");
+  const std::string set = R"({"level": "minimal.gltf", "options": {"set": ["tip.haptic_device.file=other.csv"]},
+                              "axes": {"sheet.deformable.stiffness": [100]}})";
+  write_text(folder / "plan.json", set);
+  expect_new("setting");
+  write_text(folder / "other.csv", "time_s,x,y,z\n0,0,0.02,0\n");
+  expect_new("file that a setting names");
+  write_text(folder / "plan.json", R"({"level": "minimal.gltf", "axes": {"tip.haptic_device.file": ["other.csv"]}})");
+  expect_new("file that an axis names");
+  write_text(folder / "other.csv", "time_s,x,y,z\n0,0,0.03,0\n");
+  expect_new("what is in it");
+}
+
+TEST_F(Sweep, AnIdGoesByWhatIsInAFileAndNotByWhereItLies) {
+  write_plan(R"("axes": {"*.deformable.stiffness": [100]})");
+  const auto before = ids();
+  fs::create_directories(folder / "far");
+  fs::rename(folder / "press.csv", folder / "far" / "p.csv");
+  for (const std::string& path : {std::string("far/p.csv"), (folder / "far" / "p.csv").string()}) {
+    write_text(folder / "plan.json", R"({"level": "plate.obj", "options": {"seconds": 0.05, "probe": ["tip=script:)" +
+                                         path + R"("]}, "axes": {"*.deformable.stiffness": [100]}})");
+    EXPECT_EQ(ids(), before) << path;
+  }
+}
+
+TEST_F(Sweep, ASimulatedHandOfAPlanIsHeldByAHandAndItsScriptIsFoundFromThePlan) {
+  // From elsewhere, and with what divides a hand's words in the folder's name.
+  const fs::path there = folder / "k=300, soft|stiff";
+  fs::create_directories(there);
+  for (const char* name : {"plate.obj", "press.csv"}) fs::rename(folder / name, there / name);
+  const std::string plan = R"({"level": "plate.obj", "options": {"seconds": 0.05, "probe": ["tip=hand:press.csv"]},
+                               "axes": {"*.deformable.stiffness": [250]}})";
+  write_text(there / "plan.json", plan);
+  const Said said = pliant({"sweep", (there / "plan.json").string(), "--out", "out"}, kNoRank);
+  ASSERT_EQ(said.status, 0) << said.err;
+  ASSERT_EQ(lines().size(), 1u);
+  ASSERT_EQ(lines()[0]["status"], "done") << lines()[0];
+  const Said alone = pliant({"run", "plate.obj", "--probe", "tip=hand:press.csv", "--seconds", "0.05", "--frames", "0",
+                             "--set", "*.deformable.stiffness=250", "--out", (folder / "alone").string()},
+                            "-C " + quoted(there.string()));
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  EXPECT_EQ(report("alone")["probes"][0]["source"].get<std::string>().substr(0, 5), "hand:");
+  EXPECT_EQ(lines()[0]["figures"]["hash"], report("alone")["hash"]);
+  // Its script counts, and what the hand is.
+  const auto id_of = [&] { return expanded(fs::relative(there / "plan.json", folder)).runs[0].id; };
+  std::set<std::string> seen{id_of()};
+  write_text(there / "press.csv", "time_s,x,y,z\n0,0,0.002,0\n0.02,0,-0.005,0\n");
+  EXPECT_TRUE(seen.insert(id_of()).second);
+  std::string other = plan;
+  write_text(there / "plan.json", other.replace(other.find("hand:"), 5, "hand:hand=firm, "));
+  const auto with_words = read_plan(there / "plan.json");
+  ASSERT_TRUE(with_words);
+  const ArgumentFile file = file_in(*with_words, "--probe=tip=hand:hand=firm, press.csv|delay=5ms");
+  EXPECT_EQ(file.path, there / "press.csv");
+  EXPECT_EQ(file.size, std::string("press.csv").size());
 }
 
 TEST_F(Sweep, APlanThatMakesNoSenseIsRefusedWithItsPlace) {
@@ -213,6 +283,17 @@ TEST_F(Sweep, APlanThatMakesNoSenseIsRefusedWithItsPlace) {
   bad(R"("axes": {"--secnds": [0.1]})", "did you mean --seconds");
   bad(R"("axes": {"--out": ["a", "b"]})", "the option --out is the sweep's own");
   bad(R"("axes": {"--set": ["a"]})", "is no axis");
+  bad(R"("axes": {"--threads": [1, 2]})", "/axes/--threads: is no axis: it changes no result");
+  // A value in the name would pass by what is refused.
+  for (const char* name : {"record=/tmp/x.pose", "out=here", "window=", "", "frames=3"}) {
+    bad(std::string(R"("options": {")") + name + R"(": true}, "axes": {"*.deformable.stiffness": [1]})",
+        std::string("/options/") + (*name == 'r' ? "record=~1tmp~1x.pose" : name) + ": '--" + name + "' is no name");
+    bad(std::string(R"("axes": {"--)") + name + R"(": [true]})", name == std::string() ? "is no name" : "'='");
+  }
+  bad(R"("axes": {"*.deformable.stiffness=5": [1]})", "has '=' in its name");
+  bad(R"("options": {"probe": ["p=device:falcon"]}, "axes": {"--rate": [500]})", "never the same twice");
+  bad(R"("axes": {"--seconds": [1e400]})", "plan.json: has a number that no computer's number holds: '1e400'");
+  bad(R"("timeout_s": -1e400, "axes": {"--seconds": [1]})", "'-1e400'");
   for (const char* option : {"window", "realtime", "record", "frames", "list", "force", "input", "size", "field"})
     bad(std::string(R"("options": {")") + option + R"(": true}, "axes": {"*.deformable.stiffness": [1]})",
         std::string("/options/") + option + ": the option --" + option);
@@ -223,7 +304,8 @@ TEST_F(Sweep, APlanThatMakesNoSenseIsRefusedWithItsPlace) {
   bad(R"("options": {"probe": ["p=script:nowhere.csv"]}, "axes": {"--rate": [500]})", "nowhere.csv");
   bad(R"("timeout_s": 0, "axes": {"--rate": [500]})", "/timeout_s");
   const std::string range = R"({"from": 0.01, "to": 0.02, "steps": 1000})";
-  bad(R"("axes": {"*.deformable.reach": )" + range + R"(, "--seconds": )" + range + "}", "more than 100000 runs");
+  bad(R"("axes": {"*.deformable.reach": )" + range + R"(, "--seconds": )" + range + "}",
+      "/axes/--seconds: makes more than 100000 runs");
   bad(R"("latin_hypercube": {"seed": 1, "axes": {}})", "/latin_hypercube: has no \"runs\"");
   bad(R"("latin_hypercube": {"runs": 4, "seed": 1, "axes": {"--rate": {"from": 1}}})",
       "/latin_hypercube/axes/--rate: has no \"to\"");
@@ -233,6 +315,42 @@ TEST_F(Sweep, APlanThatMakesNoSenseIsRefusedWithItsPlace) {
   for (const char* shard : {"0/4", "5/4", "2", "a/b", "1/0"})
     expect_refused({"sweep", "plan.json", "--shard", shard}, 2, "--shard: must be I/N");
   expect_refused({"sweep", "merge", "nowhere", "--out", "m"}, 1, "sweep.json");
+}
+
+// Plans are counted before anything is made of them.
+TEST_F(Sweep, AHostilePlanIsRefusedAtOnceAndInLittleMemory) {
+  const auto bad = [&](const std::string& rest, const std::string& word) {
+    write_text(folder / "plan.json", R"({"level": "plate.obj", )" + rest + "}");
+    const Said said = pliant({"sweep", "plan.json", "--out", "out"}, "bash -c 'ulimit -v 400000 -t 3; exec \"$@\"' -");
+    EXPECT_EQ(said.status, 1) << rest.substr(0, 100);
+    EXPECT_NE(said.err.find(word), std::string::npos) << said.err.substr(0, 500);
+    EXPECT_LT(said.err.size(), 1000u) << "a sentence, not the plan";
+  };
+  std::string ranges, ones, keys, list = "[";
+  for (int i = 0; i < 400; ++i) {
+    const std::string name = (i ? ", \"n" : "\"n") + std::to_string(i) + ".deformable.reach\": ";
+    ranges += name + R"({"from": 0.01, "to": 0.02, "steps": 100000})";
+    ones += name + R"({"from": 0.01, "to": 0.02})";
+  }
+  for (int i = 0; i < 300000; ++i) {
+    keys += (i ? ", \"" : "\"") + std::to_string(i) + "\": 1";
+    list += (i ? ", " : "") + std::to_string(i);
+  }
+  list += "]";
+  bad("\"axes\": {" + ranges + "}", "/axes: makes 400 axes, and a plan has at most 64");
+  bad(R"("axes": {"--rate": [500, 1000], "a.deformable.reach": {"from": 0.01, "to": 0.02, "steps": 60000}})",
+      "/axes/a.deformable.reach: makes more than 100000 runs");
+  bad("\"axes\": {\"--seconds\": " + list + "}", "/axes/--seconds: makes more than 100000 runs");
+  bad(R"("latin_hypercube": {"runs": 100000, "seed": 1, "axes": {)" + ones + "}}", "makes 400 axes");
+  std::string sixty = ones.substr(0, ones.find(", \"n60."));
+  bad(R"("latin_hypercube": {"runs": 100000, "seed": 1, "axes": {)" + sixty + "}}",
+      "/latin_hypercube: makes 100000 runs of 60 axes, more than 1000000 values");
+  bad(R"("axes": {"--rate": [500, 1000]}, "latin_hypercube": {"runs": 60000, "seed": 1, "axes": {"--seconds": {"from": 1, "to": 2}}})",
+      "/latin_hypercube: makes more than 100000 runs");
+  bad("\"axes\": {" + keys + "}", "has an object with more than 1000 keys");
+  bad("\"about\": {" + keys + "}", "has an object with more than 1000 keys");
+  bad("\"level_\": " + list, "unknown key 'level_'");
+  bad("\"axes\": " + list, "/axes: must be an object of axes; got a long list");
 }
 
 TEST_F(Sweep, DryRunAndListSayWhatWouldBeDoneAndWriteNothing) {
@@ -250,6 +368,15 @@ TEST_F(Sweep, DryRunAndListSayWhatWouldBeDoneAndWriteNothing) {
   const std::string line =
       "cd " + quoted(folder.string()) + " && " + quoted(PLIANT_BINARY) + first.substr(6) + " >.o 2>&1";
   EXPECT_EQ(std::system(line.c_str()), 0) << read_text(folder / ".o");
+  // Also from elsewhere, where the plan's files are not.
+  fs::create_directories(folder / "far");
+  const Said far = pliant({"sweep", "../plan.json", "--dry-run", "--shard", "1/12"}, kNoRank + "-C far");
+  const std::string one = far.out.substr(0, far.out.find('\n')), begin = "cd " + folder.string() + " && pliant run ";
+  ASSERT_TRUE(one.starts_with(begin)) << one;
+  const std::string run = "cd " + quoted((folder / "far").string()) + " && cd " + quoted(folder.string()) + " && " +
+                          quoted(PLIANT_BINARY) + " run " + one.substr(begin.size()) + " >.o 2>&1";
+  EXPECT_EQ(std::system(run.c_str()), 0) << read_text(folder / ".o");
+  EXPECT_TRUE(fs::exists(folder / "far" / "out")) << "results belong where the sweep was asked for";
 }
 
 TEST_F(Sweep, ALineHasTheFiguresThatTheRunItselfReports) {
@@ -329,7 +456,11 @@ TEST_F(Sweep, ATornLastLineIsLeftBehindAndItsRunDoneAgain) {
     const Said said = sweep();
     EXPECT_EQ(said.status, 0) << said.err;
     EXPECT_NE(said.err.find("middle of a line"), std::string::npos) << said.err;
-    EXPECT_EQ(lines().size(), cut == text.size() - 1 ? 12u : 12u) << cut;
+    EXPECT_EQ(lines().size(), 12u) << cut;
+    // Without its newline alone a line is whole.
+    EXPECT_NE(said.out.find(cut == text.size() - 1 ? "0 done now, 12 before" : "1 done now, 11 before"),
+              std::string::npos)
+        << said.out;
   }
   const auto after = merged({"out"}, "after");
   for (const auto& [name, bytes] : whole) EXPECT_TRUE(after.at(name) == bytes) << name;
@@ -401,6 +532,51 @@ TEST_F(Sweep, AFailureIsALineWithItsSentenceAndIsDoneAgainOnlyWhenAsked) {
   EXPECT_EQ(lines().size(), 6u);
 }
 
+// Of several failures of one run the latest is told, whatever file it stands in and whatever its words.
+TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
+  write_plan(R"("axes": {"--limits": [1e-6], "*.deformable.stiffness": [100]})");
+  ASSERT_EQ(sweep().status, 0);
+  Json line = lines().at(0);
+  EXPECT_FALSE(line.contains("attempt"));
+  const fs::path file = folder / "out" / "runs-1-of-1.jsonl";
+  line["error"] = "0: an old sentence";  // before all others as text
+  write_text(file, line.dump() + "\n");
+  ASSERT_EQ(sweep({"--retry-failed", "--shard", "1/2"}).status, 0);
+  for (const Json& each : lines())
+    if (each != line) EXPECT_EQ(each["attempt"], 2) << each;
+  const auto merged_now = merged({"out"}, "m1");
+  EXPECT_NE(Json::parse(merged_now.at("report.json"))["failures"][0]["error"].get<std::string>().find("--limits"),
+            std::string::npos);
+  // In whatever folder and order.
+  fs::create_directories(folder / "other");
+  fs::rename(file, folder / "other" / "runs-1-of-1.jsonl");
+  fs::copy(folder / "out" / "sweep.json", folder / "other" / "sweep.json");
+  for (const std::vector<std::string>& folders : {std::vector<std::string>{"out", "other"}, {"other", "out"}})
+    EXPECT_EQ(merged(folders, "m" + folders[0]), merged_now);
+  // A run that is done goes before any failure.
+  Lines all;
+  line["status"] = "done";
+  line["figures"] = Json::object();
+  write_text(folder / "other" / "runs-2-of-2.jsonl", line.dump() + "\n");
+  for (const char* each : {"out", "other"}) ASSERT_TRUE(read_lines(folder / each, all));
+  EXPECT_TRUE(is_done(all.runs.at(line["id"].get<std::string>())));
+}
+
+// Values that differ may mean the same run: which of them stands in a line says nothing.
+TEST_F(Sweep, RunsThatAreOneMergeToTheSameBytesWhateverShardDidThem) {
+  write_text(folder / "again.csv", read_text(folder / "press.csv"));
+  write_text(folder / "plan.json", R"({"level": "plate.obj", "options": {"seconds": 0.05}, "axes": {"--probe":
+      ["tip=script:press.csv", "tip=script:again.csv"]}})");
+  ASSERT_EQ(ids().size(), 1u);
+  for (const char* shard : {"1/2", "2/2"})
+    ASSERT_EQ(pliant({"sweep", "plan.json", "--out", shard[0] == '1' ? "one" : "two", "--shard", shard}).status, 0);
+  ASSERT_NE(lines("one").at(0)["axes"], lines("two").at(0)["axes"]);
+  const auto first = merged({"one"}, "m1"), both = merged({"one", "two"}, "m2"), turned = merged({"two", "one"}, "m3");
+  EXPECT_EQ(first, both);
+  EXPECT_EQ(first, turned);
+  EXPECT_EQ(Json::parse(both.at("report.json"))["disagree"], Json::array());
+}
+
 TEST_F(Sweep, ARunThatTakesTooLongIsALineAndIsMendedByARetry) {
   write_plan(R"("timeout_s": 0.001, "axes": {"*.deformable.stiffness": [100, 200]})");  // no process starts so fast
   ASSERT_EQ(sweep().status, 0);
@@ -464,6 +640,92 @@ TEST_F(Sweep, ARunWithOtherFiguresThanBeforeIsSaid) {
   EXPECT_EQ(report("m")["disagree"], Json::array({line["id"]}));
 }
 
+// What runs said differently by one rounding does not vary, and has no plot whose axis would never end.
+TEST_F(Sweep, FiguresThatDifferByRoundingAreConstant) {
+  write_plan(R"("axes": {"*.deformable.stiffness": [100, 200, 300]})");
+  ASSERT_EQ(sweep().status, 0);
+  std::string text;
+  double value = 0.1 + 0.2, step = 0.0;
+  for (Json line : lines()) {
+    line["figures"] = {{"a", value}, {"b", step += 1.0}};
+    value = std::nextafter(value, 1.0);
+    text += line.dump() + "\n";
+  }
+  write_text(folder / "out" / "runs-1-of-1.jsonl", text);
+  const Said said = pliant({"sweep", "merge", "out", "--out", "m"}, "bash -c 'ulimit -v 1000000 -t 20; exec \"$@\"' -");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const std::string svg = read_text(folder / "m" / "curves-all.deformable.stiffness.svg");
+  EXPECT_LT(svg.size(), 200000u);
+  EXPECT_EQ(report("m")["figures"]["a"]["min"], 0.1 + 0.2);
+}
+
+TEST_F(Sweep, PlotsOfManySamplesAndAxesAreBoundedAndSaid) {
+  std::string axes;
+  for (int i = 0; i < 12; ++i)
+    axes +=
+        std::string(i ? ", " : "") + "\"*.deformable." +
+        std::vector<std::string>{
+            "stiffness",      "cubic",           "stiffening",      "settling_time",
+            "damping_ratio",  "reach",           "friction.static", "friction.sliding",
+            "contact_radius", "contact_damping", "relaxation.time", "relaxation.stiffness"}[static_cast<std::size_t>(
+            i)] +
+        R"(": {"from": 1, "to": 1.5})";
+  write_plan(R"("latin_hypercube": {"runs": 6000, "seed": 1, "axes": {)" + axes + "}}");
+  const auto plan = read_plan(folder / "plan.json");
+  ASSERT_TRUE(plan) << plan.error().message();
+  ExpandedPlan all;
+  std::string text;
+  for (std::size_t i = 0; i < plan->count(); ++i) {
+    all.runs.push_back({std::to_string(i), plan->values_of(i), {}});
+    const double a = plan->axes[0].values[i].get<double>(), b = plan->axes[1].values[i].get<double>();
+    text += Json{{"id", all.runs.back().id},
+                 {"status", "done"},
+                 {"axes", Json::object()},
+                 {"timing", Json::object()},
+                 {"figures", {{"sum", a + b}, {"product", a * b}}}}
+                .dump() +
+            "\n";
+  }
+  fs::create_directories(folder / "out");
+  write_text(folder / "out" / "sweep.json", sweep_json(*plan, all));
+  write_text(folder / "out" / "runs-1-of-1.jsonl", text);
+  const Said said = pliant({"sweep", "merge", "out", "--out", "m"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("curves are along the first 10 of 12 axes; maps are of the first 10 of 66 pairs of axes; at "
+                          "most 2000 of 6000 runs are dots; results.csv has them all"),
+            std::string::npos)
+      << said.err;
+  std::size_t pictures = 0;
+  for (const auto& entry : fs::directory_iterator(folder / "m")) {
+    if (entry.path().extension() != ".svg") continue;
+    ++pictures;
+    EXPECT_LT(entry.file_size(), 1000000u) << entry.path();
+  }
+  EXPECT_EQ(pictures, 20u);
+}
+
+TEST_F(Sweep, ASweepWhoseParentIgnoresItsChildrenEnds) {
+  write_plan(kTwelve);
+  const Said said = sweep({}, "timeout 100 env --ignore-signal=CHLD ");
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.out.find("12 done now"), std::string::npos) << said.out;
+}
+
+TEST_F(Sweep, ASweepThatIsKilledTakesItsRunsWithIt) {
+  write_text(folder / "plan.json", R"({"level": "plate.obj", "options": {"seconds": 80000, "probe": ["tip=orbit"]},
+                                       "axes": {"*.deformable.stiffness": [100, 200]}})");
+  write_text(folder / "kill.sh",
+             "cd " + quoted(folder.string()) + "\n" + kNoRank + quoted(PLIANT_BINARY) +
+                 " sweep plan.json --out out --jobs 2 >/dev/null 2>&1 &\npid=$!\n"
+                 "runs() { grep -l -- \"$PWD/out/[.]work\" /proc/[0-9]*/cmdline 2>/dev/null | wc -l; }\n"
+                 "for i in $(seq 500); do [ $(runs) = 2 ] && break; sleep 0.01; done\n"
+                 "runs >before\nkill -9 $pid\nwait $pid 2>/dev/null\n"
+                 "for i in $(seq 500); do [ $(runs) = 0 ] && break; sleep 0.01; done\nruns >after\n");
+  ASSERT_EQ(std::system(("bash " + quoted((folder / "kill.sh").string()) + " 2>/dev/null").c_str()), 0);
+  EXPECT_EQ(read_text(folder / "before"), "2\n");
+  EXPECT_EQ(read_text(folder / "after"), "0\n");
+}
+
 TEST_F(Sweep, TheShardIsTakenFromSlurmsArrayOrMpisRankAndSaid) {
   write_plan(kTwelve);
   const Said slurm = sweep({"--list"}, "SLURM_ARRAY_TASK_ID=7 SLURM_ARRAY_TASK_MIN=5 SLURM_ARRAY_TASK_COUNT=4 ");
@@ -497,11 +759,37 @@ TEST(SweepShard, EveryRunHasOneShardWhateverTheEnvironment) {
        {Variables{{"SLURM_ARRAY_TASK_ID", "3"}},
         {{"SLURM_ARRAY_TASK_ID", "9"}, {"SLURM_ARRAY_TASK_MIN", "1"}, {"SLURM_ARRAY_TASK_COUNT", "3"}},
         {{"OMPI_COMM_WORLD_RANK", "x"}, {"OMPI_COMM_WORLD_SIZE", "3"}},
+        {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "3"}, {"SLURM_NTASKS", "3"}},
+        {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "3"}},
+        {{"PMIX_RANK", "1"}},
         {{"PMI_RANK", "3"}, {"PMI_SIZE", "3"}}}) {
     const auto shard = choose(wrong);
     ASSERT_FALSE(shard);
     EXPECT_NE(shard.error().what.find("--shard I/N"), std::string::npos) << shard.error().message();
   }
+  // srun without an MPI plugin: a step of four tasks in a job of eight.
+  Variables step{{"SLURM_STEP_ID", "1"}, {"SLURM_PROCID", "2"}, {"SLURM_NTASKS", "8"}, {"SLURM_STEP_NUM_TASKS", "4"}};
+  EXPECT_EQ(choose(step)->number, 3u);
+  EXPECT_EQ(choose(step)->count, 4u);
+  EXPECT_EQ(choose(step)->from, "SLURM_PROCID and SLURM_STEP_NUM_TASKS");
+  step.erase("SLURM_STEP_NUM_TASKS");
+  EXPECT_EQ(choose(step)->count, 8u);
+  step["PMIX_RANK"] = "2";
+  EXPECT_EQ(choose(step)->number, 3u);
+  step["OMPI_COMM_WORLD_RANK"] = "0";  // mpirun within it
+  step["OMPI_COMM_WORLD_SIZE"] = "2";
+  EXPECT_EQ(choose(step)->count, 2u);
+  // The batch script itself has task 0 of eight, and nobody does the others; a shell within has a step of its own kind.
+  EXPECT_EQ(choose({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}})->count, 1u);
+  for (const char* special : {"4294967290", "4294967291", "-5"})
+    EXPECT_EQ(choose({{"SLURM_STEP_ID", special}, {"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}})->count, 1u);
+  EXPECT_EQ(choose({{"SLURM_ARRAY_TASK_ID", "2"},
+                    {"SLURM_ARRAY_TASK_MIN", "1"},
+                    {"SLURM_ARRAY_TASK_COUNT", "3"},
+                    {"SLURM_PROCID", "0"},
+                    {"SLURM_NTASKS", "8"}})
+                ->count,
+            3u);
   // Tasks of an array that have ranks each.
   std::vector<int> owners(100, 0);
   std::set<std::string> files;
@@ -522,13 +810,39 @@ TEST(SweepShard, EveryRunHasOneShardWhateverTheEnvironment) {
 
 TEST_F(Sweep, TwoSweepsWithOneShardDoNotAddToOneFile) {
   write_plan(kTwelve);
-  fs::create_directories(folder / "out");
+  fs::create_directories(folder / "out" / ".work-1-of-1-4");
   bool torn = false;
   const auto held = LineFile::open(folder / "out" / "runs-1-of-1.jsonl", torn);
   ASSERT_TRUE(held);
   const Said said = sweep();
   EXPECT_EQ(said.status, 1);
   EXPECT_NE(said.err.find("another sweep adds to it"), std::string::npos) << said.err;
+  EXPECT_TRUE(fs::exists(folder / "out" / ".work-1-of-1-4")) << "where the other's runs write";
+}
+
+TEST_F(Sweep, AFileSystemWithoutLocksIsRefusedAndNothingOfOthersIsRemoved) {
+  write_plan(kTwelve);
+  fs::create_directories(folder / "out" / ".work-1-of-1-4");
+  // A library before the system's, as a mount without locks answers.
+  write_text(folder / "no_locks.c", "#include <errno.h>\nint flock(int f, int o) { errno = ENOLCK; return -1; }\n");
+  if (std::system(("cd " + quoted(folder.string()) + " && cc -shared -fPIC -o no_locks.so no_locks.c").c_str()) != 0)
+    GTEST_SKIP() << "no C compiler";
+  const Said said = sweep({}, "LD_PRELOAD=" + quoted((folder / "no_locks.so").string()) + " ");
+  EXPECT_EQ(said.status, 1);
+  EXPECT_NE(said.err.find("runs-1-of-1.jsonl: cannot be locked: No locks available; choose an --out"),
+            std::string::npos)
+      << said.err;
+  EXPECT_TRUE(lines().empty());
+  EXPECT_TRUE(fs::exists(folder / "out" / ".work-1-of-1-4"));
+}
+
+TEST_F(Sweep, AFolderThatCannotBeLookedIntoIsNoEmptyOne) {
+  Lines none;
+  EXPECT_TRUE(read_lines(folder / "nowhere", none));
+  write_text(folder / "file", "");
+  const Status wrong = read_lines(folder / "file", none);
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().what.find("cannot be looked into"), std::string::npos);
 }
 
 }  // namespace

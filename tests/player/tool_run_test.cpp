@@ -289,6 +289,30 @@ TEST_F(ToolRun, LockstepGivesTheSameBitsAndAReplayTheSameAgain) {
   EXPECT_NE(report("first")["hash"], report("softer")["hash"]) << "the hash knows the tissue";
 }
 
+// Truth of a tool is what soft steps at the touch rate make: another rate has another error.
+TEST_F(ToolRun, ABudgetIsMeasuredAtTheRateOfTheRun) {
+  const auto note_of = [&](const std::vector<std::string>& more, const std::string& out) {
+    std::vector<std::string> words{"--error", "0.5", "--seconds", "0.01"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Said said = press(out, words);
+    EXPECT_EQ(said.status, 0) << said.err;
+    const std::size_t at = said.err.find("pliant: note: `hand`: force");
+    return said.err.substr(std::min(at, said.err.size()), said.err.find('\n', at) - at);
+  };
+  const std::string usual = note_of({}, "a"), option = note_of({"--rate", "400"}, "b"),
+                    level = note_of({"--set", "*.simulation.touch_rate=400"}, "c");
+  EXPECT_NE(usual, "");
+  EXPECT_NE(usual, option);
+  EXPECT_EQ(option, level);
+  // So is that of a replay, at its recording's rate.
+  ASSERT_EQ(press("d", {"--error", "0.5", "--rate", "400", "--seconds", "0.1", "--record", "p.rec"}).status, 0);
+  const Said replayed = pliant({"run", "block.glb", "--replay", "p.rec", "--frames", "0", "--out", "e"});
+  ASSERT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_NE(replayed.err.find(option), std::string::npos) << replayed.err;
+  EXPECT_EQ(report("d")["hash"], report("e")["hash"]);
+  EXPECT_EQ(replayed.err.find("not as it was"), std::string::npos) << replayed.err;
+}
+
 TEST_F(ToolRun, AToolWithoutADeviceThatMovesIsHeldWhereItStands) {
   const Said said = pliant({"run", "block.glb", "--seconds", "0.3", "--out", "still", "--frames", "0"});
   ASSERT_EQ(said.status, 0) << said.err;

@@ -142,8 +142,8 @@ void Stage::place(Entity probe, dvec3 position) {
   device(probe).position = position;
 }
 
-void Stage::tick() {
-  for (auto [entity, device] : world.registry.view<HapticDevice>()) device.sensed_at = time();
+void Stage::tick(double age) {
+  for (auto [entity, device] : world.registry.view<HapticDevice>()) device.sensed_at = time() - age;
   schedule_.run(world, {ticks_, dt_, time()});
   ++ticks_;
 }

@@ -37,7 +37,10 @@ class Stage {
   void prepare();
 
   void place(Entity probe, dvec3 position);
-  void tick();
+  // `age` [s]: how old the poses are.
+  void tick(double age = 0.0);
+  // Ticks that do not run because the machine was late: index and time go on as those of RealtimeClock do.
+  void skip(std::uint64_t ticks) { ticks_ += ticks; }
   // Moves a probe along a straight line at constant speed for `seconds`, calling `each` after every tick.
   void move(Entity probe, dvec3 to, double seconds, const std::function<void(const ProbeReading&)>& each = {});
   void wait(double seconds);

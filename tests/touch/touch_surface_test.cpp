@@ -236,5 +236,36 @@ TEST(TouchSurface, ACapsuleLyingOnASurfaceIsHeldUpAlongItsLengthAndOneOnAnEdgeIs
   EXPECT_LT(high - low, 0.2 * high);  // the row of spheres is felt by 3 % of a radius
 }
 
+// A wall that a tip was pressed through does not catch it on its way back; a wall behind that one is touched all the
+// same.
+TEST(TouchSurface, ATipPressedThroughAWallTouchesTheNextAndComesBackByTheSameForces) {
+  for (const double radius : {0.0, 0.002}) {
+    Primitive walls = scenes::slab(20, 0.1, 0.001);
+    const auto count = static_cast<std::uint32_t>(walls.position.size());
+    const Primitive wall = walls;
+    for (const vec3& p : wall.position) walls.position.push_back(p - vec3(0, 0.004f, 0));
+    for (const std::uint32_t i : wall.index) walls.index.push_back(i + count);
+    Stage stage;
+    stage.add(walls, frictionless());
+    const Entity probe = stage.add_probe({0.003, 0.005, 0.002}, radius);
+    stage.prepare();
+    std::vector<std::pair<double, dvec3>> down;
+    for (double y = 0.005; y > -0.008; y -= 5e-5) {
+      stage.place(probe, {0.003, y, 0.002});
+      stage.tick();
+      down.push_back({y, raw_force(stage, probe)});
+    }
+    std::size_t contacts = 0;
+    for (auto [entity, contact] : stage.world.registry.view<Contact>()) contacts += contact.probe == probe;
+    EXPECT_EQ(contacts, 2u) << radius;
+    EXPECT_GE(down.back().second.y, 0.99 * law(frictionless(), radius + 0.008)) << radius;
+    for (; !down.empty(); down.pop_back()) {
+      stage.place(probe, {0.003, down.back().first, 0.002});
+      stage.tick();
+      ASSERT_LT(length(raw_force(stage, probe) - down.back().second), 1e-6) << radius << ' ' << down.back().first;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pliant

@@ -1,8 +1,11 @@
-// Geometry: probes on vertices, edges, borders and creases, through thin walls, and on meshes that are not sound.
+// Geometry: probes on vertices, edges, borders and creases.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <random>
 
 #include "player/study/hard/hard_case.h"
 #include "tests/scenes/touch_laws.h"
@@ -11,17 +14,17 @@
 namespace pliant {
 namespace {
 
-// Pressed 3 mm deep, held there, and held by a hand that trembles: how far the force is off, of the law's.
-// `shift`: keeps the trembling inside the border. `jump` [N]: most between two ticks of the press.
-void press(HardFigure& worst, const char* name, const Primitive& surface, dvec3 at, double want,
-           dvec3 shift = dvec3(0)) {
+constexpr double kPress = 0.003;  // [m]
+
+// Pressed 3 mm deep, held there, and held by a hand that trembles by 0.01 mm: how far the force is off, of the law's.
+void press(HardFigure& worst, const char* name, const Primitive& surface, dvec3 at) {
   Stage stage;
   const Deformable d = frictionless();
   const Entity sheet = stage.add(surface, d);
   const Entity probe = stage.add_probe(at + dvec3(0, 0.008, 0));
   stage.prepare();
   double before = 0;
-  const double force = want * law(d, 0.003);
+  const double force = law(d, kPress);
   stage.move(probe, at, 0.2, [&](const ProbeReading& r) {
     worst.need(std::abs(r.normal_force - before) < 0.05, fmt::format("{}: a step of the force", name));
     before = r.normal_force;
@@ -29,7 +32,7 @@ void press(HardFigure& worst, const char* name, const Primitive& surface, dvec3 
   worst.add(std::abs(before - force) / force, name);
   stage.wait(0.2);
   for (int i = 0; i < 200; ++i) {
-    stage.place(probe, at + 1e-5 * dvec3(std::sin(2.0 * i), std::sin(3.1 * i), std::cos(1.7 * i)) + shift);
+    stage.place(probe, at + 1e-5 * dvec3(std::sin(2.0 * i), std::sin(3.1 * i), std::cos(1.7 * i)));
     stage.tick();
     worst.need(stage.read(probe).in_contact, fmt::format("{}: it let go", name));
     worst.add(std::abs(stage.read(probe).normal_force - before) / force, fmt::format("{}, trembling", name));
@@ -38,9 +41,12 @@ void press(HardFigure& worst, const char* name, const Primitive& surface, dvec3 
     worst.need(std::isfinite(s.x + s.y + s.z + s.w), fmt::format("{}: the surface", name));
 }
 
-HardFigure on_a_vertex(const HardSetting&) {
+HardFigure in_a_sheet(const HardSetting&) {
   HardFigure worst;
-  press(worst, "vertex of a sheet", scenes::sheet(10, 0.1), {0.01, -0.003, 0.01}, 1);
+  const Primitive sheet = scenes::sheet(10, 0.1);
+  press(worst, "vertex", sheet, {0.01, -kPress, 0.01});
+  press(worst, "edge", sheet, {0.015, -kPress, 0.01});
+  press(worst, "diagonal", sheet, {0.015, -kPress, 0.015});
   return worst;
 }
 
@@ -76,164 +82,321 @@ HardFigure from_vertex_to_vertex(const HardSetting&) {
   return worst;
 }
 
-HardFigure on_an_edge(const HardSetting&) {
+// A solid with flat sides, and the closest point on it of a place outside.
+struct Solid {
+  const char* name;
+  Primitive surface;
+  dvec3 corner, out;                    // [m] that probes are led around; [1] its axis
+  std::function<dvec3(dvec3)> closest;  // in closed form
+};
+
+constexpr double kHalf = 0.04;  // [m] of a box's side; where an octahedron's corners are
+
+Solid box() {
+  const dvec3 low(-kHalf, -2 * kHalf, -kHalf), high(kHalf, 0, kHalf);
+  return {"box", scenes::slab(4, 2 * kHalf, 2 * kHalf), high, normalize(dvec3(1)),
+          [=](dvec3 x) { return glm::clamp(x, low, high); }};
+}
+
+Primitive octahedron(double size) {
+  Primitive p;
+  for (const double s : {size, -size})
+    for (int k = 0; k < 3; ++k) {
+      dvec3 corner(0);
+      corner[k] = s;
+      p.position.push_back(vec3(corner));
+    }
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const std::uint32_t x = i & 1 ? 3 : 0, y = i & 2 ? 4 : 1, z = i & 4 ? 5 : 2;
+    const bool even = ((i & 1) + (i >> 1 & 1) + (i >> 2)) % 2 == 0;
+    for (const std::uint32_t v : {x, even ? y : z, even ? z : y}) p.index.push_back(v);
+  }
+  return p;
+}
+
+// |x| + |y| + |z| <= kHalf: a projection on the simplex in the place's octant.
+Solid octahedron() {
+  return {"octahedron", octahedron(kHalf), {0, kHalf, 0}, {0, 1, 0}, [](dvec3 x) {
+            std::array<double, 3> sorted{std::abs(x.x), std::abs(x.y), std::abs(x.z)};
+            std::sort(sorted.rbegin(), sorted.rend());
+            double sum = 0.0, level = 0.0;
+            for (int n = 1; n <= 3; ++n) {
+              sum += sorted[static_cast<std::size_t>(n - 1)];
+              if (const double next = (sum - kHalf) / n; sorted[static_cast<std::size_t>(n - 1)] > next) level = next;
+            }
+            return glm::sign(x) * glm::max(glm::abs(x) - dvec3(level), dvec3(0));
+          }};
+}
+
+// Round about the Y axis, its tip at the origin, pointing up.
+Primitive cone(int sides, double radius, double height) {
+  Primitive p;
+  p.position = {vec3(0), vec3(0, -static_cast<float>(height), 0)};
+  for (int i = 0; i < sides; ++i) {
+    const double a = 2 * M_PI * i / sides;
+    p.position.push_back(vec3(dvec3(radius * std::sin(a), -height, radius * std::cos(a))));
+  }
+  for (int i = 0; i < sides; ++i) {
+    const auto a = static_cast<std::uint32_t>(2 + i), b = static_cast<std::uint32_t>(2 + (i + 1) % sides);
+    for (const std::uint32_t v : {0u, a, b, 1u, b, a}) p.index.push_back(v);
+  }
+  return p;
+}
+
+// A sphere is led over a corner, the edges and the sides around it, 3 mm deep: its force is that of its distance.
+HardFigure over_corners(const HardSetting&) {
   HardFigure worst;
-  press(worst, "edge", scenes::sheet(10, 0.1), {0.015, -0.003, 0.01}, 1);
-  press(worst, "diagonal", scenes::sheet(10, 0.1), {0.015, -0.003, 0.015}, 1);
-  // Under a ridge both sides are nearer than its line, and share the push: s = 1.5^(-1/4) cos(0.7) of the depth.
-  press(worst, "ridge", scenes::valley(10, 0.1, -0.7), {0, -0.003, 0.003},
-        std::pow(std::pow(1.5, -0.25) * std::cos(0.7), 2));
+  constexpr double kRadius = 0.008;
+  for (const Solid& solid : {box(), octahedron()}) {
+    Stage stage;
+    const Deformable d = frictionless();
+    stage.add(solid.surface, d);
+    const dvec3 u = normalize(cross(solid.out, dvec3(0.3, -0.2, 1))), v = cross(solid.out, u);
+    const Entity probe = stage.add_probe(solid.corner + 0.05 * solid.out, kRadius);
+    stage.prepare();
+    stage.tick();
+    double nearest = 1.0, farthest = 0.0;
+    for (int i = 0; i <= 8000; ++i) {
+      const double a = 2 * M_PI * 7 * i / 8000, lean = 1.4 * std::sin(2 * M_PI * i / 8000);
+      const dvec3 away =
+          solid.corner + 0.03 * (std::cos(lean) * solid.out + std::sin(lean) * (std::cos(a) * u + std::sin(a) * v));
+      const dvec3 p = solid.closest(away), n = normalize(away - p);
+      const double depth = kPress * std::min(1.0, i / 200.0);
+      stage.place(probe, p + (kRadius - depth) * n);
+      stage.tick();
+      worst.add(length(raw_force(stage, probe) - law(d, depth) * n) / law(d, kPress), solid.name);
+      nearest = std::min(nearest, length(p - solid.corner));
+      farthest = std::max(farthest, length(p - solid.corner));
+    }
+    worst.need(nearest < 1e-9 && farthest > 0.015, fmt::format("{}: the path", solid.name));
+  }
   return worst;
 }
 
-HardFigure on_a_border(const HardSetting&) {
+// Minus the gradient of the stored energy, by central differences. [N]
+dvec3 by_differences(Stage& stage, Entity probe, dvec3 x) {
+  constexpr double kStep = 1e-6;  // [m]
+  dvec3 force(0);
+  for (int k = 0; k < 3; ++k)
+    for (const double side : {1.0, -1.0}) {
+      dvec3 at = x;
+      at[k] += side * kStep;
+      stage.place(probe, at);
+      stage.tick();
+      force[k] -= side * stored(stage) / (2 * kStep);
+    }
+  return force;
+}
+
+// Points below a corner, a tip, a ridge, where the surface has no normal of its own, and spheres over a tip.
+HardFigure by_energy(const HardSetting&) {
   HardFigure worst;
-  press(worst, "border", scenes::sheet(10, 0.1), {0.05, -0.003, 0}, 1, {-2e-5, 0, 0});
-  press(worst, "corner", scenes::sheet(10, 0.1), {0.05, -0.003, 0.05}, 1, {-2e-5, 0, -2e-5});
+  struct Under {
+    const char* name;
+    Primitive surface;
+    double radius;
+    dvec3 from;
+    std::function<dvec3(double, double, double)> at;  // of three numbers from 0 to 1
+  };
+  const dvec3 tip(0, kHalf, 0);
+  const std::array<Under, 5> places{{
+      {"a point under a box's corner",
+       box().surface,
+       0,
+       {kHalf - 0.004, 0.005, kHalf - 0.004},
+       [](double a, double b, double c) { return dvec3(kHalf, 0, kHalf) - dvec3(0.001) - 0.006 * dvec3(a, b, c); }},
+      {"a point under an octahedron's corner", octahedron().surface, 0, tip + dvec3(0.001, 0.005, 0.0005),
+       [=](double a, double b, double c) {
+         const double y = 0.002 + 0.006 * a;
+         return tip + y * dvec3(0.45 * (2 * b - 1), -1, 0.45 * (2 * c - 1));
+       }},
+      // Deeper than its radius of curvature the nearest side changes at once.
+      {"a point under a cone's tip",
+       cone(24, 0.04, 0.04),
+       0,
+       {0.001, 0.005, 0.0005},
+       [](double a, double b, double c) {
+         const double y = 0.002 + 0.004 * a;
+         return y * dvec3(0.5 * std::sqrt(b) * std::cos(6.28 * c), -1, 0.5 * std::sqrt(b) * std::sin(6.28 * c));
+       }},
+      {"a point under a ridge",
+       scenes::valley(10, 0.1, -0.7),
+       0,
+       {0.0005, 0.005, 0.003},
+       [](double a, double b, double c) {
+         const double y = 0.001 + 0.006 * a;
+         return dvec3(0.9 * y * (2 * b - 1), -y - 0.8 * std::abs(0.9 * y * (2 * b - 1)), 0.02 * (c - 0.5));
+       }},
+      {"a sphere over a cone's tip",
+       cone(24, 0.04, 0.04),
+       0.008,
+       {0, 0.02, 0},
+       [](double a, double b, double c) {
+         const double lean = 1.3 * b;
+         return (0.004 + 0.003 * a) *
+                dvec3(std::sin(lean) * std::cos(6.28 * c), std::cos(lean), std::sin(lean) * std::sin(6.28 * c));
+       }},
+  }};
+  for (const Under& place : places) {
+    Stage stage;
+    const Deformable d = frictionless();
+    stage.add(place.surface, d);
+    const Entity probe = stage.add_probe(place.from, place.radius);
+    stage.prepare();
+    stage.move(probe, place.at(0.5, 0.5, 0.5), 0.05);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(0, 1);
+    double least = 1e9;
+    for (int i = 0; i < 200; ++i) {
+      const double a = unit(random), b = unit(random), c = unit(random);
+      const dvec3 x = place.at(a, b, c);
+      stage.move(probe, x, 0.01);
+      const dvec3 f = raw_force(stage, probe);
+      least = std::min(least, length(f));
+      worst.add(length(f - by_differences(stage, probe, x)) / law(d, kPress), place.name);
+    }
+    worst.need(least > 0.01, fmt::format("{}: not pressed", place.name));
+  }
+  return worst;
+}
+
+// Held 3 mm under the line of a ridge both sides are nearer, and share the push.
+HardFigure under_a_ridge(const HardSetting&) {
+  HardFigure worst;
+  constexpr double kSlope = 0.7;  // [rad]
+  Stage stage;
+  const Deformable d = frictionless();
+  stage.add(scenes::valley(10, 0.1, -kSlope), d);
+  const dvec3 at(0, -kPress, 0.003);
+  const Entity probe = stage.add_probe(at + dvec3(0, 0.008, 0));
+  stage.prepare();
+  stage.move(probe, at, 0.2);
+  const dvec3 held = raw_force(stage, probe);
+  const double side = law(d, kPress * std::cos(kSlope));  // of one side alone
+  worst.need(held.y > 0.2 * side && held.y < side, fmt::format("the force, {:.3g} of one side's", held.y / side));
+  worst.add(std::hypot(held.x, held.z) / side, "sideways");
+  for (int i = 0; i < 200; ++i) {
+    stage.place(probe, at + 1e-5 * dvec3(std::sin(2.0 * i), std::sin(3.1 * i), std::cos(1.7 * i)));
+    stage.tick();
+    worst.add(length(raw_force(stage, probe) - held) / side, "trembling");
+  }
+  return worst;
+}
+
+constexpr double kBorder = 0.05;  // [m] half of a sheet
+
+// A sphere is led over the border or a corner of an open sheet, and trembles there: the closest point is on the sheet.
+HardFigure sphere_over_a_border(const HardSetting&) {
+  HardFigure worst;
+  constexpr double kRadius = 0.008;
+  for (const dvec3 out : {dvec3(1, 0, 0), dvec3(0, 0, -1), dvec3(1, 0, 1)}) {
+    const char* where = out.x * out.z != 0.0 ? "corner" : "border";
+    Stage stage;
+    const Deformable d = frictionless();
+    stage.add(scenes::sheet(10, 2 * kBorder), d);
+    const dvec3 rim = kBorder * out, middle = rim + dvec3(0, kRadius - kPress, 0);
+    const Entity probe = stage.add_probe(middle - 0.02 * out + dvec3(0, 0.01, 0), kRadius);
+    stage.prepare();
+    const auto look = [&](const char* what) {
+      const dvec3 x = stage.read(probe).position,
+                  p = glm::clamp(x, dvec3(-kBorder, 0, -kBorder), dvec3(kBorder, 0, kBorder)), n = normalize(x - p);
+      const double depth = std::max(0.0, kRadius - length(x - p));
+      worst.add(length(raw_force(stage, probe) - law(d, depth) * n) / law(d, kPress), fmt::format("{}{}", where, what));
+    };
+    const auto go = [&](dvec3 to) { stage.move(probe, to, 0.3, [&](const ProbeReading&) { look(""); }); };
+    go(middle - 0.02 * out);
+    go(middle);
+    for (int i = 0; i < 400; ++i) {
+      stage.place(probe, middle + 2e-5 * std::sin(2.0 * i) * out + 1e-5 * dvec3(0, std::sin(3.1 * i), 0));
+      stage.tick();
+      look(", trembling");
+    }
+    go(middle + 0.004 * out);
+    go(rim + 0.006 * out);
+    go(middle + 0.004 * out);
+    go(middle - 0.02 * out);
+  }
+  return worst;
+}
+
+// A point behind an open sheet is held up to the border. Beyond it nothing is felt, and a hand that trembles over the
+// border is let go once.
+HardFigure point_over_a_border(const HardSetting&) {
+  HardFigure worst;
+  for (const dvec3 out : {dvec3(1, 0, 0), dvec3(0, 0, -1), dvec3(1, 0, 1)})
+    for (const bool trembles : {false, true}) {
+      const std::string where =
+          fmt::format("{}{}", out.x * out.z != 0.0 ? "corner" : "border", trembles ? ", trembling" : "");
+      Stage stage;
+      const Deformable d = frictionless();
+      stage.add(scenes::sheet(10, 2 * kBorder), d);
+      const dvec3 rim = kBorder * out, down(0, -kPress, 0);
+      const Entity probe = stage.add_probe(rim - 0.01 * out + dvec3(0, 0.002, 0));
+      stage.prepare();
+      RawMeter meter;
+      bool held = true;
+      int let_go = 0;
+      const auto look = [&] {
+        const dvec3 x = stage.read(probe).position, f = raw_force(stage, probe);
+        meter.add(stage, probe, x);
+        const bool beyond = std::max(std::abs(x.x), std::abs(x.z)) > kBorder;
+        if (held && beyond && x.y < 0) held = false, ++let_go;
+        if (!held && x.y > 0) held = true;  // it may come in again from above
+        const double want = held && x.y < 0 ? law(d, -x.y) : 0.0;
+        worst.add(length(f - dvec3(0, want, 0)) / law(d, kPress), where);
+      };
+      const auto go = [&](dvec3 to) { stage.move(probe, to, 0.2, [&](const ProbeReading&) { look(); }); };
+      go(rim - 0.01 * out + down);
+      go(rim - 1e-5 * out + down);
+      if (trembles)
+        for (int i = 0; i < 400; ++i) {
+          stage.place(probe, rim + down + 2e-5 * std::sin(2.0 * i) * out);
+          stage.tick();
+          look();
+        }
+      go(rim + 0.005 * out + down);
+      go(rim + 0.005 * out - down);
+      go(rim - 0.01 * out - down);
+      worst.need(let_go == 1, where + ": it was not let go once");
+      worst.need(meter.most > 1e-4 && meter.work < 0, where + ": it gave out energy");
+    }
   return worst;
 }
 
 HardFigure in_a_crease(const HardSetting&) {
   HardFigure worst;
   // Of all places the line of the crease is the nearest.
-  press(worst, "valley", scenes::valley(10, 0.1, 0.7), {0, -0.003, 0.003}, 1);
-  return worst;
-}
-
-HardFigure pass_through(const HardSetting&) {
-  HardFigure worst;
-  for (const double thickness : {0.0, 0.001})
-    for (const double radius : {0.0, 0.002}) {
-      const std::string where = fmt::format("wall {:g} mm, radius {:g} mm", 1e3 * thickness, 1e3 * radius);
-      Stage stage;
-      stage.add(thickness > 0 ? scenes::slab(20, 0.2, thickness) : scenes::sheet(20, 0.2), frictionless());
-      const Entity probe = stage.add_probe({0.003, 0.05, 0.002}, radius);
-      stage.prepare();
-      stage.tick();
-      for (int i = 1; i <= 4; ++i) {
-        const double y = 0.05 - 0.02 * i;
-        stage.place(probe, {0.003, y, 0.002});
-        stage.tick();
-        if (y >= 0) continue;
-        worst.need(stage.read(probe).in_contact, where + ": it went through");
-        worst.need(stage.read(probe).force.y > 0, where + ": nothing pushes");
-        worst.add(std::abs(stage.read(probe).depth + y - radius), where);
-      }
-    }
-  return worst;
-}
-
-// The forces of one press, slide and lift on two surfaces that should feel the same.
-double difference(const Primitive& one, const Primitive& other) {
-  std::vector<dvec3> first;
-  double most = 0;
-  for (const Primitive* surface : {&one, &other}) {
-    Stage stage;
-    stage.add(*surface, frictionless());
-    const Entity probe = stage.add_probe({-0.021, 0.001, 0.0137});
-    stage.prepare();
-    std::size_t i = 0;
-    for (const dvec3 to : {dvec3(-0.021, -0.003, 0.0137), dvec3(0.03, -0.004, -0.02), dvec3(0.03, 0.002, -0.02)})
-      stage.move(probe, to, 0.2, [&](const ProbeReading&) {
-        const dvec3 f = raw_force(stage, probe);
-        if (surface == &one) {
-          first.push_back(f);
-        } else {
-          most = std::max(most, length(f - first[i++]));
-        }
-        if (!std::isfinite(length(f))) most = INFINITY;
-      });
-  }
-  for (const dvec3& f : first)
-    if (f.y > 1.0) return most;
-  return INFINITY;  // it was not pressed
-}
-
-HardFigure duplicate_vertices(const HardSetting&) {
-  HardFigure worst;
-  const Primitive welded = scenes::sheet(10, 0.1);
-  Primitive soup;  // every triangle has corners of its own
-  for (const std::uint32_t i : welded.index) {
-    soup.index.push_back(static_cast<std::uint32_t>(soup.position.size()));
-    soup.position.push_back(welded.position[i]);
-  }
-  worst.add(difference(welded, soup));
-  return worst;
-}
-
-HardFigure zero_area(const HardSetting&) {
-  HardFigure worst;
-  const Primitive sound = scenes::sheet(10, 0.1);
-  Primitive broken = sound;
-  const std::uint32_t across = 11;  // vertices in a row
-  for (const std::uint32_t v : {24u, 60u, 71u}) {
-    const std::uint32_t flat[] = {v, v, v + 1, v, v, v, v, v + 1, v + 2, v, v + across, v + 2 * across};
-    broken.index.insert(broken.index.begin() + 30, std::begin(flat), std::end(flat));
-  }
-  worst.add(difference(sound, broken));
-  return worst;
-}
-
-// A fin hangs under the middle line of a sheet: three triangles an edge.
-HardFigure non_manifold(const HardSetting&) {
-  HardFigure worst;
-  Primitive p = scenes::sheet(10, 0.1);
-  const auto first = static_cast<std::uint32_t>(p.position.size());
-  for (int j = 0; j <= 10; ++j) {
-    p.position.push_back(vec3(0, 0, 0.05 - 0.01 * j));
-    p.position.push_back(vec3(0, -0.03, 0.05 - 0.01 * j));
-  }
-  for (std::uint32_t j = 0; j < 10; ++j) {
-    const std::uint32_t a = first + 2 * j;
-    for (const std::uint32_t v : {a, a + 1, a + 3, a, a + 3, a + 2}) p.index.push_back(v);
-  }
-  for (const bool back : {false, true}) {
-    Stage stage;
-    const Deformable d = frictionless();
-    stage.add(p, d);
-    const Entity probe = stage.add_probe({back ? 0.02 : -0.02, 0.002, 0.003});
-    stage.prepare();
-    RawMeter meter;
-    const auto go = [&](dvec3 to, double seconds) {
-      stage.move(probe, back ? dvec3(-to.x, to.y, to.z) : to, seconds, [&](const ProbeReading& r) {
-        meter.add(stage, probe, r.position);
-        worst.need(std::isfinite(length(raw_force(stage, probe))), "the force");
-      });
-    };
-    go({-0.02, -0.003, 0.003}, 0.2);
-    worst.need(std::abs(raw_force(stage, probe).y - law(d, 0.003)) < 0.01 * law(d, 0.003), "beside it, the law");
-    go({0.02, -0.003, 0.003}, 0.8);
-    go({0.02, 0.002, 0.003}, 0.2);
-    go({-0.02, 0.002, 0.003}, 0.2);
-    worst.add(meter.work / meter.most, back ? "from the right" : "from the left");
-  }
+  press(worst, "valley", scenes::valley(10, 0.1, 0.7), {0, -kPress, 0.003});
   return worst;
 }
 
 }  // namespace
 
 std::vector<HardCase> hard_places() {
+  constexpr const char* kVertexOrEdge = "methods.md 3.9: probe on a vertex or edge";
   constexpr const char* kForce =
       "pressed 3 mm and held by a trembling hand: the law's force, no step over 0.05 N a tick";
   return {
-      {"OnAVertexTheForceIsThatOfTheLaw", "methods.md 3.9: probe on a vertex or edge", kForce, "of the law [1]", 0.01,
-       on_a_vertex},
-      {"AProbeLedFromVertexToVertexFeelsTheSphere", "methods.md 3.9: probe on a vertex or edge",
+      {"OnVerticesAndEdgesOfASheetTheForceIsThatOfTheLaw", kVertexOrEdge, kForce, "of the law [1]", 0.01, in_a_sheet},
+      {"AProbeLedFromVertexToVertexFeelsTheSphere", kVertexOrEdge,
        "400 lines between neighbours of 866 vertices, 3 mm deep: the force of the sphere", "of it [1]", 0.02,
        from_vertex_to_vertex},
-      {"OnAnEdgeTheForceIsThatOfTheLaw", "methods.md 3.9: probe on a vertex or edge", kForce, "of the law [1]", 0.01,
-       on_an_edge},
-      {"NothingIsTunnelledThroughAtTwentyMetresPerSecond", "methods.md 3.9: 20 m/s pass-through",
-       "sheets and walls of 1 mm are felt, at their depth", "m", 1e-6, pass_through},
-      {"AThreeTriangleEdgeGivesOutNoEnergy", "methods.md 3.9: non-manifold",
-       "a sheet with a fin under it: finite force, the law 20 mm beside it, work over a closed path",
-       "of the stored energy [1]", 1e-3, non_manifold},
-      {"OnABorderAndACornerTheForceIsThatOfTheLaw", "methods.md 3.9: border", kForce, "of the law [1]", 0.01,
-       on_a_border},
-      {"DuplicateVerticesChangeNothing", "methods.md 3.9: duplicate vertices",
-       "every triangle with corners of its own feels as the welded sheet", "N", 1e-9, duplicate_vertices},
-      {"TrianglesWithoutAreaChangeNothing", "methods.md 3.9: zero-area triangles",
-       "a sheet with twelve of them feels as without", "N", 1e-9, zero_area},
+      {"ASphereOverCornersOfABoxAndAnOctahedronFeelsItsDistance", kVertexOrEdge,
+       "led over corner, edges and sides, 3 mm deep: the law of its distance, along it", "of the law [1]", 1e-3,
+       over_corners},
+      {"UnderCornersTipsAndRidgesTheForceIsTheGradientOfTheEnergy", kVertexOrEdge,
+       "points under a box's and an octahedron's corner, a cone's tip, a ridge, spheres over the tip: against central "
+       "differences of the stored energy",
+       "of the law at 3 mm [1]", 1e-3, by_energy},
+      {"HeldUnderARidgeTheForceIsSteadyAndLessThanOneSides", kVertexOrEdge,
+       "3 mm under the line, trembling by 0.01 mm: straight up, 0.2 to 1 of the law of one side; sideways and change",
+       "of one side's [1]", 0.01, under_a_ridge},
+      {"ASphereLedOverTheBorderOfASheetFeelsItsDistance", "methods.md 3.9: border",
+       "over borders and a corner and back, trembling across: the law of its distance to the sheet, along it",
+       "of the law [1]", 1e-3, sphere_over_a_border},
+      {"APointIsFeltUpToTheBorderOfASheetAndLetGoOnce", "methods.md 3.9: border",
+       "3 mm deep, over borders and a corner, trembling across: the law up to it, nothing beyond; no energy given out",
+       "of the law [1]", 0.01, point_over_a_border},
       {"InAConcaveCreaseTheForceIsThatOfTheLaw", "methods.md 3.9: concave crease", kForce, "of the law [1]", 0.01,
        in_a_crease},
   };

@@ -1,0 +1,114 @@
+#include "engine/scene_hash.h"
+
+#include <algorithm>
+
+#include "content/files/file_io.h"
+#include "content/keys/extension_table.h"
+#include "content/tets/tet_file.h"
+
+namespace pliant {
+namespace fs = std::filesystem;
+namespace {
+
+template <class T>
+void add_values(Hash& hash, const std::vector<T>& values) {
+  hash.add(values.size());
+  hash.add_bytes(values.data(), values.size() * sizeof(T));
+}
+
+void add_mesh(Hash& hash, const LevelMesh& mesh) {
+  hash.add(mesh.primitives.size());
+  for (const Primitive& p : mesh.primitives) {
+    add_values(hash, p.position);
+    add_values(hash, p.normal);  // make creases
+    add_values(hash, p.index);
+    for (const std::vector<float>* painted :
+         {&p.stiffness, &p.friction, &p.damping, &p.relaxation, &p.pinned, &p.handle})
+      add_values(hash, *painted);
+  }
+}
+
+void add_node(Hash& hash, const LevelNode& node) {
+  add_text(hash, node.name);
+  hash.add(node.parent);
+  hash.add(node.mesh);
+  hash.add(node.in_scene);
+  for (const float number : {node.local.translation.x, node.local.translation.y, node.local.translation.z,
+                             node.local.rotation.x, node.local.rotation.y, node.local.rotation.z, node.local.rotation.w,
+                             node.local.scale.x, node.local.scale.y, node.local.scale.z})
+    hash.add(number);
+}
+
+void add_animation(Hash& hash, const LevelAnimation& animation) {
+  add_text(hash, animation.name);
+  hash.add(animation.length);
+  hash.add(animation.channels.size());
+  for (const LevelChannel& channel : animation.channels) {
+    hash.add(channel.node);
+    hash.add(static_cast<int>(channel.property));
+    hash.add(static_cast<int>(channel.track.interpolation));
+    add_values(hash, channel.track.times);
+    add_values(hash, channel.track.values);
+  }
+}
+
+// A probe that a window adds for its mouse has a colour of its own, and a replay of it has not.
+bool is_not_felt(const Extension& extension, const Key& key) {
+  return (extension.name == "probe" && key.name == "color") || key.name == "error";
+}
+
+void add_keys(Hash& hash, const Extension& extension, const void* owner, const fs::path& folder) {
+  if (!extension.present(owner)) return;
+  add_text(hash, extension.name);
+  for (const Key& key : extension.keys) {
+    if (key.alias || is_not_felt(extension, key)) continue;
+    const Json value = key.get(owner);
+    add_text(hash, value.dump(-1, ' ', false, Json::error_handler_t::replace));
+    if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device")
+      add_named_file(hash, folder, value.get<std::string>());
+  }
+}
+
+}  // namespace
+
+void add_text(Hash& hash, const std::string& text) {
+  hash.add(text.size());
+  hash.add_bytes(text.data(), text.size());
+}
+
+void add_named_file(Hash& hash, const fs::path& folder, const std::string& name) {
+  if (name.empty()) return;
+  const Result<fs::path> named = confined_path(folder, name);
+  if (!named) return;
+  for (const fs::path& file : {*named, tetgen_partner(*named)}) {
+    std::error_code no;
+    if (file.empty() || !fs::is_regular_file(file, no)) continue;
+    const Result<Bytes> bytes = read_file(file);
+    if (!bytes) continue;  // whoever needs it says so
+    hash.add(bytes->size());
+    hash.add_bytes(bytes->data(), bytes->size());
+  }
+}
+
+std::uint64_t scene_hash(const Level& level) {
+  Hash hash;
+  const fs::path folder = level.path.parent_path();
+  hash.add(level.meshes.size());
+  for (const LevelMesh& mesh : level.meshes) add_mesh(hash, mesh);
+  for (const LevelNode& node : level.nodes) add_node(hash, node);
+  for (const LevelAnimation& animation : level.animations) add_animation(hash, animation);
+  for (const Extension& extension : extension_table()) {
+    if (extension.name == "environment") continue;  // is seen, not felt
+    if (extension.on_scene) {
+      add_keys(hash, extension, &level, folder);
+      continue;
+    }
+    for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+      if (extension.present(&level.nodes[i])) hash.add(i);
+      add_keys(hash, extension, &level.nodes[i], folder);
+    }
+  }
+  return std::max<std::uint64_t>(hash.value(), 1);
+}
+
+}  // namespace pliant

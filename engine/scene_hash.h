@@ -1,0 +1,23 @@
+// What makes two scenes the same to a recording, and a part of what makes two runs of a sweep the same.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "content/level/level.h"
+#include "runtime/hash.h"
+
+namespace pliant {
+
+// Of everything that is felt: meshes, which node has which, where nodes are and hang, keys, animations, and the bytes
+// of files that keys name. Not of an error budget, which is felt by what was chosen for it, in other keys; nor of
+// scripts of devices, whose poses a recording has. Never 0.
+std::uint64_t scene_hash(const Level& level);
+
+void add_text(Hash& hash, const std::string& text);
+// The bytes of the file that a key calls `name`, relative to the level's folder, and of TetGen's other one. Nothing
+// where no such file is there.
+void add_named_file(Hash& hash, const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace pliant

@@ -1,0 +1,26 @@
+// Places on a smooth surface (components/curved_patch.h), and the points around them that a press is taken at.
+#pragma once
+
+#include <vector>
+
+#include "components/mesh.h"
+
+namespace pliant {
+
+// A place on the curved surface, object frame.
+struct PressPlace {
+  std::uint32_t triangle = 0;
+  dvec3 barycentric{1, 0, 0};
+  dvec3 position{0};      // [m]
+  dvec3 normal{0, 1, 0};  // [1] unit, outward
+};
+PressPlace place_at(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
+
+struct SurfaceSample : PressPlace {
+  double area = 0.0;  // [m2] that it stands for
+};
+// Of the triangles' own patches, about `apart` [m] from each other: all points within `within` [m] of the place on what
+// faces the same way as it (the other side of the object is another surface).
+std::vector<SurfaceSample> samples_around(const Mesh& mesh, const PressPlace& place, double within, double apart);
+
+}  // namespace pliant
