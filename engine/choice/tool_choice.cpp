@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-// [us] of a tick, as `pliant study linearisation` measured them (bench/results/linearisation_xeon_2core.json: 20 us
+// [us] of a tick, as `pliant study linearisation` measured them (bench/results/studies/linearisation.json: 20 us
 // with 58 contacts and 69 modes): coupling and handle; the linear model; each number of the contacts' rows.
 constexpr double kHeldUs = 0.5, kLinearUs = 0.1, kEntryUs = 1.5e-3;
 

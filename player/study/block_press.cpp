@@ -1,12 +1,16 @@
 #include "player/study/block_press.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <numeric>
 
+#include "player/study/pareto.h"
 #include "player/study/processor_time.h"
+#include "runtime/assert.h"
 #include "systems/soft/fem/tissue.h"
 #include "systems/soft/fem/tissue_step.h"
 #include "systems/soft/linear/linear_solver.h"
@@ -14,15 +18,18 @@
 namespace pliant {
 namespace {
 
-// From 0 to `end`: even cells of `size` as far as `fine`, then each `growth` times the one before; the last ones even
-// out.
-std::vector<double> graded(double fine, double size, double end, double growth) {
-  std::vector<double> at{0.0};
-  while (at.back() < fine - 1e-9 * size) at.push_back(at.back() + size);
-  const std::size_t inner = at.size();
-  for (double step = size * growth; at.back() < end; step *= growth) at.push_back(at.back() + step);
-  const double begin = at[inner - 1], scale = (end - begin) / (at.back() - begin);
-  for (std::size_t i = inner; i < at.size(); ++i) at[i] = begin + (at[i] - begin) * scale;
+constexpr double kRim = 1.5;         // [1] > 1: cells get smaller towards the rim
+constexpr int kMostIterations = 60;  // of co-rotational tissue, a depth
+
+// From 0 to `end` in `parts * cells` cells: as t^kRim near 0, the faster the farther away. The same curve for all
+// `cells`, so that errors fall evenly with their number.
+std::vector<double> away_from_rim(double radius, double end, int parts, int cells) {
+  const double growth = std::log(end / (radius * std::pow(parts, kRim)));
+  std::vector<double> at;
+  for (int i = 0; i <= parts * cells; ++i) {
+    const double t = static_cast<double>(i) / cells;
+    at.push_back(radius * std::pow(t, kRim) * std::exp(growth * t / parts));
+  }
   return at;
 }
 
@@ -32,17 +39,31 @@ struct Grid {
 };
 
 Grid grid_of(const BlockPress& p) {
-  const double size = p.radius / p.cells;
   Grid grid;
-  const std::vector<double> half = graded(1.5 * p.radius, size, p.half_width, 1.3);
+  std::vector<double> half;
+  for (int i = 0; i < p.cells; ++i)
+    half.push_back(p.radius * (1 - std::pow(1 - static_cast<double>(i) / p.cells, kRim)));
+  for (const double away : away_from_rim(p.radius, p.half_width - p.radius, 2, p.cells))
+    half.push_back(p.radius + away);
   for (auto x = half.rbegin(); x != half.rend(); ++x)
     if (*x > 0.0) grid.side.push_back(-*x);
   grid.side.insert(grid.side.end(), half.begin(), half.end());
-  grid.depth = graded(p.radius, size, p.thickness, 1.3);
+  const int parts = 1 + std::max(0, static_cast<int>(std::lround(std::log2(p.thickness / p.radius))));
+  grid.depth = away_from_rim(p.radius, p.thickness, parts, p.cells);
   return grid;
 }
 
 enum class Group { kFree, kPunch, kFloor };
+
+// Squares about the middle become circles at the punch's rim, and squares again at the block's sides: the punch is a
+// disc whatever the grid, but for the arcs between its nodes.
+dvec3 rounded(dvec3 p, const BlockPress& press) {
+  const double m = std::max(std::abs(p.x), std::abs(p.z)), a = press.radius;
+  if (m == 0.0) return p;
+  const double round = m <= a ? m / a : std::max(0.0, (press.half_width - m) / (press.half_width - a));
+  const double scale = 1 + round * (m / std::hypot(p.x, p.z) - 1);
+  return {scale * p.x, p.y, scale * p.z};
+}
 
 // Six tetrahedra a cell around its diagonal; neighbours mirror one another, so that no direction is preferred.
 TetMesh tets_of(const Grid& grid, const BlockPress& p) {
@@ -54,10 +75,9 @@ TetMesh tets_of(const Grid& grid, const BlockPress& p) {
   for (const double x : grid.side)
     for (const double z : grid.side)
       for (std::size_t k = 0; k < deep; ++k) {
-        places.emplace_back(x, -grid.depth[k], z);
-        group.push_back(k + 1 == deep                                         ? Group::kFloor
-                        : k == 0 && std::hypot(x, z) <= p.radius * (1 + 1e-9) ? Group::kPunch
-                                                                              : Group::kFree);
+        places.push_back(rounded({x, -grid.depth[k], z}, p));
+        const bool under = std::max(std::abs(x), std::abs(z)) <= p.radius * (1 + 1e-9);
+        group.push_back(k + 1 == deep ? Group::kFloor : k == 0 && under ? Group::kPunch : Group::kFree);
       }
   std::vector<std::uint32_t> name(places.size());
   for (const Group g : {Group::kFree, Group::kPunch, Group::kFloor}) {
@@ -112,28 +132,33 @@ void read_top(const TetMesh& mesh, const Tissue& tissue, double punch, PressedBl
 
 }  // namespace
 
-Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std::vector<double>& depths) {
+Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std::vector<double>& depths,
+                                              const std::function<bool(double)>& goes_on) {
   const TetMesh mesh = tets_of(grid_of(press), press);
   TissueMaterial material;
   material.young = press.young;
   material.poisson = press.poisson;
   material.strain = press.strain;
   TissueStep settle;
-  if (press.strain == Strain::kCorotational) settle.iterations = 20, settle.tolerance = 1e-7;
-  std::uint64_t begin = processor_ns();
+  if (press.strain == Strain::kCorotational) settle.iterations = kMostIterations, settle.tolerance = 1e-7;
   Tissue tissue(mesh, material, mesh.free_count);
   const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);
   solver->analyse(tissue.inner());
+  std::uint64_t begin = processor_ns();
   std::vector<PressedBlock> all;
   double before = 0.0;
   for (const double depth : depths) {
+    if (!goes_on(static_cast<double>(all.size()) / static_cast<double>(depths.size()))) return interrupted();
     PressedBlock out;
     out.depth = depth;
     out.tets = mesh.tets.size();
     for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) tissue.position()[i].y -= depth - before;
     const TissueReport report = settle_tissue(tissue, *solver, dvec3(0), settle);
-    if (!report.solved)
-      return Error{"study", "the block of tetrahedra could not be solved; this is a defect of the study"};
+    if (!report.solved || (press.strain == Strain::kCorotational && !(report.change <= settle.tolerance)))
+      return Error{"study",
+                   fmt::format("a block of {} tetrahedra, pressed {:g} mm deep, was not solved; this is a defect "
+                               "of the study",
+                               out.tets, 1000 * depth)};
     out.solves = report.iterations;
     tissue.assemble(1.0, dvec3(0));
     for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i)
@@ -151,6 +176,24 @@ Result<PressedBlock> press_block(const BlockPress& press, double depth) {
   auto all = press_block(press, std::vector<double>{depth});
   if (!all) return all.error();
   return std::move(all->front());
+}
+
+GridLimit grid_limit(const std::vector<int>& cells, const std::vector<double>& values) {
+  ASSERT(cells.size() == values.size() && cells.size() >= 3);
+  const auto last = values.end() - 3;
+  const auto n = cells.end() - 3;
+  const auto fall = [&](double order, int i) { return std::pow(n[i], -order) - std::pow(n[i + 1], -order); };
+  const double ratio = (last[0] - last[1]) / (last[1] - last[2]);
+  constexpr double kLeastOrder = 0.25, kMostOrder = 6.0;
+  double low = kLeastOrder, high = kMostOrder;
+  if (!(ratio > fall(low, 0) / fall(low, 1) && ratio < fall(high, 0) / fall(high, 1)))
+    return {last[2], std::numeric_limits<double>::quiet_NaN(), 0.0};
+  for (int i = 0; i < 60; ++i) {
+    const double order = 0.5 * (low + high);
+    (fall(order, 0) / fall(order, 1) < ratio ? low : high) = order;
+  }
+  const double to_come = std::pow(n[2], -low) / fall(low, 1);
+  return {last[2] + to_come * (last[2] - last[1]), low, to_come};
 }
 
 }  // namespace pliant

@@ -11,8 +11,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kMapWidth = 1400, kMapHeight = 920;                               // [pixel]
-constexpr double kMapLeft = 150, kMapRight = 20, kMapTop = 142, kMapBottom = 120;  // [pixel] margins
+constexpr double kMapWidth = 1240, kMapHeight = 980;                               // [pixel]
+constexpr double kMapText = 17, kMapTick = 15;                                     // [pixel]
+constexpr double kMapLeft = 150, kMapRight = 20, kMapTop = 190, kMapBottom = 130;  // [pixel] margins
 constexpr double kGap = 10;                                                        // [pixel] between maps
 constexpr Color kFailedColor{0.80, 0.24, 0.10};
 
@@ -48,17 +49,17 @@ std::vector<std::size_t> ticks(const std::vector<double>& values) {
 }
 
 void draw_key(Pen& pen, const HeatMaps& all) {
-  const double y = kMapHeight - 34, x0 = kMapLeft, w = 420;
-  for (int i = 0; i < 210; ++i)
-    rectangle(pen, x0 + 2 * i, y, 2, 14, tone(all.low * std::pow(all.high / all.low, (i + 0.5) / 210), all));
+  const double y = kMapHeight - 34, x0 = 70, w = 300;
+  for (int i = 0; i < 150; ++i)
+    rectangle(pen, x0 + 2 * i, y, 2, 14, tone(all.low * std::pow(all.high / all.low, (i + 0.5) / 150), all));
   pen.color(kInk);
   for (const double v : {all.low, std::sqrt(all.low * all.high), all.high})
-    pen.text(x0 + w * std::log(v / all.low) / std::log(all.high / all.low), y - 5, 13, 0.5, decade_number(v));
-  pen.text(x0 + w + 16, y + 12, 14, 0, all.tone);
-  const double x = x0 + w + 16 + pen.width(14, all.tone) + 40;
+    pen.text(x0 + w * std::log(v / all.low) / std::log(all.high / all.low), y - 5, kMapTick, 0.5, decade_number(v));
+  pen.text(x0 + w + 22, y + 13, kMapText, 0, all.tone);
+  const double x = x0 + w + 22 + pen.width(kMapText, all.tone) + 30;
   rectangle(pen, x, y, 26, 14, kFailedColor);
   pen.color(kInk);
-  pen.text(x + 34, y + 12, 14, 0, all.failed);
+  pen.text(x + 34, y + 13, kMapText, 0, all.failed);
 }
 
 void draw(Pen& pen, const HeatMaps& all) {
@@ -70,9 +71,9 @@ void draw(Pen& pen, const HeatMaps& all) {
   pen.color(kInk);
   pen.text(40, 44, 26, 0, all.title, true);
   double foot = 72;
-  for (const std::string& line : pen.lines(15, all.line, kMapWidth - 80)) {
-    pen.text(40, foot, 15, 0, line);
-    foot += 20;
+  for (const std::string& line : pen.lines(kMapText, all.line, kMapWidth - 80)) {
+    pen.text(40, foot, kMapText, 0, line);
+    foot += 23;
   }
   for (std::size_t m = 0; m < all.maps.size(); ++m) {
     const std::size_t column = m % all.columns, row = m / all.columns;
@@ -83,16 +84,20 @@ void draw(Pen& pen, const HeatMaps& all) {
         rectangle(pen, x0 + cw * static_cast<double>(i), y0 + h - ch * static_cast<double>(j + 1), cw, ch,
                   tone(all.maps[m].values[j * all.x.size() + i], all));
     pen.color(kInk);
-    if (row == 0) pen.text(x0 + w / 2, y0 - 8, 13, 0.5, all.maps[m].column, true);
+    if (row == 0) {
+      const std::vector<std::string> head = pen.lines(kMapText, all.maps[m].column, w);
+      for (std::size_t i = 0; i < head.size(); ++i)
+        pen.text(x0 + w / 2, y0 - 8 - 20 * static_cast<double>(head.size() - 1 - i), kMapText, 0.5, head[i]);
+    }
     if (column == 0) {
       cairo_save(pen.get());
-      pen.upright_text(58, y0 + h / 2, 15, all.maps[m].row);
+      pen.upright_text(72, y0 + h / 2, kMapText, all.maps[m].row);
       cairo_restore(pen.get());
       double last = kMapHeight;
       for (const std::size_t j : ticks(all.y)) {
         const double at = y0 + h - ch * (static_cast<double>(j) + 0.5) + 4;
-        if (last - at < 14) continue;
-        pen.text(x0 - 6, last = at, 13, 1.0, all.y[j] == 0.0 ? "0" : decade_number(all.y[j]));
+        if (last - at < 17) continue;
+        pen.text(x0 - 6, last = at, kMapTick, 1.0, all.y[j] == 0.0 ? "0" : decade_number(all.y[j]));
       }
     }
     if (row + 1 == static_cast<std::size_t>(rows))
@@ -100,12 +105,12 @@ void draw(Pen& pen, const HeatMaps& all) {
         if (all.columns > 4 && static_cast<int>(std::lround(std::log10(all.x[i]))) % 2 != 0) continue;
         // At the ends within the map, so that neighbours' stay apart.
         const double align = i == 0 ? 0.0 : i + 1 == all.x.size() ? 1.0 : 0.5;
-        pen.text(x0 + cw * (static_cast<double>(i) + align), y0 + h + 17, 13, align, decade_number(all.x[i]));
+        pen.text(x0 + cw * (static_cast<double>(i) + align), y0 + h + 19, kMapTick, align, decade_number(all.x[i]));
       }
   }
   pen.color(kInk);
-  pen.text(kMapLeft + (kMapWidth - kMapLeft - kMapRight) / 2, kMapHeight - kMapBottom + 42, 16, 0.5, all.across);
-  pen.upright_text(28, kMapTop + (kMapHeight - kMapTop - kMapBottom) / 2, 16, all.up);
+  pen.text(kMapLeft + (kMapWidth - kMapLeft - kMapRight) / 2, kMapHeight - kMapBottom + 46, kMapText, 0.5, all.across);
+  pen.upright_text(32, kMapTop + (kMapHeight - kMapTop - kMapBottom) / 2, kMapText, all.up);
   draw_key(pen, all);
 }
 

@@ -5,6 +5,7 @@
 
 #include "components/tet_mesh.h"
 #include "engine/session_inside.h"
+#include "player/study/pareto.h"
 #include "player/study/processor_time.h"
 #include "player/study/study_fidelity.h"
 #include "pliant/session.h"
@@ -14,6 +15,9 @@ namespace {
 
 constexpr double kBeginsAbove = 0.001;    // [m] that a press begins above the surface
 constexpr double kSoftStep = 1.0 / 60.0;  // [s]
+constexpr double kFocus = 1.2;  // [1] of the punch's radius: half as wide is the box that a lattice is fine in
+constexpr double kEdges = 4.0;  // [1] of the surface a lattice cell: the punch's rim rests on edges, too
+constexpr double kTop = 0.98;   // [1] of the half width: beyond are the sides
 const dvec3 kDown(0, -1, 0);
 
 // The block's surface: squares of `edge` on the top; without `below`, the top alone.
@@ -76,13 +80,14 @@ DeviceParameters any_force() {
 
 // Led from above the surface to each depth in turn, and held there; what it costs while it touches.
 template <class Note>
-Status press(Session& session, const std::string& effector, const Indented& what, double seconds, Indentation& out,
-             const Note& note) {
-  const int half = std::max(1, static_cast<int>(std::lround(seconds * 1000 / 2)));
+Status press(Session& session, const std::string& effector, const Indented& what, const PressWish& wish,
+             Indentation& out, const Note& note) {
+  const int half = std::max(1, static_cast<int>(std::lround(wish.seconds * 1000 / 2)));
   double from = -kBeginsAbove;
   std::uint64_t spent = 0, ticks = 0;
   for (const double depth : what.depths) {
     for (int i = 1; i <= 2 * half; ++i) {
+      if (!wish.goes_on()) return interrupted();
       const double share = std::min(1.0, static_cast<double>(i) / half);
       if (const Status moved = session.move(effector, kDown * (from + share * (depth - from))); !moved) return moved;
       const std::uint64_t begin = process_ns();
@@ -104,7 +109,7 @@ Status read_surface(Session& session, const std::string& object, const Indented&
   if (const Status read = session.vertices(object, at); !read) return read;
   const double size = what.depths.back();
   for (const vec3 p : at)
-    if (p.y > -what.thickness / 2)
+    if (p.y > -what.thickness / 2 && std::max(std::abs(p.x), std::abs(p.z)) < kTop * what.half_width)
       out.surface.emplace_back(std::hypot(static_cast<double>(p.x), static_cast<double>(p.z)),
                                -static_cast<double>(p.y) / size);
   return Done{};
@@ -124,8 +129,8 @@ Result<Indentation> press_surface(const Indented& what, const DeformableParamete
   auto session = Session::open(scene);
   if (!session) return session.error();
   Indentation out;
-  const Status done =
-      press(*session, "point", what, 0.2, out, [&] { return read_surface(*session, "tissue", what, out); });
+  const Status done = press(*session, "point", what, {.seconds = 0.2}, out,
+                            [&] { return read_surface(*session, "tissue", what, out); });
   if (!done) return done.error();
   return out;
 }
@@ -139,10 +144,15 @@ Result<Indentation> press_tissue(const Indented& what, PressWish& wish) {
   body.poisson = what.poisson;
   body.rayleigh = {0.0, 0.01};
   body.cell = wish.cell;
+  if (wish.focus) {
+    const auto half = static_cast<float>(kFocus * what.radius);
+    body.focus.add(vec3(-half, -half, -half));
+    body.focus.add(vec3(half, 0, half));
+  }
   const auto wide = static_cast<float>(2 * what.half_width), deep = static_cast<float>(what.thickness);
   body.pinned.add(vec3(-wide, -2 * deep, -wide));
   body.pinned.add(vec3(wide, -0.999f * deep, wide));
-  scene.add_soft_body("tissue", slab(what, what.radius / 2, true), body);
+  scene.add_soft_body("tissue", slab(what, std::min(what.radius / 2, wish.cell / kEdges), true), body);
   scene.add_rigid_body("punch", punch(what.radius), {}, {.position = -kBeginsAbove * kDown});
   HandleParameters held;
   held.translation = {1e5, 20.0};
@@ -156,19 +166,20 @@ Result<Indentation> press_tissue(const Indented& what, PressWish& wish) {
   for (auto [entity, its] : world.registry.view<const SoftBody>()) wish.tets = world.tet_meshes[its.tets].tets.size();
   Indentation out;
   const Status done =
-      press(*session, "punch", what, wish.seconds, out, [&] { return read_surface(*session, "tissue", what, out); });
+      press(*session, "punch", what, wish, out, [&] { return read_surface(*session, "tissue", what, out); });
   if (!done) return done.error();
   return out;
 }
 
-Indentation as_indentation(const std::vector<PressedBlock>& blocks) {
+Indentation as_indentation(const std::vector<PressedBlock>& blocks, const std::vector<double>& depths) {
   Indentation out;
   double ms = 0.0;
   for (const PressedBlock& block : blocks) {
+    if (std::find(depths.begin(), depths.end(), block.depth) == depths.end()) continue;
     out.force.push_back(block.force);
     ms += block.ms / block.solves;
   }
-  out.us = ms / static_cast<double>(blocks.size()) / kSoftStep;  // ms a step over the 1e3 ticks of a second
+  out.us = ms / static_cast<double>(out.force.size()) / kSoftStep;  // ms a step over the 1e3 ticks of a second
   return out;
 }
 

@@ -12,10 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kParetoWidth = 1240, kParetoHeight = 860;          // [pixel]
+constexpr double kParetoWidth = 1240, kParetoHeight = 900;          // [pixel]
 constexpr double kParetoLeft = 112, kParetoRight = 40, kEdge = 30;  // [pixel] margins of the axes and of text
-constexpr double kSmallText = 13, kRadius = 5;                      // [pixel]
-constexpr double kLabelText = 16, kText = 15, kLine = 20.0;         // [pixel] of titles and axes, of keys and sentences
+constexpr double kSmallText = 15, kRadius = 5.5;                    // [pixel]
+constexpr double kLabelText = 18, kText = 17, kLine = 22.0;         // [pixel] of titles and axes, of keys and sentences
+constexpr double kApart = 5;                                        // [pixel] between labels beside each other
 constexpr Color kParetoSky{0.337, 0.706, 0.914}, kFront{0.62, 0.62, 0.62};
 constexpr std::array kColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kParetoSky, kInk, Color{0.55, 0.55, 0.0}};
 
@@ -60,12 +61,19 @@ struct Plot {
     return kColors[static_cast<std::size_t>(found - groups.begin()) % kColors.size()];
   }
   bool failed(const ParetoRow& row) const { return !std::isfinite(row.error); }
+  bool unresolved(const ParetoRow& row) const { return !failed(row) && row.error < row.floor; }
+  // 1: more than the axis has room for, -1: less, or nothing.
+  int beyond(const ParetoRow& row) const {
+    if (failed(row)) return 0;
+    const double e = std::log10(std::max(row.resolved(), 1e-300));
+    return e > y.high ? 1 : e < y.low ? -1 : 0;
+  }
   double px(const ParetoRow& row) const { return x.at(row.cost); }
-  double py(const ParetoRow& row) const { return failed(row) ? top : y.at(row.error); }
+  double py(const ParetoRow& row) const { return failed(row) ? top : y.at(row.resolved()); }
 };
 
 struct ParetoKey {
-  enum class Mark : std::uint8_t { kPoint, kBand, kCircle } mark;
+  enum class Mark : std::uint8_t { kPoint, kBand, kCircle, kUp, kDown } mark;
   std::string words;
   Color color;
 };
@@ -78,12 +86,32 @@ std::vector<ParetoKey> keys_of(const Plot& plot) {
   }
   keys.push_back(
       {ParetoKey::Mark::kBand, plot.table.front_by_group ? "bands: each one's Pareto front" : "Pareto front", kFront});
-  for (const std::size_t i : plot.shown)
-    if (plot.failed(plot.table.rows[i])) {
-      keys.push_back({ParetoKey::Mark::kCircle, "on the upper edge: failed", kInk});
-      break;
-    }
+  const auto some = [&](const auto& is) {
+    return std::any_of(plot.shown.begin(), plot.shown.end(), [&](std::size_t i) { return is(plot.table.rows[i]); });
+  };
+  if (some([&](const ParetoRow& row) { return plot.failed(row); }))
+    keys.push_back({ParetoKey::Mark::kCircle, "on the upper edge: failed", kInk});
+  if (some([&](const ParetoRow& row) { return plot.unresolved(row); }))
+    keys.push_back({ParetoKey::Mark::kCircle, "open: at most this; less is not resolved", kInk});
+  if (some([&](const ParetoRow& row) { return plot.beyond(row) > 0; }))
+    keys.push_back({ParetoKey::Mark::kUp, "beyond the axis", kInk});
+  if (some([&](const ParetoRow& row) { return plot.beyond(row) < 0; }))
+    keys.push_back({ParetoKey::Mark::kDown, "less than the axis shows, or none", kInk});
   return keys;
+}
+
+// A point, or an arrow's head where the value is beyond the axis.
+void draw_mark(Pen& pen, double x, double y, int beyond, double r) {
+  cairo_new_path(pen.get());
+  if (beyond == 0) {
+    cairo_arc(pen.get(), x, y, r, 0, 6.283185307179586);
+  } else {
+    const double tip = -beyond * 1.5 * r;  // upwards is less
+    cairo_move_to(pen.get(), x, y + tip);
+    cairo_line_to(pen.get(), x - 1.2 * r, y - 0.5 * tip);
+    cairo_line_to(pen.get(), x + 1.2 * r, y - 0.5 * tip);
+    cairo_close_path(pen.get());
+  }
 }
 
 // Lays the keys out in lines from `y` on, draws them where `draw`, and says where the last line is.
@@ -97,8 +125,11 @@ double put_keys(Pen& pen, const Plot& plot, double y, bool draw) {
       if (key.mark == ParetoKey::Mark::kBand) {
         pen.line(x, y - 5, x + 22, y - 5, 9);
       } else {
-        cairo_new_path(pen.get());
-        cairo_arc(pen.get(), x + 11, y - 5, kRadius + 1, 0, 6.283185307179586);
+        draw_mark(pen, x + 11, y - 5,
+                  key.mark == ParetoKey::Mark::kUp     ? 1
+                  : key.mark == ParetoKey::Mark::kDown ? -1
+                                                       : 0,
+                  kRadius + 1);
         cairo_set_line_width(pen.get(), 1.5);
         key.mark == ParetoKey::Mark::kCircle ? cairo_stroke(pen.get()) : cairo_fill(pen.get());
       }
@@ -119,13 +150,15 @@ Plot plot_of(Pen& pen, const ParetoTable& table) {
   for (const std::size_t i : plot.shown) {
     const ParetoRow& row = table.rows[i];
     costs.push_back(row.cost);
-    errors.push_back(table.most_error > 0.0 ? std::clamp(row.error, table.least_error, table.most_error) : row.error);
+    errors.push_back(table.most_error > 0.0 ? std::clamp(row.resolved(), table.least_error, table.most_error)
+                                            : row.resolved());
     if (std::find(plot.groups.begin(), plot.groups.end(), row.group) == plot.groups.end())
       plot.groups.push_back(row.group);
   }
   plot.title = pen.lines(kLabelText, table.title, kParetoWidth - 2 * kEdge);
   for (const std::string& sentence : table.sentences)
     for (std::string& line : pen.lines(kText, sentence, kParetoWidth - 2 * kEdge)) plot.foot.push_back(std::move(line));
+  plot.y = axis_of(errors, 0.0, 1.0);  // which keys there are depends on its range
   plot.top = put_keys(pen, plot, 80 + kLine * static_cast<double>(plot.title.size()), false) + 42;
   plot.bottom = kParetoHeight - 76 - kLine * static_cast<double>(plot.foot.size());
   plot.x = axis_of(costs, kParetoLeft, kParetoWidth - kParetoRight);
@@ -198,9 +231,18 @@ void draw_points(Pen& pen, const Plot& plot) {
   for (const std::size_t i : plot.shown) {
     const ParetoRow& row = plot.table.rows[i];
     pen.color(plot.color(row));
-    cairo_arc(pen.get(), plot.px(row), plot.py(row), kRadius, 0, 6.283185307179586);
+    draw_mark(pen, plot.px(row), plot.py(row), plot.beyond(row), kRadius);
     cairo_set_line_width(pen.get(), 1.5);
-    plot.failed(row) ? cairo_stroke(pen.get()) : cairo_fill(pen.get());
+    if (plot.failed(row) || plot.unresolved(row)) {
+      cairo_save(pen.get());
+      pen.color(kPaper);
+      cairo_fill_preserve(pen.get());
+      cairo_restore(pen.get());
+      pen.color(plot.color(row));
+      cairo_stroke(pen.get());
+    } else {
+      cairo_fill(pen.get());
+    }
   }
 }
 
@@ -250,12 +292,13 @@ std::vector<Stretch> drawn_lines(const Plot& plot) {
 // Each label where it covers least of points, lines and other labels, near its point; a thin line leads to it from
 // afar.
 void draw_labels(Pen& pen, const Plot& plot) {
+  constexpr double kLed = 12;  // [pixel] a line leads to a label that is farther away
   std::vector<LabelBox> taken;
   for (const std::size_t i : plot.shown) {
     const double x = plot.px(plot.table.rows[i]), y = plot.py(plot.table.rows[i]);
     taken.push_back({x - kRadius - 1, y - kRadius - 1, x + kRadius + 1, y + kRadius + 1});
   }
-  const std::vector<Stretch> lines = drawn_lines(plot);
+  std::vector<Stretch> lines = drawn_lines(plot);
   std::vector<LabelBox> placed;
   for (const std::size_t i : plot.shown) {
     const ParetoRow& row = plot.table.rows[i];
@@ -269,7 +312,10 @@ void draw_labels(Pen& pen, const Plot& plot) {
         const LabelBox box{left, top, left + w, top + h};
         double cost = 0.02 * far;
         for (const LabelBox& other : taken)
-          cost += box.overlap({other.x0 - 1, other.y0 - 1, other.x1 + 1, other.y1 + 1});
+          cost += box.overlap({other.x0 - kApart, other.y0 - 1, other.x1 + kApart, other.y1 + 1});
+        const Stretch lead{x, y, std::clamp(x, box.x0, box.x1), std::clamp(y, box.y0, box.y1)};
+        if (std::hypot(lead.x1 - x, lead.y1 - y) > kLed)
+          for (const LabelBox& other : placed) cost += 3.0 * lead.crosses(other);
         if (box.x0 < kParetoLeft + 3 || box.x1 > kParetoWidth - 4 || box.y0 < plot.top - 34 || box.y1 > plot.bottom - 2)
           cost += 1e4;
         for (const Stretch& line : lines) cost += 0.6 * line.crosses(box);
@@ -277,9 +323,10 @@ void draw_labels(Pen& pen, const Plot& plot) {
       }
     taken.push_back(best);
     const double ax = std::clamp(x, best.x0, best.x1), ay = std::clamp(y, best.y0, best.y1);
-    if (std::hypot(ax - x, ay - y) > 12) {
+    if (std::hypot(ax - x, ay - y) > kLed) {
       pen.color(plot.color(row));
       pen.line(x, y, ax, ay, 0.8);
+      lines.push_back({x, y, ax, ay});
     }
     placed.push_back(best);
   }

@@ -31,6 +31,18 @@ const char* name_of(StepScheme scheme) {
   return kNames[static_cast<std::size_t>(scheme)];
 }
 
+std::optional<Penetration> penetration(const Obstacle& obstacle, dvec3 place, double time) {
+  if (const auto* ball = std::get_if<Ball>(&obstacle)) {
+    const dvec3 away = place - ball->middle(time);
+    const double far = length(away);
+    if (!(far < ball->radius) || far == 0.0) return std::nullopt;
+    return Penetration{ball->radius - far, away / far};
+  }
+  if (const auto* ground = std::get_if<Ground>(&obstacle); ground && place.y < ground->height)
+    return Penetration{ground->height - place.y, dvec3(0, 1, 0)};
+  return std::nullopt;
+}
+
 TissueRun::TissueRun(const TissueScene& scene, StepScheme scheme)
     : scene_(scene), scheme_(scheme), tissue_(scene.mesh, scene.material, scene.mesh.free_count) {
   for (std::uint32_t i = 0; i < scene.mesh.free_count; ++i) tissue_.velocity()[i] = scene.velocity;
@@ -41,11 +53,10 @@ TissueRun::TissueRun(const TissueScene& scene, StepScheme scheme)
 // The obstacle at the stage's end: k (depth - n (x - guess)), x = begin + h u. Before the first solution the guess is
 // where the tissue would go by itself.
 void TissueRun::push(double h, const std::vector<dvec3>& begin, bool first, Vector& right) {
-  if (!scene_.obstacle) return;
   BlockMatrix& A = tissue_.inner();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
     const dvec3 guess = first ? begin[i] + h * tissue_.velocity()[i] : tissue_.position()[i];
-    const auto hit = scene_.obstacle(guess, time_ + h);
+    const auto hit = penetration(scene_.obstacle, guess, time_ + h);
     if (!hit) continue;
     const Eigen::Vector3d n(hit->out.x, hit->out.y, hit->out.z);
     A.value[A.diagonal[i]] += h * h * scene_.stiffness * n * n.transpose();

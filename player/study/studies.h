@@ -1,7 +1,9 @@
 // The studies that ship. One line here and one file make a study: study_NAME.cpp defines
-// `Status study_NAME(OutputFolder& out, bool quick, const Interrupt& interrupt)`. It stages its files in `out`, prints
-// what they show, and ends with an error when `interrupt` is requested.
+// `Status study_NAME(OutputFolder& out, StudySize size, const Interrupt& interrupt)`. It stages NAME.csv, NAME.json,
+// NAME.svg and NAME.png in `out`, prints what they show, and ends with an error when `interrupt` is requested.
 #pragma once
+
+#include <cstdint>
 
 #include "player/interrupt.h"
 #include "player/record/output_folder.h"
@@ -24,7 +26,10 @@
 
 namespace pliant {
 
-#define STUDY(name, what) Status study_##name(OutputFolder& out, bool quick, const Interrupt& interrupt);
+// Full: within ten minutes on two cores. Quick: within one. Small: what a test runs, of all parts the least.
+enum class StudySize : std::uint8_t { kFull, kQuick, kSmall };
+
+#define STUDY(name, what) Status study_##name(OutputFolder& out, StudySize size, const Interrupt& interrupt);
 PLIANT_STUDIES(STUDY)
 #undef STUDY
 

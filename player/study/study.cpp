@@ -16,7 +16,7 @@ namespace {
 struct Study {
   const char* name;
   const char* what;
-  Status (*run)(OutputFolder& out, bool quick, const Interrupt& interrupt);
+  Status (*run)(OutputFolder& out, StudySize size, const Interrupt& interrupt);
 };
 constexpr Study kStudies[] = {
 #define STUDY(name, what) {#name, what, study_##name},
@@ -38,7 +38,7 @@ int run_all(const std::vector<const Study*>& studies, const StudyOptions& option
   if (!out) return fail(kFailed, out.error());
   interrupt.remove_if_forced(out->staging());
   for (const Study* known : studies)
-    if (const Status done = known->run(*out, options.quick, interrupt); !done)
+    if (const Status done = known->run(*out, options.quick ? StudySize::kQuick : StudySize::kFull, interrupt); !done)
       return fail(kFailed, out->at_place(done.error()));
   if (const Status done = out->commit(); !done) return fail(kFailed, done.error());
   print("{}: {} files{}\n", out->shown().string(), out->written().size(),

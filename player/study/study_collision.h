@@ -27,9 +27,13 @@ const char* name_of(Search search);
 // to 0.5 % in front of it.
 std::vector<dvec3> wander(const Mesh& mesh, std::size_t ticks);
 
+// A miss is an answer that is farther than the nearest place by more than a quarter of a mean edge: curved patches
+// bulge from the facets by less, and every search is judged alike. Strictly: by more than 1e-9 of the mesh's size.
+inline constexpr double kMissRoom = 0.25;  // [1] of the mean edge
 struct SearchFigures {
   double us = 0.0;          // a query, processor time
   double misses = 0.0;      // [1] of those that were checked
+  double strict = 0.0;      // [1] the same, strictly; not a number: of patches, whose truth is another surface
   std::size_t checked = 0;  //
 };
 // Distances by brute force of every so many places of the way. [m]
@@ -42,9 +46,10 @@ Truth truth_along(const Mesh& mesh, const std::vector<dvec3>& way, std::size_t c
 // Queries all along the way.
 SearchFigures search_along(const Mesh& mesh, Search search, const std::vector<dvec3>& way, const Truth& truth);
 
-// [us] a query of the closest point on a sphere of so many vertices, points as FCPW was asked: anywhere near it.
-double closest_us(std::uint32_t vertices, std::size_t queries);
-// FCPW's on such spheres, one core; what `shared/design/peers.md` of the project says of November 2026. [us]
+// Queries of the closest point on a sphere of so many vertices, of points as FCPW was asked: anywhere near it, so that
+// none finds in the cache what the last one left there. `checks` of them are held against brute force.
+SearchFigures search_scattered(std::uint32_t vertices, std::size_t queries, std::size_t checks);
+// Published figures of FCPW (November 2026) on such spheres, one core of another machine. [us]
 struct PublishedQuery {
   std::uint32_t vertices;
   double scalar_us, simd_us;

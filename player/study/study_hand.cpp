@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "content/files/file_io.h"
 #include "content/level_file.h"
 #include "devices/guard/guard.h"
 #include "engine/driver_link.h"
@@ -72,17 +70,84 @@ Result<World> open_level(const std::string& name, double stiffness) {
   return std::move(world).value();
 }
 
-nlohmann::ordered_json to_json(const HandRun& run) {
-  return {{"level", run.level},           {"profile", run.profile},       {"delay_s", run.delay},
-          {"guard", run.guarded},         {"stable", run.stable()},       {"buzz_m", run.buzz},
-          {"buzz_at_end_m", run.late},    {"largest_force_N", run.force}, {"work_of_motors_J", run.work},
-          {"stiffest_N_m", run.stiffest}, {"limit_N_m", run.limit}};
+const char* shipped_group() {
+  return "levels as they ship, firm hand, guarded";
+}
+
+ParetoRow row_of(const HandRun& run, const std::string& group, const std::string& label) {
+  return {label,
+          run.softened(),
+          run.buzz,
+          group,
+          {run.level, run.profile, run.delay, run.guarded, run.stable(), run.late, run.force, run.work, run.stiffest,
+           run.limit}};
+}
+
+// `plotted`: pairs without and with the guard. Of the levels the plot shows what shakes most.
+ParetoTable table_of(const std::vector<HandRun>& plotted, const std::vector<HandRun>& levels) {
+  ParetoTable table;
+  table.study = "hand";
+  table.title =
+      "simulated hands hold simulated devices in closed loop: what stability costs in stiffness, without and with the "
+      "guard";
+  table.cost_name = "softened";
+  table.cost_axis = "cost [1]: how many times softer than the surface the hand feels it";
+  table.error_name = "buzz_m";
+  table.error_axis = "fast motion of the effector in contact, RMS [m]; stable: below 5\u00b710\u207b\u2075";
+  table.more = {"level",         "profile",         "delay_s", "guarded",      "stable",
+                "buzz_at_end_m", "largest_force_N", "work_J",  "stiffest_N_m", "limit_N_m"};
+  table.front_by_group = true;
+  for (const HandRun& run : plotted) {
+    table.drawn.push_back(table.rows.size());
+    table.rows.push_back(
+        row_of(run, fmt::format("{:.0f} N/m, {:g} ms more delay, light finger", run.stiffest, run.delay * 1e3),
+               run.guarded ? "guarded" : "without guard"));
+  }
+  std::string level;
+  for (const HandRun& run : levels) {
+    if (run.level != level) table.drawn.push_back(table.rows.size());
+    level = run.level;
+    table.rows.push_back(row_of(run, shipped_group(), fmt::format("{}, {}", run.level, run.profile)));
+    if (run.buzz > table.rows[table.drawn.back()].error) table.drawn.back() = table.rows.size() - 1;
+  }
+  return table;
+}
+
+std::vector<std::string> sentences_of(const std::vector<HandRun>& plotted, const std::vector<HandRun>& levels) {
+  std::size_t stable = 0;
+  double least = 1e30, most = 0.0;
+  for (const HandRun& run : levels) {
+    stable += run.stable();
+    least = std::min(least, run.buzz);
+    most = std::max(most, run.buzz);
+  }
+  std::string first = fmt::format(
+      "Behind the guard, in a firm hand, {} of {} runs of the levels as they ship are stable: their fast motion is {} "
+      "to "
+      "{} um RMS, a limit cycle's is more than {:.0f} um.",
+      stable, levels.size(), two_digits(1e6 * least), two_digits(1e6 * most), 1e6 * kQuietBuzz);
+  const HandRun &bare = plotted[plotted.size() - 2], &held = plotted.back();
+  std::string second = fmt::format(
+      "In a light finger, with {:g} ms of more delay, the {} shakes by {:.2g} mm on an organ of {:.0f} N/m, and by "
+      "{:.2g} mm behind the guard, which makes the organ {:.2g} times softer; on the organ as it ships, of {:.0f} N/m, "
+      "it shakes by",
+      1e3 * bare.delay, bare.profile.substr(0, bare.profile.find(',')), 1e3 * bare.buzz, bare.stiffest, 1e3 * held.buzz,
+      held.softened(), plotted[0].stiffest);
+  for (std::size_t i = 0; i + 2 < plotted.size(); ++i)
+    second +=
+        fmt::format("{} {:.2g} mm ({:g} ms, {}{})", i == 0 ? "" : ",", 1e3 * plotted[i].buzz, 1e3 * plotted[i].delay,
+                    plotted[i].guarded ? "guarded" : "without guard", plotted[i].stable() ? "" : ", not stable");
+  return {first, second + "."};
 }
 
 }  // namespace
 
 bool HandRun::stable() const {
   return buzz < kQuietBuzz && late < std::max(kQuietBuzz, kGrows * buzz);
+}
+
+double HandRun::softened() const {
+  return guarded && limit > 0.0 && limit < stiffest ? stiffest / limit : 1.0;
 }
 
 Result<HandRun> run_hand(const std::string& level, const std::string& profile, double delay, bool guarded,
@@ -161,110 +226,103 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
   return run;
 }
 
-Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& runs) {
-  constexpr double kWidth = 1600, kRow = 265, kLeft = 90, kTop = 90;
-  Pen pen(kWidth, kTop + kRow * static_cast<double>(runs.size()) + 30);
-  pen.color(kInk);
-  const double width = pen.text(kLeft, 46, 26, 0, "a simulated hand presses the demo organ", true);
-  pen.text(kLeft + width + 20, 46, 16, 0,
-           fmt::format("{}: force of its motors and depth of the probe", runs.front().profile));
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const HandRun& run = runs[i];
-    double peak = 1e-3, deepest = 1e-6, begin = run.samples.back().time;  // each run has scales of its own
-    for (const HandSample& s : run.samples) {
-      peak = std::max(peak, s.force);
-      deepest = std::max(deepest, s.depth);
-      if (s.depth > 0.0) begin = std::min(begin, s.time);
-    }
-    begin = std::max(0.0, begin - 0.2);
-    const double y = kTop + kRow * static_cast<double>(i), h = kRow - 75, w = kWidth - kLeft - 90;
-    const double end = run.samples.back().time;
-    const auto px = [&](double t) { return kLeft + w * (t - begin) / (end - begin); };
-    const auto py = [&](double share) { return y + h - h * share / 1.05; };
+Status plot_hand_runs(OutputFolder& out, const std::vector<HandRun>& runs) {
+  constexpr double kWidth = 1240, kRow = 230, kLeft = 90, kTop = 112, kWords = 17, kTicks = 16;
+  const double height = kTop + kRow * static_cast<double>(runs.size()) + 20;
+  return draw_png_and_svg(out.stage("hand_runs.png"), out.stage("hand_runs.svg"), kWidth, height, [&](Pen& pen) {
     pen.color(kInk);
-    pen.text(
-        kLeft, y - 8, 16, 0,
-        fmt::format("{:.0f} N/m, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.stiffest, run.delay * 1e3,
-                    run.guarded ? "guarded" : "without guard", run.stable() ? "stable" : "not stable", run.buzz * 1e6),
-        !run.stable());
-    const double step = tick_step(end - begin, 10);
-    for (double t = step * std::ceil(begin / step); t <= end + 1e-9; t += step) {
-      pen.color(kFaint);
-      pen.line(px(t), y, px(t), y + h, 1);
+    pen.text(kLeft, 40, 26, 0, "a simulated hand presses the demo organ", true);
+    pen.text(kLeft, 68, kWords, 0, fmt::format("{}: force of its motors and depth of the probe", runs.front().profile));
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const HandRun& run = runs[i];
+      double peak = 1e-3, deepest = 1e-6, begin = run.samples.back().time;  // each run has scales of its own
+      for (const HandSample& s : run.samples) {
+        peak = std::max(peak, s.force);
+        deepest = std::max(deepest, s.depth);
+        if (s.depth > 0.0) begin = std::min(begin, s.time);
+      }
+      begin = std::max(0.0, begin - 0.2);
+      const double y = kTop + kRow * static_cast<double>(i), h = kRow - 75, w = kWidth - kLeft - 90;
+      const double end = run.samples.back().time;
+      const auto px = [&](double t) { return kLeft + w * (t - begin) / std::max(end - begin, 1e-9); };
+      const auto py = [&](double share) { return y + h - h * share / 1.05; };
       pen.color(kInk);
-      pen.text(px(t), y + h + 20, 14, 0.5, fmt::format("{:g}", t));
+      pen.text(kLeft, y - 8, kWords, 0,
+               fmt::format("{:.0f} N/m, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.stiffest,
+                           run.delay * 1e3, run.guarded ? "guarded" : "without guard",
+                           run.stable() ? "stable" : "not stable", run.buzz * 1e6),
+               !run.stable());
+      const double step = tick_step(std::max(end - begin, 1e-9), 10);
+      for (double t = step * std::ceil(begin / step); t <= end + 1e-9; t += step) {
+        pen.color(kFaint);
+        pen.line(px(t), y, px(t), y + h, 1);
+        pen.color(kInk);
+        pen.text(px(t), y + h + 20, kTicks, 0.5, fmt::format("{:g}", t));
+      }
+      const auto curve = [&](Color color, double HandSample::*value, double scale) {
+        pen.color(color);
+        cairo_set_line_width(pen.get(), 1.2);
+        cairo_new_path(pen.get());
+        for (const HandSample& s : run.samples)
+          if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.*value / scale));
+        cairo_stroke(pen.get());
+      };
+      curve(kBlue, &HandSample::force, peak);
+      curve(kVermilion, &HandSample::depth, deepest);
+      pen.color(kInk);
+      pen.line(kLeft, y, kLeft, y + h, 1.5);
+      pen.line(kLeft, y + h, kLeft + w, y + h, 1.5);
+      pen.line(kLeft + w, y, kLeft + w, y + h, 1.5);
+      const double fs = tick_step(peak, 3), ds = tick_step(deepest * 1e3, 3);
+      pen.color(kBlue);
+      for (double f = 0; f <= peak; f += fs) pen.text(kLeft - 8, py(f / peak) + 5, kTicks, 1.0, number(f, fs));
+      pen.upright_text(kLeft - 52, y + h / 2, kWords, "force [N]");
+      pen.color(kVermilion);
+      for (double d = 0; d <= deepest * 1e3; d += ds)
+        pen.text(kLeft + w + 8, py(d * 1e-3 / deepest) + 5, kTicks, 0.0, number(d, ds));
+      pen.upright_text(kLeft + w + 62, y + h / 2, kWords, "depth [mm]");
     }
-    pen.color(kBlue);
-    cairo_set_line_width(pen.get(), 1.2);
-    cairo_new_path(pen.get());
-    for (const HandSample& s : run.samples)
-      if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.force / peak));
-    cairo_stroke(pen.get());
-    pen.color(kVermilion);
-    cairo_new_path(pen.get());
-    for (const HandSample& s : run.samples)
-      if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.depth / deepest));
-    cairo_stroke(pen.get());
     pen.color(kInk);
-    pen.line(kLeft, y, kLeft, y + h, 1.5);
-    pen.line(kLeft, y + h, kLeft + w, y + h, 1.5);
-    pen.line(kLeft + w, y, kLeft + w, y + h, 1.5);
-    const double fs = tick_step(peak, 3), ds = tick_step(deepest * 1e3, 3);
-    pen.color(kBlue);
-    for (double f = 0; f <= peak; f += fs) pen.text(kLeft - 8, py(f / peak) + 5, 14, 1.0, number(f, fs));
-    pen.upright_text(kLeft - 50, y + h / 2, 15, "force [N]");
-    pen.color(kVermilion);
-    for (double d = 0; d <= deepest * 1e3; d += ds)
-      pen.text(kLeft + w + 8, py(d * 1e-3 / deepest) + 5, 14, 0.0, number(d, ds));
-    pen.upright_text(kLeft + w + 60, y + h / 2, 15, "depth [mm]");
-  }
-  pen.color(kInk);
-  pen.text(kWidth / 2, kTop + kRow * static_cast<double>(runs.size()) - 18, 15, 0.5, "time [s]");
-  if (!pen.save(png)) return Error{png.string(), "the plot cannot be written; check the space left"};
-  return Done{};
+    pen.text(kWidth / 2, height - 22, kWords, 0.5, "time [s]");
+  });
 }
 
-Status study_hand(OutputFolder& out, bool quick, const Interrupt& interrupt) {
-  Progress progress("study hand");
-  nlohmann::ordered_json json;
-  json["study"] = "hand";
-  std::vector<HandRun> plotted;
-  // The organ as it ships, and one that is too stiff for the device.
-  for (const auto& [delay, stiffness] : {std::pair(1e-3, 0.0), {10e-3, 0.0}, {10e-3, kTooStiff}})
-    for (const bool guarded : {false, true}) {
-      auto run = run_hand("three_probes", kPlotted, delay, guarded, quick ? 4.0 : 8.0, stiffness);
-      if (!run) return run.error();
-      plotted.push_back(std::move(run).value());
-    }
+Status study_hand(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
+  const bool full = size == StudySize::kFull;
+  const double seconds = full ? 8.0 : size == StudySize::kQuick ? 3.0 : 1.0;
   const std::vector<std::string> levels =
-      quick ? std::vector<std::string>{"three_probes"}
-            : std::vector<std::string>{"three_probes", "inclusion", "glass_heart", "chrome_cushion", "turning_ball"};
-  std::vector<HandRun> table;
+      full ? std::vector<std::string>{"three_probes", "inclusion", "glass_heart", "chrome_cushion", "turning_ball"}
+           : std::vector<std::string>{"three_probes"};
+  // The organ as it ships, and one that is too stiff for the device.
+  const std::vector<std::pair<double, double>> wishes{{1e-3, 0.0}, {10e-3, 0.0}, {10e-3, kTooStiff}};
+  const std::size_t profiles = size == StudySize::kSmall ? 2 : kDeviceProfiles;
+  Progress progress("study hand");
+  std::vector<HandRun> plotted, table;
   std::size_t done = 0;
+  const auto add = [&](std::vector<HandRun>& to, const std::string& level, const std::string& profile, double delay,
+                       bool guarded, double stiffness) -> Status {
+    if (interrupt.requested()) return interrupted();
+    auto run = run_hand(level, profile, delay, guarded, seconds, stiffness);
+    if (!run) return run.error();
+    to.push_back(std::move(run).value());
+    progress.update(static_cast<double>(++done) / static_cast<double>(2 * wishes.size() + levels.size() * profiles));
+    return Done{};
+  };
+  for (const auto& [delay, stiffness] : wishes)
+    for (const bool guarded : {false, true})
+      if (const Status s = add(plotted, "three_probes", kPlotted, delay, guarded, stiffness); !s) return s;
   for (const std::string& level : levels)
-    for (const DeviceProfile& profile : device_profiles()) {
-      if (interrupt.requested()) return Error{"study hand", "interrupted; nothing was written"};
-      auto run = run_hand(level, profile.name, 0.0, true, quick ? 3.0 : 8.0);
-      if (!run) return run.error();
-      run->samples.clear();
-      table.push_back(std::move(run).value());
-      progress.update(static_cast<double>(++done) / static_cast<double>(levels.size() * kDeviceProfiles));
-    }
-  std::string csv =
-      "level,profile,delay_s,guard,stable,buzz_m,buzz_at_end_m,largest_force_N,work_J,stiffest_N_m,limit_N_m\n";
+    for (std::size_t i = 0; i < profiles; ++i)
+      if (const Status s = add(table, level, device_profiles()[i].name, 0.0, true, 0.0); !s) return s;
   for (const std::vector<HandRun>* runs : {&plotted, &table})
-    for (const HandRun& r : *runs) {
-      csv += fmt::format("{},\"{}\",{:g},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:g},{:.4g}\n", r.level, r.profile, r.delay,
-                         r.guarded ? 1 : 0, r.stable() ? 1 : 0, r.buzz, r.late, r.force, r.work, r.stiffest, r.limit);
-      json["runs"].push_back(to_json(r));
-      print(
-          "hand: {:<15} {:<9} {:>3g} ms more, {:<13} {:<10} fast {:>6.1f} um, {:>5.2f} N, limit {:.0f} of {:.0f} N/m\n",
-          r.level, r.profile, r.delay * 1e3, r.guarded ? "guarded" : "without guard",
-          r.stable() ? "stable" : "NOT STABLE", r.buzz * 1e6, r.force, r.limit, r.stiffest);
-    }
-  if (const Status s = write_text(out, "hand.csv", csv); !s) return s;
-  if (const Status s = write_text(out, "hand.json", json.dump(2, ' ', true) + "\n"); !s) return s;
-  return plot_hand(out.stage("hand.png"), plotted);
+    for (const HandRun& r : *runs)
+      print("{:<15} {:<9} {:>3g} ms more, {:<13} {:<10} fast {:>6.1f} um, {:>5.2f} N, limit {:.0f} of {:.0f} N/m\n",
+            r.level, r.profile, r.delay * 1e3, r.guarded ? "guarded" : "without guard",
+            r.stable() ? "stable" : "NOT STABLE", r.buzz * 1e6, r.force, r.limit, r.stiffest);
+  if (const Status s = plot_hand_runs(out, plotted); !s) return s;
+  ParetoTable both = table_of(plotted, table);
+  both.sentences = sentences_of(plotted, table);
+  return write_study(out, both);
 }
 
 }  // namespace pliant

@@ -1,7 +1,6 @@
 // The study `hand`: a simulated hand with a simulated device in it touches the demo levels, in a closed loop.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,6 +26,7 @@ struct HandRun {
   double work = 0.0;  // [J] of the motors on the hands, all probes
   double stiffest = 0.0, limit = 0.0;  // [N/m] of the level, and what the device renders stably
   bool stable() const;
+  double softened() const;  // [1] how many times softer than the surface is what the hand feels
 };
 
 // At most this much of the effector's fast motion is friction's and the encoder's; a limit cycle is more.
@@ -36,8 +36,7 @@ inline constexpr double kQuietBuzz = 50e-6;  // [m]
 // level's; 0: as it is.
 Result<HandRun> run_hand(const std::string& level, const std::string& profile, double delay, bool guarded,
                          double seconds, double stiffness = 0.0);
-Status plot_hand(const std::filesystem::path& png, const std::vector<HandRun>& runs);
-
-// hand.csv, hand.json, hand.png.
+// hand_runs.svg and hand_runs.png: force and depth over time.
+Status plot_hand_runs(OutputFolder& out, const std::vector<HandRun>& runs);
 
 }  // namespace pliant

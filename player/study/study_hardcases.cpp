@@ -113,9 +113,9 @@ std::vector<std::string> sentences_of(const std::vector<JudgedCase>& cases) {
                                                  nearest, 100 * share)};
 }
 
-Status study_hardcases(OutputFolder& out, bool quick, const Interrupt& interrupt) {
+Status study_hardcases(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
   Progress progress("study hardcases");
-  const HardSetting setting{corpus_folder(), quick};
+  const HardSetting setting{corpus_folder(), size != StudySize::kFull};
   std::vector<JudgedCase> cases;
   for (const HardCase& hard : hard_cases()) {
     if (interrupt.requested()) return interrupted();

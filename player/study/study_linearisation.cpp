@@ -6,11 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "content/files/file_io.h"
 #include "content/level_file.h"
 #include "player/print.h"
 #include "player/progress.h"
+#include "player/study/led_tool.h"
 #include "player/study/pareto.h"
+#include "player/study/processor_time.h"
 #include "player/study/studies.h"
 #include "player/verbs/content_folder.h"
 #include "systems/device/path.h"
@@ -29,7 +30,8 @@ namespace {
 constexpr const char* kLevel = "hand";
 constexpr double kSlow = 1.0, kSwift = 3.2, kBrisk = 4.0;  // [1] of the script's own pace; at 3.2 a held force is off
                                                            // by a fifth
-constexpr double kSeconds = 6.0, kQuickSeconds = 1.0;      // [s] at that pace
+// [s] at that pace
+constexpr double kSeconds = 6.0, kQuickSeconds = 1.0, kSmallSeconds = 0.2;
 
 // Its scripts played `pace` times as fast.
 Result<World> open_paced(const std::string& name, double pace) {
@@ -55,33 +57,22 @@ ToolTouchState& tool_of(World& world) {
 }
 
 // Where the script has the device.
-RigidMotion device_at(const World& world, Entity device, double time, double dt) {
-  const pliant::Path& path = world.paths[world.registry.get<HapticDevice>(device).path];
-  const PathRow now = sample_path(path, time), before = sample_path(path, std::max(0.0, time - dt));
-  const dvec3 turn = vector_of(now.rotation * glm::conjugate(before.rotation));
-  return {{now.position, now.rotation}, join((now.position - before.position) / dt, turn / dt)};
+Pose device_at(const World& world, Entity device, double time) {
+  const PathRow now = sample_path(world.paths[world.registry.get<HapticDevice>(device).path], std::max(0.0, time));
+  return {now.position, now.rotation};
 }
 
 // A soft step of T [s] at whose end the device is where the script has it at `time`; its model is in `pending`.
 // `handle`: where it is then, if that is known; otherwise it follows the device.
 void soft_step(World& world, Schedule<World>& schedule, std::uint64_t index, double T, double time,
                const RigidMotion* handle = nullptr) {
-  ToolTouchState& tool = tool_of(world);
-  ToolInput& input = tool.input.write();
-  input.status = DeviceStatus::kReady;
-  input.time = time;
-  input.device = device_at(world, tool.device, time, T);
-  input.placed = handle != nullptr;
-  if (handle) input.handle = *handle;
-  input.impulse = tool.heard + T * tool.pending.force;  // expected: what the last step said
-  tool.input.publish();
+  const Entity device = tool_of(world).device;
+  lead_tool(world, device_at(world, device, time), device_at(world, device, time - T), T, time, handle);
   run_soft_step(schedule, world, Tick{index, T, time});
 }
 
 class Stopwatch {
  public:
-  void begin() { begin_ = now_ns(); }
-  void end() { us_.push_back(static_cast<double>(now_ns() - begin_) * 1e-3); }
   void add(double us) { us_.push_back(us); }
   void report(MethodFigures& out) {
     if (us_.empty()) return;
@@ -92,7 +83,6 @@ class Stopwatch {
   }
 
  private:
-  std::uint64_t begin_ = 0;
   std::vector<double> us_;
 };
 
@@ -103,19 +93,22 @@ struct LinearTruth {
   Stopwatch cost;
 };
 
-Result<LinearTruth> full_solve(const std::string& level, double pace, double tick, int ticks, const Interrupt& interrupt,
-                              Progress& progress) {
+Result<LinearTruth> full_solve(const std::string& level, double pace, double tick, int ticks,
+                               const Interrupt& interrupt, Progress& progress) {
   auto world = open_paced(level, pace);
   if (!world) return world.error();
   Schedule<World> schedule(soft_schedule());
   LinearTruth truth;
   for (int i = 0; i <= ticks; ++i) {
     if (interrupt.requested()) return interrupted();
+    const std::uint64_t begin = process_ns();
     soft_step(*world, schedule, static_cast<std::uint64_t>(i), tick, i * tick);
+    const double us = static_cast<double>(process_ns() - begin) * 1e-3;
     const HandleModel& model = tool_of(*world).pending;
     truth.handle.push_back(model.handle);
     truth.wrench.push_back(model.force);
-    truth.cost.add(1e3 * (world->soft->times.total - world->soft->times.linearise));
+    const SoftTimes& times = world->soft->times;  // the truth needs no linear model
+    truth.cost.add(us * (1 - times.linearise / std::max(times.total, 1e-9)));
     progress.update(0.9 * i / ticks);
   }
   return truth;
@@ -125,7 +118,7 @@ Result<LinearTruth> full_solve(const std::string& level, double pace, double tic
 struct Followed {
   const HandleModel& model;
   CondensedState& state;
-  Stopwatch *linear_cost, *contacts_cost;
+  Stopwatch *held_cost, *linear_cost, *contacts_cost;
 
   void run(const LinearTruth& truth, std::size_t first, std::size_t late, std::size_t length, double tick,
            std::vector<ForceSample>& samples) {
@@ -138,19 +131,22 @@ struct Followed {
       handle.velocity = w;
       handle.next = truth.handle[first + j].velocity;
       TickHandle same = handle;
-      const std::uint64_t begin = now_ns();
+      const std::uint64_t begin = processor_ns();
       const Vector6 contacts = condensed_tick(model.contacts, state, {kTickSweeps, kTickTolerance, 0}, handle);
-      const std::uint64_t between = now_ns();
+      const std::uint64_t end = processor_ns();
       const Vector6 d = join(before.pose.position - model.handle.pose.position,
                              vector_of(before.pose.rotation * glm::conjugate(model.handle.pose.rotation)));
+      const std::uint64_t short_begin = now_ns();  // the processor's clock does not resolve these two
       const Vector6 linear = linear_tick(model.linear, model.handle.velocity, d, tick, same);
-      const std::uint64_t end = now_ns();
+      const std::uint64_t between = now_ns();
+      const Vector6 held = model.force;
+      const std::uint64_t short_end = now_ns();
       w = handle.next;
       if (j <= late) continue;
-      contacts_cost->add(static_cast<double>(between - begin) * 1e-3);
-      linear_cost->add(static_cast<double>(end - between) * 1e-3);
-      samples.push_back(
-          {static_cast<double>(first + j) * tick, truth.wrench[first + j], model.force, linear, contacts});
+      contacts_cost->add(static_cast<double>(end - begin) * 1e-3);
+      linear_cost->add(static_cast<double>(between - short_begin) * 1e-3);
+      held_cost->add(static_cast<double>(short_end - between) * 1e-3);
+      samples.push_back({static_cast<double>(first + j) * tick, truth.wrench[first + j], held, linear, contacts});
     }
   }
 };
@@ -185,7 +181,7 @@ Status follow_models(LinearTruth& truth, const std::string& level, std::size_t l
   const double T = static_cast<double>(length) * out.tick;
   CondensedState state;
   state.resize(kMaxCondensed, kMaxModes);
-  Stopwatch linear, contacts;
+  Stopwatch held, linear, contacts;
   double off = 0.0, size = 0.0;
   for (std::size_t k = 0; k * length < truth.wrench.size(); ++k) {
     if (interrupt.requested()) return interrupted();
@@ -196,11 +192,12 @@ Status follow_models(LinearTruth& truth, const std::string& level, std::size_t l
     size += (truth.wrench[k * length] - out.weight).head<3>().squaredNorm();
     out.contacts = std::max(out.contacts, model.contacts.count);
     out.modes = std::max(out.modes, model.contacts.modes);
-    Followed{model, state, &linear, &contacts}.run(truth, k * length, length, length, out.tick, out.samples);
+    Followed{model, state, &held, &linear, &contacts}.run(truth, k * length, length, length, out.tick, out.samples);
   }
   out.step_share = size > 0.0 ? std::sqrt(off / size) : 0.0;
   out.methods = {errors("held", out, &ForceSample::held), errors("linear", out, &ForceSample::linear),
                  errors("contacts", out, &ForceSample::contacts), errors("full", out, &ForceSample::full)};
+  held.report(out.methods[0]);
   linear.report(out.methods[1]);
   contacts.report(out.methods[2]);
   truth.cost.report(out.methods[3]);
@@ -326,7 +323,7 @@ std::string to_csv(const LinearisationFigures& figures) {
   for (const ForceSample& s : figures.samples) {
     csv += fmt::format("{:.6f}", s.time);
     for (const Vector6* v : {&s.full, &s.held, &s.linear, &s.contacts})
-      for (int k = 0; k < 6; ++k) csv += fmt::format(",{:.9g}", (*v)[k]);
+      for (int k = 0; k < 6; ++k) csv += fmt::format(",{:.5g}", (*v)[k]);
     csv += '\n';
   }
   return csv;
@@ -334,23 +331,58 @@ std::string to_csv(const LinearisationFigures& figures) {
 
 void print_figures(const LinearisationFigures& figures) {
   print(
-      "linearisation: {} at {:g} x its pace, {} tetrahedra, up to {} contacts, models of {:.1f} ms one step late, "
-      "{:.1f} s\n",
-      figures.level, figures.pace, figures.tetrahedra, figures.contacts, figures.soft_step * 1e3, figures.seconds);
-  print("felt beyond the weight: RMS {:.3f} N, max {:.3f} N; the soft step at its own instants is off by {:.1f} %\n",
-        figures.rms_N, figures.max_N, 100.0 * figures.step_share);
-  print("{:>10} {:>10} {:>10} {:>8} {:>9} {:>9} {:>9}\n", "", "RMS [N]", "max [N]", "RMS [%]", "p50 [us]", "p99 [us]",
-        "max [us]");
-  for (const MethodFigures& m : figures.methods)
-    print("{:>10} {:>10.4f} {:>10.4f} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.1f}\n", m.name, m.rms_N, m.max_N,
-          100.0 * m.rms_share, m.p50_us, m.p99_us, m.max_us);
-  print(
-      "tool_feedback in the touch tick: p50 {:.1f}, p99 {:.1f}, max {:.1f} us\n"
-      "largest force jump at a model update: {:.2f} x the change between ticks around it; above 2 x in {} of {} "
-      "updates, "
-      "{} of them with a change of contact state\n",
-      figures.touch_p50_us, figures.touch_p99_us, figures.touch_max_us, figures.jump_share, figures.jumps,
-      figures.updates, figures.jumps_of_contacts);
+      "{} at {:g} x its pace, {:.1f} s: felt beyond the weight RMS {:.3f} N, max {:.3f} N; tool_feedback p50 {:.1f}, "
+      "p99 {:.1f}, max {:.1f} us\n"
+      "  largest force jump at a model update: {:.2f} x the change between ticks around it; above 2 x in {} of {} "
+      "updates, {} of them with a change of contact state\n",
+      figures.level, figures.pace, figures.seconds, figures.rms_N, figures.max_N, figures.touch_p50_us,
+      figures.touch_p99_us, figures.touch_max_us, figures.jump_share, figures.jumps, figures.updates,
+      figures.jumps_of_contacts);
+}
+
+constexpr const char* kLabels[] = {"held", "linear model", "contacts solved again", "full solve: the truth"};
+
+ParetoTable table_of(const std::vector<LinearisationFigures>& all) {
+  ParetoTable table;
+  table.study = "linearisation";
+  table.title = fmt::format(
+      "the 1 kHz force on a tool of {} tetrahedra, level {}, scripts at several paces: models of soft steps of {:.0f} "
+      "ms, one step late, against the full solve at 1 kHz",
+      all[0].tetrahedra, all[0].level, all[0].soft_step * 1e3);
+  table.cost_name = "cost_us";
+  table.cost_axis = "cost [us of processor time a tick, median; a held force: what the clock resolves]";
+  table.error_name = "rms_share";
+  table.error_axis = "RMS error of the force, of what is felt beyond the weight [1]";
+  table.more = {"pace", "rms_error_N", "max_error_N", "p99_us", "max_us"};
+  table.front_by_group = true;
+  for (const LinearisationFigures& figures : all)
+    for (std::size_t i = 0; i < figures.methods.size(); ++i) {
+      const MethodFigures& m = figures.methods[i];
+      table.rows.push_back({kLabels[i],
+                            std::max(1e-3, m.p50_us),
+                            m.rms_share,
+                            fmt::format("{:g} x its pace", figures.pace),
+                            {figures.pace, m.rms_N, m.max_N, m.p99_us, m.max_us}});
+    }
+  return table;
+}
+
+std::vector<std::string> sentences_of(const std::vector<LinearisationFigures>& all) {
+  std::string first = "Off by, of what is felt:", second = "The soft step's own force, at its own instants, is off by";
+  for (const LinearisationFigures& f : all) {
+    first += fmt::format("{} at {:g} x its pace the held force {} %, the linear model {} %, contacts solved again {} %",
+                         first.ends_with(':') ? "" : ";", f.pace, two_digits(100 * f.methods[0].rms_share),
+                         two_digits(100 * f.methods[1].rms_share), two_digits(100 * f.methods[2].rms_share));
+    second += fmt::format("{} {:.2g} % at {:g} x", second.ends_with("by") ? "" : ",", 100 * f.step_share, f.pace);
+  }
+  const LinearisationFigures& brisk = all.front();
+  second += fmt::format(
+      ", which no model undoes; a tick takes {} us with the linear model, {} us with contacts solved again (p99 {}) "
+      "and "
+      "{} us with the full solve.",
+      two_digits(brisk.methods[1].p50_us), two_digits(brisk.methods[2].p50_us), two_digits(brisk.methods[2].p99_us),
+      two_digits(brisk.methods[3].p50_us));
+  return {first + ".", second};
 }
 
 }  // namespace
@@ -380,19 +412,24 @@ Result<LinearisationFigures> measure_linearisation(const std::string& level, dou
   return out;
 }
 
-Status study_linearisation(OutputFolder& out, bool quick, const Interrupt& interrupt) {
-  nlohmann::ordered_json json;
-  json["study"] = "linearisation";
-  for (const double pace : quick ? std::vector{kBrisk} : std::vector{kBrisk, kSwift, kSlow}) {
-    const auto figures = measure_linearisation(kLevel, pace, quick ? kQuickSeconds : kSeconds, interrupt);
+Status study_linearisation(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
+  const bool full = size == StudySize::kFull;
+  const double seconds = full ? kSeconds : size == StudySize::kQuick ? kQuickSeconds : kSmallSeconds;
+  nlohmann::ordered_json runs;
+  std::vector<LinearisationFigures> all;
+  for (const double pace : full ? std::vector{kBrisk, kSwift, kSlow} : std::vector{kBrisk}) {
+    auto figures = measure_linearisation(kLevel, pace, seconds, interrupt);
     if (!figures) return figures.error();
     print_figures(*figures);
-    json["runs"].push_back(to_json(*figures));
+    runs["runs"].push_back(to_json(*figures));
     const std::string name = fmt::format("linearisation_{:g}x", pace);
     if (const Status status = write_text(out, name + ".csv", to_csv(*figures)); !status) return status;
-    if (const Status status = plot_linearisation(out.stage(name + ".png"), *figures); !status) return status;
+    if (const Status status = plot_linearisation(out, name, *figures); !status) return status;
+    all.push_back(std::move(*figures));
   }
-  return write_text(out, "linearisation.json", json.dump(2, ' ', true) + "\n");
+  ParetoTable table = table_of(all);
+  table.sentences = sentences_of(all);
+  return write_study(out, table, runs);
 }
 
 }  // namespace pliant

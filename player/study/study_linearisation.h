@@ -50,7 +50,7 @@ struct LinearisationFigures {
 Result<LinearisationFigures> measure_linearisation(const std::string& level, double pace, double seconds,
                                                    const Interrupt& interrupt);
 
-// Force over time by each way, and error against cost.
-Status plot_linearisation(const std::filesystem::path& file, const LinearisationFigures& figures);
+// STEM.svg and STEM.png: the force over time, by each way.
+Status plot_linearisation(OutputFolder& out, const std::string& stem, const LinearisationFigures& figures);
 
 }  // namespace pliant

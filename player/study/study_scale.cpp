@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "player/print.h"
 #include "player/progress.h"
+#include "player/record/csv.h"
 #include "player/study/drawn_frame.h"
 #include "player/study/pareto.h"
 #include "player/study/power_law.h"
@@ -29,14 +31,10 @@ constexpr scenes::StudBed kStuds[]{{1, 3, 3}, {1, 6, 3}, {1, 9, 3}, {2, 4, 5},
                                    {2, 3, 9}, {3, 4, 7}, {4, 4, 7}, {6, 4, 7}};
 constexpr int kFineCells = 15'000;  // tetrahedra: fewer steps from here on
 constexpr int kMostQuick = 11'000;  // tetrahedra
-
-// 1,000 for 1016.
-std::string size_words(double size) {
-  const double digit = std::pow(10.0, std::floor(std::log10(size)));
-  std::string digits = fmt::format("{:.0f}", std::round(size / digit * 10) * digit / 10);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits;
-}
+constexpr int kMostSmall = 1'500;   // tetrahedra
+constexpr const char* kMicroseconds = "time [us]";
+constexpr const char* kScaleTitle =
+    "how costs grow, and the powers of the larger half of the sizes with their 95 % intervals";
 
 // What draws, if anything does.
 struct Drawing {
@@ -47,11 +45,12 @@ struct Drawing {
   bool with_cpu = true;
 
   DrawnCount count(int frames) const { return {not_drawn.empty() ? frames : 0, with_cpu}; }
-  std::string sentence() const {
-    if (!not_drawn.empty()) return "No frame was drawn: " + not_drawn + ".";
-    return fmt::format("Frames of {} x {} pixels were drawn on {}: {}.{}", kDrawnWidth, kDrawnHeight, renderer,
-                       with_cpu ? "processor time of all its threads" : "time until the picture is complete",
-                       too_large.empty() ? "" : " The largest mesh was not drawn: " + too_large + ".");
+  // What a drawn frame is, or why there is none.
+  std::string words() const {
+    if (!not_drawn.empty()) return "no frame was drawn: " + not_drawn;
+    return fmt::format("{} x {} pixels on {}, {}{}", kDrawnWidth, kDrawnHeight, renderer,
+                       with_cpu ? "processor time of all threads" : "time until the picture is complete",
+                       too_large.empty() ? "" : "; the largest mesh was not drawn: " + too_large);
   }
 };
 
@@ -70,14 +69,16 @@ Drawing start_drawing() {
 
 GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake, bool drawn) {
   GrowthPanel panel;
-  panel.title = by_awake ? fmt::format("on {} vertices, by those that move", size_words(costs[0].vertices))
-                         : "about 1,000 vertices move, by all vertices";
+  panel.title = by_awake ? fmt::format("{} vertices, by those that move", two_digits(costs[0].vertices))
+                         : fmt::format("about {} move, by all vertices", two_digits(costs.back().awake));
   panel.across = by_awake ? "vertices that move" : "vertices";
-  panel.up = "time [us]";
+  panel.up = kMicroseconds;
   GrowthCurve half{"tick, p50", {}, {}}, most{"tick, p99", {}, {}}, told{"frame: publishing", {}, {}},
       whole{"frame: drawn", {}, {}};
+  panel.also = by_awake ? "vertices" : "vertices that move";
   for (const TickCost& cost : costs) {
     panel.size.push_back(by_awake ? cost.awake : cost.vertices);
+    panel.also_size.push_back(by_awake ? cost.vertices : cost.awake);
     half.cost.push_back(cost.p50_us);
     most.cost.push_back(cost.p99_us);
     told.cost.push_back(cost.frame_us);
@@ -90,13 +91,17 @@ GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake, bool 
 
 GrowthPanel steps_panel(const std::vector<StepCost>& costs, bool by_contacts) {
   GrowthPanel panel;
-  panel.title = by_contacts ? fmt::format("a soft step of {} tetrahedra, by contacts",
-                                          size_words(static_cast<double>(costs[0].tetrahedra)))
-                            : fmt::format("a soft step with about {:.0f} contacts, by tetrahedra", costs[0].contacts);
+  panel.title = by_contacts ? fmt::format("a soft step, {} tetrahedra, by contacts",
+                                          two_digits(static_cast<double>(costs[0].tetrahedra)))
+                            : fmt::format("a soft step, about {:.0f} contacts, by tetrahedra", costs[0].contacts);
   panel.across = by_contacts ? "contacts" : "tetrahedra";
   panel.up = "time [ms]";
-  for (const StepCost& cost : costs)
-    panel.size.push_back(by_contacts ? cost.contacts : static_cast<double>(cost.tetrahedra));
+  panel.also = by_contacts ? "tetrahedra" : "contacts";
+  for (const StepCost& cost : costs) {
+    const auto tets = static_cast<double>(cost.tetrahedra);
+    panel.size.push_back(by_contacts ? cost.contacts : tets);
+    panel.also_size.push_back(by_contacts ? tets : cost.contacts);
+  }
   for (const StepPart part : kStepParts) {
     GrowthCurve curve{name_of(part), {}, {}};
     for (const StepCost& cost : costs) curve.cost.push_back(cost.ms[static_cast<std::size_t>(part)]);
@@ -105,37 +110,51 @@ GrowthPanel steps_panel(const std::vector<StepCost>& costs, bool by_contacts) {
   return panel;
 }
 
-std::string power(const PowerLaw& law) {
-  return std::isfinite(law.within) ? fmt::format("{:.2f} \u00b1 {:.2f}", law.power, law.within)
-                                   : fmt::format("{:.2f}", law.power);
-}
-
 std::string csv_of(const std::vector<GrowthPanel>& panels) {
-  std::string csv = "panel,curve,size,cost,unit,power,power_within_95\n";
+  std::string csv =
+      "panel,curve,size,also,also_size,cost,unit,fitted,power,power_within_95,straight,curvature,curvature_within_95,"
+      "power_at_end\n";
   for (const GrowthPanel& panel : panels)
     for (const GrowthCurve& curve : panel.curves)
-      for (std::size_t i = 0; i < panel.size.size(); ++i)
-        if (!std::isnan(curve.cost[i]))
-          csv += fmt::format("by {},\"{}\",{:.6g},{:.4g},{},{:.4g},{:.4g}\n", panel.across, curve.name, panel.size[i],
-                             curve.cost[i], panel.up.find("us") != std::string::npos ? "us" : "ms", curve.law.power,
-                             curve.law.within);
+      for (std::size_t i = 0; i < panel.size.size(); ++i) {
+        if (std::isnan(curve.cost[i])) continue;
+        const PowerLaw& law = curve.law;
+        csv += fmt::format("by {},{},{:.6g},{},{:.6g},{:.4g},{},{:d}", panel.across, csv_text(curve.name),
+                           panel.size[i], panel.also, panel.also_size[i], curve.cost[i],
+                           panel.up == kMicroseconds ? "us" : "ms", panel.size[i] >= law.from * (1 - 1e-9));
+        put(csv, law.power);
+        csv += std::isfinite(law.within) ? fmt::format(",{:.4g}", law.within) : ",";
+        csv += law.straight() ? ",1" : ",0";
+        put(csv, law.curvature);
+        csv += std::isfinite(law.curvature_within) ? fmt::format(",{:.4g}", law.curvature_within) : ",";
+        put(csv, law.power_at_end);
+        csv += '\n';
+      }
   return csv;
 }
 
 nlohmann::ordered_json json_of(const std::vector<GrowthPanel>& panels, const std::vector<std::string>& sentences,
-                               const std::string& renderer) {
+                               const Drawing& drawing) {
   nlohmann::ordered_json json;
   json["study"] = "scale";
+  json["title"] = kScaleTitle;
   json["renderer"] = nullptr;
-  if (!renderer.empty()) json["renderer"] = renderer;
+  if (drawing.not_drawn.empty()) json["renderer"] = drawing.renderer;
+  json["frames"] = drawing.words();
   for (const GrowthPanel& panel : panels) {
-    nlohmann::ordered_json one{
-        {"title", panel.title}, {"across", panel.across}, {"up", panel.up}, {"size", panel.size}};
+    nlohmann::ordered_json one{{"title", panel.title}, {"across", panel.across}, {"up", panel.up},
+                               {"size", panel.size},   {"also", panel.also},     {"also_size", panel.also_size}};
     for (const GrowthCurve& curve : panel.curves) {
-      nlohmann::ordered_json fitted{{"name", curve.name}, {"cost", curve.cost}, {"power", curve.law.power}};
-      fitted["power_within_95"] = nullptr;
-      if (std::isfinite(curve.law.within)) fitted["power_within_95"] = curve.law.within;
-      one["curves"].push_back(std::move(fitted));
+      const PowerLaw& law = curve.law;  // numbers that are not finite: null
+      one["curves"].push_back({{"name", curve.name},
+                               {"cost", curve.cost},
+                               {"fitted_from", law.from},
+                               {"power", law.power},
+                               {"power_within_95", law.within},
+                               {"straight", law.straight()},
+                               {"curvature", law.curvature},
+                               {"curvature_within_95", law.curvature_within},
+                               {"power_at_end", law.power_at_end}});
     }
     json["panels"].push_back(std::move(one));
   }
@@ -146,39 +165,44 @@ nlohmann::ordered_json json_of(const std::vector<GrowthPanel>& panels, const std
 std::vector<std::string> sentences_of(const std::vector<GrowthPanel>& panels, const Drawing& drawing) {
   const auto& [sizes, awake, tets, contacts] = std::tie(panels[0], panels[1], panels[2], panels[3]);
   const GrowthCurve& tick = sizes.curves[1];
-  std::vector<std::string> out{
-      fmt::format("From {} to {} vertices a tick in which as many move takes {:.3g} to {:.3g} us (power {}), "
-                  "and with {:.3g} times as many that move {:.3g} times as long (power {}).",
-                  size_words(sizes.size.front()), size_words(sizes.size.back()), tick.cost.front(), tick.cost.back(),
-                  power(tick.law), awake.size.back() / awake.size.front(),
-                  awake.curves[1].cost.back() / awake.curves[1].cost.front(), power(awake.curves[1].law)),
-      fmt::format("A soft step grows with power {} of tetrahedra (free motion {}, linear models {}) and {} of "
-                  "contacts (finding them {}, solving them {}).",
-                  power(tets.curves[0].law), power(tets.curves[1].law), power(tets.curves[4].law),
-                  power(contacts.curves[0].law), power(contacts.curves[2].law), power(contacts.curves[3].law))};
+  const auto [least, most] = std::minmax_element(sizes.also_size.begin(), sizes.also_size.end());
+  std::string first = fmt::format(
+      "Where {} to {} vertices move a tick takes {:.3g} us on a mesh of {} and {:.3g} us on one of {} (power {}), and "
+      "with {:.3g} times as many that move {:.3g} times as long (power {}); ",
+      two_digits(*least), two_digits(*most), tick.cost.front(), two_digits(sizes.size.front()), tick.cost.back(),
+      two_digits(sizes.size.back()), words_of(tick.law), awake.size.back() / awake.size.front(),
+      awake.curves[1].cost.back() / awake.curves[1].cost.front(), words_of(awake.curves[1].law));
   if (drawing.not_drawn.empty()) {
-    const GrowthCurve &by_size = sizes.curves.back(), &by_awake = awake.curves.back();
+    const GrowthCurve& by_size = sizes.curves.back();
     const std::size_t last = by_size.last();
-    out.push_back(
-        fmt::format("A drawn frame takes {:.0f} to {:.0f} ms, {:.2g} us a vertex of the largest mesh drawn "
-                    "(power {}), whatever moves (power {}).",
-                    by_size.cost.front() * 1e-3, by_size.cost[last] * 1e-3, by_size.cost[last] / sizes.size[last],
-                    power(by_size.law), power(by_awake.law)));
+    first += fmt::format("a drawn frame takes {} to {} ms, {} us a vertex of the largest mesh drawn: ",
+                         two_digits(by_size.cost.front() * 1e-3), two_digits(by_size.cost[last] * 1e-3),
+                         two_digits(by_size.cost[last] / sizes.size[last]));
   }
-  out.push_back(drawing.sentence());
-  return out;
+  first += drawing.words();
+  return {first + ".",
+          fmt::format("A soft step grows with power {} of tetrahedra (free motion {}, linear models {}) and {} of "
+                      "contacts (finding them {}, solving them {}); powers are those of the larger half of the sizes, "
+                      "and where the points are curved there, the power at the largest is said too.",
+                      words_of(tets.curves[0].law), words_of(tets.curves[1].law), words_of(tets.curves[4].law),
+                      words_of(contacts.curves[0].law), words_of(contacts.curves[2].law),
+                      words_of(contacts.curves[3].law))};
 }
 
 }  // namespace
 
-Status study_scale(OutputFolder& out, bool quick, const Interrupt& interrupt) {
+Status study_scale(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
+  const bool quick = size != StudySize::kFull, small = size == StudySize::kSmall;
   using Sizes = std::vector<std::uint32_t>;
-  const Sizes vertices = quick
+  const Sizes vertices = small ? Sizes{1'000, 3'000, 10'000}
+                         : quick
                              ? Sizes{1'000, 3'000, 10'000, 30'000, 100'000}
                              : Sizes{1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000};
-  const Sizes moving = quick ? Sizes{500, 1'000, 2'000, 4'000, 8'000}
-                             : Sizes{500, 1'000, 2'000, 4'000, 8'000, 16'000, 32'000, 64'000, 128'000};
-  const int ticks = quick ? 2'000 : 10'000, batches = quick ? 5 : 10;
+  const Sizes moving = small   ? Sizes{500, 1'000, 2'000}
+                       : quick ? Sizes{500, 1'000, 2'000, 4'000, 8'000}
+                               : Sizes{500, 1'000, 2'000, 4'000, 8'000, 16'000, 32'000, 64'000, 128'000};
+  const int ticks = small ? 200 : quick ? 2'000 : 10'000, batches = quick ? 5 : 10;
+  const int most_tets = small ? kMostSmall : quick ? kMostQuick : std::numeric_limits<int>::max();
   Progress progress("study scale");
   Drawing drawing = start_drawing();
   std::vector<TickCost> by_size, by_awake;
@@ -189,27 +213,35 @@ Status study_scale(OutputFolder& out, bool quick, const Interrupt& interrupt) {
   const auto keep_reason = [&](const TickCost& cost) {
     if (!cost.not_drawn.empty()) drawing.too_large = cost.not_drawn;
   };
-  for (const std::uint32_t size : vertices) {
+  for (const std::uint32_t count : vertices) {
     if (interrupt.requested()) return interrupted();
-    by_size.push_back(measure_tick(size, kAwake, ticks, batches, drawing.count(size > 300'000 ? 3 : 9)));
+    by_size.push_back(measure_tick(count, kAwake, ticks, batches, drawing.count(small ? 1 : count > 300'000 ? 3 : 9)));
     keep_reason(by_size.back());
-    measured(size > 5'000'000 ? 24 : size > 1'000'000 ? 8 : 1);
+    measured(count > 5'000'000 ? 24 : count > 1'000'000 ? 8 : 1);
   }
   for (const std::uint32_t awake : moving) {
     if (interrupt.requested()) return interrupted();
-    by_awake.push_back(measure_tick(quick ? 100'000 : 1'000'000, awake, ticks, batches, drawing.count(3)));
+    by_awake.push_back(measure_tick(small   ? 10'000
+                                    : quick ? 100'000
+                                            : 1'000'000,
+                                    awake, ticks, batches, drawing.count(small ? 1 : 3)));
     keep_reason(by_awake.back());
     measured(quick ? 1 : 3);
   }
   for (const scenes::PaddleCells& cells : kCells) {
     if (interrupt.requested()) return interrupted();
-    if (quick && cells.tetrahedra() > kMostQuick) continue;
-    by_tets.push_back(measure_step(cells, scenes::kUsualBed, quick ? 8 : cells.tetrahedra() > kFineCells ? 24 : 60));
+    if (cells.tetrahedra() > most_tets) continue;
+    by_tets.push_back(measure_step(cells, scenes::kUsualBed,
+                                   small                             ? 2
+                                   : quick                           ? 8
+                                   : cells.tetrahedra() > kFineCells ? 24
+                                                                     : 60));
     measured(quick ? 1 : cells.tetrahedra() > kFineCells ? 6 : 2);
   }
   for (const scenes::StudBed& bed : kStuds) {
     if (interrupt.requested()) return interrupted();
-    by_contacts.push_back(measure_step(scenes::kUsualPaddle, bed, quick ? 8 : 60));
+    if (small && by_contacts.size() == 2) break;
+    by_contacts.push_back(measure_step(small ? kCells[0] : scenes::kUsualPaddle, bed, small ? 2 : quick ? 8 : 60));
     measured(1);
   }
   const auto is_drawn = [](const TickCost& cost) { return cost.drawn_us > 0.0; };
@@ -228,16 +260,13 @@ Status study_scale(OutputFolder& out, bool quick, const Interrupt& interrupt) {
   const std::vector<std::string> sentences = sentences_of(panels, drawing);
   for (const GrowthPanel& panel : panels) {
     print("scale: {}\n", panel.title);
-    for (const GrowthCurve& curve : panel.curves) print("  {:<20} power {}\n", curve.name, power(curve.law));
+    for (const GrowthCurve& curve : panel.curves) print("  {:<20} power {}\n", curve.name, words_of(curve.law));
   }
   for (const std::string& sentence : sentences) print("{}\n", sentence);
   if (const Status written = write_text(out, "scale.csv", csv_of(panels)); !written) return written;
-  if (const Status written = write_text(
-          out, "scale.json", json_of(panels, sentences, drawn ? drawing.renderer : "").dump(2, ' ', true) + "\n");
-      !written)
+  if (const Status written = write_json(out, "scale.json", json_of(panels, sentences, drawing)); !written)
     return written;
-  return plot_growth(out, "scale", "how costs grow, and the powers fitted to them with their 95 % intervals", panels,
-                     sentences);
+  return plot_growth(out, "scale", kScaleTitle, panels, sentences);
 }
 
 }  // namespace pliant

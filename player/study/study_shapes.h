@@ -21,6 +21,8 @@ struct PressTruth {
 PressTruth punch_truth(double radius);
 PressTruth hertz_truth(double contact_radius);
 PressTruth block_truth(const std::string& name, double radius, const PressedBlock& block);
+// Where the surfaces of ever finer grids go, as their force does.
+PressTruth limit_truth(const PressTruth& coarser, const PressTruth& finest, const GridLimit& force);
 
 // The engine's shape with its reach [m] around a contact of this radius [m].
 std::function<double(double)> engine_share(Shape shape, double inner, double reach);
@@ -31,7 +33,7 @@ struct ShapeError {
   double volume = 0.0;   // the shape's volume over the truth's, less one
 };
 ShapeError shape_error(const std::function<double(double)>& share, const PressTruth& truth);
-// The reach with the least profile error. [m]
+// The least reach whose profile error is no larger than any other's, but for a thousandth of it. [m]
 double best_reach(Shape shape, const PressTruth& truth);
 
 const char* name_of(Shape shape);

@@ -35,8 +35,12 @@ struct FeltErrors {
   double direction = 0.0;  // [degree] RMS angle to the true force
   double turned = 0.0;     // [degree] the largest
   double work = 0.0;       // [1] that a closed loop gives out or takes, over the energy stored at its deepest
+  double floor = 0.0;      // [1] how much that still changed when its samples were doubled: less is not resolved
   double us = 0.0;         // a query that follows the probe, processor time
 };
+// Ripple and direction from `samples` places; the work from twice as many again and again, until it no longer changes
+// or they are kMostWork times as many.
+inline constexpr int kMostWork = 16;
 FeltErrors feel(const Mesh& mesh, const SmoothSurface& surface, FeltSurface felt, int samples);
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "player/progress.h"
+#include "player/study/engine_step.h"
 #include "player/study/pareto.h"
 #include "player/study/processor_time.h"
 #include "player/study/studies.h"
@@ -14,12 +15,24 @@
 namespace pliant {
 namespace {
 
+// The schemes, and what levels do.
+const char* const kWays[] = {name_of(StepScheme::kEuler), name_of(StepScheme::kMidpoint),
+                             name_of(StepScheme::kMidpointTwice), name_of(StepScheme::kBdf2), kEngineStep};
 constexpr StepScheme kSchemes[] = {StepScheme::kEuler, StepScheme::kMidpoint, StepScheme::kMidpointTwice,
                                    StepScheme::kBdf2};
-constexpr double kEvery = 1.0 / 30.0;                     // [s] that traces are compared at
-constexpr int kRates[] = {30, 60, 120, 240, 480, 960};    // [Hz]
-constexpr int kTruthRate = 3840, kQuickTruthRate = 1920;  // [Hz]
-constexpr int kUsualRate = 60;                            // [Hz] PLIANT_simulation's default soft_step
+constexpr double kEvery = 1.0 / 30.0;  // [s] that traces are compared at
+constexpr int kUsualRate = 60;         // [Hz] PLIANT_simulation's default soft_step
+
+// How much is measured.
+struct TimeStepPlan {
+  int cells;               // of a block's height
+  std::vector<int> rates;  // [Hz] ascending
+  int truth_rate;          // [Hz]
+};
+TimeStepPlan time_step_plan(StudySize size) {
+  if (size == StudySize::kSmall) return {1, {60, 120}, 240};
+  return {size == StudySize::kFull ? 4 : 2, {30, 60, 120, 240, 480, 960}, size == StudySize::kFull ? 3840 : 1920};
+}
 
 // A block of cells, from the origin up, centred; the pinned nodes last. Neighbours mirror one another.
 TetMesh block(int nx, int ny, int nz, double cell, const std::function<bool(dvec3)>& pinned) {
@@ -59,24 +72,13 @@ TetMesh block(int nx, int ny, int nz, double cell, const std::function<bool(dvec
   return mesh;
 }
 
-// A sphere whose middle is told by the time.
-Obstacle sphere(double radius, std::function<dvec3(double)> middle) {
-  return [radius, middle = std::move(middle)](dvec3 place, double time) -> std::optional<Penetration> {
-    const dvec3 away = place - middle(time);
-    const double far = length(away);
-    if (!(far < radius) || far == 0.0) return std::nullopt;
-    return Penetration{radius - far, away / far};
-  };
-}
-
 double smooth(double t) {  // 0 to 1, at rest at both ends
   t = std::clamp(t, 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
 struct StepRow {
-  std::string scene;
-  StepScheme scheme;
+  std::string scene, way;
   int rate;
   double error, ms;
 };
@@ -95,55 +97,53 @@ ParetoTable table_of(const std::string& name, const std::string& title) {
   table.error_axis = "RMS distance from the converged motion over the RMS of the motion [1]";
   table.more = {"step_s", "rate_hz"};
   table.most_error = 3.0;
-  table.least_error = 1e-7;
+  table.least_error = 1e-5;
   return table;
 }
 
 ParetoRow row_of(const StepRow& row) {
-  return {label_of(row),
-          row.ms,
-          row.error,
-          name_of(row.scheme),
-          {fmt::format("{:.9g}", 1.0 / row.rate), std::to_string(row.rate)}};
+  return {label_of(row), row.ms, row.error, row.way, {1.0 / row.rate, std::int64_t{row.rate}}};
 }
 
 // Of all scenes: the geometric mean of errors, the mean of costs.
-std::vector<StepRow> means(const std::vector<StepRow>& rows) {
+std::vector<StepRow> means(const std::vector<StepRow>& rows, const std::vector<int>& rates) {
   std::vector<StepRow> out;
-  for (const StepScheme scheme : kSchemes)
-    for (const int rate : kRates) {
+  for (const char* way : kWays)
+    for (const int rate : rates) {
       double logs = 0.0, ms = 0.0, count = 0.0;
       for (const StepRow& row : rows)
-        if (row.scheme == scheme && row.rate == rate) logs += std::log(row.error), ms += row.ms, count += 1.0;
-      if (count > 0) out.push_back({"all", scheme, rate, std::exp(logs / count), ms / count});
+        if (row.way == way && row.rate == rate) logs += std::log(row.error), ms += row.ms, count += 1.0;
+      out.push_back({"all", way, rate, std::exp(logs / count), ms / count});
     }
   return out;
 }
 
-const StepRow* find(const std::vector<StepRow>& rows, StepScheme scheme, int rate) {
-  for (const StepRow& row : rows)
-    if (row.scheme == scheme && row.rate == rate) return &row;
-  return nullptr;
+const StepRow& find(const std::vector<StepRow>& rows, const std::string& way, int rate) {
+  return *std::find_if(rows.begin(), rows.end(),
+                       [&](const StepRow& row) { return row.way == way && row.rate == rate; });
 }
 
 std::vector<std::string> sentences(const std::vector<StepRow>& all, const std::vector<StepRow>& mean,
-                                   const std::string& truth) {
-  std::string usual =
-      fmt::format("At the usual step of {:.3g} ms Euler, which levels step with, is off by", 1000.0 / kUsualRate);
+                                   const TimeStepPlan& plan, double worst, double engine_worst) {
+  std::string usual = fmt::format("In steps of {:.3g} ms, the default, a level is off by", 1000.0 / kUsualRate);
   for (const StepRow& row : all)
-    if (row.scheme == StepScheme::kEuler && row.rate == kUsualRate)
-      usual += fmt::format("{} {:.2g} % ({})", usual.ends_with("by") ? "" : ",", 100 * row.error, row.scene);
+    if (row.way == kEngineStep && row.rate == kUsualRate)
+      usual += fmt::format("{} {} % ({})", usual.ends_with("by") ? "" : ",", two_digits(100 * row.error), row.scene);
   usual += "; the mean over the motions is";
-  for (const StepScheme scheme : kSchemes)
-    usual += fmt::format("{} {:.2g} % {}", usual.ends_with("is") ? "" : ",",
-                         100 * find(mean, scheme, kUsualRate)->error, name_of(scheme));
-  std::string slopes = "Error falls between the two shortest steps with the power";
-  for (const StepScheme scheme : kSchemes)
+  for (const char* way : kWays)
+    usual += fmt::format("{} {} % ({})", usual.ends_with("is") ? "" : ",",
+                         two_digits(100 * find(mean, way, kUsualRate).error), way);
+  std::string slopes = "Between the two shortest steps the error falls with the power";
+  const int shortest = plan.rates.back(), next = plan.rates[plan.rates.size() - 2];
+  for (const char* way : kWays)
     slopes += fmt::format("{} {:.1f} ({})", slopes.ends_with("power") ? "" : ",",
-                          std::log2(find(mean, scheme, kRates[std::size(kRates) - 2])->error /
-                                    find(mean, scheme, kRates[std::size(kRates) - 1])->error),
-                          name_of(scheme));
-  return {usual + ".", slopes + "; " + truth + "."};
+                          std::log(find(mean, way, next).error / find(mean, way, shortest).error) /
+                              std::log(static_cast<double>(shortest) / next),
+                          way);
+  return {usual + ".",
+          slopes + fmt::format("; the truths, in steps of {:.2g} ms, differ from themselves in steps of twice that by "
+                               "{:.1g} at most, a level's by {:.1g}.",
+                               1000.0 / plan.truth_rate, worst, engine_worst)};
 }
 
 }  // namespace
@@ -164,32 +164,28 @@ std::vector<TissueScene> step_scenes(int cells) {
   TissueScene& press = scenes[1];
   press.name = "press";
   press.mesh = bonded();
-  press.obstacle = sphere(radius, [over](double t) { return dvec3(0.002, over - 0.008 * smooth(t / 0.2), 0.001); });
+  press.obstacle = Ball{radius, [over](double t) { return dvec3(0.002, over - 0.008 * smooth(t / 0.2), 0.001); }};
   TissueScene& slide = scenes[2];
   slide.name = "slide";
   slide.mesh = bonded();
-  slide.obstacle = sphere(radius, [over](double t) {
-    return dvec3(-0.015 + 0.03 * smooth((t - 0.1) / 0.25), over - 0.006 * smooth(t / 0.1), 0.001);
-  });
+  slide.obstacle = Ball{radius, [over](double t) {
+                          return dvec3(-0.015 + 0.03 * smooth((t - 0.1) / 0.25), over - 0.006 * smooth(t / 0.1), 0.001);
+                        }};
   // A block that is thrown on the ground.
   TissueScene& impact = scenes[3];
   impact.name = "impact";
   impact.mesh = block(cells, cells, cells, cell, [](dvec3) { return false; });
   impact.velocity = dvec3(0, -0.5, 0);
   impact.gravity = dvec3(0, -9.81, 0);
-  impact.obstacle = [](dvec3 place, double) -> std::optional<Penetration> {
-    constexpr double kGround = -0.01;  // [m]
-    if (!(place.y < kGround)) return std::nullopt;
-    return Penetration{kGround - place.y, dvec3(0, 1, 0)};
-  };
+  impact.obstacle = Ground{-0.01};
   impact.seconds = 0.2;
   return scenes;
 }
 
 StepTrace trace_of(const TissueScene& scene, StepScheme scheme, double step, double every, double* ms,
                    const std::function<bool(double)>& goes_on) {
-  const std::uint64_t begin = process_ns();
   TissueRun run(scene, scheme);
+  const std::uint64_t begin = process_ns();
   const int samples = static_cast<int>(std::lround(scene.seconds / every)),
             steps = static_cast<int>(std::lround(every / step));
   StepTrace trace;
@@ -219,49 +215,67 @@ double trace_error(const TissueScene& scene, const StepTrace& trace, const StepT
   return std::sqrt(off / size);
 }
 
-Status study_time_step(OutputFolder& out, bool quick, const Interrupt& interrupt) {
+Status study_time_step(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
   Progress progress("study time_step");
-  const int truth_rate = quick ? kQuickTruthRate : kTruthRate;
+  const TimeStepPlan plan = time_step_plan(size);
   std::vector<StepRow> rows;
-  double worst = 0.0, done = 0.0;
-  const std::vector<TissueScene> scenes = step_scenes(quick ? 2 : 4);
+  double worst = 0.0, engine_worst = 0.0, done = 0.0;
+  const std::vector<TissueScene> scenes = step_scenes(plan.cells);
   for (const TissueScene& scene : scenes) {
-    double from = 0.0, part = 0.5;
+    double from = 0.0, part = 0.3;
     const auto goes_on = [&](double share) {
       progress.update((done + from + part * share) / static_cast<double>(scenes.size()));
       return !interrupt.requested();
     };
-    const StepTrace truth = trace_of(scene, StepScheme::kConverged, 1.0 / truth_rate, kEvery, nullptr, goes_on);
-    from = 0.5, part = 0.25;
-    const StepTrace coarser = trace_of(scene, StepScheme::kConverged, 2.0 / truth_rate, kEvery, nullptr, goes_on);
-    if (interrupt.requested()) return interrupted();
-    worst = std::max(worst, trace_error(scene, coarser, truth, kEvery));
-    from = 0.75, part = 0.0;
+    // A level's contacts are not penalties: its truth is its own motion in short steps.
+    StepTrace truth, engine_truth;
+    for (const int rate : {plan.truth_rate, plan.truth_rate / 2}) {
+      StepTrace trace = trace_of(scene, StepScheme::kConverged, 1.0 / rate, kEvery, nullptr, goes_on);
+      if (interrupt.requested()) return interrupted();
+      from += part, part = rate == plan.truth_rate ? 0.25 : 0.12;
+      StepTrace engine = engine_trace(scene, 1.0 / rate, kEvery, nullptr, goes_on);
+      if (interrupt.requested()) return interrupted();
+      from += part, part = 0.15;
+      if (rate == plan.truth_rate) {
+        truth = std::move(trace);
+        engine_truth = std::move(engine);
+      } else {
+        worst = std::max(worst, trace_error(scene, trace, truth, kEvery));
+        engine_worst = std::max(engine_worst, trace_error(scene, engine, engine_truth, kEvery));
+      }
+    }
+    part = 0.0;
     const std::string name =
         scene.name.substr(scene.name.find(' ') == std::string::npos ? 0 : scene.name.find(' ') + 1);
     ParetoTable table = table_of("time_step_" + name, scene.name + ": soft steps by scheme and length");
+    const auto add = [&](const char* way, int rate, const StepTrace& trace, const StepTrace& its_truth, double ms) {
+      rows.push_back({scene.name, way, rate, trace_error(scene, trace, its_truth, kEvery), ms});
+      table.rows.push_back(row_of(rows.back()));
+    };
     for (const StepScheme scheme : kSchemes)
-      for (const int rate : kRates) {
+      for (const int rate : plan.rates) {
         double ms = 0.0;
         const StepTrace trace = trace_of(scene, scheme, 1.0 / rate, kEvery, &ms, goes_on);
         if (interrupt.requested()) return interrupted();
-        rows.push_back({scene.name, scheme, rate, trace_error(scene, trace, truth, kEvery), ms});
-        table.rows.push_back(row_of(rows.back()));
-        from += 0.25 / static_cast<double>(std::size(kSchemes) * std::size(kRates));
+        add(name_of(scheme), rate, trace, truth, ms);
       }
+    for (const int rate : plan.rates) {
+      double ms = 0.0;
+      const StepTrace trace = engine_trace(scene, 1.0 / rate, kEvery, &ms, goes_on);
+      if (interrupt.requested()) return interrupted();
+      add(kEngineStep, rate, trace, engine_truth, ms);
+    }
     if (const Status written = write_text(out, table.study + ".csv", to_csv(table)); !written) return written;
     if (const Status drawn = plot_pareto(out, table.study, table); !drawn) return drawn;
     done += 1.0;
   }
-  const std::vector<StepRow> mean = means(rows);
-  ParetoTable table = table_of("time_step", "soft steps by scheme and length: free swing, press, slide and impact");
+  const std::vector<StepRow> mean = means(rows, plan.rates);
+  ParetoTable table = table_of("time_step",
+                               "soft steps by scheme and length: free swing, press, slide and impact; a level's step "
+                               "against its own in steps that are short");
   table.error_axis += ", geometric mean";
   for (const StepRow& row : mean) table.rows.push_back(row_of(row));
-  table.sentences = sentences(
-      rows, mean,
-      fmt::format(
-          "the converged motion, in steps of {:.3g} ms, differs from that in steps of twice the length by {:.1g}",
-          1000.0 / truth_rate, worst));
+  table.sentences = sentences(rows, mean, plan, worst, engine_worst);
   return write_study(out, table);
 }
 

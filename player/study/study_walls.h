@@ -21,6 +21,8 @@ struct WallCell {
   double delay = 0.0;  // [s]
   Wall wall;
   WallResult result;          // the worst of all starts
+  bool fades = false;         // a cycle of less than a count: the guard lets the force of a hand that holds still fade,
+                              // and the hand has it back (docs/devices/safety.md, frozen)
   bool linear_stable = true;  // by the characteristic polynomial
   bool marginal = false;      // a root within kMarginal of the unit circle: neither is believed
   bool passive = false;       // Colgate's condition, with delay
@@ -40,15 +42,15 @@ struct WallFigures {
   std::vector<double> limits;   // [N/m] of each delay: what the guard lets the device render
   std::vector<WallCell> cells;  // delay by delay of each model, damping by damping, K fastest
   std::vector<WallCycle> cycles;
-  std::size_t compared = 0, agree = 0;  // of the linear wall
-  std::size_t count(WallModel model, double delay, Verdict verdict) const;
+  std::size_t compared = 0, agree = 0;                                      // of the linear wall
+  std::size_t count(WallModel model, double delay, Verdict verdict) const;  // without those whose force fades
+  std::size_t fading(WallModel model, double delay) const;
 };
 
 // `many` stiffnesses. Deterministic, whatever the number of threads.
 Result<WallFigures> measure_walls(std::size_t stiffnesses, std::size_t dampings, double seconds,
                                   const Interrupt& interrupt);
-Status plot_walls(const std::filesystem::path& png, const std::filesystem::path& svg, const WallFigures& figures);
-
-// walls.csv, walls.json, walls.png, walls.svg.
+// walls.svg and walls.png.
+Status plot_walls(OutputFolder& out, const WallFigures& figures, const std::vector<std::string>& sentences);
 
 }  // namespace pliant

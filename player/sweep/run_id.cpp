@@ -10,6 +10,7 @@
 #include "content/level_file.h"
 #include "engine/scene_hash.h"
 #include "engine/sources.h"
+#include "pliant/content.h"
 #include "runtime/hash.h"
 
 namespace pliant {

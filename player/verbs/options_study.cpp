@@ -60,7 +60,8 @@ void add_fit(CLI::App& app, FitOptions& options) {
                    "folder of figures and plots (out/fit); FOLDER-2 and on where one has results")
       ->check(named());
   verb->add_flag("--force", options.force, "replace what is there");
-  verb->add_option("--radius", options.radius, "of the indenter [m] (measured: a point; finite elements: as the level says)")
+  verb->add_option("--radius", options.radius,
+                   "of the indenter [m] (measured: a point; finite elements: as the level says)")
       ->check(within(0, 1));
   verb->add_option("--level", options.level, "into which level the keys go")->check(named())->group(measured);
   verb->add_option("--law", options.law, joined(laws) + " (auto)")->check(one_of(laws))->group(measured);

@@ -32,6 +32,7 @@ TEST(StudyCollision, NothingIsMissedOnASphereWhateverTheSearch) {
   for (const Search search : kSearches) {
     const SearchFigures figures = search_along(mesh, search, way, truth);
     EXPECT_EQ(figures.misses, 0.0) << name_of(search);
+    if (search != Search::kPatches) EXPECT_EQ(figures.strict, 0.0) << name_of(search);
     EXPECT_EQ(figures.checked, 200u);
   }
 }
@@ -55,6 +56,14 @@ TEST(StudyCollision, AWalkMissesTheOtherWallOfAGapAndATreeDoesNot) {
   }
   for (const Search search : {Search::kTree, Search::kClosest, Search::kClosestHint})
     EXPECT_EQ(misses(search), 0.0) << name_of(search);
+}
+
+TEST(StudyCollision, ScatteredQueriesFindTheNearestPlace) {
+  const SearchFigures figures = search_scattered(2'000, 500, 100);
+  EXPECT_EQ(figures.checked, 100u);
+  EXPECT_EQ(figures.strict, 0.0);
+  EXPECT_GT(figures.us, 0.0);
+  EXPECT_LT(figures.us, 1e6);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pliant {
@@ -37,18 +38,24 @@ TEST(StudyFidelity, ABlockOfCorotationalTissueIsTheLinearOneWhileTheDentIsSmall)
 }
 
 TEST(StudyFidelity, AFittedLawIsFoundAgainWhereTheTruthIsOne) {
-  const Indented what;
+  const std::vector<double> depths{0.0005, 0.001, 0.002};
   DeformableParameters law;
   law.spring = SpringLaw::kExponential;
   Indentation truth;
-  const double alpha = 0.1 / what.depths.back();  // on the fit's list
-  for (const double d : what.depths) truth.force.push_back(90 * std::expm1(alpha * d) / alpha);
-  const DeformableParameters found = fitted_law(law, what, truth);
+  const double alpha = 0.1 / depths.back();  // on the fit's list
+  for (const double d : depths) truth.force.push_back(90 * std::expm1(alpha * d) / alpha);
+  const DeformableParameters found = fitted_law(law, depths, truth.force);
   EXPECT_NEAR(found.stiffness, 90, 1e-6);
   EXPECT_NEAR(found.stiffening, alpha, 1e-9 * alpha);
   Indentation half = truth;
   for (double& f : half.force) f *= 0.5;
   EXPECT_NEAR(force_error(half, truth), 0.5, 1e-12);
+}
+
+TEST(StudyFidelity, NoLawIsJudgedWhereItWasFitted) {
+  const Indented what;
+  for (const double depth : what.depths)
+    EXPECT_EQ(std::count(what.fit_depths.begin(), what.fit_depths.end(), depth), 0) << depth;
 }
 
 TEST(StudyFidelity, ErrorsAreTheSameBitsInEveryRun) {

@@ -37,6 +37,38 @@ TEST(StudyScale, TheIntervalIsStudentsOfTheResiduals) {
   EXPECT_TRUE(std::isinf(fit_power({1, 2}, {1, 4}).within));
 }
 
+TEST(StudyScale, ACostWithAConstantPartIsFoundCurvedAndFittedWhereItCountsLittle) {
+  std::vector<double> size, cost, plain;
+  for (int i = 0; i < 10; ++i) {
+    size.push_back(std::pow(4.0, i));
+    cost.push_back(3000.0 + size.back());
+    plain.push_back(size.back());
+  }
+  const PowerLaw law = fit_power(size, cost);
+  EXPECT_FALSE(law.straight());
+  EXPECT_GT(law.curvature, 0.0);
+  EXPECT_GT(law.power_at_end, law.power);
+  EXPECT_NEAR(law.from, size[5], 1e-9 * size[5]);
+  EXPECT_TRUE(fit_power({1, 2}, {1, 2}).straight()) << "two points say nothing of it";
+}
+
+// log y = x + c x^2 over -2 ... 2, and errors of +-a that are orthogonal to it: the power is that of the tangent.
+TEST(StudyScale, TheParabolaAndItsIntervalAreThoseOfTheClosedForm) {
+  const double c = 0.25, a = 0.01, shape[] = {-a, 2 * a, 0, -2 * a, a};
+  std::vector<double> size, cost;
+  for (int i = 0; i < 5; ++i) {
+    const double x = i - 2;
+    size.push_back(std::exp(x));
+    cost.push_back(std::exp(x + c * x * x + shape[i]));
+  }
+  const PowerLaw law = fit_power(size, cost);
+  EXPECT_NEAR(law.curvature, 2 * c, 1e-12);
+  EXPECT_NEAR(law.power_at_end, 1 + 2 * c * 2, 1e-12);
+  // The second power's variance is the residuals' over the sum of (x^2 - 2)^2, 14.
+  EXPECT_NEAR(law.curvature_within, 2 * 4.303 * std::sqrt(10 * a * a / 2 / 14), 1e-12);
+  EXPECT_FALSE(law.straight());
+}
+
 TEST(StudyScale, ASizeThatWasNotMeasuredIsLeftOutOfTheFit) {
   GrowthCurve curve{"some", {2, 4, std::nan(""), 16, std::nan("")}, {}};
   const PowerLaw law = fit_power({1, 2, 4, 8, 16}, curve.cost);

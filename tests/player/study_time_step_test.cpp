@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "player/study/engine_step.h"
 
 namespace pliant {
 namespace {
@@ -53,6 +56,42 @@ TEST(StudyTimeStep, TheGroundStopsABlockWhoseEnergyIsThenInTheSpringsAndTheTissu
   EXPECT_LT(lowest, -0.01);
   EXPECT_GT(lowest, -0.01 - 2 * deepest);
   EXPECT_GT(last, -0.01 - deepest);
+}
+
+TEST(StudyTimeStep, ALevelStepsAsEulerDoesWhereNothingIsTouched) {
+  TissueScene swing = step_scenes(1)[0];
+  swing.seconds = 0.2;
+  const StepTrace engine = engine_trace(swing, 1.0 / 60, 1.0 / 30),
+                  euler = trace_of(swing, StepScheme::kEuler, 1.0 / 60, 1.0 / 30);
+  ASSERT_EQ(engine.size(), euler.size());
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < euler.size(); ++k)
+    for (std::size_t i = 0; i < euler[k].size(); ++i) {
+      EXPECT_LT(length(engine[k][i] - euler[k][i]), 1e-9) << k << ' ' << i;
+      farthest = std::max(farthest, length(euler[k][i] - swing.mesh.nodes[i]));
+    }
+  EXPECT_GT(farthest, 0.005) << "it swings";
+}
+
+TEST(StudyTimeStep, ALevelsBallPressesAndItsGroundStops) {
+  const std::vector<TissueScene> scenes = step_scenes(2);
+  const TissueScene& press = scenes[1];
+  const StepTrace pressed = engine_trace(press, 1.0 / 120, 1.0 / 30);
+  ASSERT_FALSE(pressed.empty());
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < press.mesh.nodes.size(); ++i)
+    deepest = std::max(deepest, press.mesh.nodes[i].y - pressed.back()[i].y);
+  EXPECT_NEAR(deepest, 0.008, 0.002);  // as deep as the ball goes
+  TissueScene impact = scenes[3];
+  impact.seconds = 0.1;
+  const StepTrace fallen = engine_trace(impact, 1.0 / 480, 1.0 / 480);
+  double lowest = 0.0;
+  for (const std::vector<dvec3>& at : fallen)
+    for (const dvec3 x : at) lowest = std::min(lowest, x.y);
+  EXPECT_NEAR(lowest, -0.01, 1e-3);  // the ground
+  // Thrown: after the first step it has the speed that the scene says, and gravity's.
+  const double T = 1.0 / 480, way = impact.velocity.y * T + impact.gravity.y * T * T;
+  EXPECT_NEAR(fallen[0][0].y - impact.mesh.nodes[0].y, way, 1e-9);
 }
 
 TEST(StudyTimeStep, ErrorsAreTheSameBitsInEveryRun) {
