@@ -322,22 +322,36 @@ EntryPlace entry_place(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 t
   return {};
 }
 
+// The curved surface stands a little before or behind its triangles. The foot at `to` of a point that was outside of it
+// and already behind a triangle; not valid: it was not.
+Foot entry_behind_triangle(const Search& s, dvec3 from, dvec3 to) {
+  const FlatPoint near = closest_flat(s.mesh, from, 1.5 * static_cast<double>(s.mesh.tree.bulge));
+  if (!near.valid()) return {};
+  const uvec3 t = s.mesh.triangles[near.triangle];
+  const dvec3 a(s.mesh.position(t.x)), b(s.mesh.position(t.y)), c(s.mesh.position(t.z));
+  const dvec3 outward = cross(b - a, c - a);
+  if (dot(from - a, outward) > s.early() * length(outward)) return {};
+  const Foot outside = s.downhill(near.triangle, near.barycentric, from);
+  return outside.height < -s.early() ? Foot{} : follow_foot(s, outside, from, to);
+}
+
 // A point has gone through the surface.
 void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
   const dvec3 d = to - from;
   if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
   Foot foot;
+  const auto bulge = static_cast<double>(s.mesh.tree.bulge);
   const dvec3 early = s.early() / length(d) * d;
   if (const EntryPlace entry = entry_place(s, tip, from - early, to, early); entry.triangle != Foot::kNone) {
     foot = s.downhill(entry.triangle, entry.barycentric, dot(entry.x - from, d) > 0 ? entry.x : from);
     foot = follow_foot(s, foot, foot.p, to);
-  } else if (const double bulge = static_cast<double>(s.mesh.tree.bulge); bulge > 0 && tip.tip.radius == 0) {
-    // The curved surface stands a little before or behind its triangles.
+  } else if (bulge > 0 && tip.tip.radius == 0) {
     const FlatPoint near = closest_flat(s.mesh, to, 1.5 * bulge);
-    if (!near.valid()) return;
-    if (s.downhill(near.triangle, near.barycentric, from).height < 0) return;
-    foot = s.downhill(near.triangle, near.barycentric, to);
-    if (pressed_through(s, tip, foot.p, foot.normal)) return;
+    if (near.valid() && s.downhill(near.triangle, near.barycentric, from).height >= 0)
+      foot = s.downhill(near.triangle, near.barycentric, to);
+    // A short way from behind a triangle ends near it, and was found.
+    if (!(foot.height < 0) && length(d) > 0.5 * bulge) foot = entry_behind_triangle(s, from, to);
+    if (foot.valid() && pressed_through(s, tip, foot.p, foot.normal)) return;
   }
   if (!foot.valid() || !(foot.height < 0) || beyond_border(s.mesh, foot, to) || is_known(s, tip, foot)) return;
   begin(s, tip, foot, from, to);

@@ -5,12 +5,26 @@
 #include <cmath>
 #include <map>
 
+#include "systems/touch/foot.h"
 #include "systems/touch/publish.h"
+#include "systems/touch/surface_query.h"
 #include "tests/scenes/touch_laws.h"
 #include "tests/scenes/touch_raw.h"
 
 namespace pliant {
 namespace {
+
+// Where the curved surface is met on the way along a unit vector, from the origin. [m]
+dvec3 surface_on_the_way(const Mesh& mesh, dvec3 along) {
+  const Entry entry = first_entry(mesh, dvec3(0), 0.1 * along);
+  EXPECT_TRUE(entry.valid());
+  dvec3 x = entry.fraction * 0.1 * along;
+  for (int i = 0; i < 20; ++i) {
+    const Foot foot = descend(mesh, entry.triangle, entry.barycentric, x);
+    x -= foot.height / dot(along, foot.normal) * along;
+  }
+  return x;
+}
 
 // What it feels there is a hard case (player/study/hard).
 TEST(TouchSurface, ASphereInAGrooveShowsAnArrowForEachWall) {
@@ -238,6 +252,52 @@ TEST(TouchSurface, ACapsuleLyingOnASurfaceIsHeldUpAlongItsLengthAndOneOnAnEdgeIs
 
 // A wall that a tip was pressed through does not catch it on its way back; a wall behind that one is touched all the
 // same.
+// Seen from its middle a bowl's curved surface stands behind its triangles. A tip between the two touches nothing yet,
+// and is no less caught when it goes on, fast or slow.
+TEST(TouchSurface, ATipBetweenATriangleAndItsCurvedSurfaceIsCaughtHoweverFastItGoesOn) {
+  constexpr double kRadius = 0.05;
+  Primitive bowl = scenes::sphere(4, kRadius);
+  std::vector<std::uint32_t> lower;
+  for (std::size_t i = 0; i < bowl.index.size(); i += 3) {
+    const std::uint32_t a = bowl.index[i], b = bowl.index[i + 1], c = bowl.index[i + 2];
+    if (std::max({bowl.position[a].y, bowl.position[b].y, bowl.position[c].y}) < 0.005f)
+      lower.insert(lower.end(), {a, c, b});
+  }
+  bowl.index = lower;
+  for (vec3& n : bowl.normal) n = -n;
+  int caught = 0;
+  for (const double step : {2e-4, 1e-3, 3e-3, 8e-3})
+    for (const double between : {1e-6, 0.5, 1.0}) {  // from the triangle to the curved surface
+      Stage stage;
+      const Entity surface = stage.add(bowl, frictionless());
+      const Entity probe = stage.add_probe({0, 0.01, 0});
+      stage.prepare();
+      const Mesh& mesh = stage.mesh(surface);
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); t += 5) {
+        const uvec3 corner = mesh.triangles[t];
+        const dvec3 middle =
+            (dvec3(mesh.position(corner.x)) + dvec3(mesh.position(corner.y)) + dvec3(mesh.position(corner.z))) / 3.0;
+        if (middle.y > -0.4 * kRadius) continue;
+        const dvec3 down = normalize(middle), curved = surface_on_the_way(mesh, down);
+        ASSERT_GT(length(curved), length(middle) + 1e-5);
+        const double from = length(middle) + between * (length(curved) - length(middle)) - 1e-12;
+        for (const double r : {from - 1e-3, from, from + step}) {
+          stage.place(probe, r * down);
+          stage.tick();
+        }
+        const ProbeReading felt = stage.read(probe);
+        EXPECT_NEAR(felt.depth, std::max(0.0, from + step - length(curved)), 0.02 * step + 1e-6)
+            << step << " " << between << " " << t;
+        caught += felt.depth > 0;
+        for (const double r : {from - 1e-3, 0.5 * from}) {
+          stage.place(probe, r * down);
+          stage.tick();
+        }
+      }
+    }
+  EXPECT_GT(caught, 100);
+}
+
 TEST(TouchSurface, ATipPressedThroughAWallTouchesTheNextAndComesBackByTheSameForces) {
   for (const double radius : {0.0, 0.002}) {
     Primitive walls = scenes::slab(20, 0.1, 0.001);
