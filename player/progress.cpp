@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdio>
 
+#include "content/level/progress.h"
 #include "runtime/clock.h"
 #include "runtime/printable.h"
 
@@ -20,13 +21,16 @@ double seconds(std::uint64_t nanoseconds) {
 }  // namespace
 
 Progress::Progress(std::string what)
-    : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), begin_(now_ns()), last_(begin_) {}
+    : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), begin_(now_ns()), last_(begin_) {
+  ++LongWork::silent;
+}
 
 bool progress_line_stands() {
   return g_line;
 }
 
 Progress::~Progress() {
+  --LongWork::silent;
   if (shown_ && terminal_) std::fputs("\r\x1b[K", stderr);
   g_line = false;
 }

@@ -20,14 +20,18 @@ SheetCorners sorted(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 
 }  // namespace
 
-bool leave_out_covered(const BuiltMesh& surface, const TetMesh& tissue, std::vector<Primitive>& primitives) {
-  const Mesh& mesh = surface.mesh;
+std::vector<std::uint8_t> covered_triangles(const Mesh& mesh, const TetMesh& tissue) {
   std::vector<dvec3> off;
   for (const uvec3& t : mesh.triangles) {
     const dvec3 a(mesh.position(t.x)), b(mesh.position(t.y)), c(mesh.position(t.z));
     off.push_back((a + b + c) / 3.0 + kOff * tissue.report.cell * normalize(cross(b - a, c - a)));
   }
-  const std::vector<std::uint8_t> inside = are_inside(off, tissue.nodes, tissue.tets);
+  return are_inside(off, tissue.nodes, tissue.tets);
+}
+
+bool leave_out_covered(const BuiltMesh& surface, const TetMesh& tissue, std::vector<Primitive>& primitives) {
+  const Mesh& mesh = surface.mesh;
+  const std::vector<std::uint8_t> inside = covered_triangles(mesh, tissue);
   std::set<SheetCorners> covered;
   for (std::size_t t = 0; t < inside.size(); ++t)
     if (inside[t]) covered.insert(sorted(mesh.triangles[t].x, mesh.triangles[t].y, mesh.triangles[t].z));

@@ -9,8 +9,10 @@
 
 namespace pliant {
 
-// Takes the triangles out of `primitives` that tissue covers: a third of a cell off their outer side there still is
-// some. `surface` is what was built of them. Says whether there were any.
+// Of each triangle: whether tissue covers it: a third of a cell off its outer side there still is some.
+std::vector<std::uint8_t> covered_triangles(const Mesh& mesh, const TetMesh& tissue);
+
+// Takes those triangles out of `primitives`. `surface` is what was built of them. Says whether there were any.
 bool leave_out_covered(const BuiltMesh& surface, const TetMesh& tissue, std::vector<Primitive>& primitives);
 
 }  // namespace pliant

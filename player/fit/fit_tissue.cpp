@@ -32,7 +32,6 @@ namespace {
 constexpr std::size_t kMapPlaces = 256;      // at most, that the stiffness map is computed at
 constexpr int kDepths = 4;                   // a quarter of the reach is gone to in so many parts
 constexpr std::ptrdiff_t kEnoughPlaces = 6;  // away from edges, for law and shape
-constexpr double kUsualReach = 3.5;          // [1] radii of the indenter, that a fit presses for
 constexpr double kDeepestShare = 0.25;       // [1] of the reach
 constexpr double kHardest = 6.0;             // [1] of the usual stiffness: the most that is painted
 constexpr double kSeenApart = 0.3;           // [1] of the indenter's radius: points that a dent is compared at
@@ -143,7 +142,6 @@ struct StiffnessMap {
 };
 Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_place) {
   const Mesh& mesh = bodies.surface();
-  std::vector<std::uint32_t> vertices;
   std::vector<PressPlace> places;
   std::vector<std::uint32_t> one_of(mesh.vertex_count, kBorder);  // a triangle's corner of each vertex
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -154,7 +152,6 @@ Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_pl
     if (one_of[v] == kBorder || !free[v]) continue;
     dvec3 corner(0);
     corner[static_cast<int>(one_of[v] % 3)] = 1.0;
-    vertices.push_back(v);
     places.push_back(place_at(mesh, one_of[v] / 3, corner));
   }
   std::vector<double> stiffness(places.size());
@@ -165,17 +162,17 @@ Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_pl
   });
   if (!pressed) return pressed.error();
   StiffnessMap out;
-  std::vector<std::uint32_t> at;
+  std::vector<PressPlace> at;
   std::vector<double> value;
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (stiffness[i] > 0) at.push_back(vertices[i]), value.push_back(stiffness[i]);
+    if (stiffness[i] > 0) at.push_back(places[i]), value.push_back(stiffness[i]);
   if (at.empty())
     return Error{"--object " + mesh.name, "cannot be pressed anywhere: what is held leaves no surface free; see --pin"};
   out.usual = median(value);
   out.tets = median(tets);
   out.places = at.size();
   for (double& k : value) k = std::min(k, kHardest * out.usual);
-  out.at_vertex = spread(mesh, at, value);
+  out.at_vertex = spread(bodies.object(), at, value);
   return out;
 }
 
@@ -265,11 +262,11 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   // Law and shape, from presses that are as deep as they will be used.
   std::vector<PressedPlace> places;
   double reach = options.reach > 0 ? options.reach : kUsualReach * out.radius;
+  out.deepest = kDeepestShare * reach;
   const std::vector<std::uint8_t> free = bodies.is_free(mesh, reach);
   out.left_out = static_cast<std::size_t>(std::count(free.begin(), free.end(), 0));
   for (const PressPlace& place : scatter(mesh, options.points, 1, free)) places.push_back({place, 0.0, {}, {}});
-  if (const Status done = press_all(bodies, each_place, kDeepestShare * reach, 0.2, places, mesh); !done)
-    return done.error();
+  if (const Status done = press_all(bodies, each_place, out.deepest, 0.2, places, mesh); !done) return done.error();
   // Near an edge the surface has no law of its own; those places count only where there are few others.
   const auto inner = std::stable_partition(places.begin(), places.end(), [&](const PressedPlace& each) {
     return each.presses.empty() || !is_near_an_edge(mesh, each.place, each.presses.back().depth);
@@ -287,14 +284,15 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   if (node.deformable) out.surface = *node.deformable;
   take_keys(out, usual, out.surface);
   reach = out.surface.reach;
+  out.deepest = std::min(out.deepest, kDeepestShare * reach);
   std::vector<double> factor;
   for (const double k : map->at_vertex) factor.push_back(k / map->usual);
   const auto [softest, stiffest] = std::minmax_element(factor.begin(), factor.end());
   out.softest = *softest * out.surface.stiffness;
   out.stiffest = *stiffest * out.surface.stiffness;
   const mat4 to_object = mat4(object_frame(level, number).to_object);
-  const std::vector<Primitive> primitives =
-      painted_primitives(level.meshes[static_cast<std::size_t>(node.mesh)], to_object, mesh.of_source, factor);
+  const std::vector<Primitive> primitives = painted_primitives(level.meshes[static_cast<std::size_t>(node.mesh)],
+                                                               to_object, bodies.object().of_source, factor);
 
   // The same places in the elements and in the engine.
   const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
@@ -303,10 +301,10 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   const Mesh& checked = final_mesh->mesh;
   const Pose pose = object_frame(level, number).pose;
   std::vector<PressedPlace> unseen;
-  for (const PressPlace& place : scatter(checked, options.held, 2, bodies.is_free(checked, reach)))
+  for (const PressPlace& place :
+       scatter(checked, options.held, 2, bodies.is_free(checked, std::min(reach, kUsualReach * out.radius))))
     unseen.push_back({place, 0.0, {}, {}});
-  if (const Status done = press_all(bodies, each_place, kDeepestShare * reach, 0.2, unseen, checked); !done)
-    return done.error();
+  if (const Status done = press_all(bodies, each_place, out.deepest, 0.2, unseen, checked); !done) return done.error();
   divide_forces(unseen, out.too_stiff);
   auto model = press_surface(primitives, out.surface, checked, unseen);
   if (!model) return model.error();
@@ -315,7 +313,7 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
     held.side = side_of_normal(level, pose.rotation * unseen[i].place.normal);
     held.truth = std::move(unseen[i]);
     held.model = std::move((*model)[i]);
-    compare(held, checked, out.radius);
+    compare(held, mesh, out.radius);
   }
 
   // Into the level.

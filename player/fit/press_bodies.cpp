@@ -7,6 +7,7 @@
 
 #include "content/author/object_frame.h"
 #include "content/author/touchable.h"
+#include "content/level/inner_sheet.h"
 #include "content/level/spawn_soft.h"
 #include "content/tets/tet_groups.h"
 #include "content/tets/tet_quality.h"
@@ -103,13 +104,39 @@ Result<PressBodies> PressBodies::make(const Level& level, std::int32_t number, c
   const double reach = options.reach > 0 ? options.reach : kReachRadii * out.radius_;
   Result<BuiltMesh> surface = build_mesh(out.node_.name, mesh.primitives, to_object, {crease, DentSize{reach, 0.0}});
   if (!surface) return surface.error();
-  out.surface_ = std::make_shared<const BuiltMesh>(std::move(*surface));
+  out.surface_ = out.object_ = std::make_shared<const BuiltMesh>(std::move(*surface));
+  if (!out.one_)
+    if (const Status done = out.leave_out_inner_sheet(mesh.primitives, to_object, {crease, DentSize{reach, 0.0}});
+        !done)
+      return done.error();
   if (out.radius_ < 1.5 * out.cell_)
     note(
         fmt::format("the indenter's radius, {:.3g} mm, spans fewer than 1.5 cells of {:.3g} mm: the elements are too "
                     "coarse for it; make --cell smaller",
                     out.radius_ * 1e3, out.cell_ * 1e3));
   return out;
+}
+
+Status PressBodies::leave_out_inner_sheet(std::vector<Primitive> primitives, const mat4& to_object,
+                                          const MeshOptions& options) {
+  const Result<BuiltMesh> plain = build_mesh(node_.name, primitives, to_object, {options.crease_angle, {}});
+  if (!plain) return plain.error();
+  const Result<FilledBody> usual =
+      make_tissue(*plain, *node_.soft_body, node_.handle ? &*node_.handle : nullptr, std::stop_token());
+  if (!usual) return usual.error();
+  auto tissue = std::make_shared<TetMesh>(usual->tets);
+  put_in_order(*tissue, usual->group);
+  const TetReport& report = tissue->report;
+  if (!(report.wall > 0.0 && leave_out_covered(*plain, *tissue, primitives))) return Done{};
+  Result<BuiltMesh> outer = build_mesh(node_.name, primitives, to_object, options);
+  if (!outer) return outer.error();
+  note(
+      fmt::format("`{}` is a wall of {:.3g} mm: its inside is taken to be filled, and nothing is pressed on its inner "
+                  "sheet; --thickness makes it a wall",
+                  node_.name, report.wall * 1e3));
+  surface_ = std::make_shared<const BuiltMesh>(std::move(*outer));
+  filled_ = std::move(tissue);
+  return Done{};
 }
 
 std::vector<std::uint8_t> PressBodies::is_free(const Mesh& mesh, double within) const {
@@ -119,16 +146,22 @@ std::vector<std::uint8_t> PressBodies::is_free(const Mesh& mesh, double within) 
   const Result<std::vector<NodeGroup>> group =
       group_nodes(position, *surface_, *node_.soft_body, node_.handle ? &*node_.handle : nullptr);
   std::vector<std::uint8_t> out(mesh.vertex_count, 1);
+  if (filled_) {
+    const std::vector<std::uint8_t> covered = covered_triangles(mesh, *filled_);
+    for (std::size_t t = 0; t < covered.size(); ++t)
+      for (int c = 0; c < 3 && covered[t]; ++c) out[mesh.triangles[t][c]] = 0;
+  }
   if (!group) return out;  // what is held lies between the surface's vertices
   std::vector<std::uint32_t> held;
   for (std::uint32_t v = 0; v < all.vertex_count; ++v)
     if ((*group)[v] != NodeGroup::kFree) held.push_back(v);
   parallel_for(out.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v)
-      out[v] = std::none_of(held.begin(), held.end(), [&](std::uint32_t h) {
-        const vec3 away = mesh.position(v) - all.position(h);
-        return dot(away, away) < static_cast<float>(within * within) && dot(mesh.normal(v), all.normal(h)) > 0.0f;
-      });
+      out[v] =
+          out[v] && std::none_of(held.begin(), held.end(), [&](std::uint32_t h) {
+            const vec3 away = mesh.position(v) - all.position(h);
+            return dot(away, away) < static_cast<float>(within * within) && dot(mesh.normal(v), all.normal(h)) > 0.0f;
+          });
   });
   return out;
 }

@@ -21,12 +21,16 @@ class PressBodies {
   // modulus, cannot be filled, is held nowhere.
   static Result<PressBodies> make(const Level& level, std::int32_t number, const FitOptions& options);
 
-  const Mesh& surface() const { return surface_->mesh; }  // curved where the object is, fine enough for dents
+  // What is pressed: curved where the object is, fine enough for dents. Without the inner sheet of a wall that is
+  // filled.
+  const Mesh& surface() const { return surface_->mesh; }
+  const Mesh& object() const { return object_->mesh; }  // all of it
   const SoftBody& body() const { return *node_.soft_body; }
   double radius() const { return radius_; }  // [m] of the punch
   double cell() const { return cell_; }      // [m] under the punch
   const std::string& why() const { return why_; }
-  // Of each vertex of a mesh of the object: whether nothing of the same side of it is held within this distance [m].
+  // Of each vertex of a mesh of the object: whether nothing of the same side of it is held within this distance [m],
+  // and it is of no inner sheet.
   std::vector<std::uint8_t> is_free(const Mesh& mesh, double within) const;
   // Tetrahedra from a file, and walls, whose lattice may not be coarse anywhere, are one body for all places.
   bool is_one() const { return one_ != nullptr; }
@@ -36,9 +40,11 @@ class PressBodies {
 
  private:
   PressBodies() = default;
+  Status leave_out_inner_sheet(std::vector<Primitive> primitives, const mat4& to_object, const MeshOptions& options);
   LevelNode node_;
   TissueMaterial material_;
-  std::shared_ptr<const BuiltMesh> surface_;
+  std::shared_ptr<const BuiltMesh> surface_, object_;
+  std::shared_ptr<const TetMesh> filled_;  // of a wall whose inside is filled: its usual tissue
   std::shared_ptr<TissuePress> one_;
   double radius_ = 0.0, cell_ = 0.0;
   std::string why_;  // the radius

@@ -7,9 +7,9 @@
 namespace pliant {
 namespace {
 
-constexpr int kCheckParts = 10;         // a depth is gone to in so many ticks, so that the contact's foot stays with it
-constexpr int kRecover = 400;           // [ticks] until the last dent has gone
-constexpr double kAboveSurface = 0.02;  // [m] where the probe waits
+constexpr int kCheckParts = 10;  // a depth is gone to in so many ticks, so that the contact's foot stays with it
+constexpr int kRecover = 400;    // [ticks] until the last dent has gone
+constexpr double kAbove = 1.0;   // [deepest press] where a probe waits
 
 MeshData data_of(const std::vector<Primitive>& primitives) {
   MeshData out;
@@ -38,17 +38,25 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
   scene.add_surface("surface", data_of(primitives), smooth);
   DeviceParameters device;
   device.max_force = 1e3;
-  scene.add_probe("probe", {}, device);
+  // Each place has a probe of its own: one for all would go through the object on its way.
+  const auto name = [](std::size_t i) { return "probe " + std::to_string(i); };
+  const auto at_depth = [&](std::size_t i, double depth) {
+    return places[i].place.position - depth * places[i].place.normal;
+  };
+  const auto above = [&](std::size_t i) {
+    return places[i].presses.empty() ? 0.0 : kAbove * places[i].presses.back().depth;
+  };
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (!places[i].presses.empty()) scene.add_probe(name(i), {}, device, {at_depth(i, -above(i))});
   Result<Session> session = Session::open(scene);
   if (!session) return session.error();
   std::vector<std::vector<PressedTissue>> out(places.size());
   std::vector<vec4> stream;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const PressPlace& place = places[i].place;
-    const auto to = [&](double depth) { return session->move("probe", place.position - depth * place.normal); };
-    Status done = to(-kAboveSurface);
-    if (done) done = session->step(kRecover);
-    double at = 0.0;
+    if (places[i].presses.empty()) continue;
+    const auto to = [&](double depth) { return session->move(name(i), at_depth(i, depth)); };
+    Status done = session->step(kRecover);
+    double at = -above(i);
     for (const PressedTissue& press : places[i].presses) {
       const double depth = press.depth;
       for (int k = 1; k <= kCheckParts && done; ++k) {
@@ -58,13 +66,13 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
       at = depth;
       if (done) done = session->step(3);
       if (!done) return done.error();
-      const Result<Reading> reading = session->reading("probe");
+      const Result<Reading> reading = session->reading(name(i));
       if (!reading) return reading.error();
       dvec3 force(0);
       for (std::uint32_t c = 0; c < reading->contacts; ++c) force += reading->contact[c].force;
       PressedTissue& state = out[i].emplace_back();
       state.depth = depth;
-      state.force = dot(force, place.normal);
+      state.force = dot(force, places[i].place.normal);
       if (const Status told = session->stream("surface", stream); !told) return told.error();
       for (const SurfaceSample& seen : places[i].seen) {
         const uvec3 t = built.triangles[seen.triangle];
@@ -72,7 +80,7 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
         for (int c = 0; c < 3; ++c) height += seen.barycentric[c] * static_cast<double>(stream[t[c]].w);
       }
     }
-    if (done) done = to(-kAboveSurface);
+    if (done) done = to(-above(i));
     if (!done) return done.error();
   }
   return out;

@@ -14,9 +14,10 @@ namespace pliant {
 namespace {
 
 constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
-constexpr double kLeastFittedReach = 1.5, kMostReach = 3.5;  // [1] radii of the indenter; a quarter is gone to
-constexpr int kReaches = 20;                                 // tried between them
-constexpr std::size_t kNearest = 10;                         // painted places that a vertex takes its value from
+constexpr double kLeastFittedReach = 1.5;                                       // [1] radii of the indenter
+constexpr int kReaches = 20;          // tried from there to the usual one, and from that to the widest
+constexpr double kGoodShape = 0.15;   // [1] a wider reach is not looked for
+constexpr std::size_t kNearest = 10;  // painted places that a vertex takes its value from
 
 // `contact` [1] of the reach.
 FieldSource source_of(const PressPlace& place, Shape shape, double reach, double volume, double contact) {
@@ -137,17 +138,20 @@ ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, doubl
     const double error = pressed.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(pressed.size()));
     if (error < best.error) best = {shape, over, volume, depends_on_contact(shape) ? contact * over : 0.0, error};
   };
-  const auto every_reach = [&](Shape shape, double volume, double contact) {
-    if (reach > 0) return attempt(shape, volume, reach, contact);
-    for (int i = 0; i <= kReaches; ++i)
-      attempt(shape, volume,
-              kLeastFittedReach * std::pow(kMostReach / kLeastFittedReach, i / (kReaches * 1.0)) * radius, contact);
+  const auto try_between = [&](double least, double most) {
+    const auto every_reach = [&](Shape shape, double volume, double contact) {
+      if (reach > 0) return attempt(shape, volume, reach, contact);
+      for (int i = 0; i <= kReaches; ++i)
+        attempt(shape, volume, least * std::pow(most / least, i / (kReaches * 1.0)) * radius, contact);
+    };
+    for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kKelvinlet})
+      for (double contact = kLeastContact; contact < kMostContact + 0.01; contact += kContactStep)
+        every_reach(shape, 1.0, contact);
+    for (const Shape shape : {Shape::kGaussian, Shape::kWendland}) every_reach(shape, 1.0, 0.0);
+    for (double volume = 0.0; volume < 1.01; volume += 0.1) every_reach(Shape::kVolume, volume, 0.0);
   };
-  for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kKelvinlet})
-    for (double contact = kLeastContact; contact < kMostContact + 0.01; contact += kContactStep)
-      every_reach(shape, 1.0, contact);
-  for (const Shape shape : {Shape::kGaussian, Shape::kWendland}) every_reach(shape, 1.0, 0.0);
-  for (double volume = 0.0; volume < 1.01; volume += 0.1) every_reach(Shape::kVolume, volume, 0.0);
+  try_between(kLeastFittedReach, kUsualReach);
+  if (reach <= 0 && best.error > kGoodShape) try_between(kUsualReach, kWidestReach);
   return best;
 }
 
@@ -226,14 +230,14 @@ std::vector<std::uint32_t> farthest_vertices(const Mesh& mesh, std::size_t count
   return out;
 }
 
-std::vector<double> spread(const Mesh& mesh, const std::vector<std::uint32_t>& at, const std::vector<double>& value) {
+std::vector<double> spread(const Mesh& mesh, const std::vector<PressPlace>& at, const std::vector<double>& value) {
   std::vector<double> out(mesh.vertex_count);
   std::vector<std::pair<double, std::size_t>> near;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     near.clear();
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const dvec3 away = dvec3(mesh.position(v)) - dvec3(mesh.position(at[i]));
-      const double turned = 1 - dot(dvec3(mesh.normal(v)), dvec3(mesh.normal(at[i])));
+      const dvec3 away = dvec3(mesh.position(v)) - at[i].position;
+      const double turned = 1 - dot(dvec3(mesh.normal(v)), at[i].normal);
       near.emplace_back(dot(away, away) * (1 + 4 * turned), i);
     }
     const std::size_t count = std::min(kNearest, near.size());
@@ -245,7 +249,7 @@ std::vector<double> spread(const Mesh& mesh, const std::vector<std::uint32_t>& a
     double least = 1e300, most = -1e300;
     for (std::size_t i = 0; i < count; ++i) {
       const auto& [distance, k] = near[i];
-      const dvec3 away = (dvec3(mesh.position(at[k])) - dvec3(mesh.position(v))) / size;
+      const dvec3 away = (at[k].position - dvec3(mesh.position(v))) / size;
       const Eigen::Vector4d row(1.0, away.x, away.y, away.z);
       const double weight = 1 / (distance / (size * size) + 1e-4), y = std::log(value[k]);
       normal += weight * row * row.transpose();

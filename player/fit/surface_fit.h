@@ -43,7 +43,9 @@ SurfaceDifference radial_remainder(const std::vector<SurfaceSample>& seen, const
 // as much inside of that.
 bool is_near_an_edge(const Mesh& mesh, const PressPlace& place, double depth);
 
-// `reach`: 0, or the one that is wanted.
+// `reach`: 0, or the one that is wanted. A quarter of 3.5 radii is the deepest press that elements follow; only where
+// dents are much wider than such a reach it is larger, up to kWidestReach.
+inline constexpr double kUsualReach = 3.5, kWidestReach = 10.0;  // [1] radii of the indenter
 ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, double reach);
 
 struct ForceFit {
@@ -59,8 +61,8 @@ std::vector<PressPlace> scatter(const Mesh& mesh, std::size_t count, std::uint64
                                 const std::vector<std::uint8_t>& allowed);
 // Vertices that lie as far from each other as so many can, the first being 0.
 std::vector<std::uint32_t> farthest_vertices(const Mesh& mesh, std::size_t count);
-// A value > 0 of each vertex from those of some: moving least squares through the logarithms of the nearest ones, those
-// that face the same way first.
-std::vector<double> spread(const Mesh& mesh, const std::vector<std::uint32_t>& at, const std::vector<double>& value);
+// A value > 0 of each vertex from those of some places: moving least squares through the logarithms of the nearest
+// ones, those that face the same way first.
+std::vector<double> spread(const Mesh& mesh, const std::vector<PressPlace>& at, const std::vector<double>& value);
 
 }  // namespace pliant

@@ -29,6 +29,7 @@ struct TissueFit {
   std::string object;
   double radius = 0.0, cell = 0.0, young = 0.0, poisson = 0.0;
   std::string why;             // the radius
+  double deepest = 0.0;        // [m] that is pressed: a quarter of the reach, of the usual one at most
   double too_stiff = 1.0;      // [1] the elements' stiffness over that of a lattice without size
   double too_stiff_off = 0.0;  // [1] how far single places are from that, RMS
   std::size_t tets = 0;        // median over the bodies

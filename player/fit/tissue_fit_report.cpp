@@ -68,12 +68,19 @@ std::string verdict_of(const TissueFit& fitted) {
       static_cast<std::size_t>(std::count_if(fitted.held.begin(), fitted.held.end(), [](const HeldPlace& held) {
         return !held.truth.presses.empty() && held.force_error <= kForceGoal && held.surface_of_depth <= kSurfaceGoal;
       }));
+  const bool quarter = fitted.deepest > 0.249 * fitted.surface.reach;
   std::string text = fmt::format(
-      "At {} places that the fit has not seen, up to a quarter of the reach, the surface's force is off by {:.1f} % "
+      "At {} places that the fit has not seen, up to {}, the surface's force is off by {:.1f} % "
       "(RMS; {:.1f} % at the worst), and its dents within {:g} radii of the indenter by {:.1f} % of the depth ({:.0f} "
       "% of the dents' own RMS); force within {:g} % and dents within {:g} % of the depth hold at {} of them.",
-      sum.count, 100 * sum.rms(sum.force), 100 * sum.worst, kAroundPress, 100 * sum.rms(sum.of_depth),
-      100 * sum.rms(sum.surface), 100 * kForceGoal, 100 * kSurfaceGoal, good);
+      sum.count,
+      quarter
+          ? "a quarter of the reach"
+          : fmt::format("{:.2g} of the reach ({:.3g} mm, {:.2g} radii of the indenter: deeper, elements soften "
+                        "faster than any law)",
+                        fitted.deepest / fitted.surface.reach, fitted.deepest * 1e3, fitted.deepest / fitted.radius),
+      100 * sum.rms(sum.force), 100 * sum.worst, kAroundPress, 100 * sum.rms(sum.of_depth), 100 * sum.rms(sum.surface),
+      100 * kForceGoal, 100 * kSurfaceGoal, good);
   if (const auto inner = sums.find("inner"); inner != sums.end())
     text += fmt::format(
         " {} of them are pressed nearer to an edge than 1.5 depths, where a probe meets the other side, too; without "
@@ -106,6 +113,7 @@ std::string json_of(const TissueFit& f, const Level& level) {
       {"strain", f.linear ? "linear" : "corotational"},
       {"indenter_radius_m", f.radius},
       {"indenter_radius_is", f.why},
+      {"deepest_press_m", f.deepest},
       {"map_places", f.mapped},
       {"fit_places", f.places},
       {"left_out_near_what_is_held", f.left_out},

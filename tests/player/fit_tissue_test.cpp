@@ -6,6 +6,7 @@
 
 #include "content/keys/bonded_layer.h"
 #include "player/fit/press_bodies.h"
+#include "player/fit/surface_check.h"
 #include "player/fit/surface_fit.h"
 #include "tests/player/command.h"
 
@@ -63,11 +64,11 @@ Level block_level(double poisson) {
   node.soft_body->pinned.add(vec3(1, -kThick + 1e-4f, 1));
   return level;
 }
-PressBodies bodies(double poisson, double radius, bool linear) {
+PressBodies bodies(double poisson, double radius, bool linear, const Level* level = nullptr) {
   FitOptions options;
   options.linear = linear;
   options.radius = radius;
-  auto made = PressBodies::make(block_level(poisson), 0, options);
+  auto made = PressBodies::make(level ? *level : block_level(poisson), 0, options);
   EXPECT_TRUE(made.ok()) << made.error().message();
   return std::move(*made);
 }
@@ -162,9 +163,12 @@ TEST(FitTissue, TheLawThatAPressHasIsFoundAndAMapGoesThroughItsPlaces) {
   EXPECT_NEAR(fit.factor, 1.1, 1e-4);
   const auto built = build_mesh("block", std::vector<Primitive>{block()}, mat4(1.0f), {});
   ASSERT_TRUE(built.ok());
-  const std::vector<std::uint32_t> at = farthest_vertices(built->mesh, 60);
+  std::vector<PressPlace> at;
   std::vector<double> value;
-  for (const std::uint32_t v : at) value.push_back(std::exp(3 * static_cast<double>(built->mesh.px[v])));
+  for (const std::uint32_t v : farthest_vertices(built->mesh, 60)) {
+    at.push_back({0, {1, 0, 0}, dvec3(built->mesh.position(v)), dvec3(built->mesh.normal(v))});
+    value.push_back(std::exp(3 * at.back().position.x));
+  }
   const std::vector<double> map = spread(built->mesh, at, value);
   for (std::uint32_t v = 0; v < built->mesh.vertex_count; ++v)
     EXPECT_NEAR(map[v] / std::exp(3 * static_cast<double>(built->mesh.px[v])), 1.0, 0.04);
@@ -197,6 +201,53 @@ TEST(FitTissue, AnEdgeIsNearWhereAnotherSideIsWithinThePress) {
   EXPECT_FALSE(is_near_an_edge(built->mesh, at(0.02f), 0.005));
   EXPECT_TRUE(is_near_an_edge(built->mesh, at(0.007f), 0.005));
   EXPECT_TRUE(is_near_an_edge(built->mesh, at(0.02f), 0.01)) << "the bottom";
+}
+
+// Scans of organs have them: two sheets, a wall's thickness apart.
+TEST(FitTissue, AWallThatIsFilledIsNotPressedOnItsInnerSheet) {
+  Level level = block_level(0.4);
+  Primitive inner = block();
+  const vec3 middle(0, -0.5f * kThick, 0);
+  for (vec3& p : inner.position) p = middle + (p - middle) * (1.0f - 0.002f / vec3(2 * kWide, kThick, 2 * kWide));
+  for (std::size_t i = 0; i < inner.index.size(); i += 3) std::swap(inner.index[i], inner.index[i + 1]);
+  level.meshes[0].primitives.push_back(inner);
+  const PressBodies wall = bodies(0.4, 0.005, true, &level), plain = bodies(0.4, 0.005, true);
+  EXPECT_EQ(wall.surface().triangles.size(), plain.surface().triangles.size());
+  EXPECT_EQ(wall.object().triangles.size(), 2 * plain.object().triangles.size());
+  const std::vector<std::uint8_t> free = wall.is_free(wall.object(), 0.005);
+  int outside = 0;
+  for (std::uint32_t v = 0; v < wall.object().vertex_count; ++v) {
+    const vec3 p = wall.object().position(v) - middle;
+    const bool is_inner =
+        std::abs(p.x) < kWide - 5e-4f && std::abs(p.y) < 0.5f * kThick - 5e-4f && std::abs(p.z) < kWide - 5e-4f;
+    if (is_inner) EXPECT_FALSE(free[v]);
+    outside += !is_inner && free[v];
+  }
+  EXPECT_GT(outside, 100);
+  const auto stiffness = [](const PressBodies& of) {
+    const PressPlace place = middle_of(of.surface());
+    return body_at(of, place)->punch(of.surface(), place, 0.005).stiffness();
+  };
+  EXPECT_NEAR(stiffness(wall) / stiffness(plain), 1.0, 0.01);
+}
+
+TEST(FitTissue, TheSurfaceIsPressedOnBothSidesOfAnObject) {
+  const auto built = build_mesh("block", std::vector<Primitive>{block()}, mat4(1.0f), {});
+  ASSERT_TRUE(built.ok());
+  DeformableParameters surface;
+  surface.stiffness = 100;
+  std::vector<PressedPlace> places;
+  for (std::uint32_t t = 0; t < built->mesh.triangles.size(); ++t) {
+    const PressPlace place = place_at(built->mesh, t, dvec3(1.0 / 3));
+    if (std::abs(place.normal.y) < 0.9 || length(dvec2(place.position.x, place.position.z)) > 0.004) continue;
+    places.push_back({place, 0.0, {}, {{1.0, 0.001, {}}, {1.0, 0.002, {}}}});
+  }
+  ASSERT_GE(places.size(), 4u);
+  const auto pressed = press_surface({block()}, surface, built->mesh, places);
+  ASSERT_TRUE(pressed.ok()) << pressed.error().message();
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (const PressedTissue& press : (*pressed)[i])
+      EXPECT_NEAR(press.force, 100 * press.depth, 1e-3 * press.force) << places[i].place.position.y;
 }
 
 class FitTissueCommandTest : public CommandTest {};
