@@ -16,7 +16,7 @@ namespace {
 constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
 constexpr double kLeastFittedReach = 1.5;                                       // [1] radii of the indenter
 constexpr int kReaches = 20;          // tried from there to the usual one, and from that to the widest
-constexpr double kGoodShape = 0.15;   // [1] a wider reach is not looked for
+constexpr double kGoodShape = 0.08;   // [1] of the depth: a wider reach is not looked for
 constexpr std::size_t kNearest = 10;  // painted places that a vertex takes its value from
 
 // `contact` [1] of the reach.
@@ -121,10 +121,10 @@ ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, doubl
   ShapeFit best;
   best.error = 1e30;
   const auto attempt = [&](Shape shape, double volume, double over, double contact) {
-    double sum = 0.0;
+    double sum = 0.0, of_depth = 0.0;
     for (std::size_t at = 0; at < pressed.size(); ++at) {
       const FieldSource source = source_of(pressed[at]->place, shape, over, volume, contact);
-      double off = 0.0, size = 0.0;
+      double off = 0.0, size = 0.0, area = 0.0;
       for (const Sample& s : samples[at]) {
         const vec3 away = s.position - source.center;
         const double f = dot(away, away) * source.inv_reach2 < 1.0f
@@ -132,11 +132,14 @@ ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, doubl
                              : 0.0;
         off += s.area * (f * f - 2 * f * s.share + s.square);
         size += s.area * s.square;
+        area += s.area;
       }
       sum += size > 0 ? off / size : 0.0;
+      of_depth += area > 0 ? off / area / static_cast<double>(pressed.size()) : 0.0;
     }
     const double error = pressed.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(pressed.size()));
-    if (error < best.error) best = {shape, over, volume, depends_on_contact(shape) ? contact * over : 0.0, error};
+    if (error < best.error)
+      best = {shape, over, volume, depends_on_contact(shape) ? contact * over : 0.0, error, std::sqrt(of_depth)};
   };
   const auto try_between = [&](double least, double most) {
     const auto every_reach = [&](Shape shape, double volume, double contact) {
@@ -151,7 +154,7 @@ ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, doubl
     for (double volume = 0.0; volume < 1.01; volume += 0.1) every_reach(Shape::kVolume, volume, 0.0);
   };
   try_between(kLeastFittedReach, kUsualReach);
-  if (reach <= 0 && best.error > kGoodShape) try_between(kUsualReach, kWidestReach);
+  if (reach <= 0 && best.of_depth > kGoodShape) try_between(kUsualReach, kWidestReach);
   return best;
 }
 

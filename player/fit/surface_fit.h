@@ -20,10 +20,11 @@ struct PressedPlace {
 
 struct ShapeFit {
   Shape shape = Shape::kVolume;
-  double reach = 0.0;    // [m]
-  double volume = 1.0;   // [1]
-  double contact = 0.0;  // [m] contact_radius; 0: the shape has none
-  double error = 0.0;    // [1] RMS difference over RMS of the dents, by area, within kAroundPress radii, all depths
+  double reach = 0.0;     // [m]
+  double volume = 1.0;    // [1]
+  double contact = 0.0;   // [m] contact_radius; 0: the shape has none
+  double error = 0.0;     // [1] RMS difference over RMS of the dents, by area, within kAroundPress radii, all depths
+  double of_depth = 0.0;  // [1] ... over the depth
 };
 inline constexpr double kAroundPress = 3.0;  // [1] radii of the indenter that a dent is compared within
 

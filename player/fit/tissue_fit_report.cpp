@@ -87,6 +87,8 @@ std::string verdict_of(const TissueFit& fitted) {
         "them force is off by {:.1f} % and dents by {:.1f} %.",
         sum.count - inner->second.count, 100 * inner->second.rms(inner->second.force),
         100 * inner->second.rms(inner->second.of_depth));
+  if (sum.rms(sum.of_depth) > kSurfaceGoal)
+    text += " One shape stands for all places: where the object bends or moves as a whole, dents are wider.";
   return text + fmt::format(" No dent that is a function of the distance alone comes nearer than {:.1f} % there.",
                             100 * sum.rms(sum.not_radial));
 }
