@@ -16,7 +16,7 @@ namespace {
 constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
 constexpr double kLeastFittedReach = 1.5;                                       // [1] radii of the indenter
 constexpr int kReaches = 20;          // tried from there to the usual one, and from that to the widest
-constexpr double kGoodShape = 0.08;   // [1] of the depth: a wider reach is not looked for
+constexpr double kGoodShape = 0.10;   // [1] of the depth: a wider reach is not looked for
 constexpr std::size_t kNearest = 10;  // painted places that a vertex takes its value from
 
 // `contact` [1] of the reach.
