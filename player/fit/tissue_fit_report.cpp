@@ -144,8 +144,10 @@ void draw(Pen& pen, const TissueFit& f) {
       deepest = std::max(deepest, held.truth.presses[i].depth * 1e3);
       strongest = std::max({strongest, held.truth.presses[i].force, held.model[i].force});
     }
-  const PlotPanel left{110, 150, 640, 520, range_of(0, deepest, true), range_of(0, strongest, true)};
-  const PlotPanel right{890, 150, 670, 520, range_of(0, static_cast<double>(f.held.size()), true), {0.1, 100, true}};
+  const std::vector<std::string> verdict = pen.lines(15, verdict_of(f), 1500);
+  const double top = std::max(150.0, 74 + 19 * static_cast<double>(verdict.size()) + 30), high = 670 - top;
+  const PlotPanel left{110, top, 640, high, range_of(0, deepest, true), range_of(0, strongest, true)};
+  const PlotPanel right{890, top, 670, high, range_of(0, static_cast<double>(f.held.size()), true), {0.1, 100, true}};
   draw_axes(pen, left, "depth [mm]", "force [N]");
   std::size_t number = 0;
   for (const HeldPlace& held : f.held) {
@@ -176,13 +178,13 @@ void draw(Pen& pen, const TissueFit& f) {
                "{}: P1 from presses into {} tetrahedra each; indenter of radius {:.3g} mm, reach {:.3g} mm, shape {}",
                f.object, f.tets, f.radius * 1e3, f.surface.reach * 1e3, name_of(f.surface.shape)));
   double y = 74;
-  for (const std::string& text : pen.lines(15, verdict_of(f), 1500)) {
+  for (const std::string& text : verdict) {
     pen.text(60, y, 15, 0, text);
     y += 19;
   }
-  draw_keys(pen, left.x, 138, left.x + left.w + 60,
+  draw_keys(pen, left.x, top - 12, left.x + left.w + 60,
             {{kInk, "dots: finite elements", true}, {kInk, "lines: the fitted surface, in the engine", false}});
-  draw_keys(pen, right.x, 138, 1590,
+  draw_keys(pen, right.x, top - 12, 1590,
             {{kVermilion, "force, RMS (band: 5 %)", true}, {kBlue, "deepest dent, of the depth (band: 10 %)", true}});
 }
 
