@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <set>
 
-#include "content/tets/tet_embed.h"
+#include "content/tets/fill_region.h"
+#include "runtime/parallel.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kOff = 0.33;  // [cells] more than the lattice's faces stand off a bent surface
+constexpr double kOff = 0.5;  // [1] of the wall's thickness
 
 using SheetCorners = std::array<std::uint32_t, 3>;
 
@@ -20,21 +21,29 @@ SheetCorners sorted(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 
 }  // namespace
 
-std::vector<std::uint8_t> covered_triangles(const Mesh& mesh, const TetMesh& tissue) {
-  std::vector<dvec3> off;
-  for (const uvec3& t : mesh.triangles) {
-    const dvec3 a(mesh.position(t.x)), b(mesh.position(t.y)), c(mesh.position(t.z));
-    off.push_back((a + b + c) / 3.0 + kOff * tissue.report.cell * normalize(cross(b - a, c - a)));
-  }
-  return are_inside(off, tissue.nodes, tissue.tets);
+InnerSheet find_inner_sheet(const Mesh& mesh) {
+  InnerSheet out;
+  out.inner.assign(mesh.triangles.size(), 0);
+  const SurfaceShape shape = measure_shape(mesh);
+  if (shape.kind != SurfaceKind::kWall) return out;
+  out.wall = shape.thickness;
+  const Inside inside(mesh);
+  const FillRegion filled(mesh, inside, shape, Fill::kSolid, 0.0);
+  parallel_for(out.inner.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const uvec3 t = mesh.triangles[i];
+      const dvec3 a(mesh.position(t.x)), b(mesh.position(t.y)), c(mesh.position(t.z)), twice = cross(b - a, c - a);
+      const double size = length(twice);
+      out.inner[i] = size > 0 && filled((a + b + c) / 3.0 + kOff * out.wall / size * twice);
+    }
+  });
+  return out;
 }
 
-bool leave_out_covered(const BuiltMesh& surface, const TetMesh& tissue, std::vector<Primitive>& primitives) {
-  const Mesh& mesh = surface.mesh;
-  const std::vector<std::uint8_t> inside = covered_triangles(mesh, tissue);
+bool leave_out(const InnerSheet& sheet, const Mesh& mesh, std::vector<Primitive>& primitives) {
   std::set<SheetCorners> covered;
-  for (std::size_t t = 0; t < inside.size(); ++t)
-    if (inside[t]) covered.insert(sorted(mesh.triangles[t].x, mesh.triangles[t].y, mesh.triangles[t].z));
+  for (std::size_t t = 0; t < sheet.inner.size(); ++t)
+    if (sheet.inner[t]) covered.insert(sorted(mesh.triangles[t].x, mesh.triangles[t].y, mesh.triangles[t].z));
   if (covered.empty() || covered.size() == mesh.triangles.size()) return false;
   std::size_t first = 0;
   for (Primitive& p : primitives) {

@@ -4,15 +4,17 @@
 
 #include <vector>
 
-#include "components/tet_mesh.h"
 #include "content/mesh/mesh_build.h"
 
 namespace pliant {
 
-// Of each triangle: whether tissue covers it: a third of a cell off its outer side there still is some.
-std::vector<std::uint8_t> covered_triangles(const Mesh& mesh, const TetMesh& tissue);
+struct InnerSheet {
+  double wall = 0.0;                // [m] thickness; 0: the mesh is no thin wall, and nothing is inner
+  std::vector<std::uint8_t> inner;  // of each triangle: half a wall off its outer side there is the cavity
+};
+InnerSheet find_inner_sheet(const Mesh& mesh);
 
-// Takes those triangles out of `primitives`. `surface` is what was built of them. Says whether there were any.
-bool leave_out_covered(const BuiltMesh& surface, const TetMesh& tissue, std::vector<Primitive>& primitives);
+// Takes those triangles out of `primitives`, of which the mesh was built. Says whether there were any.
+bool leave_out(const InnerSheet& sheet, const Mesh& mesh, std::vector<Primitive>& primitives);
 
 }  // namespace pliant

@@ -195,7 +195,7 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     const std::optional<LatticeFocus> focus = focus_of(body, parts.surface.mesh);
     std::vector<Primitive> touched = mesh->primitives;
     const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
-    const bool outer = filled && leave_out_covered(parts.surface, parts.tets, touched);
+    const bool outer = filled && leave_out(find_inner_sheet(parts.surface.mesh), parts.surface.mesh, touched);
     const double longest = kLongestEdge * (focus ? kEdgeOverCell * parts.tets.report.cell : mean_edge(parts.tets));
     const bool finer =
         refine(touched, to_object, [&](dvec3 at) { return focus ? longest * focus->width_at(at) : longest; });

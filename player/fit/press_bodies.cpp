@@ -106,8 +106,7 @@ Result<PressBodies> PressBodies::make(const Level& level, std::int32_t number, c
   if (!surface) return surface.error();
   out.surface_ = out.object_ = std::make_shared<const BuiltMesh>(std::move(*surface));
   if (!out.one_)
-    if (const Status done = out.leave_out_inner_sheet(mesh.primitives, to_object, {crease, DentSize{reach, 0.0}});
-        !done)
+    if (const Status done = out.leave_out_inner(mesh.primitives, to_object, {crease, DentSize{reach, 0.0}}); !done)
       return done.error();
   if (out.radius_ < 1.5 * out.cell_)
     note(
@@ -117,25 +116,19 @@ Result<PressBodies> PressBodies::make(const Level& level, std::int32_t number, c
   return out;
 }
 
-Status PressBodies::leave_out_inner_sheet(std::vector<Primitive> primitives, const mat4& to_object,
-                                          const MeshOptions& options) {
+Status PressBodies::leave_out_inner(std::vector<Primitive> primitives, const mat4& to_object,
+                                    const MeshOptions& options) {
   const Result<BuiltMesh> plain = build_mesh(node_.name, primitives, to_object, {options.crease_angle, {}});
   if (!plain) return plain.error();
-  const Result<FilledBody> usual =
-      make_tissue(*plain, *node_.soft_body, node_.handle ? &*node_.handle : nullptr, std::stop_token());
-  if (!usual) return usual.error();
-  auto tissue = std::make_shared<TetMesh>(usual->tets);
-  put_in_order(*tissue, usual->group);
-  const TetReport& report = tissue->report;
-  if (!(report.wall > 0.0 && leave_out_covered(*plain, *tissue, primitives))) return Done{};
+  const InnerSheet sheet = find_inner_sheet(plain->mesh);
+  if (!leave_out(sheet, plain->mesh, primitives)) return Done{};
   Result<BuiltMesh> outer = build_mesh(node_.name, primitives, to_object, options);
   if (!outer) return outer.error();
   note(
       fmt::format("`{}` is a wall of {:.3g} mm: its inside is taken to be filled, and nothing is pressed on its inner "
                   "sheet; --thickness makes it a wall",
-                  node_.name, report.wall * 1e3));
+                  node_.name, sheet.wall * 1e3));
   surface_ = std::make_shared<const BuiltMesh>(std::move(*outer));
-  filled_ = std::move(tissue);
   return Done{};
 }
 
@@ -146,10 +139,10 @@ std::vector<std::uint8_t> PressBodies::is_free(const Mesh& mesh, double within) 
   const Result<std::vector<NodeGroup>> group =
       group_nodes(position, *surface_, *node_.soft_body, node_.handle ? &*node_.handle : nullptr);
   std::vector<std::uint8_t> out(mesh.vertex_count, 1);
-  if (filled_) {
-    const std::vector<std::uint8_t> covered = covered_triangles(mesh, *filled_);
-    for (std::size_t t = 0; t < covered.size(); ++t)
-      for (int c = 0; c < 3 && covered[t]; ++c) out[mesh.triangles[t][c]] = 0;
+  if (surface_ != object_ && &mesh != &all) {
+    const InnerSheet sheet = find_inner_sheet(mesh);
+    for (std::size_t t = 0; t < sheet.inner.size(); ++t)
+      for (int c = 0; c < 3 && sheet.inner[t]; ++c) out[mesh.triangles[t][c]] = 0;
   }
   if (!group) return out;  // what is held lies between the surface's vertices
   std::vector<std::uint32_t> held;

@@ -40,11 +40,10 @@ class PressBodies {
 
  private:
   PressBodies() = default;
-  Status leave_out_inner_sheet(std::vector<Primitive> primitives, const mat4& to_object, const MeshOptions& options);
+  Status leave_out_inner(std::vector<Primitive> primitives, const mat4& to_object, const MeshOptions& options);
   LevelNode node_;
   TissueMaterial material_;
   std::shared_ptr<const BuiltMesh> surface_, object_;
-  std::shared_ptr<const TetMesh> filled_;  // of a wall whose inside is filled: its usual tissue
   std::shared_ptr<TissuePress> one_;
   double radius_ = 0.0, cell_ = 0.0;
   std::string why_;  // the radius

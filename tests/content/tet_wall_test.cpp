@@ -85,16 +85,23 @@ TEST(Wall, OfADoubleWallTheInsideIsFilledWhetherItIsClosedOrOpen) {
 }
 
 TEST(Wall, OfAFilledOneOnlyTheOuterSheetIsTouched) {
-  Level level = test::level_of(capsule(0.01f)[0], {});
-  level.meshes[0].primitives = capsule(0.01f);
-  level.nodes[0].deformable.reset();
-  level.nodes[0].soft_body = SoftBody{};
-  const Result<SoftParts> parts = make_soft_parts(level.nodes[0], &level.meshes[0], mat4(1.0f), {});
-  ASSERT_TRUE(parts) << parts.error().message();
-  const Mesh& touched = parts->surface.mesh;
-  EXPECT_EQ(touched.triangles.size(), icosphere(4).index.size() / 3);
-  for (const uvec3& t : touched.triangles) ASSERT_NEAR(length(touched.position(t.x)), 1.0f, 1e-4f);
-  EXPECT_EQ(parts->tets.embedding.size(), touched.vertex_count);
+  for (const float flat : {1.0f, 0.1f}) {  // the latter is thinner than its cells all around
+    std::vector<Primitive> sheets = capsule(0.0f);
+    for (Primitive& sheet : sheets)
+      for (vec3& v : sheet.position) v.y *= flat;
+    for (vec3& v : sheets[1].position) v -= 0.04f * flat * normalize(v / vec3(1, flat * flat, 1));
+    Level level = test::level_of(sheets[0], {});
+    level.meshes[0].primitives = sheets;
+    level.nodes[0].deformable.reset();
+    level.nodes[0].soft_body = SoftBody{};
+    const Result<SoftParts> parts = make_soft_parts(level.nodes[0], &level.meshes[0], mat4(1.0f), {});
+    ASSERT_TRUE(parts) << parts.error().message();
+    const Mesh& touched = parts->surface.mesh;
+    EXPECT_EQ(touched.triangles.size(), icosphere(4).index.size() / 3) << flat;
+    for (const uvec3& t : touched.triangles)
+      ASSERT_NEAR(length(touched.position(t.x) / vec3(1, flat, 1)), 1.0f, 1e-4f) << flat;
+    EXPECT_EQ(parts->tets.embedding.size(), touched.vertex_count);
+  }
 }
 
 TEST(Wall, ThickWallsStayHollowAndSolidsAreNoWalls) {
