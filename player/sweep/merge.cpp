@@ -14,7 +14,12 @@ Status write(OutputFolder& out, const std::string& name, const std::string& text
   return write_file(out.stage(name), {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-void say_what_is_odd(const SweepTable& table) {
+void say_what_is_odd(const SweepTable& table, std::size_t done, std::size_t plots) {
+  if (const std::size_t none = untouched(table); none > 0)
+    note("in " + std::to_string(none) + " of " + std::to_string(done) +
+         " runs no probe touched anything: missed_by_m in results.csv says by how much; make runs longer, or lead the "
+         "probes farther");
+  if (plots == 0 && done > 1) note("nothing is drawn: no figure differs between the runs");
   if (table.torn > 0)
     note(std::to_string(table.torn) +
          " lines were left out that a killed sweep wrote half of; their runs count as "
@@ -44,14 +49,13 @@ int merge_sweep(const MergeOptions& options) {
   const auto plots = plot_sweep(*table, *out, left_out);
   if (!plots) return fail(kFailed, out->at_place(plots.error()));
   if (const Status ok = out->commit(); !ok) return fail(kFailed, ok.error());
-  say_what_is_odd(*table);
-  if (!left_out.empty()) note(left_out);
-
   std::size_t done = 0, failed = 0;
   for (const SweepRow& row : table->rows) {
     done += row.done();
     failed += !row.done() && !row.line.is_null();
   }
+  say_what_is_odd(*table, done, *plots);
+  if (!left_out.empty()) note(left_out);
   print("{}: {} of {} runs done, {} failed, {} missing: results.csv, report.json, {} plots; timings.csv (measured)\n",
         out->shown().string(), done, table->rows.size(), failed, table->rows.size() - done - failed, *plots);
   if (out->moved()) print("({} has results already, which stay; --force replaces a merge's)\n", out->asked().string());

@@ -107,6 +107,20 @@ std::string timings_csv(const SweepTable& table) {
   return csv(table, "timing", table.timings, false);
 }
 
+std::size_t untouched(const SweepTable& table) {
+  constexpr std::string_view kContact = ".contact_ticks";
+  return static_cast<std::size_t>(std::count_if(table.rows.begin(), table.rows.end(), [&](const SweepRow& row) {
+    if (!row.done() || !row.line.contains("figures")) return false;
+    bool any = false, touched = false;
+    for (const auto& [name, value] : row.line["figures"].items()) {
+      if (!name.ends_with(kContact)) continue;
+      any = true;
+      touched = touched || value != 0;
+    }
+    return any && !touched;
+  }));
+}
+
 std::string merge_report(const SweepTable& table) {
   PlanJson json;
   for (const char* key : {"pliant", "level", "level_hash"}) json[key] = table.sweep[key];
@@ -133,6 +147,7 @@ std::string merge_report(const SweepTable& table) {
   json["failed"] = failures.size() - timed_out;
   json["timed_out"] = timed_out;
   json["missing"] = missing.size();
+  json["untouched"] = untouched(table);
   json["figures"] = summary(table);
   json["failures"] = std::move(failures);
   json["missing_runs"] = std::move(missing);

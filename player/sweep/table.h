@@ -28,6 +28,9 @@ struct SweepTable {
   std::size_t torn = 0, foreign = 0;  // lines that are none; lines of runs that the plan does not have
 };
 
+// How many of the runs that were done have probes, none of which ever touched anything.
+std::size_t untouched(const SweepTable& table);
+
 // Of all folders, which must be of one plan.
 Result<SweepTable> read_table(const std::vector<std::filesystem::path>& folders);
 

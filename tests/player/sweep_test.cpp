@@ -249,6 +249,17 @@ TEST_F(Sweep, APlanThatGrowsKeepsWhatItHasDone) {
   EXPECT_EQ(read_text(folder / "mine" / "sweep.json"), "{\"notes\": 1}");
 }
 
+TEST_F(Sweep, RunsThatTouchNothingAndFiguresThatAreTheSameAreSaid) {
+  write_text(folder / "press.csv", "time_s,x,y,z\n0,0,0.02,0\n0.05,0,0.01,0\n");
+  write_plan(R"("axes": {"*.deformable.stiffness": [100, 200]})");
+  ASSERT_EQ(sweep().status, 0);
+  const Said said = pliant({"sweep", "merge", "out", "--out", "m"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("in 2 of 2 runs no probe touched anything"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("nothing is drawn: no figure differs between the runs"), std::string::npos) << said.err;
+  EXPECT_EQ(report("m")["untouched"], 2);
+}
+
 TEST_F(Sweep, FoldersOfTwoPlansAreNotMerged) {
   write_plan(R"("axes": {"*.deformable.stiffness": [100]})");
   ASSERT_EQ(sweep().status, 0);
