@@ -1,5 +1,6 @@
 #include "tests/scenes/scenes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "content/mesh/mesh_build.h"
@@ -49,6 +50,19 @@ Primitive sphere(int n, double radius) {
     });
   }
   return p;
+}
+
+Primitive bowl(int n, double radius) {
+  Primitive out = sphere(n, radius);
+  std::vector<std::uint32_t> lower;
+  for (std::size_t i = 0; i < out.index.size(); i += 3) {
+    const std::uint32_t a = out.index[i], b = out.index[i + 1], c = out.index[i + 2];
+    if (std::max({out.position[a].y, out.position[b].y, out.position[c].y}) < static_cast<float>(0.1 * radius))
+      lower.insert(lower.end(), {a, c, b});
+  }
+  out.index = std::move(lower);
+  for (vec3& normal : out.normal) normal = -normal;
+  return out;
 }
 
 Primitive slab(int cells, double size, double thickness) {

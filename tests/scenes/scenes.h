@@ -17,6 +17,8 @@ namespace pliant::scenes {
 Primitive sheet(int cells, double size);
 // A sphere about the origin: a cube sphere of 12 n^2 triangles. radius [m].
 Primitive sphere(int n, double radius);
+// The lower half of it, facing its middle: open.
+Primitive bowl(int n, double radius);
 // A closed slab of cells x cells squares, y from -thickness to 0.
 Primitive slab(int cells, double size, double thickness);
 // Two sheets that meet at x = 0 with slopes +-angle [rad]: a concave crease (valley) for angle > 0, a ridge for < 0.

@@ -16,17 +16,7 @@ namespace {
 void pass_through_curved(HardFigure& worst) {
   constexpr double kRadius = 0.05;
   for (const bool hollow : {false, true}) {
-    Primitive p = scenes::sphere(4, kRadius);
-    if (hollow) {  // the lower half, turned
-      std::vector<std::uint32_t> lower;
-      for (std::size_t i = 0; i < p.index.size(); i += 3) {
-        const std::uint32_t a = p.index[i], b = p.index[i + 1], c = p.index[i + 2];
-        if (std::max({p.position[a].y, p.position[b].y, p.position[c].y}) < 0.005f)
-          lower.insert(lower.end(), {a, c, b});
-      }
-      p.index = lower;
-      for (vec3& n : p.normal) n = -n;
-    }
+    const Primitive p = hollow ? scenes::bowl(4, kRadius) : scenes::sphere(4, kRadius);
     const double inward = hollow ? 1.0 : -1.0;  // the way of a press, along the radius
     for (const dvec3 towards : {dvec3(0.1, -1, 0.23), dvec3(-0.4, -1, 0.1), dvec3(0.31, -1, -0.37)}) {
       const dvec3 u = normalize(towards);
