@@ -161,7 +161,7 @@ TEST_F(Sweep, AFailureIsALineWithItsSentenceAndIsDoneAgainOnlyWhenAsked) {
   EXPECT_EQ(lines().size(), 6u);
 }
 
-// Of several failures of one run the latest is told, whatever file it stands in and whatever its words.
+// Of several failures of one run the latest counts, whatever file it stands in and whatever its words.
 TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
   write_plan(R"("axes": {"--limits": [1e-6], "*.deformable.stiffness": [100]})");
   ASSERT_EQ(sweep().status, 0);

@@ -148,7 +148,7 @@ HardFigure stalled_samples(const HardSetting&) {
   return worst;
 }
 
-// A device in a hand that goes to where it is told at 50 mm/s of real time, and everything that it was written.
+// A device in a hand that goes to where it is sent at 50 mm/s of real time, and everything that it was written.
 struct RealHand {
   struct Write {
     std::uint64_t ns;
