@@ -86,7 +86,7 @@ constexpr Column kSummaryColumns[] = {{"seconds", "time [s]", 1.0, &SeriesSummar
                                       {"stiffness_N_m", "F/d [N/m]", 1.0, &SeriesSummary::stiffness},
                                       {"put_in_J", "work in [mJ]", 1e3, &SeriesSummary::put_in},
                                       {"lost_J", "lost [mJ]", 1e3, &SeriesSummary::lost},
-                                      {"rms_above_20Hz_N", "RMS > 20 Hz [mN]", 1e3, &SeriesSummary::fast}};
+                                      {"rms_above_20Hz_N", "> 20 Hz [mN]", 1e3, &SeriesSummary::fast}};
 
 std::string shown_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
