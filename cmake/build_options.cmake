@@ -1,43 +1,52 @@
-# Flags that every target shares, as one interface library.
-add_library(pliant_options INTERFACE)
-target_compile_features(pliant_options INTERFACE cxx_std_20)
-# How we build is not how those who use us must: warnings and flags stay inside the build tree.
-# No contraction into fused multiply-add: the same bits on every machine (lockstep).
-target_compile_options(pliant_options INTERFACE
-  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow;-Wconversion;-Wno-sign-conversion;-Wno-missing-field-initializers;-Werror>"
-  "$<BUILD_INTERFACE:-ffp-contract=off>")
-# Nobody reads errno after sqrt or traps on a comparison; knowing that lets loops become SIMD, without changing a bit.
-target_compile_options(pliant_options INTERFACE "$<BUILD_INTERFACE:-fno-math-errno;-fno-trapping-math>")
+# Flags of everything in this project; who links to the libraries gets none of them, in the same build tree or installed.
+include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
+if(PROJECT_IS_TOP_LEVEL)
+  add_compile_options(-Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Werror)
+endif()
+# No contraction into fused multiply-add: the same bits on every machine (lockstep). Nobody reads errno after sqrt or
+# traps on a comparison; knowing that lets loops become SIMD, without changing a bit.
+add_compile_options(-ffp-contract=off -fno-math-errno -fno-trapping-math)
+# A library that is position-independent may still inline its own functions, as a program does.
+add_compile_options(-fno-semantic-interposition)
+# What is built says nothing of where: assertions name files within the project. Only the debug build keeps whole paths
+# for its debugger.
+add_compile_options("$<IF:$<CONFIG:Debug>,-fmacro-prefix-map,-ffile-prefix-map>=${PROJECT_BINARY_DIR}/="
+                    "$<IF:$<CONFIG:Debug>,-fmacro-prefix-map,-ffile-prefix-map>=${PROJECT_SOURCE_DIR}/=")
 # GCC 12 sees overlaps in std::string that cannot be (its bug 105651).
-target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-Wno-restrict)
+endif()
 # Twelve source files are compiled as one (CMAKE_UNITY_BUILD, set by the presets): most of the time of a small file goes
 # into the headers that it includes. A name in an unnamed namespace must then be unique within its library. What one file
 # names so is then outside the next, where a local of that name is no mistake: shadowing is looked for by the debug build,
 # file by file. GCC takes an unnamed namespace in an included file for one in a header.
 if(CMAKE_UNITY_BUILD)
-  target_compile_options(pliant_options INTERFACE
-    $<BUILD_INTERFACE:-Wno-shadow> $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>>)
+  add_compile_options(-Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 # A driver's thread may have a function of its own that is called as the maker's loop is (Driver::run).
-target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:-Wno-overloaded-virtual>>)
-target_include_directories(pliant_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+add_compile_options($<$<CXX_COMPILER_ID:Clang>:-Wno-overloaded-virtual>)
+
+# What who links to a library of ours needs, too.
+add_library(pliant_options INTERFACE)
+target_compile_features(pliant_options INTERFACE cxx_std_20)
+target_include_directories(pliant_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                                     $<INSTALL_INTERFACE:include>)
 if(PLIANT_VALIDATE)
-  target_compile_definitions(pliant_options INTERFACE PLIANT_VALIDATE)
+  add_compile_definitions(PLIANT_VALIDATE)
 endif()
 if(PLIANT_SANITIZE)
-  target_compile_options(pliant_options INTERFACE -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer)
+  add_compile_options(-fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(pliant_options INTERFACE -fsanitize=${PLIANT_SANITIZE})
-  target_compile_definitions(pliant_options INTERFACE PLIANT_SANITIZED)
+  add_link_options(-fsanitize=${PLIANT_SANITIZE})
+  add_compile_definitions(PLIANT_SANITIZED)
   if(PLIANT_SANITIZE MATCHES "undefined")
     # Checks of every pointer that is followed or computed: they double the time that Eigen takes to compile, and what
     # they find the address sanitizer mostly stops at too.
-    target_compile_options(pliant_options INTERFACE -fno-sanitize=null,object-size,alignment,pointer-overflow)
+    add_compile_options(-fno-sanitize=null,object-size,alignment,pointer-overflow)
     # A maker's library is called through types of ours, which are not the ones that it was compiled with.
-    target_compile_options(pliant_options INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=function>>)
+    add_compile_options($<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=function>)
     # What is found ends the program: nobody reads what a test that passes has printed.
-    target_compile_options(pliant_options INTERFACE -fno-sanitize-recover=undefined)
+    add_compile_options(-fno-sanitize-recover=undefined)
   endif()
 endif()
 
@@ -67,8 +76,15 @@ function(pliant_library name)
     endif()
     list(APPEND sources ${more})
   endforeach()
-  add_library(pliant_${name} STATIC ${sources})
-  add_library(pliant::${name} ALIAS pliant_${name})
-  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME ${name})
+  add_library(pliant_${name} ${sources})  # BUILD_SHARED_LIBS says of which kind
+  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME internal_${name} POSITION_INDEPENDENT_CODE ON
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN"
+    CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${ARG_DEPENDS})
+endfunction()
+
+# What a program links to for a component of the package: pliant::COMPONENT, installed and in the same build tree.
+function(pliant_component_target component target)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${component})
+  add_library(pliant::${component} ALIAS ${target})
 endfunction()

@@ -1,27 +1,40 @@
-# `cmake --install` puts libraries, public headers, the command and what ships. find_package(pliant COMPONENTS engine
-# content visual devices) then finds them: `engine` needs neither OpenGL nor a reader of files, `content` reads and writes level
-# files, `visual` draws.
+# `cmake --install` puts libraries, public headers, the command and what ships. Nothing of it says where it was built or
+# installed: the folder may be moved. find_package(pliant COMPONENTS ...) finds pliant::COMPONENT: `engine` needs neither
+# OpenGL nor a reader of files, `content` reads and writes level files, `visual` draws, `devices` has the drivers.
+# Targets named internal_* are parts of these.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
+set(installed)
 function(pliant_component name)
-  install(TARGETS ${ARGN} EXPORT pliant-${name}-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS ${ARGN} EXPORT pliant-${name}-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT pliant-${name}-targets NAMESPACE pliant:: DESTINATION ${package})
+  set(installed ${installed} ${ARGN} PARENT_SCOPE)
 endfunction()
 pliant_component(engine pliant_options pliant_runtime pliant_components pliant_systems pliant_level pliant_devices pliant_engine)
-pliant_component(devices pliant_drivers)
-pliant_component(content pliant_content)
-pliant_component(visual pliant_visual pliant_picture)
+set_target_properties(pliant_options PROPERTIES EXPORT_NAME internal_options)
+if(NOT PLIANT_ENGINE_ONLY)
+  pliant_component(devices pliant_drivers)
+  pliant_component(content pliant_content)
+  pliant_component(visual pliant_visual pliant_picture)
+endif()
 
 install(DIRECTORY include/pliant DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
-# Who sits at the machine may open its devices. udev looks in this folder whatever the prefix is: a package's is /usr.
-install(FILES devices/70-pliant.rules DESTINATION lib/udev/rules.d)
-install(DIRECTORY shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant)
-configure_package_config_file(cmake/pliant-config.cmake.in ${CMAKE_BINARY_DIR}/pliant-config.cmake
+if(PLIANT_COMMAND)
+  # `./dev run` builds the command alone: what is installed beside it is built with it.
+  list(REMOVE_ITEM installed pliant_options)
+  add_dependencies(pliant ${installed})
+  file(RELATIVE_PATH libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(pliant PROPERTIES INSTALL_RPATH "$<$<BOOL:${BUILD_SHARED_LIBS}>:$ORIGIN/${libraries}>")
+  install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
+  # Who sits at the machine may open its devices. udev looks in this folder whatever the prefix is: a package's is /usr.
+  install(FILES devices/70-pliant.rules DESTINATION lib/udev/rules.d)
+endif()
+configure_package_config_file(cmake/pliant-config.cmake.in ${PROJECT_BINARY_DIR}/pliant-config.cmake
                               INSTALL_DESTINATION ${package})
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/pliant-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/pliant-config.cmake ${CMAKE_BINARY_DIR}/pliant-config-version.cmake
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/pliant-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/pliant-config.cmake ${PROJECT_BINARY_DIR}/pliant-config-version.cmake
         DESTINATION ${package})

@@ -10,6 +10,7 @@
 #include "engine/scene_check.h"
 #include "engine/session_parts.h"
 #include "engine/sources.h"
+#include "runtime/long_work.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/soft_state.h"
 #include "systems/tool/prepare_tools.h"
@@ -29,16 +30,24 @@ Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 Session::~Session() = default;
 
-Result<Session> Session::open(const Scene& scene) {
+Result<Session> Session::open(const Scene& scene, const OpenProgress& progress) {
   auto parts = std::make_unique<Parts>(scene);
+  const WatchedWork watch(progress);
   if (Status s = parts->prepare(); !s) return s.error();
+  if (progress && !progress(1.0, "ready")) return work_stopped();
   return Session(std::move(parts));
 }
 
-const std::vector<std::string>& Session::notes() const {
+const std::vector<std::string>& Session::notes() const& {
   return parts_->notes;
 }
-const std::vector<std::string>& Session::objects() const {
+std::vector<std::string> Session::notes() && {
+  return std::move(parts_->notes);
+}
+const std::vector<std::string>& Session::objects() const& {
+  return parts_->objects;
+}
+std::vector<std::string> Session::objects() && {
   return parts_->objects;
 }
 std::vector<std::string> Session::effectors() const {
@@ -224,58 +233,6 @@ Status Session::restart() {
 double Session::time() const {
   if (!parts_->clock) return parts_->time;
   return static_cast<double>(parts_->clock->now()) / parts_->world.simulation.touch_rate;
-}
-
-Status Session::set(const std::string& object, const std::string& key, double value) {
-  Parts& p = *parts_;
-  const auto surface = p.surfaces.find(object);
-  const auto device = p.devices.find(object);
-  if (surface == p.surfaces.end() && device == p.devices.end())
-    return Error{"`" + object + "`", "is not a deformable surface, a probe or a tool; check the name"};
-  std::string known;
-  for (std::uint32_t k = 0; k < live_keys().size(); ++k) {
-    const LiveKey& live = live_keys()[k];
-    if (live.surface ? surface == p.surfaces.end() : device == p.devices.end()) continue;
-    known += (known.empty() ? "" : ", ") + std::string(live.key);
-    if (key != live.key) continue;
-    if (!std::isfinite(value)) return Error{"`" + object + "`: " + key, "is not a number"};
-    Edit edit{{}, k, value, {}};
-    const char* extension = live.surface ? "deformable" : "haptic_device";
-    if (live.surface) {
-      if (Status s = check_edit(object, surface->second, p.world.meshes[surface->second.mesh], live, value); !s)
-        return s;
-      edit.entity = *p.find_object(object);
-      Deformable changed = surface->second;
-      changed.*(live.surface) = value;
-      edit.motion = motion(changed, p.world.touch->dt);
-      if (p.world.soft && p.edits->has_room() && !p.world.soft->surface_edits.push({edit.entity, changed}))
-        return Error{"Session::set", "too many values wait for a soft step; set fewer at a time"};
-    } else {
-      DeviceParameters changed = device->second;
-      changed.*(live.device) = value;
-      if (Status s = check_device(object, changed); !s) return s;
-      edit.entity = p.find_effector(object)->device;
-    }
-    if (!p.edits->push(edit)) return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
-    if (live.surface) surface->second.*(live.surface) = value;
-    if (live.device) device->second.*(live.device) = value;
-    p.settings[object + "." + extension + "." + key] = fmt::format("{}", value);
-    return Done{};
-  }
-  return Error{"`" + object + "`: " + key, "cannot change between ticks; keys are: " + known};
-}
-
-Result<double> Session::get(const std::string& object, const std::string& key) const {
-  for (const LiveKey& live : live_keys()) {
-    if (key != live.key) continue;
-    const auto surface = parts_->surfaces.find(object);
-    if (live.surface && surface != parts_->surfaces.end()) return surface->second.*(live.surface);
-    const auto device = parts_->devices.find(object);
-    if (live.device && device != parts_->devices.end()) return device->second.*(live.device);
-  }
-  std::string known;
-  for (const LiveKey& live : live_keys()) known += (known.empty() ? "" : ", ") + std::string(live.key);
-  return Error{"`" + object + "`", "has no key '" + key + "' that a session keeps; keys are: " + known};
 }
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 #include "engine/choice/model_choice.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
+#include "runtime/long_work.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 #include "systems/safety/safety.h"
@@ -51,6 +52,10 @@ std::vector<Entity> touchable(const World& world) {
 
 }  // namespace
 
+Error work_stopped() {
+  return {"Session::open", "it was stopped by its progress function; nothing is wrong with the scene"};
+}
+
 Session::Parts::~Parts() {
   if (clock) clock->stop();
   for (SessionEffector& effector : effectors) effector.link.close();
@@ -65,6 +70,8 @@ Status Session::Parts::prepare() {
   Status made = Done{};
   try {
     made = remake(before);
+  } catch (const WorkStopped&) {
+    made = work_stopped();
   } catch (const std::exception& thrown) {
     made = Error{"scene", std::string("cannot be made: ") + thrown.what()};
   } catch (...) {
@@ -81,12 +88,14 @@ Status Session::Parts::prepare() {
 Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   if (Status s = check_scene(scene.level()); !s) return s;
   if (!chosen) {
+    begin_part(0.0, 0.4);
     auto choices = choose_models(scene.level());
     if (!choices) return choices.error();
     for (const ModelChoice& choice : *choices) scene.level().notes.push_back(choice.sentence());
     chosen = true;
   }
   notes = scene.level().notes;
+  begin_part(0.4, 0.7);
   auto spawned = spawn_level(scene.level(), &notes);
   if (!spawned) return spawned.error();
   clock.reset();
@@ -117,6 +126,8 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     static_cast<DeformableParameters&>(world.registry.get<Deformable>(*find_object(name))) = surface;
   for (const auto& [name, device] : devices)
     static_cast<DeviceParameters&>(world.registry.get<HapticDevice>(find_effector(name)->device)) = device;
+  restore_bodies();
+  begin_part(0.7, 1.0);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (Status s = prepare_system(world); !s) return s;
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
@@ -124,6 +135,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (const Deformable* surface = world.registry.find<Deformable>(object_entities[i]))
       surfaces[objects[i]] = *surface;
+  keep_bodies();
   for (const SessionEffector& effector : effectors)
     devices.emplace(effector.name, world.registry.get<HapticDevice>(effector.device));
 

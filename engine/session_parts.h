@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "components/world.h"
@@ -22,6 +23,8 @@
 #include "runtime/exchange.h"
 #include "runtime/recorder.h"
 #include "runtime/schedule.h"
+#include "systems/soft/body/tool_body.h"
+#include "systems/touch/contact_energy.h"
 #include "systems/touch/local_model.h"
 
 namespace pliant {
@@ -93,13 +96,24 @@ class SessionRecorder {
   std::jthread thread_;
 };
 
-// A parameter that changes between ticks.
+// Parameters that change between ticks, all of their kind: what the touch clock takes of them.
+struct SurfaceSetting {
+  DeformableParameters now;
+  Motion motion;
+  ShareKernel kernel;
+};
+struct ProbeSetting {
+  double radius = 0.0;  // [m]
+};
+struct WeightSetting {
+  dvec3 weight{0};  // [N] of a tool that nothing carries
+};
 struct Edit {
   Entity entity;
-  std::uint32_t key = 0;  // into live_keys()
-  double value = 0.0;
-  Motion motion;  // that a surface has from then on
+  std::variant<SurfaceSetting, DeviceParameters, ProbeSetting, CouplingSetting, WeightSetting> now;
 };
+
+Error work_stopped();
 
 struct Session::Parts {
   Scene scene;
@@ -111,6 +125,7 @@ struct Session::Parts {
   // As the owner has set them: by object, by probe or tool. The world's own are the touch clock's.
   std::map<std::string, Deformable> surfaces;
   std::map<std::string, DeviceParameters> devices;
+  std::map<std::string, LevelNode> bodies;  // soft and rigid bodies, probes and tools: those extensions alone
 
   std::optional<Schedule<World>> schedule;
   std::unique_ptr<SoftClock> soft;
@@ -137,6 +152,8 @@ struct Session::Parts {
 
   Status prepare();  // scene -> world, all sized
   Status remake(std::vector<SessionEffector>& before);
+  void keep_bodies();     // of a world that is prepared
+  void restore_bodies();  // before a restart, into the world to come
   SessionEffector* find_effector(const std::string& name);
   const SessionEffector* find_effector(const std::string& name) const;
   Result<Entity> find_object(const std::string& name) const;
@@ -171,16 +188,13 @@ struct Session::Parts {
   void idle();
 };
 
-// The keys that set() changes: of objects and of the devices of probes and tools.
+// Keys that set() changes and that are one number: of surfaces, and of the devices of probes and tools.
 struct LiveKey {
   const char* key;
   double DeformableParameters::*surface = nullptr;
   double DeviceParameters::*device = nullptr;
 };
 const std::vector<LiveKey>& live_keys();
-// Whether a surface of this mesh can take it.
-Status check_edit(const std::string& name, const Deformable& surface, const Mesh& mesh, const LiveKey& key,
-                  double value);
 // Does not allocate.
 void apply_edit(World& world, const Edit& edit);
 

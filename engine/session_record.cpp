@@ -8,6 +8,7 @@
 #include <span>
 
 #include "content/files/file_io.h"
+#include "content/keys/extension_table.h"
 #include "engine/driver_limits.h"
 #include "engine/scene_hash.h"
 #include "engine/session_parts.h"
@@ -27,15 +28,38 @@ std::size_t room_for(std::size_t effectors) {
 
 // NODE.EXT.KEY=VALUE, of the keys that a session can change.
 Status apply_setting(Session& session, const std::string& setting) {
-  const std::size_t equals = setting.find('='), key = setting.rfind('.', equals);
-  const std::size_t extension = key == std::string::npos || key == 0 ? key : setting.rfind('.', key - 1);
-  if (equals == std::string::npos || extension == std::string::npos)
-    return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
-  char* end = nullptr;
-  const std::string text = setting.substr(equals + 1);
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0') return Error{"`" + setting + "`", "is not a number; set it in the scene"};
-  return session.set(setting.substr(0, extension), setting.substr(key + 1, equals - key - 1), value);
+  const std::size_t equals = setting.rfind('=');
+  const std::string path = setting.substr(0, equals),
+                    text = equals == std::string::npos ? "" : setting.substr(equals + 1);
+  for (const Extension& extension : extension_table())
+    for (const Key& key : extension.keys) {
+      const std::string end = "." + extension.name + "." + key.name;
+      if (extension.on_scene || path.size() <= end.size() || !path.ends_with(end)) continue;
+      const std::string object = path.substr(0, path.size() - end.size());
+      const Json value = Json::parse(text, nullptr, false);
+      if (value.is_number()) return session.set(object, key.name, value.get<double>());
+      if (key.type == KeyType::kPair && !check_value(key, value).empty()) break;
+      if (key.type == KeyType::kPair) return session.set(object, key.name, value.get<std::vector<double>>());
+      return session.set(object, key.name, text);
+    }
+  return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
+}
+
+// Some hold only beside others: a coefficient of sliding friction below that of static friction.
+std::vector<Error> apply_settings(Session& session, std::vector<std::string> settings) {
+  std::vector<Error> refused;
+  for (std::size_t before = settings.size() + 1; settings.size() < before;) {
+    before = settings.size();
+    refused.clear();
+    std::vector<std::string> again;
+    for (const std::string& setting : settings)
+      if (Status applied = apply_setting(session, setting); !applied) {
+        refused.push_back(applied.error());
+        again.push_back(setting);
+      }
+    settings = std::move(again);
+  }
+  return refused;
 }
 
 }  // namespace
@@ -134,11 +158,10 @@ Status Session::replay(const std::filesystem::path& file) {
   if (!recording->ticks.empty() && recording->ticks.front() != 0)
     p.notes.push_back(fmt::format("{} begins at tick {}: what was felt before is not in it", file.string(),
                                   recording->ticks.front()));
-  for (const std::string& setting : header.settings) {
-    if (is_driver_setting(setting)) continue;
-    if (Status applied = apply_setting(*this, setting); !applied)
-      p.notes.push_back(file.string() + ": its setting " + applied.error().message());
-  }
+  std::vector<std::string> own = header.settings;
+  std::erase_if(own, is_driver_setting);
+  for (const Error& refused : apply_settings(*this, own))
+    p.notes.push_back(file.string() + ": its setting " + refused.message());
   const std::vector<std::string> settings = header.settings;
   p.begin_replay(std::move(recording).value());
   if (Status applied = apply_driver_settings(p.world, settings); !applied)

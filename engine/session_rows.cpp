@@ -1,5 +1,4 @@
-// What a tick tells the owner of a Session, and the edits that come in before one. On the touch clock: nothing here
-// allocates.
+// What a tick tells the owner of a Session. On the touch clock: nothing here allocates.
 #include <algorithm>
 
 #include "engine/session_parts.h"
@@ -7,7 +6,6 @@
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
 #include "systems/touch/contacts_of.h"
-#include "systems/touch/local_model.h"
 
 namespace pliant {
 namespace {
@@ -66,52 +64,6 @@ void Session::Parts::after(Tick tick) {
   rows.publish();
   shown = true;
   if (noted) noted(tick);
-}
-
-const std::vector<LiveKey>& live_keys() {
-  using D = DeformableParameters;
-  using H = DeviceParameters;
-  static const std::vector<LiveKey> keys{
-      {"stiffness", &D::stiffness, nullptr},
-      {"damping_ratio", &D::damping_ratio, nullptr},
-      {"settling_time", &D::settling_time, nullptr},
-      {"contact_damping", &D::contact_damping, nullptr},
-      {"friction_static", &D::friction_static, nullptr},
-      {"friction_sliding", &D::friction_sliding, nullptr},
-      {"max_force", nullptr, &H::max_force},
-      {"max_stiffness", nullptr, &H::max_stiffness},
-      {"max_slew", nullptr, &H::max_slew},
-  };
-  return keys;
-}
-
-Status check_edit(const std::string& name, const Deformable& surface, const Mesh& mesh, const LiveKey& key,
-                  double value) {
-  const bool painted =
-      !mesh.stiffness_factor.empty() || !mesh.damping_factor.empty() || !mesh.relaxation_factor.empty();
-  const bool moves = key.surface == &DeformableParameters::stiffness ||
-                     key.surface == &DeformableParameters::damping_ratio ||
-                     key.surface == &DeformableParameters::settling_time;
-  if (painted && moves)
-    return Error{"`" + name + "`: " + key.key,
-                 "is painted on this surface, and is read when the session opens; change the scene instead"};
-  if (surface.young > 0.0 && key.surface == &DeformableParameters::stiffness)
-    return Error{"`" + name + "`: stiffness", "follows from its Young's modulus; change `young` in the scene instead"};
-  Deformable changed = surface;
-  changed.*(key.surface) = value;
-  return check(changed, name);
-}
-
-void apply_edit(World& world, const Edit& edit) {
-  const LiveKey& key = live_keys()[edit.key];
-  if (key.device) {
-    world.registry.get<HapticDevice>(edit.entity).*(key.device) = edit.value;
-    return;
-  }
-  Deformable& surface = world.registry.get<Deformable>(edit.entity);
-  surface.*(key.surface) = edit.value;
-  for (ObjectState& object : world.touch->objects)
-    if (object.entity == edit.entity) object.motion = edit.motion;
 }
 
 }  // namespace pliant

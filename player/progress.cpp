@@ -5,8 +5,9 @@
 #include <atomic>
 #include <cstdio>
 
-#include "content/level/progress.h"
+#include "player/exit.h"
 #include "runtime/clock.h"
+#include "runtime/log.h"
 #include "runtime/printable.h"
 
 namespace pliant {
@@ -15,6 +16,7 @@ constexpr double kQuiet = 1.0;       // [s] before anything is said
 constexpr double kOnTerminal = 0.2;  // [s] between two updates there
 constexpr double kElsewhere = 5.0;   // [s]
 std::atomic<bool> g_line{false};     // the terminal is the process's
+std::atomic<int> g_shown{0};         // how many tell how far the whole is
 double seconds(std::uint64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
@@ -22,7 +24,15 @@ double seconds(std::uint64_t nanoseconds) {
 
 Progress::Progress(std::string what)
     : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), begin_(now_ns()), last_(begin_) {
-  ++LongWork::silent;
+  ++g_shown;
+}
+
+void log_to_stderr() {
+  set_log([](LogLevel level, const std::string& sentence) {
+    if (level == LogLevel::kWarning) return note(sentence);
+    if (level == LogLevel::kInfo && g_shown > 0) return;
+    std::fprintf(stderr, "pliant: %s\n", printable(sentence).c_str());
+  });
 }
 
 bool progress_line_stands() {
@@ -30,7 +40,7 @@ bool progress_line_stands() {
 }
 
 Progress::~Progress() {
-  --LongWork::silent;
+  --g_shown;
   if (shown_ && terminal_) std::fputs("\r\x1b[K", stderr);
   g_line = false;
 }

@@ -7,6 +7,10 @@
 
 namespace pliant {
 
+// What the library says beside its results (pliant/process.h) goes to stderr; that work goes on, only while no Progress
+// says how far.
+void log_to_stderr();
+
 // A line stands on the terminal that the next output has to clear. From any thread.
 bool progress_line_stands();
 

@@ -8,10 +8,7 @@
 
 namespace pliant {
 
-[[noreturn]] inline void assertion_failed(const char* what, const char* file, int line) {
-  std::fprintf(stderr, "pliant: internal error: %s:%d: %s\n", file, line, what);
-  std::abort();
-}
+[[noreturn]] void assertion_failed(const char* what, const char* file, int line);
 
 }  // namespace pliant
 

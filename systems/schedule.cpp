@@ -35,7 +35,7 @@ std::vector<System<World>> touch_schedule() {
 // The soft step (P2): implicit over T, everything that contacts can push. Its own clock may allocate and be late.
 std::vector<System<World>> soft_schedule() {
   return {
-      {"take_edits", take_edits},            // SurfaceEdit -> P1 surfaces among the bodies
+      {"take_edits", take_edits},            // ParameterEdit -> bodies
       {"read_tool_input", read_tool_input},  // ToolInput -> where the device holds each handle
       {"free_motion", free_motion},          // assemble, factorise, v* of every body as if nothing touched
       {"find_contacts", find_contacts},    // surfaces -> ContactPoint {points, normal, gap}; on P1 surfaces by P1's law

@@ -17,6 +17,8 @@
 #include <exception>
 #include <fstream>
 
+#include "runtime/long_work.h"
+
 namespace pliant {
 
 namespace {
@@ -24,7 +26,8 @@ namespace {
 constexpr double kPatience = 30.0;       // [1] of its processor time that a child may take by the clock on the wall
 constexpr double kLeastPatience = 60.0;  // [s]
 constexpr auto kStandsStill = std::chrono::seconds(4);
-constexpr int kAttempts = 3;  // the last one is waited for to the end
+constexpr std::int64_t kLook = 100;  // [ms] between two looks at a child that says nothing
+constexpr int kAttempts = 3;         // the last one is waited for to the end
 
 constexpr char kDone = 'D', kRefused = 'R';
 
@@ -117,13 +120,23 @@ struct Ended {
 // born while another thread held a lock that it waits for now.
 Ended wait_for(pid_t pid, int end, Clock::time_point deadline, bool watch) {
   Ended out;
+  LongWork work;
   std::vector<std::uint8_t> buffer(1 << 20);
   double used = 0.0;
   Clock::time_point moved = Clock::now();
   while (true) {
+    try {
+      work.say("reading");
+    } catch (const WorkStopped&) {
+      kill(pid, SIGKILL);
+      while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+      }
+      close(end);
+      throw;
+    }
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     pollfd ready{end, POLLIN, 0};
-    const int polled = left > 0 ? poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left, 500))) : 0;
+    const int polled = left > 0 ? poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left, kLook))) : 0;
     if (polled < 0 && errno == EINTR) continue;
     if (polled < 0 || left <= 0) {
       out.late = true;

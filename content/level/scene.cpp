@@ -54,7 +54,7 @@ Scene& Scene::operator=(const Scene& other) {
 Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
-Simulation& Scene::simulation() {
+Simulation& Scene::simulation() & {
   return level_->simulation;
 }
 

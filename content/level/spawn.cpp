@@ -13,12 +13,12 @@
 #include "content/level/level.h"
 #include "content/level/level_budget.h"
 #include "content/level/probe_shell.h"
-#include "content/level/progress.h"
 #include "content/level/script.h"
 #include "content/level/spawn_motion.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_build.h"
 #include "content/mesh/mesh_finer.h"
+#include "runtime/long_work.h"
 
 namespace pliant {
 namespace {

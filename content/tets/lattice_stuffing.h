@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "components/tet_mesh.h"
-#include "content/level/progress.h"
 #include "content/tets/fill_region.h"
 #include "content/tets/lattice_grid.h"
+#include "runtime/long_work.h"
 #include "runtime/result.h"
 
 namespace pliant {

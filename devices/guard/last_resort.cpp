@@ -18,7 +18,7 @@ struct sigaction before[NSIG];
 
 // Lock-free atomics, make_safe(), and the handler from before.
 void on_signal(int signal) {
-  make_all_safe();
+  make_devices_safe();
   sigaction(signal, &before[signal], nullptr);
   raise(signal);  // delivered when this handler returns
 }
@@ -34,14 +34,13 @@ void install() {
     if (!(before[signal].sa_flags & SA_SIGINFO) && before[signal].sa_handler == SIG_DFL)
       sigaction(signal, &action, nullptr);
   }
-  std::atexit([] { make_all_safe(); });
 }
 
 }  // namespace
 
 bool guard_to_the_last(Driver& driver) {
   static std::once_flag once;
-  std::call_once(once, install);
+  std::call_once(once, [] { std::atexit([] { make_devices_safe(); }); });
   for (std::atomic<Driver*>& slot : open_drivers) {
     Driver* none = nullptr;
     if (slot.compare_exchange_strong(none, &driver)) return true;
@@ -56,7 +55,12 @@ void let_go_of(Driver& driver) {
   }
 }
 
-void make_all_safe() noexcept {
+void make_devices_safe_on_signals() {
+  static std::once_flag once;
+  std::call_once(once, install);
+}
+
+void make_devices_safe() noexcept {
   ended = true;
   for (std::atomic<Driver*>& slot : open_drivers)
     if (Driver* const driver = slot.exchange(nullptr)) driver->make_safe();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <deque>
 #include <mutex>
@@ -125,7 +126,10 @@ Result<std::unique_ptr<WebSocketPort>> WebSocketPort::connect(const std::string&
   info.uid = static_cast<uid_t>(-1);
   info.user = line.get();
   info.fd_limit_per_thread = 16;  // else a table for as many files as the system would allow
+  struct sigaction pipe {};  // it ignores SIGPIPE from here on, which is the program's to decide; it sends without one
+  ::sigaction(SIGPIPE, nullptr, &pipe);
   line->context = lws_create_context(&info);
+  ::sigaction(SIGPIPE, &pipe, nullptr);
   if (!line->context) return Error{line->name, "libwebsockets could not begin; is memory or are files exhausted?"};
   lws_client_connect_info to{};
   to.context = line->context;

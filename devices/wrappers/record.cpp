@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "runtime/log.h"
+
 namespace pliant {
 
 // Before the device is: nothing has moved yet.
@@ -64,7 +66,7 @@ void Record::finish() noexcept {
     written_ = write_poses(file_, rows_,
                            lost_ > 0 ? fmt::format("{} samples; {} more did not fit", rows_.size(), lost_)
                                      : fmt::format("{} samples", rows_.size()));
-    if (!written_) std::fprintf(stderr, "pliant: %s\n", written_.error().message().c_str());
+    if (!written_) log_sentence(LogLevel::kWarning, written_.error().message());
   } catch (...) {  // the recording is lost; the device is closed
   }
 }

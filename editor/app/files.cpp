@@ -309,7 +309,7 @@ void Files::watch() {
   editor.jobs.start("watch", "",
                     [this, all, known = editor.document.file_stamp(), document = editor.documents](const Jobs::Stop&) {
                       Watches now = all;
-                      std::error_code gone;
+                      std::error_code gone;  // or no folder is set
                       for (const auto& entry : fs::directory_iterator(gpu::shader_folder(), gone))
                         now[entry.path()] = {Watched::kShader, "", {}};
                       for (auto& [path, watch] : now) watch.stamp = stamp_of(path);

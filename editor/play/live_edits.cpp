@@ -33,7 +33,8 @@ LiveEdits live_edits(const State& before, const State& after) {
         double& from = (*changed.node.deformable).*(key.surface);
         if (from == to) continue;
         from = to;
-        out.now.push_back({now->node.name, key.key, to});
+        const bool follows = key.surface == &DeformableParameters::stiffness && now->node.deformable->young > 0.0;
+        if (!follows) out.now.push_back({now->node.name, key.key, to});
       }
       if (key.device && changed.node.device && now->node.device) {
         const double to = (*now->node.device).*(key.device);

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "content/level/progress.h"
 #include "engine/choice/alone.h"
 #include "engine/choice/model_choice.h"
+#include "runtime/long_work.h"
 
 namespace pliant {
 

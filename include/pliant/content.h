@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/progress.h"
 #include "pliant/scene.h"
 
 namespace pliant {
@@ -27,8 +28,9 @@ struct SafetyCap {
 
 // A bare mesh becomes a deformable surface. `notes` gets what was read differently than one might expect. The
 // error names file and JSON pointer. Devices and tools get no more than `cap`; a note says where the file asked for it.
+// `progress` is told, on this thread, and may end it with an Error.
 Result<Scene> load_scene(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr,
-                         const SafetyCap& cap = {});
+                         const SafetyCap& cap = {}, const OpenProgress& progress = {});
 // .gltf (with a .bin beside it) or .glb by the extension; the file appears whole.
 Status save_scene(const Scene& scene, const std::filesystem::path& file);
 // NODE.EXTENSION.KEY=VALUE, say "tissue.deformable.stiffness=500", as `pliant run --set` has it (docs/cli.md).

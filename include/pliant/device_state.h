@@ -120,7 +120,7 @@ struct DeviceReport {
   ServoFigures figures;
 
   // i of the newest min(transitions, kKept), oldest first.
-  const DeviceTransition& transition(std::uint64_t i) const {
+  DeviceTransition transition(std::uint64_t i) const {
     return kept[(transitions > kKept ? transitions + i : i) % kKept];
   }
 };

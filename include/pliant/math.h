@@ -1,10 +1,22 @@
 // Vectors are glm's. `vec3` is single precision (fields, pictures), `dvec3` double (contacts, solvers, studies).
 // SI units, right-handed, Y up, metres; normals point outward.
+//
+// The library was compiled with glm as it comes. A program whose GLM_FORCE_... macros lay vectors and quaternions out
+// in another way would have its numbers read in the wrong order, without a word: it does not compile.
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <type_traits>
+
+#ifdef GLM_FORCE_QUAT_CTOR_XYZW
+#error "pliant: quat(w, x, y, z) is the order of Pliant's headers; compile this file without GLM_FORCE_QUAT_CTOR_XYZW"
+#endif
+#ifdef GLM_FORCE_SINGLE_ONLY
+#error "pliant: contacts are in double precision; compile this file without GLM_FORCE_SINGLE_ONLY"
+#endif
 
 namespace pliant {
 
@@ -25,6 +37,25 @@ using glm::uvec3;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
+
+static_assert(offsetof(quat, x) == 0 && offsetof(dquat, x) == 0 && offsetof(dquat, w) == 3 * sizeof(double),
+              "pliant: glm's quaternions must lie in memory as x, y, z, w, as the library was compiled: every rotation "
+              "would be read wrongly; compile this file without GLM_FORCE_QUAT_DATA_WXYZ");
+static_assert(sizeof(vec3) == 3 * sizeof(float) && alignof(vec3) == alignof(float) &&
+                  sizeof(dvec3) == 3 * sizeof(double) && alignof(dvec3) == alignof(double) &&
+                  alignof(vec4) == alignof(float) && alignof(dquat) == alignof(double) &&
+                  sizeof(mat4) == 16 * sizeof(float) && alignof(mat4) == alignof(float),
+              "pliant: glm's vectors must be packed, as the library was compiled; compile this file without "
+              "GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
+static_assert(std::is_same_v<vec3, glm::vec<3, float, glm::packed_highp>> &&
+                  std::is_same_v<dvec3, glm::vec<3, double, glm::packed_highp>> &&
+                  std::is_same_v<uvec3, glm::vec<3, glm::uint, glm::packed_highp>> &&
+                  std::is_same_v<dquat, glm::qua<double, glm::packed_highp>>,
+              "pliant: glm's vectors must be packed and of high precision, as the library was compiled; compile this "
+              "file without GLM_PRECISION_... and GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
+static_assert(std::is_trivially_copyable_v<vec3> && GLM_CONFIG_SWIZZLE != GLM_SWIZZLE_OPERATOR,
+              "pliant: glm's swizzle operators change how a vector is handed over; compile this file without "
+              "GLM_FORCE_SWIZZLE, or with GLM_FORCE_XYZW_ONLY");
 
 // An axis-aligned box; empty until something is added.
 struct Box {

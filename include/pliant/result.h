@@ -3,11 +3,16 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <utility>
 #include <variant>
+
+// What is returned refers into the object that it is asked of: clang says where that is a temporary.
+#ifdef __clang__
+#define PLIANT_LIFETIMEBOUND [[clang::lifetimebound]]
+#else
+#define PLIANT_LIFETIMEBOUND
+#endif
 
 namespace pliant {
 
@@ -20,13 +25,13 @@ struct Error {
   std::string message() const { return where.empty() ? what : where + ": " + what; }
 };
 
-// A value was taken from an Error without asking for it first (or the other way round): the program stops and says so.
-[[noreturn]] inline void unchecked_result(const std::string& message) {
-  std::fprintf(stderr, "pliant: internal error: a Result was used without a check: %s\n", message.c_str());
-  std::abort();
-}
+// A value was taken from an Error without asking for it first (or the other way round): the program stops and says so
+// (LogLevel::kFatal, pliant/process.h).
+[[noreturn]] void unchecked_result(const std::string& message);
 
-// A T, or the Error that kept it from being made. Check it (`if (!result)`) before its value is taken.
+// A T, or the Error that kept it from being made. Check it (`if (!result)`) before its value is taken. Of a temporary,
+// value(), operator* and error() return by value, so that `for (auto& x : session.findings().value())` holds what it
+// walks over; `->` of a temporary is for one expression: `session.reading("finger")->force`.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -36,27 +41,31 @@ class [[nodiscard]] Result {
   bool ok() const { return state_.index() == 0; }
   explicit operator bool() const { return ok(); }
 
-  T& value() & {
+  T& value() & PLIANT_LIFETIMEBOUND {
     if (!ok()) unchecked_result(std::get<1>(state_).message());
     return std::get<0>(state_);
   }
-  const T& value() const& {
+  const T& value() const& PLIANT_LIFETIMEBOUND {
     if (!ok()) unchecked_result(std::get<1>(state_).message());
     return std::get<0>(state_);
   }
-  T&& value() && {
+  T value() && {
     if (!ok()) unchecked_result(std::get<1>(state_).message());
     return std::get<0>(std::move(state_));
   }
-  const Error& error() const {
+  const Error& error() const& PLIANT_LIFETIMEBOUND {
     if (ok()) unchecked_result("it has a value and no error");
     return std::get<1>(state_);
   }
-  T& operator*() & { return value(); }
-  const T& operator*() const& { return value(); }
-  T&& operator*() && { return std::move(*this).value(); }
-  T* operator->() { return &value(); }
-  const T* operator->() const { return &value(); }
+  Error error() && {
+    if (ok()) unchecked_result("it has a value and no error");
+    return std::get<1>(std::move(state_));
+  }
+  T& operator*() & PLIANT_LIFETIMEBOUND { return value(); }
+  const T& operator*() const& PLIANT_LIFETIMEBOUND { return value(); }
+  T operator*() && { return std::move(*this).value(); }
+  T* operator->() PLIANT_LIFETIMEBOUND { return &value(); }
+  const T* operator->() const PLIANT_LIFETIMEBOUND { return &value(); }
 
  private:
   std::variant<T, Error> state_;

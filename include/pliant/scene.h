@@ -33,8 +33,9 @@ struct Placement {
   dvec3 scale{1};  // [1]
 };
 
-// Copies are independent. Names must differ: they are how a Session is asked about its objects. What is wrong with a
-// scene (a mesh without triangles, a parameter out of its range, a name given twice) is said by Session::open.
+// Copies are independent; one that was moved from may only be destroyed or assigned to. Names must differ: they are how
+// a Session is asked about its objects. What is wrong with a scene (a mesh without triangles, a parameter out of its
+// range, a name given twice) is said by Session::open.
 class Scene {
  public:
   explicit Scene(std::string name = "scene");
@@ -45,7 +46,7 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  Simulation& simulation();
+  Simulation& simulation() & PLIANT_LIFETIMEBOUND;  // of the scene for as long as it lives
 
   // A deformable surface (P1).
   void add_surface(const std::string& name, MeshData mesh, const DeformableParameters& parameters = {},

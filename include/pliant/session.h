@@ -15,7 +15,8 @@
 // with the clocks and never make them wait. Whatever ends a run, the last force that leaves for a device is zero.
 //
 // Misuse is an Error with a sentence: an unknown name, two sources for one probe, step() while the clocks run. No
-// function throws. A session that was moved from may only be destroyed or assigned to. World frame: metres,
+// function throws. What is returned is a copy; notes() and objects() refer into the session until the next call of a
+// function that is not const. A session that was moved from may only be destroyed or assigned to. World frame: metres,
 // right-handed, Y up.
 #pragma once
 
@@ -28,6 +29,7 @@
 
 #include "pliant/device_state.h"
 #include "pliant/driver.h"
+#include "pliant/progress.h"
 #include "pliant/scene.h"
 
 namespace pliant {
@@ -94,16 +96,20 @@ struct Geometry {
 
 class Session {
  public:
-  // Prepares everything a tick will need. The scene is copied.
-  static Result<Session> open(const Scene& scene);
+  // Prepares everything a tick will need. The scene is copied. Of a large scene this takes seconds: `progress` is told,
+  // on this thread, and may end it with an Error.
+  static Result<Session> open(const Scene& scene, const OpenProgress& progress = {});
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
   ~Session();  // stop()
 
   // What was read or made differently than one might expect.
-  const std::vector<std::string>& notes() const;
-  std::vector<std::string> effectors() const;       // probes, then tools
-  const std::vector<std::string>& objects() const;  // deformable surfaces, soft and rigid bodies
+  const std::vector<std::string>& notes() const& PLIANT_LIFETIMEBOUND;
+  std::vector<std::string> notes() &&;
+  std::vector<std::string> effectors() const;  // probes, then tools
+  // Deformable surfaces, soft and rigid bodies.
+  const std::vector<std::string>& objects() const& PLIANT_LIFETIMEBOUND;
+  std::vector<std::string> objects() &&;
 
   // --- What moves a probe or tool. Each has one source: a second one is an error until release().
   // Where it is from now on. In real time it goes there in the time since it was last set (at most 0.1 s), so
@@ -148,8 +154,12 @@ class Session {
   // notes() say where scene or settings differ. step() fails behind its last tick. Not after a tick has run.
   Status replay(const std::filesystem::path& file);
 
-  // --- Parameters, between ticks: friction, stiffness, damping and device limits (docs/embedding.md lists them).
+  // --- Parameters, between ticks: keys of a surface, a body, a probe, a tool or its device by the level format's names
+  // (docs/embedding.md says which are live, and why the others are not). An error says whether the name, the key or the
+  // type of the value is wrong. `word`: of keys that are words, such as `shape`; `values`: of those that are pairs.
   Status set(const std::string& object, const std::string& key, double value);
+  Status set(const std::string& object, const std::string& key, const std::string& word);
+  Status set(const std::string& object, const std::string& key, const std::vector<double>& values);
   Result<double> get(const std::string& object, const std::string& key) const;
 
   // --- What is felt and seen

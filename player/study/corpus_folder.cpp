@@ -2,11 +2,14 @@
 
 #include <cstdlib>
 
+#include "player/verbs/content_folder.h"
+
 namespace pliant {
 
 std::filesystem::path corpus_folder() {
   if (const char* told = std::getenv("PLIANT_CORPUS"); told && *told) return told;
-  return PLIANT_CORPUS_DIR;
+  std::error_code no;
+  return std::filesystem::weakly_canonical(data_folder() / "corpus", no);
 }
 
 }  // namespace pliant

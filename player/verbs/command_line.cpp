@@ -7,12 +7,14 @@
 #include "content/keys/extension_table.h"
 #include "content/level/unit.h"
 #include "player/exit.h"
+#include "player/progress.h"
 #include "player/standard_streams.h"
 #include "player/verbs/content_folder.h"
 #include "player/verbs/device_test.h"
 #include "player/verbs/options.h"
 #include "pliant/content.h"
 #include "pliant/drivers.h"
+#include "pliant/process.h"
 
 namespace pliant {
 namespace {
@@ -147,6 +149,8 @@ Status check_run_arguments(const std::vector<std::string>& arguments) {
 
 int command_line(int argc, const char* const* argv) {
   int status = kDone;
+  log_to_stderr();
+  make_devices_safe_on_signals();
   try {
     status = parse_and_run(argc, argv);
   } catch (const std::exception& error) {

@@ -11,12 +11,16 @@ namespace {
 constexpr const char* kDemoLevel = "three_probes";
 }
 
+fs::path data_folder() {
+  std::error_code no;
+  const fs::path self = fs::read_symlink("/proc/self/exe", no);
+  return self.parent_path().parent_path() / "share" / "pliant";
+}
+
 fs::path content_folder() {
   if (const char* told = std::getenv("PLIANT_CONTENT"); told && *told) return told;
   std::error_code no;
-  const fs::path self = fs::read_symlink("/proc/self/exe", no);
-  const fs::path installed = self.parent_path().parent_path() / "share" / "pliant" / "content";
-  return fs::is_directory(installed, no) ? installed : fs::path(PLIANT_CONTENT_DIR);
+  return fs::weakly_canonical(data_folder() / "content", no);  // a link to the sources, in a build tree
 }
 
 std::vector<fs::path> shipped_levels() {

@@ -9,7 +9,10 @@
 
 namespace pliant {
 
-// PLIANT_CONTENT from the environment, else share/pliant/content beside an installed command, else the source tree's.
+// share/pliant beside the command's bin/: of an installed one, wherever it has been moved, and of one in a build tree.
+std::filesystem::path data_folder();
+
+// PLIANT_CONTENT from the environment, else the data folder's content/.
 std::filesystem::path content_folder();
 
 // The levels that ship, by name.

@@ -7,6 +7,7 @@
 
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
+#include "runtime/long_work.h"
 #include "systems/soft/body/probe_tool.h"
 #include "systems/soft/body/rigid_state.h"
 #include "systems/soft/body/rigid_tool.h"
@@ -36,6 +37,7 @@ void add(SoftState& soft, Entity entity, std::unique_ptr<Body> body) {
 
 Status add_soft(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<SoftBody>()) {
+    check_in("preparing " + soft_name(world, entity));
     if (!make_solver(body.solver, 1))
       return Error{soft_name(world, entity), "its solver is not in this build, or its factory makes none; use `auto`"};
     const Handle6* handle = world.registry.find<Handle6>(entity);
@@ -49,18 +51,6 @@ Status add_soft(const World& world, SoftState& soft) {
   return Done{};
 }
 
-// A rigid body that moves. An error where it encloses nothing.
-Result<RigidMass> mass_of(const World& world, Entity entity, const RigidBody& body) {
-  const MassProperties shape = mass_properties(world.meshes[body.collision_mesh]);
-  const double mass = body.mass > 0.0 ? body.mass : body.density * shape.volume;
-  const double density = mass / shape.volume;
-  const dmat3 inertia = density * shape.inertia;
-  if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
-    return Error{soft_name(world, entity),
-                 "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
-  return RigidMass{mass, shape.centre, inertia};
-}
-
 Status add_rigid(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<RigidBody>()) {
     const Mesh& mesh = world.meshes[body.collision_mesh];
@@ -69,7 +59,7 @@ Status add_rigid(const World& world, SoftState& soft) {
     if (body.fixed) {
       state = std::make_unique<FixedBody>(mesh, pose);
     } else {
-      const Result<RigidMass> mass = mass_of(world, entity, body);
+      const Result<RigidMass> mass = rigid_mass(world, entity, body);
       if (!mass) return mass.error();
       if (const Handle6* handle = world.registry.find<Handle6>(entity))
         state = std::make_unique<RigidTool>(mesh, *mass, *handle, pose);
@@ -133,6 +123,7 @@ bool come_through(const World& world, const Body& body, const std::vector<dvec3>
 void settle_tools(const World& world, SoftState& soft) {
   for (const std::unique_ptr<Body>& body : soft.bodies) {
     auto* tool = dynamic_cast<ToolBody*>(body.get());
+    if (tool) check_in("settling " + soft_name(world, tool->entity));
     if (!tool || !tool->has_handle()) continue;
     const std::vector<dvec3> rest = tool->surface_position;
     tool->settle(world.simulation.gravity);
@@ -144,6 +135,17 @@ void settle_tools(const World& world, SoftState& soft) {
 }
 
 }  // namespace
+
+Result<RigidMass> rigid_mass(const World& world, Entity entity, const RigidBody& body) {
+  const MassProperties shape = mass_properties(world.meshes[body.collision_mesh]);
+  const double mass = body.mass > 0.0 ? body.mass : body.density * shape.volume;
+  const double density = mass / shape.volume;
+  const dmat3 inertia = density * shape.inertia;
+  if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
+    return Error{soft_name(world, entity),
+                 "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
+  return RigidMass{mass, shape.centre, inertia};
+}
 
 Status prepare_soft(World& world) {
   world.soft = nullptr;

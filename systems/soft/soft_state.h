@@ -3,12 +3,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <variant>
 #include <vector>
 
 #include "components/world.h"
 #include "runtime/exchange.h"
 #include "systems/soft/body/body.h"
+#include "systems/soft/body/rigid_state.h"
+#include "systems/soft/body/tool_body.h"
 #include "systems/soft/body/yielding_body.h"
 #include "systems/soft/contact/contact_point.h"
 #include "systems/soft/contact/contact_problem.h"
@@ -38,12 +42,21 @@ struct SoftTally {
   std::uint32_t inside_a = 0, inside_b = 0;  // into SoftState::bodies
 };
 
-// Parameters of a P1 surface that change between steps.
-struct SurfaceEdit {
-  Entity surface;
-  DeformableParameters now;
+// Parameters of a body that change between steps, all of its kind.
+struct RigidSetting {
+  RigidMass mass;  // of a body that moves
+  double friction_static = 0.4, friction_sliding = 0.3;
 };
-inline constexpr std::size_t kMostSurfaceEdits = 256;  // that wait for a step
+struct SoftSetting {
+  double young = 5e3, poisson = 0.45;
+  std::array<double, 2> rayleigh{0, 0};
+  double friction_static = 0.4, friction_sliding = 0.3;
+};
+struct ParameterEdit {
+  Entity body;
+  std::variant<DeformableParameters, RigidSetting, SoftSetting, CouplingSetting> now;
+};
+inline constexpr std::size_t kMostParameterEdits = 256;  // that wait for a step
 
 struct SoftState {
   std::vector<std::unique_ptr<Body>> bodies;  // fixed ones too
@@ -56,15 +69,15 @@ struct SoftState {
   SweepReport report;
   SoftTally tally;
   SoftTimes times;
-  std::uint64_t steps = 0;                             // done
-  int parts = 1, part = 0;                             // of the step under way (run_soft_step)
-  int more = 0;                                        // parts that may still be added to it
-  double share = 1.0;                                  // [1] of the part under way that bodies go
-  double step = 0.0;                                   // [s] T of the step under way, all its parts together
-  bool settled = true;                                 // so far in the step under way
-  std::uint64_t began = 0;                             // [ns] of the step under way
-  std::uint32_t dropped = 0;                           // DroppedBit, the soft clock's own
-  Ring<SurfaceEdit> surface_edits{kMostSurfaceEdits};  // who owns the run -> soft clock
+  std::uint64_t steps = 0;                                   // done
+  int parts = 1, part = 0;                                   // of the step under way (run_soft_step)
+  int more = 0;                                              // parts that may still be added to it
+  double share = 1.0;                                        // [1] of the part under way that bodies go
+  double step = 0.0;                                         // [s] T of the step under way, all its parts together
+  bool settled = true;                                       // so far in the step under way
+  std::uint64_t began = 0;                                   // [ns] of the step under way
+  std::uint32_t dropped = 0;                                 // DroppedBit, the soft clock's own
+  Ring<ParameterEdit> parameter_edits{kMostParameterEdits};  // who owns the run -> soft clock
 
   // [1] Of a penetration, in a part of T [s]: pushed out as fast in many parts as in one.
   double undone_in(double T) const { return kPenetrationShare * std::min(1.0, T / step); }

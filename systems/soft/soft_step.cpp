@@ -19,6 +19,23 @@ constexpr double kLeastPart = 0.02;  // [1] of a step: what is left of it and sh
 
 constexpr double kSunken = 0.01;  // [1] of a body's diagonal: what lies so deep in another when a level begins is said
 
+void change(Body& body, const DeformableParameters& now) {
+  if (body.kind == BodyKind::kSurface) static_cast<YieldingBody&>(body).set(now);
+}
+void change(Body& body, const RigidSetting& now) {
+  body.friction_static = now.friction_static;
+  body.friction_sliding = now.friction_sliding;
+  if (body.size() > 0) body.set_mass(now.mass);
+}
+void change(Body& body, const SoftSetting& now) {
+  body.friction_static = now.friction_static;
+  body.friction_sliding = now.friction_sliding;
+  body.set_elasticity(now.young, now.poisson, {now.rayleigh[0], now.rayleigh[1]});
+}
+void change(Body& body, const CouplingSetting& now) {
+  if (auto* tool = dynamic_cast<ToolBody*>(&body)) tool->set_coupling(now);
+}
+
 // Contacts with a body that has no solution in this step.
 void leave_out_failed(SoftState& soft) {
   const auto failed = [&](const ContactPoint& contact) {
@@ -64,9 +81,9 @@ void stop_before(SoftState& soft, const Crossings& left, double T) {
 void take_edits(World& world, Tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
-  for (SurfaceEdit edit; soft.surface_edits.pop(edit);)
-    for (const std::uint32_t i : soft.yielding)
-      if (soft.bodies[i]->entity == edit.surface) soft.surface(i).set(edit.now);
+  for (ParameterEdit edit; soft.parameter_edits.pop(edit);)
+    for (const std::unique_ptr<Body>& body : soft.bodies)
+      if (body->entity == edit.body) std::visit([&](const auto& now) { change(*body, now); }, edit.now);
 }
 
 void free_motion(World& world, Tick tick) {

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-void take_edits(World& world, Tick tick);      // SurfaceEdit -> the P1 surfaces that bodies press
+void take_edits(World& world, Tick tick);      // ParameterEdit -> bodies, the surfaces that they press among them
 void free_motion(World& world, Tick tick);     // v* of every body, without contacts; collision mesh velocities
 void find_contacts(World& world, Tick tick);   // pairs of collision mesh points that may touch within the step
 void solve_contacts(World& world, Tick tick);  // impulses, and v = v* + A^-1 J^T lambda

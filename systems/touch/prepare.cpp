@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "components/soft_body.h"
+#include "runtime/long_work.h"
 #include "systems/touch/field.h"
 #include "systems/touch/force_field.h"
 #include "systems/touch/seams.h"
@@ -184,6 +185,7 @@ Status prepare_touch(World& world) {
   Snapshot snapshot;
   for (auto [entity, deformable, pose] : registry.view<Deformable, const Pose>()) {
     const Mesh& mesh = world.meshes[deformable.mesh];
+    check_in("preparing what is touched, now `" + name_of(world, entity) + "`");
     if (deformable.reach == 0.0) deformable.reach = default_reach(mesh);
     if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
     HeightField& field = world.fields[deformable.field];

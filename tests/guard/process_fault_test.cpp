@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -106,6 +107,7 @@ void start(Child& child, bool safe_line, const std::function<void(Servo&)>& then
   ASSERT_GE(child.pid, 0);
   if (child.pid == 0) {
     ::close(ends[0]);
+    make_devices_safe_on_signals();
     hold(ends[1], safe_line, then);
   }
   ::close(ends[1]);
@@ -155,6 +157,24 @@ TEST(ProcessFault, ACrashMakesEveryOpenDeviceSafeAndThenTakesItsCourse) {
   expect_zero_at_death([](Servo&) { ::raise(SIGTERM); }, SIGTERM);
 }
 #endif
+
+TEST(ProcessFault, ByItselfNothingTouchesAProgramsSignalHandlers) {
+  const pid_t child = ::fork();
+  if (child == 0) {  // no test before this one has asked
+    std::array<struct sigaction, NSIG> before{};
+    for (int signal = 1; signal < NSIG; ++signal) ::sigaction(signal, nullptr, &before[signal]);
+    Servo servo(std::make_unique<SocketDriver>(-1, false));
+    if (!servo.open("")) ::_exit(100);
+    for (int signal = 1; signal < NSIG; ++signal) {
+      struct sigaction now {};
+      if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler != before[signal].sa_handler) ::_exit(signal);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0) << "the handler of signal " << WEXITSTATUS(status) << " has changed";
+}
 
 TEST(ProcessFault, AWatchmanThatIsEndedInOrderWritesNothing) {
   int ends[2];

@@ -21,6 +21,13 @@ struct SurfacePoint {
   dvec3 position{0};           // [m] world, at the beginning of the step
 };
 
+// What a rigid body is made of, in its object frame.
+struct RigidMass {
+  double mass = 1.0;  // [kg] > 0
+  dvec3 centre{0};    // [m] centre of mass
+  dmat3 inertia{1};   // [kg m2] about the centre of mass, along the object's axes; positive definite
+};
+
 // A side of a contact, pushed by unit impulses along its axes.
 struct PushedSide {
   Eigen::Index contact = 0;  // which of the body's contacts
@@ -63,6 +70,11 @@ class Body {
   virtual void free_step(double T, dvec3 gravity) = 0;
   // False: the step's A could not be factorised; solve() must not be called.
   virtual bool solvable() const { return true; }
+  // Between steps: of what is rigid, and of what is tissue. It keeps its place and its velocity.
+  virtual void set_mass(const RigidMass& mass) { (void)mass; }
+  virtual void set_elasticity(double young, double poisson, RayleighDamping damping) {
+    (void)young, (void)poisson, (void)damping;
+  }
   // Stands still from here on: what its velocities were meant nothing.
   virtual void halt() {}
   // v: after free_step v*, after correct() the step's final velocity.

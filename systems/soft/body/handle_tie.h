@@ -30,6 +30,7 @@ class HandleTie {
   // The handle's nodes in `tissue` are [first, first + handle.node_count()).
   HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first);
 
+  void set_material(const TissueMaterial& material) { material_ = material; }
   // After tissue.assemble(T, gravity): what the handle adds to tissue.inner(), and border(), corner(), right().
   void assemble(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity);
   // What else acts on the handle: a diagonal of A_hh and its part of b_h.

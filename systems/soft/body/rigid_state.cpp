@@ -49,6 +49,12 @@ void RigidState::set_velocity(dvec3 linear, dvec3 angular) {
   angular_momentum_ = inertia(rotation_) * angular;
 }
 
+void RigidState::set_mass(const RigidMass& mass) {
+  const dvec3 spin = inverse_inertia(rotation_) * angular_momentum_;
+  mass_ = mass;
+  set_velocity(linear_, spin);
+}
+
 double RigidState::kinetic_energy() const {
   return 0.5 * mass_.mass * dot(linear_, linear_) +
          0.5 * dot(angular_momentum_, inverse_inertia(rotation_) * angular_momentum_);

@@ -6,13 +6,6 @@
 
 namespace pliant {
 
-// What a rigid body is made of, in its object frame.
-struct RigidMass {
-  double mass = 1.0;  // [kg] > 0
-  dvec3 centre{0};    // [m] centre of mass
-  dmat3 inertia{1};   // [kg m2] about the centre of mass, along the object's axes; positive definite
-};
-
 // Newton and Euler. Degrees of freedom: velocity of the centre of mass [m/s], angular velocity [rad/s], world frame.
 // What is kept is the angular momentum L, which only contacts change: a free body turns with q' = exp(h w) q,
 // w = I(exp(h w/2) q)^-1 L (midpoint, so that nothing damps and nothing drives), in as many parts of a step as its spin
@@ -34,6 +27,7 @@ class RigidState : public Body {
   void weigh(const Rows& x, Rows& out) const override;
   Vector starting_velocity() const override { return start_; }
   void halt() override;
+  void set_mass(const RigidMass& mass) override;
   void show(SoftObjectSnapshot& out) const override;
 
   const RigidMass& mass() const { return mass_; }

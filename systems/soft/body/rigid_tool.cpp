@@ -18,6 +18,13 @@ RigidTool::RigidTool(const Mesh& mesh, const RigidMass& mass, const Handle6& han
   refresh_surface();
 }
 
+void RigidTool::set_mass(const RigidMass& mass) {
+  const RigidMotion motion = handle_->motion();
+  handle_.emplace(mass.mass, mass.centre, mass.inertia, handle_->object_pose());
+  handle_->set_velocity(motion.velocity);
+  mass_ = mass.mass;
+}
+
 void RigidTool::free_step(double T, dvec3 gravity) {
   T_ = T;
   couple(T, gravity);

@@ -27,6 +27,7 @@ class RigidTool final : public ToolBody {
   void weigh(const Rows& x, Rows& out) const override { out = handle_mass_ * x; }
   Vector starting_velocity() const override { return start_; }
   void halt() override;
+  void set_mass(const RigidMass& mass) override;
   void show(SoftObjectSnapshot& out) const override;
   void unsettle() override { refresh_surface(); }
   const Rows& follow() const override { return follow_; }

@@ -117,6 +117,12 @@ void SoftBodyState::separate_tissue(double T) {
       (solver_.reduced_right() - coupling_step_.right - (handle_mass_ + tissue_matrix_) * start_) / T - handle_load_;
 }
 
+void SoftBodyState::set_elasticity(double young, double poisson, RayleighDamping damping) {
+  damping_ = damping;
+  tissue_.set_elasticity(young, poisson, damping.alpha, damping.beta);
+  if (tie_) tie_->set_material(tissue_.material());
+}
+
 void SoftBodyState::halt() {
   velocity_.setZero();
   std::fill(tissue_.velocity().begin(), tissue_.velocity().end(), dvec3(0));

@@ -36,6 +36,7 @@ class SoftBodyState final : public ToolBody {
   RayleighDamping damping() const override { return damping_; }
   Vector starting_velocity() const override;
   void halt() override;
+  void set_elasticity(double young, double poisson, RayleighDamping damping) override;
   void show(SoftObjectSnapshot& out) const override;
 
   const Tissue& tissue() const { return tissue_; }

@@ -9,6 +9,7 @@
 // the step's own. Where both agree the handle arrives; where they do not, other bodies feel a hand, not a wall.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "components/soft_body.h"
@@ -18,8 +19,20 @@
 
 namespace pliant {
 
+// Of HandleParameters, what may change between steps.
+struct CouplingSetting {
+  std::array<double, 2> translation, rotation;
+  double max_force, max_torque;
+};
+
 class ToolBody : public Body {
  public:
+  void set_coupling(const CouplingSetting& now) {
+    settings_.translation = now.translation;
+    settings_.rotation = now.rotation;
+    settings_.max_force = now.max_force;
+    settings_.max_torque = now.max_torque;
+  }
   bool has_handle() const { return handle_.has_value(); }
   const RigidHandle& handle() const { return *handle_; }  // now
 

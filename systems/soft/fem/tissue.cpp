@@ -45,12 +45,20 @@ Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_
   ASSERT(moving >= mesh.free_count && moving <= mesh.pinned_begin());
   ASSERT(mesh.pinned_begin() <= mesh.node_count());
   ASSERT(material.young > 0 && material.density > 0 && material.poisson > -1 && material.poisson < 0.5);
-  mu_ = material.young / (2 * (1 + material.poisson));
-  lambda_ = material.young * material.poisson / ((1 + material.poisson) * (1 - 2 * material.poisson));
+  set_elasticity(material.young, material.poisson, material.alpha, material.beta);
   take_elements();
   lay_out();
   right_.setZero(3 * mesh.pinned_begin());
   force_.setZero(3 * mesh.node_count());
+}
+
+void Tissue::set_elasticity(double young, double poisson, double alpha, double beta) {
+  material_.young = young;
+  material_.poisson = poisson;
+  material_.alpha = alpha;
+  material_.beta = beta;
+  mu_ = young / (2 * (1 + poisson));
+  lambda_ = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
 }
 
 void Tissue::take_elements() {

@@ -41,6 +41,10 @@ class Tissue {
   // infinite.
   Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving);
 
+  // From the next assemble() on; the masses stay.
+  void set_elasticity(double young, double poisson, double alpha, double beta);
+  const TissueMaterial& material() const { return material_; }
+
   // [m], [m/s], world, per node. Writer: whoever steps this tissue.
   std::vector<dvec3>& position() { return x_; }
   std::vector<dvec3>& velocity() { return v_; }

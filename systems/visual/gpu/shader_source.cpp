@@ -11,13 +11,26 @@
 #include <sstream>
 #include <string_view>
 
+#include "systems/visual/gpu/embedded_shaders.h"
+
 namespace pliant::gpu {
 namespace {
 
-std::optional<std::string> read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
+std::optional<std::string> read_text(const std::string& name) {
+  if (const std::filesystem::path folder = shader_folder(); !folder.empty()) {
+    std::ifstream file(folder / name, std::ios::binary);
+    if (!file) return std::nullopt;
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  }
+  for (const EmbeddedShader* shader = kEmbeddedShaders; shader->name; ++shader)
+    if (name == shader->name) return shader->text;
+  return std::nullopt;
+}
+
+// Where they are looked for.
+std::string place() {
+  const std::filesystem::path folder = shader_folder();
+  return folder.empty() ? "among those that are compiled in" : "in '" + folder.string() + "'";
 }
 
 // The x.glsl of a line `#include "x.glsl"`, or nothing.
@@ -44,11 +57,11 @@ Status append(ShaderSource& source, const std::string& name, const std::string& 
       continue;
     }
     if (std::find(source.files.begin(), source.files.end(), *wanted) == source.files.end()) {
-      const std::optional<std::string> included = read_text(shader_folder() / *wanted);
+      const std::optional<std::string> included = read_text(*wanted);
       if (!included)
-        return Error{fmt::format("{}:{}", name, n), fmt::format("there is no shader file '{}' in '{}'; correct the "
-                                                                "include, or set PLIANT_SHADERS",
-                                                                *wanted, shader_folder().string())};
+        return Error{fmt::format("{}:{}", name, n),
+                     fmt::format("there is no shader file '{}' {}; correct the include, or set PLIANT_SHADERS", *wanted,
+                                 place())};
       if (Status done = append(source, *wanted, *included); !done) return done;
     }
     source.text += fmt::format("#line {} {}\n", n + 1, number);
@@ -59,17 +72,14 @@ Status append(ShaderSource& source, const std::string& name, const std::string& 
 }  // namespace
 
 std::filesystem::path shader_folder() {
-  if (const char* chosen = std::getenv("PLIANT_SHADERS")) return chosen;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(PLIANT_SHADER_DIR, ignored)) return PLIANT_SHADER_DIR;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  return program.parent_path().parent_path() / "share/pliant/shaders";
+  const char* const chosen = std::getenv("PLIANT_SHADERS");
+  return chosen ? chosen : "";
 }
 
 Result<ShaderSource> load_shader(const std::string& name) {
-  const std::filesystem::path path = shader_folder() / name;
-  const std::optional<std::string> text = read_text(path);
-  if (!text) return Error{path.string(), "cannot read this shader; reinstall, or set PLIANT_SHADERS to the folder"};
+  const std::optional<std::string> text = read_text(name);
+  if (!text)
+    return Error{name, "there is no such shader " + place() + "; unset PLIANT_SHADERS, or set it to their folder"};
   return expand_shader(name, *text);
 }
 

@@ -16,12 +16,12 @@ struct ShaderSource {
   std::vector<std::string> files;  // the number in a #line directive -> file
 };
 
-// $PLIANT_SHADERS, else the source tree's shaders/, else ../share/pliant/shaders beside the executable.
+// $PLIANT_SHADERS, to try other shaders than those that are compiled in; empty: it is not set.
 std::filesystem::path shader_folder();
 
-// Reads `name` from the shader folder.
+// `name` from the shader folder where there is one, else as it was compiled in.
 Result<ShaderSource> load_shader(const std::string& name);
-// The same for text that is not a file; its includes come from the shader folder.
+// The same for text of one's own; its includes are found as load_shader finds them.
 Result<ShaderSource> expand_shader(const std::string& name, const std::string& text);
 
 // "3:12(5): error: ..." (Mesa) and "3(12) : error ..." (NVIDIA) become "light.glsl:12: error: ...".

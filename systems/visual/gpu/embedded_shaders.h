@@ -1,0 +1,12 @@
+// The files of shaders/ as they were when this was built (cmake/embed_shaders.cmake).
+#pragma once
+
+namespace pliant::gpu {
+
+struct EmbeddedShader {
+  const char* name;  // within shaders/: "shared/field.glsl"
+  const char* text;
+};
+extern const EmbeddedShader kEmbeddedShaders[];  // the last has no name
+
+}  // namespace pliant::gpu
