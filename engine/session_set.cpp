@@ -120,9 +120,6 @@ namespace {
 Result<SessionChange> change_surface(Session::Parts& p, const std::string& name, const std::string& where,
                                      Deformable& now) {
   const Deformable& before = p.surfaces.at(name);
-  if (before.young > 0.0 && now.young == before.young && now.stiffness != before.stiffness &&
-      now.poisson == before.poisson && now.thickness == before.thickness)
-    return Error{where, "follows from its Young's modulus; set `young` instead"};
   auto setting = surface_setting(p, where, before, now);
   if (!setting) return setting.error();
   if (Status s = check(now, "`" + name + "`"); !s) return s.error();
@@ -238,6 +235,8 @@ Status set_value(Session::Parts& p, const std::string& name, const std::string& 
   const std::string where = "`" + name + "`: " + key_name;
   if (const std::string fault = check_value(*key, value); !fault.empty()) return Error{where, fault};
   const LevelNode before = named->node;
+  if (before.deformable && before.deformable->young > 0.0 && key->name == "stiffness")
+    return Error{where, "follows from its Young's modulus; set `young` instead"};
   key->set(&named->node, value);
   if (const std::string fault = extension->settle(&named->node); !fault.empty()) return Error{where, fault};
   const Result<SessionChange> change = change_of(p, name, where, *extension, named->node);

@@ -53,9 +53,11 @@ static_assert(std::is_same_v<vec3, glm::vec<3, float, glm::packed_highp>> &&
                   std::is_same_v<dquat, glm::qua<double, glm::packed_highp>>,
               "pliant: glm's vectors must be packed and of high precision, as the library was compiled; compile this "
               "file without GLM_PRECISION_... and GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
-static_assert(std::is_trivially_copyable_v<vec3> && GLM_CONFIG_SWIZZLE != GLM_SWIZZLE_OPERATOR,
-              "pliant: glm's swizzle operators change how a vector is handed over; compile this file without "
-              "GLM_FORCE_SWIZZLE, or with GLM_FORCE_XYZW_ONLY");
+static_assert(std::is_trivially_copyable_v<vec3> && std::is_trivially_copyable_v<dquat> &&
+                  GLM_CONFIG_SWIZZLE != GLM_SWIZZLE_OPERATOR,
+              "pliant: glm's vectors must be plain numbers, or a call would hand them over in another way than the "
+              "library was compiled for; compile this file without GLM_FORCE_CTOR_INIT, GLM_FORCE_CXX98 and "
+              "GLM_FORCE_SWIZZLE");
 
 // An axis-aligned box; empty until something is added.
 struct Box {

@@ -22,7 +22,7 @@ Box seen_from(const mat4& view, const Box& scene) {
 }
 
 mat4 looking(vec3 eye, vec3 forward) {
-  return glm::lookAt(eye, eye + forward, std::abs(forward.y) < 0.99f ? vec3(0, 1, 0) : vec3(1, 0, 0));
+  return glm::lookAtRH(eye, eye + forward, std::abs(forward.y) < 0.99f ? vec3(0, 1, 0) : vec3(1, 0, 0));
 }
 
 }  // namespace
@@ -46,12 +46,12 @@ bool Shadow::place(const LampConstants& lamp, const Box& scene, FrameConstants& 
     const float outer = std::acos(glm::clamp(-lamp.more.x / lamp.axis.w, 0.03f, 0.9999f));
     const float far = -seen.min.z, near = std::max(-seen.max.z, 0.01f * far);
     if (far <= 0) return false;
-    projection = glm::perspective(2 * outer, 1.0f, near, far);
+    projection = glm::perspectiveRH_NO(2 * outer, 1.0f, near, far);
     width = std::tan(outer) * (near + far);
   } else {
     view = looking(box.center(), -vec3(lamp.place));
     const Box seen = seen_from(view, box);
-    projection = glm::ortho(seen.min.x, seen.max.x, seen.min.y, seen.max.y, -seen.max.z, -seen.min.z);
+    projection = glm::orthoRH_NO(seen.min.x, seen.max.x, seen.min.y, seen.max.y, -seen.max.z, -seen.min.z);
     width = std::max(seen.size().x, seen.size().y);
   }
   const mat4 to_texture = glm::translate(mat4(1), vec3(0.5f)) * glm::scale(mat4(1), vec3(0.5f));

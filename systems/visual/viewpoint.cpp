@@ -76,7 +76,7 @@ mat4 view_of(const Viewpoint& viewpoint) {
   // Seen straight along `up`, any other axis serves as well.
   const dvec3 forward = viewpoint.target - viewpoint.eye;
   const bool along = length(cross(forward, viewpoint.up)) < 1e-6 * length(forward);
-  return mat4(glm::lookAt(viewpoint.eye, viewpoint.target, along ? dvec3(0, 0, -1) : viewpoint.up));
+  return mat4(glm::lookAtRH(viewpoint.eye, viewpoint.target, along ? dvec3(0, 0, -1) : viewpoint.up));
 }
 
 mat4 projection_of(const Viewpoint& viewpoint, const Box& scene, float aspect) {
@@ -84,7 +84,7 @@ mat4 projection_of(const Viewpoint& viewpoint, const Box& scene, float aspect) {
   const float away = static_cast<float>(length(dvec3(scene.center()) - viewpoint.eye));
   const float far = away + 2.0f * scene.diagonal();
   const float near = std::max(away - 2.0f * scene.diagonal(), 2e-3f * far);
-  return glm::perspective(viewpoint.yfov, aspect, near, far);
+  return glm::perspectiveRH_NO(viewpoint.yfov, aspect, near, far);
 }
 
 }  // namespace pliant

@@ -100,7 +100,7 @@ TEST(Session, ParametersChangeBetweenTicksAndStayThroughARestart) {
   ASSERT_TRUE(session.set("finger", "max_force", 0.4));
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(session.step());
   EXPECT_NEAR(session.reading("finger")->force.y, 0.4, 1e-9);
-  EXPECT_THAT(session.set("tissue", "stifness", 1.0).error().message(), HasSubstr("keys are: stiffness,"));
+  EXPECT_THAT(session.set("tissue", "stifness", 1.0).error().message(), HasSubstr("did you mean stiffness?"));
   EXPECT_FALSE(session.set("tissue", "stiffness", -1.0));
   EXPECT_FALSE(session.set("tissue", "stiffness", std::nan("")));
   EXPECT_FALSE(session.set("nothing", "stiffness", 1.0));
