@@ -32,6 +32,7 @@ LongWork::LongWork() : last_(now_ns()) {}
 void LongWork::say(const std::string& doing, double done) {
   const std::uint64_t now = now_ns();
   if (WatchedWork* const watch = watch_of_thread) {
+    watch->doing_ = doing;
     if (watch->told_ > 0 && now - watch->told_ < kBetweenTellings) return;
     watch->told_ = now;
     const double share = watch->from_ + std::clamp(done, 0.0, 1.0) * (watch->to_ - watch->from_);
@@ -42,6 +43,12 @@ void LongWork::say(const std::string& doing, double done) {
   if (now - last_ < kBetweenLines) return;
   last_ = now;
   log_sentence(LogLevel::kInfo, "still " + doing);
+}
+
+void check_in() {
+  if (!watch_of_thread) return;
+  const std::string doing = watch_of_thread->doing_;
+  LongWork().say(doing);
 }
 
 }  // namespace pliant

@@ -23,10 +23,12 @@ class WatchedWork {
  private:
   friend class LongWork;
   friend void begin_part(double from, double to);
+  friend void check_in();
   const OpenProgress& progress_;
   WatchedWork* before_;
   double from_ = 0.0, to_ = 1.0;  // [1] of the whole: the part under way
   double share_ = 0.0;            // [1] as it was told last
+  std::string doing_;             // the same
   std::uint64_t told_ = 0;        // [ns] when
 };
 
@@ -49,5 +51,8 @@ class LongWork {
 inline void check_in(const std::string& doing, double done = -1.0) {
   LongWork().say(doing, done);
 }
+
+// Within what was said last.
+void check_in();
 
 }  // namespace pliant

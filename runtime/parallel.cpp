@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/long_work.h"
+
 namespace pliant {
 namespace {
 std::atomic<unsigned> g_thread_count{0};
@@ -30,7 +32,10 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
   std::mutex mutex;  // of it
   const auto work = [&] {
     try {
-      for (std::size_t run = next++; run < runs; run = next++) body(run * grain, std::min(count, (run + 1) * grain));
+      for (std::size_t run = next++; run < runs; run = next++) {
+        body(run * grain, std::min(count, (run + 1) * grain));
+        check_in();  // of the thread that called: nobody watches the others
+      }
     } catch (...) {
       next = runs;  // the others end after what they are at
       const std::lock_guard lock(mutex);

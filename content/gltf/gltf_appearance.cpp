@@ -4,6 +4,7 @@
 
 #include "content/files/image.h"
 #include "content/keys/json_integer.h"
+#include "runtime/long_work.h"
 
 namespace pliant {
 
@@ -130,6 +131,7 @@ Status read_images(const SourceDocument& document, Level& level) {
       level.images.push_back({name, 1, 1, {255, 255, 255, 255}});
       continue;
     }
+    check_in("reading pictures");
     Result<Image> image = decode_image(document.images[i], "picture");
     if (!image) return Error{fmt::format("/images/{}", i), image.error().message()};
     image->name = std::move(name);

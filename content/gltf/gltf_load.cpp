@@ -15,6 +15,7 @@
 #include "content/level_file.h"
 #include "content/tets/tet_file.h"
 #include "content/tets/tet_level.h"
+#include "runtime/long_work.h"
 
 namespace pliant {
 
@@ -172,6 +173,7 @@ Status fill(SourceDocument& document, Level& level) {
     level.materials.push_back(material_of(document, m, level));
   MeshReader meshes(document);
   for (std::size_t m = 0; m < document.model.meshes.size(); ++m) {
+    check_in("reading meshes", static_cast<double>(m) / static_cast<double>(document.model.meshes.size()));
     Result<LevelMesh> mesh = meshes.read(m);
     if (!mesh) return mesh.error();
     mesh->source = static_cast<std::int32_t>(m);
@@ -194,7 +196,10 @@ Status fill(SourceDocument& document, Level& level) {
   level.about = about_of(document.json);
   level.document_notes = of_document;
   document.nodes_as_read = level.nodes;
-  for (const LevelMesh& mesh : level.meshes) document.meshes_as_read.push_back(fingerprint(mesh));
+  for (const LevelMesh& mesh : level.meshes) {
+    check_in("reading meshes", 1.0);
+    document.meshes_as_read.push_back(fingerprint(mesh));
+  }
   for (const LevelAnimation& animation : level.animations) {
     std::vector<ChannelAsRead>& channels = document.animations_as_read.emplace_back();
     for (const LevelChannel& channel : animation.channels)

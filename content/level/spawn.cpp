@@ -108,6 +108,8 @@ class Spawner {
             static_cast<std::int32_t>(n)};
   }
 
+  double share_of(std::size_t n) const { return static_cast<double>(n) / static_cast<double>(level_.nodes.size()); }
+
   Status node(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     const auto parent = static_cast<std::size_t>(node.parent);
@@ -196,7 +198,7 @@ class Spawner {
     if (mesh)
       if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s;
     const Pose pose = rigid_part(motions_.world[n]);
-    progress_.say("preparing meshes, now `" + node.name + "`");
+    progress_.say("preparing meshes, now `" + node.name + "`", share_of(n));
     Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
     if (!parts) return at(n, parts.error().message());
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
@@ -290,7 +292,7 @@ class Spawner {
       if (serves(b, wanted)) return b;
 
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
-    progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`");
+    progress_.say("preparing meshes, now `" + (mesh.name.empty() ? node.name : mesh.name) + "`", share_of(n));
     if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s.error();
     Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, matrix_of(shape),
                                          {shape.crease_angle, wanted.dents, shape.touchable});

@@ -17,6 +17,7 @@
 #include "content/mesh/painted.h"
 #include "content/mesh/touch_mesh.h"
 #include "runtime/hash.h"
+#include "runtime/long_work.h"
 
 namespace pliant {
 namespace {
@@ -111,8 +112,11 @@ Status finish(std::span<const Primitive> primitives, const mat4& to_object, cons
               const Welded& welded, BuiltMesh& built) {
   Mesh& mesh = built.mesh;
   mesh.mean_edge = static_cast<float>(mean_edge_length(mesh));
+  check_in();
   mesh.tree = build_tree(mesh);
+  check_in();
   build_zones(mesh);
+  check_in();
   std::vector<float>* const factors[] = {&mesh.stiffness_factor,  &mesh.friction_factor, &mesh.damping_factor,
                                          &mesh.relaxation_factor, &built.pinned,         &built.handle};
   static_assert(std::size(factors) == kPainted.size());  // in its order
@@ -179,11 +183,16 @@ Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
   Mesh& mesh = built.mesh;
   mesh.name = coarse.mesh.name;
   MeshReport of_pieces;  // what the file lacked is in the report of the coarse mesh
+  check_in();
   const Welded welded = weld(*gathered, of_pieces);
+  check_in();
   lay_out(welded, mesh);
   const Corners corners = corners_of(mesh);
+  check_in();
   connect_triangles(mesh, corners, of_pieces);
+  check_in();
   measure_vertices(mesh, corners, of_pieces);
+  check_in();
   take_creases(finer, welded, corners, mesh);
   mesh.of_source = sources_in(mesh, coarse.mesh);
   built.report = coarse.report;
@@ -197,7 +206,10 @@ Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
 Result<TouchMesh> build_touch_mesh(const std::string& name, std::span<const Primitive> primitives,
                                    const mat4& to_object, const MeshOptions& options, const std::atomic<bool>* stop) {
   const Error stopped{"mesh `" + name + "`", "reading it was stopped"};
-  const auto stops = [&] { return stop != nullptr && stop->load(std::memory_order_relaxed); };
+  const auto stops = [&] {
+    check_in();
+    return stop != nullptr && stop->load(std::memory_order_relaxed);
+  };
   Result<Gathered> gathered = gather(name, primitives, to_object);
   if (!gathered) return gathered.error();
   TouchMesh touch;
@@ -239,6 +251,7 @@ Result<BuiltMesh> build_mesh(const std::string& name, std::span<const Primitive>
   built.mesh = std::move(touch->mesh);
   built.report = touch->report;
   touch->corners = {};
+  check_in();
   if (options.dents) {
     const FinerMesh finer = make_finer(primitives, to_object, touch->gathered, touch->welded, built.mesh,
                                        options.dents->radius(built.mesh));

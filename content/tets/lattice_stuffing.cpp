@@ -36,8 +36,10 @@ class Stuffer {
   Result<Stuffing> run() {
     if (Status s = find_sides(); !s) return s.error();
     find_cuts();
+    report();
     if (stop_.stop_requested()) return stopped();
     warp();
+    report();
     fill();
     return std::move(out_);
   }

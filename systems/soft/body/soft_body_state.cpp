@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/assert.h"
+#include "runtime/long_work.h"
 
 namespace pliant {
 namespace {
@@ -135,6 +136,7 @@ void SoftBodyState::settle(dvec3 gravity) {
   const RigidMotion there = handle_->motion();
   const double small = kSettled * length(box_size(tets_));
   for (int i = 0; i < kSettleSteps; ++i) {
+    check_in();
     lead_handle(there);
     free_step(kSettleStep, gravity);
     if (!solvable_ || !velocity_.allFinite()) break;  // the first step will say so
