@@ -161,7 +161,9 @@ Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, c
   SessionChange change;
   change.entity = p.find_effector(name)->entity;
   if (now.coupling != before.coupling) {
-    HandleParameters handle = probe_handle(now, p.world.registry.get<HapticDevice>(p.find_effector(name)->device));
+    HapticDevice device;
+    static_cast<DeviceParameters&>(device) = p.devices.at(name);
+    const HandleParameters handle = probe_handle(now, device);
     change.touch.push_back({change.entity, coupling_of(handle)});
     change.soft.push_back({change.entity, coupling_of(handle)});
     return change;
