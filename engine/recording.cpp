@@ -155,7 +155,9 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
     if (std::memcmp(magic, kMagic, sizeof kMagic) != 0)
       return Error{file.string(), "is no recording, so it is not replaced; name another, or move it away"};
   }
-  remove_abandoned(file, std::string_view(kMagic, sizeof kMagic));
+  const FolderLock lock(file.parent_path());  // until ours begins as a recording does
+  if (remove_abandoned(file, std::string_view(kMagic, sizeof kMagic)))
+    return Error{file.string(), "is being recorded into by another run; give each its own file"};
   RecordingWriter writer;
   writer.file_ = file;
   writer.replace_ = replace;

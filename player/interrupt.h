@@ -16,6 +16,10 @@ struct InterruptWords {
   const char* third = "quit at once; results of this run were not written";
 };
 
+// Of verbs that write all of their files or none.
+inline constexpr InterruptWords kAllOrNothing{"ending; press Ctrl-C again to quit at once",
+                                              "quit at once; nothing was written"};
+
 // From its beginning to its end SIGINT, SIGTERM and SIGHUP only request the end of the run, however often they come.
 // Only the third Ctrl-C ends the process at once, without a report; the second one says so. Signals that arrive
 // together (from the terminal and from a program that forwards it) count as one Ctrl-C. SIGHUP and SIGINT stay ignored

@@ -62,6 +62,14 @@ std::string why_not_written(int error) {
   return fmt::format("{}; {}", std::generic_category().message(error), cure);
 }
 
+bool wants_room(const std::string& sentence) {
+  if (sentence.find("check the space left") != std::string::npos) return true;
+  constexpr int kFull[] = {ENOSPC, EDQUOT, EFBIG};
+  return std::any_of(std::begin(kFull), std::end(kFull), [&](int error) {
+    return sentence.find(std::generic_category().message(error)) != std::string::npos;
+  });
+}
+
 fs::path numbered(const fs::path& path, int number) {
   return fs::path(path).replace_filename(
       fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string()));

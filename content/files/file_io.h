@@ -21,6 +21,9 @@ Result<Bytes> read_beginning(const std::filesystem::path& path, const Limit& lim
 
 // Why a file cannot be written, and the cure, of an `errno`.
 std::string why_not_written(int error);
+// Whether a sentence that came of it says that a disk, a quota or a limit on files was full: with more room the same
+// would have been written.
+bool wants_room(const std::string& sentence);
 
 // "a.glb" -> "a-2.glb": where something goes whose place is taken.
 std::filesystem::path numbered(const std::filesystem::path& path, int number);

@@ -94,7 +94,8 @@ Status GrowingFile::close() {
   return Done{};
 }
 
-void remove_abandoned(const fs::path& file, std::string_view magic) {
+bool remove_abandoned(const fs::path& file, std::string_view magic) {
+  bool alive = false;
   const std::string begin = file.filename().string() + ".partial-";
   std::vector<fs::path> found;
   std::error_code error;
@@ -109,11 +110,25 @@ void remove_abandoned(const fs::path& file, std::string_view magic) {
     const int opened = ::open(each.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (opened < 0) continue;
     std::string bytes(magic.size(), '\0');
-    if (::read(opened, bytes.data(), bytes.size()) == static_cast<ssize_t>(magic.size()) && bytes == magic &&
-        ::flock(opened, LOCK_EX | LOCK_NB) == 0)
-      fs::remove(each, error);
+    if (::read(opened, bytes.data(), bytes.size()) == static_cast<ssize_t>(magic.size()) && bytes == magic) {
+      if (::flock(opened, LOCK_EX | LOCK_NB) == 0)
+        fs::remove(each, error);
+      else
+        alive = alive || errno == EWOULDBLOCK;
+    }
     ::close(opened);
   }
+  return alive;
+}
+
+FolderLock::FolderLock(const fs::path& folder)
+    : folder_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  while (folder_ >= 0 && ::flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (folder_ >= 0) ::close(folder_);
 }
 
 }  // namespace pliant

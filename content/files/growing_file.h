@@ -48,7 +48,20 @@ class GrowingFile {
 };
 
 // Removes what a killed process left aside of `file`: `file`.partial-PID and `file`.partial-PID-N, if it begins with
-// `magic` and nobody has it open.
-void remove_abandoned(const std::filesystem::path& file, std::string_view magic);
+// `magic` and nobody has it open. True: somebody has one open, and writes into `file` now.
+bool remove_abandoned(const std::filesystem::path& file, std::string_view magic);
+
+// Locks a folder while it lives, as far as its file system can: between a look and the file that is made after it,
+// nobody else looks.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock();
+
+ private:
+  int folder_;
+};
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 // weights. Every accessor is read once; what the buffers do not hold (placeholders) cannot be wrong.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -9,6 +10,7 @@
 #include "components/math.h"
 #include "content/gltf/gltf_accessor.h"
 #include "content/gltf/gltf_check.h"
+#include "content/gltf/gltf_mend.h"
 
 namespace pliant {
 
@@ -100,19 +102,23 @@ class DataCheck {
   void unit_vectors(std::size_t i, std::size_t width, bool sign) {
     const std::vector<float> values = read_floats(document_, i);
     // Exporters write zeros where triangles are degenerate: mend_directions makes them anew.
-    const auto is_zero = [&](std::size_t e) {
-      return values[e] == 0.0f && values[e + 1] == 0.0f && values[e + 2] == 0.0f;
-    };
+    const auto at = [&](std::size_t e) { return vec3(values[e], values[e + 1], values[e + 2]); };
     std::size_t zeros = 0, first = 0;
-    for (std::size_t e = 0; e + width <= values.size(); e += width)
-      if (is_zero(e) && zeros++ == 0) first = e / width;
+    double longest = 0.0;
+    for (std::size_t e = 0; e + width <= values.size(); e += width) {
+      if (has_direction(at(e))) continue;
+      if (zeros++ == 0) first = e / width;
+      longest = std::max(longest, length(dvec3(at(e))));
+    }
     zero_directions_ |= zeros > 0;
     if (zeros > 0)
-      warn(pointer_of(i), fmt::format("holds {} vector{} of length 0, the first in element {}; made anew", zeros,
-                                      zeros == 1 ? "" : "s", first));
+      warn(pointer_of(i),
+           fmt::format("holds {} vector{} of length 0{}, the first in element {}; made anew", zeros,
+                       zeros == 1 ? "" : "s",
+                       longest > 0.0 ? fmt::format(" or nearly so (at most {:.3g})", longest) : "", first));
     for (std::size_t e = 0; e + width <= values.size(); e += width) {
-      if (is_zero(e)) continue;
-      const float norm = length(vec3(values[e], values[e + 1], values[e + 2]));
+      if (!has_direction(at(e))) continue;
+      const float norm = length(at(e));
       if (std::abs(norm - 1.0f) > kUnitTolerance)
         return error(pointer_of(i),
                      fmt::format("holds a vector of length {:.3g} instead of 1 in element {}", norm, e / width));
@@ -137,6 +143,7 @@ class DataCheck {
             break;
           }
     weights(attributes, pointer);
+    joints(attributes, pointer);
     if (!primitive.contains("indices") || attributes.empty()) return;
     const std::size_t i = primitive["indices"].get<std::size_t>();
     const std::uint64_t vertices = accessor(attributes.begin()->get<std::size_t>())["count"].get<std::uint64_t>();
@@ -177,18 +184,47 @@ class DataCheck {
                     fmt::format("have weights that sum to {:.3g} instead of 1 in element {}; scaled", sums[v], v));
   }
 
+  // Skins of other sizes may share the accessor: its largest number is looked up once.
   void skinned(const Json& node) {
     const std::size_t joints = json_["skins"][node["skin"].get<std::size_t>()]["joints"].size();
     for (const Json& primitive : json_["meshes"][node["mesh"].get<std::size_t>()]["primitives"])
       for (const auto& [name, value] : primitive["attributes"].items()) {
         const std::size_t i = value.get<std::size_t>();
-        if (name.rfind("JOINTS_", 0) != 0 || !first(i, Role::kJoints)) continue;
-        for (const std::uint32_t joint : read_integers(document_, i))
-          if (joint >= joints) {
-            error(pointer_of(i), fmt::format("refers to joint {} of {}", joint, joints));
-            break;
-          }
+        if (name.rfind("JOINTS_", 0) != 0) continue;
+        if (first(i, Role::kJoints)) {
+          std::uint32_t& largest = largest_joint_[i];
+          for (const std::uint32_t joint : read_integers(document_, i)) largest = std::max(largest, joint);
+        }
+        if (const auto largest = largest_joint_.find(i); largest != largest_joint_.end() && largest->second >= joints)
+          error(pointer_of(i), fmt::format("refers to joint {} of {}", largest->second, joints));
       }
+  }
+
+  // A joint moves a vertex with one weight (3.7.3.3), within a set and between sets. Skins are read at rest, where the
+  // sum is as good.
+  void joints(const Json& attributes, const std::string& pointer) {
+    std::vector<std::pair<std::vector<std::uint32_t>, std::vector<float>>> sets;
+    std::set<std::size_t> read;
+    for (int set = 0; attributes.contains(fmt::format("JOINTS_{}", set)); ++set) {
+      const std::size_t joint = attributes[fmt::format("JOINTS_{}", set)].get<std::size_t>(),
+                        weight = attributes[fmt::format("WEIGHTS_{}", set)].get<std::size_t>();
+      if (!has_data(document_, joint) || !has_data(document_, weight) || !read.insert(weight).second) return;
+      if (set == 0 && !joints_seen_.insert({joint, weight}).second) return;
+      sets.emplace_back(read_integers(document_, joint), read_floats(document_, weight));
+    }
+    if (sets.empty()) return;
+    std::vector<std::uint32_t> here;
+    for (std::size_t v = 0; 4 * v + 4 <= sets.front().first.size(); ++v) {
+      here.clear();
+      for (const auto& [joint, weight] : sets)
+        for (std::size_t k = 4 * v; k < 4 * v + 4 && k < std::min(joint.size(), weight.size()); ++k) {
+          if (weight[k] == 0.0f) continue;
+          if (std::find(here.begin(), here.end(), joint[k]) != here.end())
+            return warn(pointer + "/attributes",
+                        fmt::format("give joint {} two weights in element {}; added up", joint[k], v));
+          here.push_back(joint[k]);
+        }
+    }
   }
 
   void bind_matrices(std::size_t i) {
@@ -240,7 +276,8 @@ class DataCheck {
   std::set<std::pair<std::size_t, Role>> seen_;
   std::set<std::size_t> weights_seen_;
   bool zero_directions_ = false;
-  std::map<std::size_t, std::uint32_t> largest_index_;
+  std::map<std::size_t, std::uint32_t> largest_index_, largest_joint_;
+  std::set<std::pair<std::size_t, std::size_t>> joints_seen_;  // JOINTS_0 and WEIGHTS_0
 };
 
 }  // namespace

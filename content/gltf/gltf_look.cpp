@@ -19,6 +19,14 @@ void check_images(const Json& json, Meaning& check) {
   }
   const Json& textures = array_of(json, "textures");
   for (std::size_t i = 0; i < textures.size(); ++i) {
+    for (const auto& [name, type] :
+         {std::pair("EXT_texture_webp", "image/webp"), {"KHR_texture_basisu", "image/ktx2"}}) {
+      const Json* extension = extension_of(textures[i], name);
+      if (!extension || !extension->contains("source")) continue;
+      if (value_of<std::string>(images[(*extension)["source"].get<std::size_t>()], "mimeType", type) != type)
+        check.error(fmt::format("/textures/{}/extensions/{}/source", i, name),
+                    std::string("is of another type than ") + type + "; convert the picture");
+    }
     if (!textures[i].contains("source")) continue;
     const std::string mime =
         value_of<std::string>(images[textures[i]["source"].get<std::size_t>()], "mimeType", "image/png");
@@ -50,7 +58,18 @@ void check_cameras(const Json& json, Meaning& check) {
   }
 }
 
+// KHR_materials_ior: an index of refraction is 1 at least, or 0.
+void check_materials(const Json& json, Meaning& check) {
+  const Json& materials = array_of(json, "materials");
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    if (const Json* extension = extension_of(materials[i], "KHR_materials_ior"))
+      if (const double ior = value_of(*extension, "ior", 1.5); ior > 0.0 && ior < 1.0)
+        check.error(fmt::format("/materials/{}/extensions/KHR_materials_ior/ior", i),
+                    "is between 0 and 1; give 1 or more, or 0 for none");
+}
+
 void check_lights_and_variants(const Json& json, Meaning& check) {
+  check_materials(json, check);
   if (const Json* extension = extension_of(json, "KHR_lights_punctual")) {
     const Json& lights = (*extension)["lights"];
     for (std::size_t i = 0; i < lights.size(); ++i) {

@@ -223,8 +223,6 @@ void check_skins(const Json& json, const std::vector<std::int32_t>& parent, Mean
     std::set<std::int32_t> roots;
     for (const Json& joint : joints) roots.insert(root_of(joint.get<std::int32_t>()));
     if (roots.size() > 1) check.error(pointer + "/joints", "have no common root");
-    if (skins[s].contains("skeleton") && roots.count(root_of(skins[s]["skeleton"].get<std::int32_t>())) == 0)
-      check.error(pointer + "/skeleton", "is not above the joints");
     if (!skins[s].contains("inverseBindMatrices")) continue;
     const std::size_t index = skins[s]["inverseBindMatrices"].get<std::size_t>();
     const Json& accessor = json["accessors"][index];
@@ -254,6 +252,7 @@ void Meaning::use(std::size_t accessor, BufferUse use, const std::string& pointe
 
 void Meaning::use_view(std::size_t view, BufferUse use, const std::string& pointer) {
   const Json& json = json_["bufferViews"][view];
+  if (use == BufferUse::kValues) use = BufferUse::kTimes;
   const auto found = view_use_.emplace(view, use);
   if (!found.second && found.first->second != use)
     error(pointer, "stands on a bufferView that already serves another end");
@@ -274,6 +273,7 @@ void check_meaning(const Json& json, Findings& findings) {
   if (any_error(findings)) return;  // what follows walks the hierarchy and reads layouts
   check_nodes(json, check);
   check_skins(json, parent, check);
+  check_skeletons(json, parent, check);
   check_images(json, check);
   check_cameras(json, check);
   check_lights_and_variants(json, check);

@@ -1,14 +1,17 @@
 // Shared by the files that check meaning: the list of findings, and what each bufferView and accessor serves.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "content/gltf/gltf_document.h"
 
 namespace pliant {
 
-enum class BufferUse { kVertices, kIndices, kMatrices, kImage, kOther };
+// Times and values of animations may share a bufferView, but no accessor.
+enum class BufferUse { kVertices, kIndices, kMatrices, kImage, kTimes, kValues };
 
 class Meaning {
  public:
@@ -25,6 +28,8 @@ class Meaning {
   std::map<std::size_t, BufferUse> accessor_use_, view_use_;
 };
 
+// `parent`: of every node, -1 for roots. Skins of a scene have their joints in it, below their skeleton.
+void check_skeletons(const Json& json, const std::vector<std::int32_t>& parent, Meaning& check);
 void check_images(const Json& json, Meaning& check);
 void check_cameras(const Json& json, Meaning& check);
 void check_lights_and_variants(const Json& json, Meaning& check);

@@ -12,10 +12,6 @@ namespace pliant {
 
 namespace {
 
-bool is_zero(vec3 v) {
-  return v.x == 0.0f && v.y == 0.0f && v.z == 0.0f;
-}
-
 std::vector<vec3> directions(const std::vector<float>& values, std::size_t width) {
   std::vector<vec3> out(values.size() / width);
   for (std::size_t i = 0; i < out.size(); ++i)
@@ -23,8 +19,8 @@ std::vector<vec3> directions(const std::vector<float>& values, std::size_t width
   return out;
 }
 
-bool any_zero(const std::vector<vec3>& values) {
-  return std::any_of(values.begin(), values.end(), is_zero);
+bool all_have_direction(const std::vector<vec3>& values) {
+  return std::all_of(values.begin(), values.end(), has_direction);
 }
 
 // Floats instead of what an accessor stood on: in its place, or in a buffer of their own.
@@ -70,12 +66,12 @@ class Mender {
     const std::size_t at = attributes["NORMAL"].get<std::size_t>();
     const std::vector<float> values = read_floats(document_, at);
     std::vector<vec3> normal = directions(values, 3);
-    if (std::all_of(normal.begin(), normal.end(), is_zero)) {  // as if there were none
+    if (std::none_of(normal.begin(), normal.end(), has_direction)) {  // as if there were none
       attributes.erase("NORMAL");
       attributes.erase("TANGENT");
       return;
     }
-    if (any_zero(normal) && mode >= 4 && readable(attributes, "POSITION")) {
+    if (!all_have_direction(normal) && mode >= 4 && readable(attributes, "POSITION")) {
       const std::vector<vec3> position =
           directions(read_floats(document_, attributes["POSITION"].get<std::size_t>()), 3);
       mend_normals(position, triangles(primitive, mode, position.size()), normal);
@@ -102,12 +98,11 @@ class Mender {
 
   void tangents(std::size_t at, const std::vector<vec3>& normal) {
     std::vector<float> values = read_floats(document_, at);
-    if (!any_zero(directions(values, 4))) return;
+    if (all_have_direction(directions(values, 4))) return;
     for (std::size_t i = 0; 4 * i < values.size(); ++i) {
       float* t = &values[4 * i];
       vec3 direction(t[0], t[1], t[2]);
-      const float size = length(direction);
-      direction = size > 0.0f && std::isfinite(size) ? direction / size : perpendicular(normal[i]);
+      direction = has_direction(direction) ? glm::normalize(direction) : perpendicular(normal[i]);
       t[0] = direction.x, t[1] = direction.y, t[2] = direction.z;
       t[3] = t[3] < 0.0f ? -1.0f : 1.0f;
     }
@@ -124,7 +119,7 @@ std::size_t mend_normals(std::span<const vec3> position, std::span<const std::ui
   std::vector<dvec3> sum(normal.size(), dvec3(0));
   std::vector<bool> zero(normal.size());
   std::size_t count = 0;
-  for (std::size_t v = 0; v < normal.size(); ++v) count += zero[v] = is_zero(normal[v]);
+  for (std::size_t v = 0; v < normal.size(); ++v) count += zero[v] = !has_direction(normal[v]);
   if (count == 0) return 0;
   if (count == normal.size()) {
     normal.clear();
@@ -146,15 +141,15 @@ std::size_t mend_normals(std::span<const vec3> position, std::span<const std::ui
   for (std::size_t v = 0; v < normal.size(); ++v) {
     const dvec3 direction = zero[v] ? sum[v] : dvec3(normal[v]);
     const double size = length(direction);
-    if (size > 0.0 && std::isfinite(size)) normal[v] = vec3(direction / size);
+    normal[v] = size > 0.0 && std::isfinite(size) ? vec3(direction / size) : vec3(0);
   }
   each_triangle([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     for (const std::uint32_t v : {a, b, c})
       for (const std::uint32_t other : {a, b, c})
-        if (is_zero(normal[v])) normal[v] = normal[other];
+        if (!has_direction(normal[v])) normal[v] = normal[other];
   });
   for (vec3& each : normal)
-    if (is_zero(each)) each = vec3(0, 1, 0);
+    if (!has_direction(each)) each = vec3(0, 1, 0);
   return count;
 }
 

@@ -218,6 +218,7 @@ void check_meshes(const Json& json, Meaning& check) {
 // What animations refer to must be sound also where they are not played: saving keeps them.
 void check_animations(const Json& json, Meaning& check) {
   const Json& animations = array_of(json, "animations");
+  std::map<std::size_t, bool> splines;  // outputs: whether of CUBICSPLINE
   for (std::size_t a = 0; a < animations.size(); ++a) {
     const Json& samplers = animations[a]["samplers"];
     const std::string pointer = fmt::format("/animations/{}", a);
@@ -229,10 +230,15 @@ void check_animations(const Json& json, Meaning& check) {
         check.error(here + "/input", "is not an accessor of scalar floats");
       if (!json["accessors"][input].contains("min") || !json["accessors"][input].contains("max"))
         check.error(here + "/input", "is an accessor without min and max");
-      check.use(input, BufferUse::kOther, here + "/input");
-      check.use(samplers[s]["output"].get<std::size_t>(), BufferUse::kOther, here + "/output");
+      const std::size_t output = samplers[s]["output"].get<std::size_t>();
+      check.use(input, BufferUse::kTimes, here + "/input");
+      check.use(output, BufferUse::kValues, here + "/output");
+      const bool cubic = value_of<std::string>(samplers[s], "interpolation", "LINEAR") == "CUBICSPLINE";
+      if (const auto [seen, is_new] = splines.emplace(output, cubic); !is_new && seen->second != cubic)
+        check.error(here + "/output", "is an accessor of both splines and plain values; give each its own");
     }
     std::set<std::pair<std::int64_t, std::string>> targets;
+    std::set<std::string> aims;
     for (std::size_t c = 0; c < animations[a]["channels"].size(); ++c) {
       const Json& channel = animations[a]["channels"][c];
       const Json& target = channel["target"];
@@ -242,6 +248,7 @@ void check_animations(const Json& json, Meaning& check) {
         if (target.contains("node")) check.error(here + "/target/node", "stands beside KHR_animation_pointer");
         const std::string aim = (*extension)["pointer"].get<std::string>();
         if (aim.empty() || aim[0] != '/') check.error(here + "/target", "has a pointer that is no JSON pointer");
+        if (!aims.insert(aim).second) check.error(here + "/target", "is the target of an earlier channel too");
       }
       if (channel["sampler"].get<std::size_t>() >= samplers.size()) {
         check.error(here + "/sampler", "refers to a sampler that the animation does not have");
@@ -249,6 +256,10 @@ void check_animations(const Json& json, Meaning& check) {
       }
       if (target.contains("node") && !targets.insert({target["node"].get<std::int64_t>(), path}).second)
         check.error(here + "/target", "is the target of an earlier channel too");
+      if (const bool moves = path == "translation" || path == "rotation" || path == "scale";
+          moves && target.contains("node") && json["nodes"][target["node"].get<std::size_t>()].contains("matrix"))
+        check.error(here + "/target/node",
+                    "is placed by a matrix, which cannot be animated; give it translation, rotation and scale");
       const Json& sampler = samplers[channel["sampler"].get<std::size_t>()];
       const AccessorLayout output = layout_of(json["accessors"][sampler["output"].get<std::size_t>()]);
       const std::map<std::string, std::size_t> widths = {

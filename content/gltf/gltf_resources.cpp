@@ -218,6 +218,10 @@ void check_pictures(SourceDocument& document, Findings& findings) {
         (bytes.size() >= 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 && std::memcmp(&bytes[8], "WEBP", 4) == 0);
     if (webp && !extension_is_used(document.json, "EXT_texture_webp"))
       add_error(findings, pointer, "is WebP, which needs EXT_texture_webp in extensionsUsed; use PNG or JPEG");
+    const std::string ktx2 = "image/ktx2";
+    if ((claimed == ktx2 || embedded == ktx2 || ending_of(uri) == ".ktx2") &&
+        !extension_is_used(document.json, "KHR_texture_basisu"))
+      add_error(findings, pointer, "is KTX2, which needs KHR_texture_basisu in extensionsUsed; use PNG or JPEG");
     const bool is_png = format == ImageFormat::kPng, is_jpeg = format == ImageFormat::kJpeg;
     // Both the member and a data URI may say what the picture is.
     for (const std::string& mime : {claimed, embedded})

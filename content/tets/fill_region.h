@@ -15,6 +15,8 @@ class FillRegion {
   // [m] No place of it lies outside of this.
   Box box() const;
   bool operator()(dvec3 p) const;
+  // Whether all of a box is known to be in it, or all outside.
+  bool is_uniform(dvec3 low, dvec3 high) const { return how_ == How::kEnclosed && inside_.is_uniform(low, high); }
   // Where one leaves between a point of it and one outside: share [1] of the way.
   double crossing(dvec3 inside, dvec3 outside) const;
   // [m] of it from a place of the surface straight inward; 0: nothing of it lies there.

@@ -21,6 +21,9 @@ constexpr std::size_t kDeepest = 32 * kTreeWidth;
 }  // namespace
 
 Inside::Inside(const Mesh& surface) : surface_(surface) {
+  closed_ = !surface.across.empty() && std::none_of(surface.across.begin(), surface.across.end(), [](const uvec3& t) {
+    return t.x == kBorder || t.y == kBorder || t.z == kBorder;
+  });
   const auto& boxes = surface.tree.levels;
   const auto triangles = static_cast<std::uint32_t>(surface.triangles.size());
   std::vector<double> weight;  // [m2] of each cluster of the level below
@@ -96,6 +99,22 @@ double Inside::winding(dvec3 p) const {
     }
   }
   return sum / (4.0 * std::numbers::pi);
+}
+
+bool Inside::is_uniform(dvec3 low, dvec3 high) const {
+  if (!closed_) return false;
+  Visit stack[kDeepest];
+  std::size_t depth = 0;
+  stack[depth++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
+  while (depth > 0) {
+    const Visit at = stack[--depth];
+    const Box& box = surface_.tree.levels[at.level][at.box];
+    if (glm::any(glm::lessThan(dvec3(box.max), low)) || glm::any(glm::greaterThan(dvec3(box.min), high))) continue;
+    if (at.level == 0) return false;
+    const auto end = std::min<std::size_t>((at.box + 1) * kTreeWidth, levels_[at.level - 1].size());
+    for (std::uint32_t c = at.box * kTreeWidth; c < end; ++c) stack[depth++] = {at.level - 1, c};
+  }
+  return true;
 }
 
 double Inside::crossing(dvec3 inside, dvec3 outside) const {

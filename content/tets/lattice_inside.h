@@ -19,6 +19,8 @@ class Inside {
   double winding_by_sum(dvec3 p) const;  // exact, over every triangle; for tests
   // A surface turned inside out holds what it encloses all the same.
   bool operator()(dvec3 p) const { return std::abs(winding(p)) > 0.5; }
+  // Whether all of a box is inside, or all outside: the surface is closed, and no triangle's box meets this one.
+  bool is_uniform(dvec3 low, dvec3 high) const;
   // Where one leaves between a point inside and one outside: share [1] of the way. A triangle's plane, or where the way
   // leads through a hole, the place where the winding number passes 0.5.
   double crossing(dvec3 inside, dvec3 outside) const;
@@ -33,6 +35,7 @@ class Inside {
 
   const Mesh& surface_;
   std::vector<std::vector<Cluster>> levels_;  // as Mesh::tree's
+  bool closed_ = false;                       // every edge has a triangle on either side
 };
 
 }  // namespace pliant

@@ -1,7 +1,9 @@
 #include "content/tets/lattice_stuffing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "content/files/limits.h"
@@ -14,6 +16,8 @@ namespace {
 // A cut closer to a lattice node than this share of its edge is moved into the node (Labelle & Shewchuk, table 1, the
 // pair that they prove bounds for).
 constexpr double kWarpLong = 0.24999, kWarpShort = 0.41189;
+
+constexpr std::size_t kRun = 8;  // nodes whose sides are looked for together
 
 constexpr double kBridgeSmallest = 0.26, kBridgeLargest = 2.62;  // [rad] 15 and 150 degrees
 
@@ -52,20 +56,40 @@ class Stuffer {
   // The outermost nodes stay outside: the grid reaches two cells beyond the surface.
   Status find_sides() {
     side_.assign(grid_.size(), kOutside);
-    const Place cubes = grid_.cubes();
     for (std::uint32_t first = 0; first < grid_.size(); first += grid_.layer_size()) {
       parallel_for(grid_.layer_size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const Place p = grid_.place(first + static_cast<std::uint32_t>(i));
-          bool rim = false;
-          for (int c = 0; c < 3; ++c) rim = rim || p[c] < 4 || p[c] > 2 * cubes[c] - 4;
-          if (!rim && region_(grid_.position(p))) side_[first + i] = kInside;
-        }
+        for (std::size_t i = begin; i < end; i += kRun)
+          find_sides(first + static_cast<std::uint32_t>(i),
+                     first + static_cast<std::uint32_t>(std::min(end, i + kRun)));
       });
       report();
       if (stop_.stop_requested()) return stopped();
     }
     return Done{};
+  }
+
+  // Of a few neighbours in a row: where the surface is not near, one tells for all.
+  void find_sides(std::uint32_t begin, std::uint32_t end) {
+    const Place cubes = grid_.cubes();
+    std::array<std::uint32_t, kRun> node;
+    std::array<dvec3, kRun> at;
+    std::size_t count = 0;
+    dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const Place p = grid_.place(i);
+      bool rim = false;
+      for (int c = 0; c < 3; ++c) rim = rim || p[c] < 4 || p[c] > 2 * cubes[c] - 4;
+      if (rim) continue;
+      node[count] = i;
+      at[count] = grid_.position(p);
+      low = glm::min(low, at[count]);
+      high = glm::max(high, at[count]);
+      ++count;
+    }
+    if (count == 0) return;
+    const bool uniform = count > 1 && region_.is_uniform(low, high), first = region_(at[0]);
+    for (std::size_t i = 0; i < count; ++i)
+      if (uniform || i == 0 ? first : region_(at[i])) side_[node[i]] = kInside;
   }
 
   void find_cuts() {

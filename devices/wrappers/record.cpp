@@ -1,9 +1,16 @@
 #include "devices/wrappers/record.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <utility>
 
 #include "runtime/log.h"
 
@@ -11,11 +18,33 @@ namespace pliant {
 
 // Before the device is: nothing has moved yet.
 Status Record::open(const std::string& id) {
-  if (std::FILE* there = std::fopen(file_.c_str(), "rb")) {
-    std::fclose(there);
-    return Error{file_, "is there already, and a recording replaces nothing; give the name of a new file"};
-  }
-  return Wrapper::open(id);
+  if (const Status taken = take_file(); !taken) return taken;
+  Status opened = Wrapper::open(id);
+  if (!opened) leave_file();
+  return opened;
+}
+
+// An empty file that nobody has locked is what a killed process left of its own.
+Status Record::take_file() {
+  leave_file();
+  place_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+  const auto refused = [this](const std::string& why) {
+    if (place_ >= 0) ::close(std::exchange(place_, -1));
+    return Error{file_, why + "; give the name of a new file"};
+  };
+  if (place_ < 0) return refused(std::string("cannot be written: ") + std::strerror(errno));
+  struct stat there = {};
+  if (::fstat(place_, &there) != 0 || !S_ISREG(there.st_mode) || there.st_size > 0)
+    return refused("is there already, and a recording replaces nothing");
+  if (::flock(place_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return refused("is being recorded into by another device or run");
+  return Done{};
+}
+
+void Record::leave_file() noexcept {
+  if (place_ < 0) return;
+  ::unlink(file_.c_str());
+  ::close(std::exchange(place_, -1));
 }
 
 Status Record::begin() {
@@ -58,17 +87,24 @@ void Record::close() {
   finish();
 }
 
+// Written aside: the file is whole or not there.
 void Record::finish() noexcept {
-  if (!open_) return;
-  open_ = false;
+  const bool recorded = std::exchange(open_, false) && !rows_.empty();
   try {
-    if (rows_.empty()) return;
-    written_ = write_poses(file_, rows_,
-                           lost_ > 0 ? fmt::format("{} samples; {} more did not fit", rows_.size(), lost_)
-                                     : fmt::format("{} samples", rows_.size()));
-    if (!written_) log_sentence(LogLevel::kWarning, written_.error().message());
+    if (recorded) {
+      const std::string aside = fmt::format("{}.{}.part", file_, ::getpid());
+      written_ = write_poses(aside, rows_,
+                             lost_ > 0 ? fmt::format("{} samples; {} more did not fit", rows_.size(), lost_)
+                                       : fmt::format("{} samples", rows_.size()));
+      if (written_ && std::rename(aside.c_str(), file_.c_str()) != 0)
+        written_ = Error{aside, std::string("cannot be put in place: ") + std::strerror(errno) + "; check the folder"};
+      if (written_) return void(::close(std::exchange(place_, -1)));
+      ::unlink(aside.c_str());
+      log_sentence(LogLevel::kWarning, written_.error().message());
+    }
   } catch (...) {  // the recording is lost; the device is closed
   }
+  leave_file();
 }
 
 }  // namespace pliant

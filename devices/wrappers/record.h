@@ -29,6 +29,8 @@ class Record : public Wrapper {
   Status begin() override;
 
  private:
+  Status take_file();
+  void leave_file() noexcept;
   void finish() noexcept;
   std::string file_;
   double seconds_;  // [s]
@@ -36,6 +38,7 @@ class Record : public Wrapper {
   std::uint64_t samples_ = 0, lost_ = 0;
   double first_ = 0.0;  // [s] of the first sample
   bool open_ = false;
+  int place_ = -1;  // the file, empty and locked until it is written: nobody else records into it
   Status written_ = Done{};
 };
 

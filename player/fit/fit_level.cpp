@@ -11,6 +11,7 @@
 #include "content/level_file.h"
 #include "player/exit.h"
 #include "player/verbs/content_folder.h"
+#include "player/verbs/left_behind.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
@@ -58,6 +59,13 @@ Status check_out(const FitOptions& options) {
   std::error_code ignored;
   if (!options.force && fs::exists(fs::symlink_status(options.out, ignored)))
     return Error{options.out, "is there already; name another, or replace it with --force"};
+  return Done{};
+}
+
+Status save_fitted(const Level& level, const FitOptions& options) {
+  const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
+  if (Status saved = save_level(level, options.out, {0, false, existing}); !saved) return saved;
+  say_left_behind(level, options.out);
   return Done{};
 }
 

@@ -15,5 +15,7 @@ Result<Level> level_to_fit(const std::string& name, double unit);
 Result<std::int32_t> object_to_fit(const Level& level, const std::string& name);
 // `out` is glTF, and free or to be replaced.
 Status check_out(const FitOptions& options);
+// The level into `out`, and the files that it names but `out` has not beside it, in a note.
+Status save_fitted(const Level& level, const FitOptions& options);
 
 }  // namespace pliant

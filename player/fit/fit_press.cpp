@@ -4,19 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "content/author/touchable.h"
-#include "content/level_file.h"
 #include "player/exit.h"
 #include "player/fit/fit.h"
 #include "player/fit/fit_level.h"
 #include "player/fit/fit_record.h"
+#include "player/interrupt.h"
 #include "player/print.h"
 #include "player/record/csv.h"
 #include "player/record/output_folder.h"
 #include "player/record/panel.h"
 #include "player/study/pareto.h"
-#include "player/verbs/left_behind.h"
 
 namespace pliant {
 namespace {
@@ -231,26 +231,28 @@ int fit_press(const FitOptions& options) {
   const Result<RecordFit> fit = fit_record(*record, wish);
   if (!fit) return fail(kFailed, fit.error());
   const LawFit& best = fit->laws[fit->best];
+  std::optional<Level> level;
   if (!options.level.empty()) {
-    Result<Level> level = level_to_fit(options.level, options.unit);
-    if (!level) return fail(kFailed, level.error());
+    Result<Level> read = level_to_fit(options.level, options.unit);
+    if (!read) return fail(kFailed, read.error());
+    level.emplace(std::move(read).value());
     const Result<std::int32_t> object = object_to_fit(*level, options.object);
     if (!object) return fail(kUsage, object.error());
     if (const Status s = write_keys(best, options, *level, *object); !s) return fail(kUsage, s.error());
-    if (const Status s =
-            save_level(*level, options.out, {0, false, options.force ? Existing::kReplace : Existing::kRefuse});
-        !s)
-      return fail(kFailed, s.error());
-    say_left_behind(*level, options.out);
   }
+  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
   auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
   if (!out) return fail(kFailed, out.error());
+  interrupt.remove_if_forced(out->staging());
   Status done = write_text(*out, "fit.json", report_of(*record, *fit, options));
   if (done) done = write_text(*out, "fit_residuals.csv", residuals_csv(*record, *fit));
   if (done)
     done = draw_png_and_svg(out->stage("fit.png"), out->stage("fit.svg"), 1600, 800,
                             [&](Pen& pen) { draw_record(pen, *record, *fit, options); });
   if (!done) return fail(kFailed, out->at_place(done.error()));
+  if (interrupt.requested()) return fail(kFailed, interrupted("fit"));
+  if (level)
+    if (const Status s = save_fitted(*level, options); !s) return fail(kFailed, s.error());
   if (const Status placed = out->commit(); !placed) return fail(kFailed, placed.error());
   say(*record, *fit, options);
   for (const std::string& sentence : fit->notes) note(sentence);

@@ -11,6 +11,7 @@
 #include "player/fit/fit.h"
 #include "player/fit/press_record.h"
 #include "player/fit/sweep_nearest.h"
+#include "player/interrupt.h"
 #include "player/print.h"
 #include "player/record/csv.h"
 #include "player/record/output_folder.h"
@@ -65,12 +66,15 @@ int fit_sweep(const FitOptions& options) {
     put(csv, nearest->distance[row]);
     csv += "\n";
   }
+  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
   auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
   if (!out) return fail(kFailed, out.error());
+  interrupt.remove_if_forced(out->staging());
   Status done = write_text(*out, "fit.json", report.dump(2, ' ', true, OrderedJson::error_handler_t::replace) + "\n");
   if (done) done = write_text(*out, "fit_runs.csv", csv);
+  if (done && interrupt.requested()) done = interrupted("fit");
   if (done) done = out->commit();
-  if (!done) return fail(kFailed, done.error());
+  if (!done) return fail(kFailed, out->at_place(done.error()));
   print("{}: {} of {} runs compared by {} figures of `{}`\n", options.sweep, nearest->order.size(), table->rows.size(),
         nearest->target.size(), nearest->probe);
   for (std::size_t i = 0; i < std::min<std::size_t>(3, nearest->order.size()); ++i)

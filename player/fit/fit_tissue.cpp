@@ -11,7 +11,6 @@
 #include "content/author/object_frame.h"
 #include "content/author/touchable.h"
 #include "content/level/spawn_soft.h"
-#include "content/level_file.h"
 #include "player/exit.h"
 #include "player/fit/fit.h"
 #include "player/fit/fit_level.h"
@@ -23,7 +22,6 @@
 #include "player/progress.h"
 #include "player/record/output_folder.h"
 #include "player/study/pareto.h"
-#include "player/verbs/left_behind.h"
 #include "runtime/parallel.h"
 
 namespace pliant {
@@ -331,7 +329,7 @@ int fit_tissue(const FitOptions& options) {
   if (!level) return fail(kFailed, level.error());
   const Result<std::int32_t> object = object_to_fit(*level, options.object);
   if (!object) return fail(kUsage, object.error());
-  const Interrupt interrupt({"ending; press Ctrl-C again to quit at once", "quit at once; nothing was written"});
+  const Interrupt interrupt(kAllOrNothing);
   const Result<TissueFit> fitted = fit_object(*level, *object, options, interrupt);
   if (!fitted) return fail(kFailed, fitted.error());
   auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
@@ -343,13 +341,9 @@ int fit_tissue(const FitOptions& options) {
     done = draw_png_and_svg(out->stage("fit.png"), out->stage("fit.svg"), 1600, 800,
                             [&](Pen& pen) { draw(pen, *fitted); });
   if (!done) return fail(kFailed, out->at_place(done.error()));
-  if (!options.out.empty()) {
-    if (const Status saved =
-            save_level(*level, options.out, {0, false, options.force ? Existing::kReplace : Existing::kRefuse});
-        !saved)
-      return fail(kFailed, saved.error());
-    say_left_behind(*level, options.out);
-  }
+  if (interrupt.requested()) return fail(kFailed, interrupted("fit"));
+  if (!options.out.empty())
+    if (const Status saved = save_fitted(*level, options); !saved) return fail(kFailed, saved.error());
   if (const Status placed = out->commit(); !placed) return fail(kFailed, placed.error());
   say(*fitted);
   if (!options.out.empty()) print("{}: a level\n", options.out);

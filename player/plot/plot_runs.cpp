@@ -7,6 +7,7 @@
 #include <set>
 
 #include "player/exit.h"
+#include "player/interrupt.h"
 #include "player/plot/force_series.h"
 #include "player/print.h"
 #include "player/record/csv.h"
@@ -274,8 +275,10 @@ int plot_runs(const PlotOptions& options) {
       return fail(kUsage,
                   {"--probe " + name, "is in none of the runs; they have " + joined({known.begin(), known.end()})});
   const std::size_t shown = std::min(all.size(), kMostDrawn);
+  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
   auto out = OutputFolder::create(options.out.empty() ? "out/plot" : options.out, options.force);
   if (!out) return fail(kFailed, out.error());
+  interrupt.remove_if_forced(out->staging());
   Status done = write_text(*out, "summary.csv", summary_csv(all));
   if (done) done = write_text(*out, "spectra.csv", spectra_csv(all));
   const double rows = static_cast<double>(std::min(all.size(), 2 * kMostDrawn + 1));
@@ -283,6 +286,7 @@ int plot_runs(const PlotOptions& options) {
     done = draw_png_and_svg(out->stage("plot.png"), out->stage("plot.svg"), 1600, 720 + 22 * rows,
                             [&](Pen& pen) { draw(pen, all, shown); });
   if (!done) return fail(kFailed, out->at_place(done.error()));
+  if (interrupt.requested()) return fail(kFailed, interrupted("plot"));
   if (const Status placed = out->commit(); !placed) return fail(kFailed, placed.error());
   say_differences(all);
   if (shown < all.size()) note(fmt::format("the picture has the first {} of {} probes and tools", shown, all.size()));

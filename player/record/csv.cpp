@@ -3,15 +3,61 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 
 #include "runtime/printable.h"
 
 namespace pliant {
+namespace {
+
+bool is_plain_number(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+}
+
+// Apostrophes and blanks aside, what a spreadsheet would evaluate.
+bool is_formula(std::string_view cell) {
+  cell.remove_prefix(std::min(cell.find_first_not_of('\''), cell.size()));
+  cell.remove_prefix(std::min(cell.find_first_not_of(' '), cell.size()));
+  for (const std::string_view first : {"=", "+", "-", "@", "\uFF1D", "\uFF0B", "\uFF0D", "\uFF20"})
+    if (cell.starts_with(first)) return !is_plain_number(cell);
+  return false;
+}
+
+// Calls change(part, text) for what stands between semicolons, and joins what that makes of it.
+template <class Change>
+std::string each_part(std::string_view cell, const Change& change) {
+  std::string text;
+  for (;;) {
+    const std::size_t end = std::min(cell.find(';'), cell.size());
+    change(cell.substr(0, end), text);
+    if (end == cell.size()) return text;
+    text += ';';
+    cell.remove_prefix(end + 1);
+  }
+}
+
+std::string guarded(std::string_view cell) {
+  return each_part(cell, [](std::string_view part, std::string& text) {
+    if (is_formula(part)) text += '\'';
+    text += part;
+  });
+}
+
+std::string unguarded(std::string_view cell) {
+  return each_part(cell, [](std::string_view part, std::string& text) {
+    text += part.substr(part.starts_with('\'') && is_formula(part) ? 1 : 0);
+  });
+}
+
+}  // namespace
 
 std::string csv_text(const std::string& name) {
-  const std::string shown = printable(name);
+  const std::string shown = guarded(printable(name));
   if (shown.find_first_of(",\"") == std::string::npos) return shown;
   std::string text = "\"";
   for (const char c : shown) {
@@ -38,6 +84,7 @@ void csv_cells(std::string_view line, char mark, std::vector<std::string>& cells
     }
     const std::size_t end = std::min(line.find(mark, at), line.size());
     cell += line.substr(at, end - at);
+    if (cell.find('\'') != std::string::npos) cell = unguarded(cell);
     at = end;
     if (at == line.size()) break;
   }

@@ -31,9 +31,7 @@ int list() {
 
 // Into one folder, which has either the results of all of them or none.
 int run_all(const std::vector<const Study*>& studies, const StudyOptions& options) {
-  const Interrupt interrupt(
-      {"ending; press Ctrl-C again to quit at once",
-       "quit at once; nothing was written"});  // until all is in place: what is staged must not stay behind
+  const Interrupt interrupt(kAllOrNothing);  // until all is in place: what is staged must not stay behind
   auto out = OutputFolder::create(options.out.empty() ? "out/study" : options.out, options.force);
   if (!out) return fail(kFailed, out.error());
   interrupt.remove_if_forced(out->staging());

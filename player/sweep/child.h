@@ -16,7 +16,8 @@ namespace pliant {
 class Child {
  public:
   using Clock = std::chrono::steady_clock;
-  // Begins `pliant ARGUMENTS` with the working directory `from`. `folder` is its own and takes what it says on stderr.
+  // Begins `pliant ARGUMENTS` with the working directory `from`. `folder` is its own. What it says on stderr is kept in
+  // memory: a full disk is among what it may say.
   // `timeout` [s]; 0: none.
   static Result<Child> start(const std::vector<std::string>& arguments, const std::filesystem::path& from,
                              const std::filesystem::path& folder, double timeout);
@@ -37,6 +38,7 @@ class Child {
   Child() = default;
   void end();
   pid_t process_ = -1;
+  int said_ = -1;  // its stderr
   int status_ = -1;
   bool timed_out_ = false, lost_ = false;  // lost: nobody knows its status
   double timeout_ = 0.0, seconds_ = 0.0;

@@ -60,8 +60,16 @@ void add_probe(const PlanJson& probe, const double* rms, double rate, PlanJson& 
        {"net_work_J", "contact_ticks", "max_torque_Nm", "late_ticks", "stale_ticks", "missed_by_m"})
     if (probe.contains(figure)) put(figure, probe[figure]);
   if (rate > 0.0 && probe.contains("contact_ticks")) put("contact_s", probe["contact_ticks"].get<double>() / rate);
-  for (const std::string limit : {"clipped", "withheld", "gated", "slewed"})  // the report has those that happened
-    put((limit + "_ticks").c_str(), probe.contains(limit) ? probe[limit]["ticks"] : PlanJson(0));
+  // The report has those that happened; a share stands only beside ticks.
+  const auto put_limit = [&](const PlanJson& of, const std::string& limit, const std::string& name_of_it, bool always) {
+    const PlanJson ticks = of.contains(limit) ? of[limit]["ticks"] : PlanJson(0);
+    if (always || ticks != 0) put((name_of_it + "_ticks").c_str(), ticks);
+    if (ticks != 0) put((name_of_it + "_share").c_str(), of[limit]["largest_share"]);
+  };
+  for (const std::string limit : {"clipped", "withheld", "gated", "slewed"}) {
+    put_limit(probe, limit, limit, true);
+    if (probe.contains("torque")) put_limit(probe["torque"], limit, "torque_" + limit, false);
+  }
 }
 
 void add_soft(const PlanJson& soft, PlanJson& figures) {
@@ -87,7 +95,7 @@ Result<RunResult> read_run(const fs::path& folder) {
   const std::string ended = report.is_object() ? report.value("ended", std::string()) : std::string();
   if (ended.empty()) return Error{"report.json", "is no report of a run; check the space left"};
   if (ended != "done") return Error{"", ended == "interrupted" ? "interrupted by a signal; do it again" : ended};
-  RunResult result{PlanJson::object(), PlanJson::object()};
+  RunResult result{PlanJson::object(), PlanJson::object(), PlanJson::array()};
   result.figures["hash"] = report["hash"];
   result.figures["ticks"] = report["ticks"];
   const PlanJson& probes = report["probes"];
@@ -101,6 +109,9 @@ Result<RunResult> read_run(const fs::path& folder) {
   if (report.contains("soft")) add_soft(report["soft"], result.figures);
   add_times(report["tick_us"], "tick_us", result.timing);
   if (report.contains("soft")) add_times(report["soft"]["step_ms"], "soft_step_ms", result.timing);
+  if (report.contains("soft") && report["soft"].value("time_lost_s", 0.0) > 0.0)
+    result.timing["soft.time_lost_s"] = report["soft"]["time_lost_s"];
+  if (report.contains("dropped")) result.notes = report["dropped"];
   return result;
 }
 

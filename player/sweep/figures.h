@@ -12,6 +12,7 @@ namespace pliant {
 struct RunResult {
   PlanJson figures;  // name -> number, and "hash"
   PlanJson timing;   // name -> number
+  PlanJson notes;    // sentences: what the run did differently than one might expect
 };
 // Of report.json and forces.csv in a run's folder. Figures of a probe or tool have its name before them:
 // tip.max_force_N.

@@ -37,7 +37,7 @@ bool is_line(const PlanJson& json) {
 
 // What came of a run: not what was measured, nor which values of the plan meant it, of which there may be several.
 std::string compared(PlanJson line) {
-  for (const char* key : {"timing", "axes", "attempt"}) line.erase(key);
+  for (const char* key : {"timing", "axes", "attempt", "notes"}) line.erase(key);
   return dump(line);
 }
 
@@ -56,6 +56,14 @@ bool is_done(const PlanJson& line) {
 
 std::uint64_t attempt_of(const PlanJson& line) {
   return line.contains("attempt") ? line["attempt"].get<std::uint64_t>() : 1;
+}
+
+std::vector<std::string> notes_of(const PlanJson& line) {
+  std::vector<std::string> notes;
+  if (line.contains("notes") && line["notes"].is_array())
+    for (const PlanJson& note : line["notes"])
+      if (note.is_string()) notes.push_back(note.get<std::string>());
+  return notes;
 }
 
 std::string sweep_json(const SweepPlan& plan, const ExpandedPlan& expanded) {
@@ -152,10 +160,12 @@ LineFile::~LineFile() {
 
 Status LineFile::add(const PlanJson& line) {
   const std::string text = dump(line) + "\n";
+  const off_t before = ::lseek(file_, 0, SEEK_END);
   const ssize_t written = ::write(file_, text.data(), text.size());
-  if (written != static_cast<ssize_t>(text.size()) || ::fsync(file_) != 0)
-    return Error{path_.string(), "cannot be written: " + why_not_written(written < 0 ? errno : ENOSPC)};
-  return Done{};
+  if (written == static_cast<ssize_t>(text.size()) && ::fsync(file_) == 0) return Done{};
+  Error error{path_.string(), "cannot be written: " + why_not_written(written < 0 ? errno : ENOSPC)};
+  if (::ftruncate(file_, before) != 0) error.what += " (its last line is not whole, and is left out)";
+  return error;
 }
 
 Status read_lines(const fs::path& folder, Lines& lines) {
@@ -186,7 +196,8 @@ Status read_lines(const fs::path& folder, Lines& lines) {
       if (is_done(json) && is_done(at->second) && ours != theirs) lines.disagree.push_back(id);
       const bool better = is_done(json) != is_done(at->second)         ? is_done(json)
                           : attempt_of(json) != attempt_of(at->second) ? attempt_of(json) > attempt_of(at->second)
-                                                                       : ours < theirs;
+                          : ours != theirs                             ? ours < theirs
+                                                                       : notes_of(json) < notes_of(at->second);
       if (better) at->second = std::move(json);
     }
     if (in.bad()) return Error{file.string(), "cannot be read to its end; check the disk, or the connection to it"};

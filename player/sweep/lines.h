@@ -49,6 +49,7 @@ struct Lines {
 Status read_lines(const std::filesystem::path& folder, Lines& lines);
 
 bool is_done(const PlanJson& line);
-std::uint64_t attempt_of(const PlanJson& line);  // at a run that failed: the first is 1
+std::uint64_t attempt_of(const PlanJson& line);           // at a run that failed: the first is 1
+std::vector<std::string> notes_of(const PlanJson& line);  // what the run said; of an older sweep none
 
 }  // namespace pliant

@@ -1,24 +1,19 @@
 // pliant sweep merge: the lines of all shards become tables, a report and plots.
-#include "content/files/file_io.h"
 #include "player/exit.h"
+#include "player/interrupt.h"
 #include "player/print.h"
 #include "player/record/output_folder.h"
+#include "player/study/pareto.h"
 #include "player/sweep/sweep.h"
+#include "player/sweep/sweep_notes.h"
 #include "player/sweep/sweep_plot.h"
 #include "player/sweep/table.h"
 
 namespace pliant {
 namespace {
 
-Status write(OutputFolder& out, const std::string& name, const std::string& text) {
-  return write_file(out.stage(name), {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
-void say_what_is_odd(const SweepTable& table, std::size_t done, std::size_t plots) {
-  if (const std::size_t none = untouched(table); none > 0)
-    note("in " + std::to_string(none) + " of " + std::to_string(done) +
-         " runs no probe touched anything: missed_by_m in results.csv says by how much; make runs longer, or lead the "
-         "probes farther");
+void say_what_is_odd(const SweepTable& table, const SweepNotes& notes, std::size_t done, std::size_t plots) {
+  for (const std::string& sentence : sentences_of(notes, table, true)) note(sentence);
   if (plots == 0 && done > 1) note("nothing is drawn: no figure differs between the runs");
   if (table.torn > 0)
     note(std::to_string(table.torn) +
@@ -39,22 +34,26 @@ int merge_sweep(const MergeOptions& options) {
   const std::vector<std::filesystem::path> folders(options.folders.begin(), options.folders.end());
   auto table = read_table(folders);
   if (!table) return fail(kFailed, table.error());
+  const SweepNotes notes = find_notes(*table);
+  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
   auto out = OutputFolder::create(options.out, options.force);
   if (!out) return fail(kFailed, out.error());
+  interrupt.remove_if_forced(out->staging());
   for (const auto& [name, text] : {std::pair("results.csv", results_csv(*table)),
                                    {"timings.csv", timings_csv(*table)},
-                                   {"report.json", merge_report(*table)}})
-    if (const Status ok = write(*out, name, text); !ok) return fail(kFailed, out->at_place(ok.error()));
+                                   {"report.json", merge_report(*table, notes)}})
+    if (const Status ok = write_text(*out, name, text); !ok) return fail(kFailed, out->at_place(ok.error()));
   std::string left_out;
-  const auto plots = plot_sweep(*table, *out, left_out);
+  const auto plots = plot_sweep(*table, *out, interrupt, left_out);
   if (!plots) return fail(kFailed, out->at_place(plots.error()));
+  if (interrupt.requested()) return fail(kFailed, interrupted("merge"));
   if (const Status ok = out->commit(); !ok) return fail(kFailed, ok.error());
   std::size_t done = 0, failed = 0;
   for (const SweepRow& row : table->rows) {
     done += row.done();
     failed += !row.done() && !row.line.is_null();
   }
-  say_what_is_odd(*table, done, *plots);
+  say_what_is_odd(*table, notes, done, *plots);
   if (!left_out.empty()) note(left_out);
   print("{}: {} of {} runs done, {} failed, {} missing: results.csv, report.json, {} plots; timings.csv (measured)\n",
         out->shown().string(), done, table->rows.size(), failed, table->rows.size() - done - failed, *plots);

@@ -107,10 +107,11 @@ class Reader {
 
   Status read() {
     if (const std::string wrong =
-            unknown_in(json_, {"level", "options", "axes", "latin_hypercube", "timeout_s", "about"}, "a plan");
+            unknown_in(json_, {"level", "options", "axes", "latin_hypercube", "timeout_s", "keep", "about"}, "a plan");
         !wrong.empty())
       return Error{"", wrong};
-    for (const auto part : {&Reader::level, &Reader::options, &Reader::axes, &Reader::hypercube, &Reader::timeout})
+    for (const auto part :
+         {&Reader::level, &Reader::options, &Reader::axes, &Reader::hypercube, &Reader::timeout, &Reader::keep})
       if (Status ok = (this->*part)(); !ok) return ok;
     if (plan_.axes.empty())
       return Error{"", "varies nothing; give \"axes\" or \"latin_hypercube\", or use `pliant run`"};
@@ -251,6 +252,20 @@ class Reader {
     if (!value.is_number() || !(value.get<double>() >= 1e-3 && value.get<double>() <= 1e7))
       return Error{"/timeout_s", "must be between 0.001 and 1e7 s; got " + brief(value)};
     plan_.timeout = value.get<double>();
+    return Done{};
+  }
+
+  // A text or a list of them: there may be more to keep one day.
+  Status keep() {
+    if (!json_.contains("keep")) return Done{};
+    const PlanJson& keep = json_["keep"];
+    const PlanJson all = keep.is_array() ? keep : PlanJson::array({keep});
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i] != "curves")
+        return Error{keep.is_array() ? "/keep/" + std::to_string(i) : "/keep",
+                     "must be \"curves\" (forces over time of every run); got " + brief(all[i])};
+      plan_.keep_curves = true;
+    }
     return Done{};
   }
 

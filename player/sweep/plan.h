@@ -17,6 +17,7 @@ struct SweepPlan {
   std::vector<SweepAxis> axes;                               // the steps' first, each in the order of the file
   std::size_t samples = 1;                                   // of the Latin hypercube
   double timeout = 0.0;                                      // [s] of a run by the clock on the wall; 0: none
+  bool keep_curves = false;                                  // forces.csv of every run, too
 
   std::size_t count() const;  // runs: at most kMostRuns
   // The value of each axis. The first axis changes slowest, the sample fastest.

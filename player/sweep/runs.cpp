@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "content/files/file_io.h"
 #include "player/progress.h"
 #include "player/sweep/child.h"
 #include "player/sweep/figures.h"
@@ -54,7 +55,36 @@ struct Slot {
   Child child;
 };
 
-PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child, const Lines& before) {
+// Sentences that are the same wherever the plan lies.
+PlanJson without_folder(PlanJson notes, const fs::path& folder) {
+  const std::string begin = folder.string() + "/";
+  for (PlanJson& note : notes) {
+    if (!note.is_string()) continue;
+    auto text = note.get<std::string>();
+    for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) text.erase(at, begin.size());
+    note = std::move(text);
+  }
+  return notes;
+}
+
+// "" or why not.
+std::string keep_curve(const fs::path& run, const fs::path& curve) {
+  std::error_code error;
+  fs::create_directory(curve.parent_path(), error);
+  if (!error) fs::rename(run / "forces.csv", curve, error);
+  return error ? curve.string() + ": cannot be put in place: " + error.message() + "; check the folder" : "";
+}
+
+// Whether the disk of a folder has no room for the results of a run.
+bool is_full(const fs::path& folder) {
+  constexpr std::uintmax_t kRoom = 256 << 10;  // [byte]
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  return !error && space.available < kRoom;
+}
+
+PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child, const Lines& before,
+                 const fs::path& folder) {
   PlanJson line{{"id", run.id}, {"status", "done"}, {"axes", PlanJson::object()}};
   for (std::size_t i = 0; i < plan.axes.size(); ++i) line["axes"][plan.axes[i].name] = run.values[i];
   PlanJson timing = PlanJson::object();
@@ -63,7 +93,9 @@ PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child,
     auto result = read_run(child.folder() / "out");
     if (result) {
       line["figures"] = std::move(result->figures);
+      line["notes"] = without_folder(std::move(result->notes), run_folder(plan));
       timing = std::move(result->timing);
+      if (plan.keep_curves) error = keep_curve(child.folder() / "out", curve_of(folder, run.id));
     } else {
       error = result.error().message();
     }
@@ -71,6 +103,8 @@ PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child,
     error = child.complaint();
   }
   if (!error.empty()) {
+    line.erase("figures");
+    line.erase("notes");
     line["status"] = child.timed_out() ? "timed out" : "failed";
     line["exit"] = child.exit_status() ? PlanJson(*child.exit_status()) : PlanJson();
     line["error"] = error;
@@ -92,6 +126,10 @@ std::vector<std::string> command_of(const SweepPlan& plan, const SweepRun& run, 
   if (jobs > 1 && std::none_of(run.arguments.begin(), run.arguments.end(), is_threads)) words.push_back("--threads=1");
   words.insert(words.end(), run.arguments.begin(), run.arguments.end());
   return words;
+}
+
+fs::path curve_of(const fs::path& folder, const std::string& id) {
+  return folder / "curves" / (id + ".csv");
 }
 
 fs::path run_folder(const SweepPlan& plan) {
@@ -128,7 +166,13 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
         continue;
       }
       any = true;
-      const PlanJson line = line_of(plan, expanded.runs[slots[i].run], slots[i].child, before);
+      const SweepRun& run = expanded.runs[slots[i].run];
+      const PlanJson line = line_of(plan, run, slots[i].child, before, folder);
+      // A full disk says nothing of the run: it is to be done when there is room.
+      if (!is_done(line) && !interrupt.requested())
+        if (const auto why = line["error"].get<std::string>(); wants_room(why) || is_full(folder))
+          return Error{folder.string(), "run " + run.id + " could not write its results (" + why +
+                                            "); free some space: the same command goes on with it"};
       // A batch system may signal the sweep and its runs alike: one that this has ended is to be done again.
       if (is_done(line) || !interrupt.requested()) {
         if (Status ok = lines.add(line); !ok) return ok.error();

@@ -2,9 +2,11 @@
 
 #include <cstdlib>
 
+#include "content/files/file_io.h"
 #include "player/exit.h"
 #include "player/print.h"
 #include "player/sweep/runs.h"
+#include "player/sweep/sweep_notes.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
@@ -16,14 +18,28 @@ struct Work {
   std::vector<State> states;                   // of every run of the plan
   std::vector<std::size_t> wanted;             // runs of this shard that are to be done, in the plan's order
   std::size_t mine = 0, done = 0, failed = 0;  // of this shard's
+  std::size_t without_curve = 0;               // done, but to be done again for their curves
 };
 
-Work find_work(const ExpandedPlan& expanded, const Lines& lines, const Shard& shard, bool retry_failed) {
+// A run that a full disk ended is not one that failed: older sweeps gave it a line.
+State state_of(const PlanJson& line) {
+  if (is_done(line)) return State::kDone;
+  return wants_room(line["error"].get<std::string>()) ? State::kToDo : State::kFailed;
+}
+
+// `curves`: the folder of a sweep that keeps them; empty: it does not.
+Work find_work(const ExpandedPlan& expanded, const Lines& lines, const Shard& shard, bool retry_failed,
+               const fs::path& curves) {
   Work work;
   std::map<std::string, bool> chosen;  // values that differ may mean the same run
   for (std::size_t i = 0; i < expanded.runs.size(); ++i) {
     const auto line = lines.runs.find(expanded.runs[i].id);
-    const State state = line == lines.runs.end() ? State::kToDo : is_done(line->second) ? State::kDone : State::kFailed;
+    State state = line == lines.runs.end() ? State::kToDo : state_of(line->second);
+    std::error_code no;
+    if (state == State::kDone && !curves.empty() && !fs::exists(curve_of(curves, expanded.runs[i].id), no)) {
+      state = State::kToDo;
+      work.without_curve += shard.has(i);
+    }
     work.states.push_back(state);
     if (!shard.has(i)) continue;
     ++work.mine;
@@ -77,6 +93,20 @@ std::string shard_text(const Shard& shard) {
                           : " in shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count);
 }
 
+// What the runs of this shard had to say, earlier ones too.
+void say_notes(const fs::path& folder, const Shard& shard) {
+  auto table = read_table({folder});
+  if (!table) return;
+  std::vector<SweepRow> mine;
+  bool whole = true;
+  for (std::size_t i = 0; i < table->rows.size(); ++i) {
+    whole = whole && table->rows[i].done() && shard.has(i);
+    if (shard.has(i)) mine.push_back(std::move(table->rows[i]));
+  }
+  table->rows = std::move(mine);
+  for (const std::string& sentence : sentences_of(find_notes(*table), *table, whole)) note(sentence);
+}
+
 int report(const fs::path& folder, const Work& work, const RunsDone& done, const Shard& shard,
            const Interrupt& interrupt) {
   const std::size_t now = done.done + done.failed, left = work.wanted.size() - now;
@@ -108,7 +138,8 @@ int sweep(const SweepOptions& options) {
   Lines lines;
   if (options.list || options.dry_run) {
     if (const Status read = read_lines(folder, lines); !read) return fail(kFailed, read.error());
-    const Work work = find_work(*expanded, lines, *shard, options.retry_failed);
+    const Work work =
+        find_work(*expanded, lines, *shard, options.retry_failed, plan->keep_curves ? folder : fs::path());
     if (options.list) print_list(*plan, *expanded, work, *shard);
     if (options.dry_run) print_commands(*plan, *expanded, work, options.jobs);
     print("{}: {} runs{}: {} done, {} failed, {} would be done now\n", folder.string(), work.mine, shard_text(*shard),
@@ -124,13 +155,16 @@ int sweep(const SweepOptions& options) {
   auto file = LineFile::open(folder / shard->file(), torn);
   if (!file) return fail(kFailed, file.error());
   if (const Status read = read_lines(folder, lines); !read) return fail(kFailed, read.error());
-  const Work work = find_work(*expanded, lines, *shard, options.retry_failed);
+  const Work work = find_work(*expanded, lines, *shard, options.retry_failed, plan->keep_curves ? folder : fs::path());
+  if (work.without_curve > 0)
+    note(std::to_string(work.without_curve) + " runs were done without keeping their curves, and are done again");
   const Interrupt interrupt({"ending; runs under way are left out; press Ctrl-C again to quit at once",
                              "quit at once; what was done before stays"});
   const auto done = do_runs(*plan, *expanded, work.wanted, lines, *file, folder, *shard, options.jobs, interrupt);
   if (!done) return fail(kFailed, done.error());
   if (torn)
     note((folder / shard->file()).string() + " ended in the middle of a line, which is left behind; its run was to do");
+  if (!interrupt.requested()) say_notes(folder, *shard);
   return report(folder, work, *done, *shard, interrupt);
 }
 

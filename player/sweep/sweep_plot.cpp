@@ -80,7 +80,8 @@ std::string plain(const std::string& axis) {
 
 }  // namespace
 
-Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::string& left_out) {
+Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, const Interrupt& interrupt,
+                               std::string& left_out) {
   const std::vector<Figure> figures = figures_of(table);
   std::size_t plots = 0, maps = 0, pairs = 0;
   if (figures.empty()) return plots;
@@ -102,7 +103,7 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
     if (along[a].steps.size() > 1) varied.push_back(a);
   }
   for (const std::size_t a : varied) {
-    if (plots == kMostCurves) break;
+    if (plots == kMostCurves || interrupt.requested()) break;
     const bool sampled = table.axes[a].sampled, alone = varied.size() == 1;
     const std::string subtitle = "along " + table.axes[a].name +
                                  (sampled ? ": " + dots
@@ -118,7 +119,7 @@ Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::
   }
   for (std::size_t i = 0; i < varied.size(); ++i)
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
-      if (++pairs > kMostMaps) continue;
+      if (++pairs > kMostMaps || interrupt.requested()) continue;
       const std::size_t a = varied[i], b = varied[j];
       const bool sampled = table.axes[a].sampled || table.axes[b].sampled;
       std::vector<Figure> uneven;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "player/interrupt.h"
 #include "player/record/output_folder.h"
 #include "player/sweep/table.h"
 #include "runtime/result.h"
@@ -11,7 +12,8 @@
 namespace pliant {
 
 // Figures that are the same in every run are not drawn. How many plots were staged; `left_out` says what a picture had
-// no room for.
-Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, std::string& left_out);
+// no room for. Ends early, with what was drawn, when that is requested.
+Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, const Interrupt& interrupt,
+                               std::string& left_out);
 
 }  // namespace pliant

@@ -1,10 +1,14 @@
 #include "player/sweep/table.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <limits>
 #include <set>
 
 #include "player/record/csv.h"
+#include "player/sweep/sweep_notes.h"
 
 namespace pliant {
 namespace {
@@ -19,7 +23,7 @@ std::string csv(const SweepTable& table, const char* part, const std::vector<std
   for (const SweepAxis& axis : table.axes) text += "," + csv_text(axis.name);
   if (with_status) text += ",status";
   for (const std::string& name : names) text += "," + csv_text(name);
-  text += "\n";
+  text += with_status ? ",notes\n" : "\n";
   for (const SweepRow& row : table.rows) {
     if (row.line.is_null()) continue;
     text += row.id;
@@ -29,6 +33,7 @@ std::string csv(const SweepTable& table, const char* part, const std::vector<std
       text += ",";
       if (row.line.contains(part) && row.line[part].contains(name)) text += csv_text(text_of(row.line[part][name]));
     }
+    if (with_status) text += "," + csv_text(fmt::format("{}", fmt::join(notes_of(row.line), " | ")));
     text += "\n";
   }
   return text;
@@ -121,7 +126,7 @@ std::size_t untouched(const SweepTable& table) {
   }));
 }
 
-std::string merge_report(const SweepTable& table) {
+std::string merge_report(const SweepTable& table, const SweepNotes& notes) {
   PlanJson json;
   for (const char* key : {"pliant", "level", "level_hash"}) json[key] = table.sweep[key];
   json["axes"] = PlanJson::array();
@@ -147,7 +152,7 @@ std::string merge_report(const SweepTable& table) {
   json["failed"] = failures.size() - timed_out;
   json["timed_out"] = timed_out;
   json["missing"] = missing.size();
-  json["untouched"] = untouched(table);
+  add_notes(notes, table, json);
   json["figures"] = summary(table);
   json["failures"] = std::move(failures);
   json["missing_runs"] = std::move(missing);

@@ -36,6 +36,7 @@ Result<SweepTable> read_table(const std::vector<std::filesystem::path>& folders)
 
 std::string results_csv(const SweepTable& table);
 std::string timings_csv(const SweepTable& table);
-std::string merge_report(const SweepTable& table);
+struct SweepNotes;
+std::string merge_report(const SweepTable& table, const SweepNotes& notes);
 
 }  // namespace pliant

@@ -10,11 +10,13 @@
 #include "content/author/save_script.h"
 #include "content/author/staging.h"
 #include "content/author/touchable.h"
+#include "content/files/file_io.h"
 #include "content/keys/extension_table.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/tets/tet_parts.h"
 #include "player/exit.h"
+#include "player/interrupt.h"
 #include "player/print.h"
 #include "player/verbs/verbs.h"
 #include "systems/soft/prepare_soft.h"
@@ -205,15 +207,25 @@ Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, 
 
 Status write_all(const AuthorOptions& options, Level& level, const std::vector<Led>& led) {
   const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
+  std::error_code ignored;
+  std::vector<fs::path> added;  // which a level that cannot be written does not leave behind
+  const auto take_back = [&](Status failed) {
+    for (const fs::path& each : added) fs::remove(each, ignored);
+    return failed;
+  };
   for (const Led& each : led) {
-    if (const Status s = save_script(each.path, "down onto the object, a rest, up", each.file, existing); !s) return s;
+    const bool is_new = !fs::exists(fs::symlink_status(each.file, ignored));
+    if (Status s = save_script(each.path, "down onto the object, a rest, up", each.file, existing); !s)
+      return take_back(std::move(s));
+    if (is_new) added.push_back(each.file);
     for (LevelNode& node : level.nodes)
       if (node.name == each.name && node.device) {
         node.device->driver = DriverKind::kScript;
         node.device->file = each.file.filename().string();
       }
   }
-  return save_level(level, options.out, {0, false, existing});
+  Status saved = save_level(level, options.out, {0, false, existing});
+  return saved ? saved : take_back(std::move(saved));
 }
 
 }  // namespace
@@ -254,6 +266,11 @@ int author(const AuthorOptions& options) {
     if (!plan->soft.empty()) error.what += "; or try it as a surface: --surface instead of --soft";
     return fail(kFailed, error);
   }
+  const Interrupt interrupt({"the level is being written; press Ctrl-C again to quit at once",
+                             "quit at once; the level may not be written"});  // all of the files or none
+  for (const fs::path& file : files)
+    if (const fs::path aside = aside_of(file); !fs::exists(fs::symlink_status(aside, ignored)))
+      interrupt.remove_if_forced(aside);
   if (const Status s = write_all(options, *level, *led); !s) return fail(kFailed, s.error());
   print("{}: a level from {}\n", options.out, options.in);
   say_soft(*level, *world, *plan);

@@ -9,11 +9,13 @@
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
+#include "content/validate.h"
 #include "player/exit.h"
 #include "player/interrupt.h"
 #include "player/print.h"
 #include "player/verbs/left_behind.h"
 #include "player/verbs/panorama_preview.h"
+#include "player/verbs/prepare_world.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {
@@ -93,6 +95,37 @@ Existing existing(const ConvertOptions& options) {
   return options.force ? Existing::kReplace : Existing::kRefuse;
 }
 
+// What the level names and is not there: it is copied beside the new one later, which a note says (left_behind.h).
+void leave_out_missing_files(Level& level) {
+  const fs::path folder = level.path.parent_path();
+  const auto is_missing = [&](const std::string& name) {
+    std::error_code ignored;
+    const Result<fs::path> file = confined_path(folder, name);
+    return !name.empty() && !fs::exists(file ? *file : folder / name, ignored);
+  };
+  if (level.environment && is_missing(level.environment->panorama)) level.environment->panorama.clear();
+  for (LevelNode& node : level.nodes) {
+    if (node.device && is_missing(node.device->file))
+      node.device->driver = DriverKind::kNull, node.device->file.clear();
+    if (node.motion && is_missing(node.motion->script)) node.motion.reset();
+    if (node.soft_body && is_missing(node.soft_body->mesh)) {
+      node.soft_body.reset();
+      if (!node.rigid_body) node.handle.reset();
+    }
+  }
+}
+
+// Nothing is written that `validate` would refuse.
+Status check_valid(Level level, const std::string& in) {
+  leave_out_missing_files(level);
+  for (const Finding& finding : validate_level(std::move(level), prepare_world))
+    if (finding.severity == Severity::kError)
+      return Error{in + (finding.pointer.empty() ? "" : " " + finding.pointer),
+                   finding.message + (finding.message.find("; ") == std::string::npos ? "; correct it first" : "") +
+                       " (nothing is written that `pliant validate` would refuse)"};
+  return Done{};
+}
+
 // Before the work: what would be refused after it.
 Status check_free(const ConvertOptions& options) {
   std::error_code ignored;
@@ -135,6 +168,7 @@ int convert(const ConvertOptions& options) {
   scale_roots(*level, options.unit);
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
+  if (const Status s = check_valid(*level, options.in); !s) return fail(kFailed, s.error());
   const Interrupt interrupt(kWords);  // until the file is in place: nothing half-written stays behind
   remove_if_forced(interrupt, options.out);
   if (const Status s =

@@ -20,7 +20,7 @@ void add_run(CLI::App& app, RunOptions& run) {
       ->take_all()
       ->allow_extra_args(false);
   add_unit(verb, run.unit, "what one unit of a bare mesh is (m)");
-  verb->add_option("--seconds", run.seconds, "how long [s]; default: the longest script, at most 60, else 4")
+  verb->add_option("--seconds", run.seconds, "how long [s]; default: to the end of the longest script, else 4")
       ->check(within(1e-4, 86400.0));
   verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")
       ->check(within(kTouchRateRange.min, kTouchRateRange.max));

@@ -20,6 +20,7 @@
 #include "engine/touch_clock.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
+#include "player/run/duration.h"
 #include "player/run/frames.h"
 #include "player/run/report.h"
 #include "player/run/tool_words.h"
@@ -36,12 +37,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kDefaultSeconds = 4.0;   // [s] without a script
-constexpr double kLongestDefault = 60.0;  // [s] of a script, unless --seconds asks for more
-constexpr double kJournalSeconds = 8.0;   // [s] of rows that may wait while a picture is drawn and written
+constexpr double kJournalSeconds = 8.0;  // [s] of rows that may wait while a picture is drawn and written
 constexpr int kDefaultFrames = 12;
 constexpr int kWindowWidth = 1280, kWindowHeight = 720;  // [pixel]
-constexpr double kEndless = 1e7;                         // [s] a window stays open until it is closed
 
 Outcome check(const RunOptions& options) {
   if (options.field == "gpu" && options.frames == 0)
@@ -62,30 +60,6 @@ struct Shown {
   std::unique_ptr<Window> window;
   InputScript script;
 };
-
-// As long as the longest script that a probe or tool follows.
-double default_seconds(const Prepared& run) {
-  const World& world = run.world;
-  double longest = run.hands.seconds();
-  for (const Entity hand : hands(world)) {
-    const HapticDevice* device = find_device(world, hand);
-    if (!device || device->driver != DriverKind::kScript || !device->path.valid()) continue;
-    const Path& path = world.paths[device->path];
-    if (!path.rows.empty()) longest = std::max(longest, path.rows.back().time);
-  }
-  return longest > 0.0 ? std::min(longest, kLongestDefault) : kDefaultSeconds;
-}
-
-std::uint64_t count_ticks(const RunOptions& options, bool windowed, const Prepared& run) {
-  const double rate = run.world.simulation.touch_rate;
-  if (windowed)
-    return static_cast<std::uint64_t>(std::llround((options.seconds > 0.0 ? options.seconds : kEndless) * rate));
-  const bool all = run.replay && options.seconds <= 0.0;
-  const double seconds = options.seconds > 0.0 ? options.seconds : default_seconds(run);
-  const auto wanted = static_cast<std::uint64_t>(std::max<long long>(1, std::llround(seconds * rate)));
-  const std::uint64_t recorded = run.replay ? run.replay->ticks.size() : wanted;
-  return all ? recorded : std::min(wanted, recorded);
-}
 
 // A window where there is a display, unless that was forbidden or what is asked for needs virtual time. Without one,
 // only an order to have one is a failure.
@@ -309,15 +283,15 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
                      std::optional<Prepared>& next) {
   World& world = run.world;
   const double rate = world.simulation.touch_rate;
-  const std::uint64_t ticks = count_ticks(options, shown, run);
+  const RunLength length = run_length(options.seconds, shown, world, run.hands, run.replay ? &*run.replay : nullptr);
+  const std::uint64_t ticks = length.ticks;
   if (const double pictures = static_cast<double>(ticks) / rate * options.fps;
       pictures > kMostFrames && !(shown && options.seconds <= 0.0))
     return wrong_arguments(
         {"--fps", fmt::format("{:.0f} pictures are asked for, and a run takes at most {}; give a lower "
                               "one, or a shorter --seconds",
                               pictures, kMostFrames)});
-  if (run.replay && options.seconds > 0.0 && ticks < static_cast<std::uint64_t>(std::llround(options.seconds * rate)))
-    say(run, fmt::format("the recording ends after {} ticks, before --seconds {}", ticks, options.seconds));
+  for (const std::string& sentence : length.notes) say(run, sentence);
 
   DeviceLinks devices;
   if (!run.replay)

@@ -8,10 +8,8 @@
 #include "player/exit.h"
 #include "player/print.h"
 #include "player/verbs/content_folder.h"
+#include "player/verbs/prepare_world.h"
 #include "player/verbs/verbs.h"
-#include "systems/soft/prepare_soft.h"
-#include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
 
 namespace pliant {
 namespace {
@@ -33,11 +31,7 @@ const char* word(Severity severity) {
 int validate(const std::string& argument) {
   const auto file = find_level(argument);
   if (!file) return fail(kFailed, file.error());
-  const Findings findings = validate_level(*file, [](World& world) -> Status {
-    for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
-      if (const Status status = prepare_system(world); !status) return status;
-    return Done{};
-  });
+  const Findings findings = validate_level(*file, prepare_world);
   int errors = 0, warnings = 0;
   for (const Finding& finding : findings) {
     errors += finding.severity == Severity::kError;

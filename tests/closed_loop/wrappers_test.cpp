@@ -267,6 +267,28 @@ TEST(Wrappers, ReplayGivesBackWhatRecordHasKept) {
   std::filesystem::remove(file);
 }
 
+TEST(Wrappers, TwoDevicesDoNotRecordIntoOneFileHoweverItIsSpelled) {
+  const std::filesystem::path folder = testing::TempDir(), file = folder / "pliant_record_shared.csv";
+  std::filesystem::remove(file);
+  InsideDriver a, b;
+  const auto first = opened(a, "record=" + file.string());
+  auto second = wrap(std::make_unique<Counting>(b), "record=" + (folder / "." / file.filename()).string());
+  ASSERT_TRUE(second);
+  const Status refused = second->driver->open("");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message(), testing::HasSubstr("is being recorded into"));
+  DeviceSample sample;
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(first->read(sample));
+  first->close();
+  const auto rows = read_poses(file.string());
+  ASSERT_TRUE(rows) << rows.error().message();
+  EXPECT_EQ(rows->size(), 10u);
+  std::filesystem::remove(file);
+  // A device that senses nothing leaves no empty file behind.
+  { const auto idle = opened(b, "record=" + file.string()); }
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
 TEST(Wrappers, RecordStopsAtItsLengthAndSaysHowMuchIsMissing) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "pliant_record_long.csv";
   std::filesystem::remove(file);
