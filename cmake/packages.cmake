@@ -20,6 +20,7 @@ pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
 pkg_check_modules(hidapi REQUIRED IMPORTED_TARGET hidapi-hidraw)
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(libwebsockets REQUIRED IMPORTED_TARGET libwebsockets)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 if(PLIANT_TESTS)
   find_package(GTest REQUIRED)
   pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # without it, tests of plugging devices in are skipped
