@@ -106,7 +106,7 @@ TEST_F(LevelDevices, WrappersThatMultiplyAreRefusedFromTheUserToo) {
 }
 
 TEST_F(LevelDevices, AMisspelledProbeIsSaid) {
-  ask("mouse");
+  ask("simulated:touch,clock=tick");
   const Said added = said(run({"--probe", "stilus=orbit"}));
   EXPECT_EQ(added.status, 0) << added.err;
   EXPECT_NE(added.err.find("did you mean stylus?"), std::string::npos) << added.err;
