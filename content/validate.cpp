@@ -11,6 +11,7 @@
 #include "content/gltf/gltf_document.h"
 #include "content/keys/extensions.h"
 #include "content/keys/unused_keys.h"
+#include "content/level/device_request.h"
 #include "content/level/device_use.h"
 #include "content/level/script.h"
 #include "content/level/spawn_soft.h"
@@ -170,6 +171,20 @@ void find_idle(const Level& level, Findings& findings) {
     findings.push_back({Severity::kNote, pointer_of(level, idle.node), idle.what});
 }
 
+// Devices that the level asks for by their id: what it may ask for is named, what it may not is what `run` refuses.
+void find_requests(const Level& level, Findings& findings) {
+  for (const LevelRequest& asked : device_requests(level)) {
+    if (!level.nodes[asked.node].in_scene) continue;
+    const std::string pointer = pointer_of(level, asked.node) + "/extensions/PLIANT_haptic_device/id";
+    const bool nothing = asked.used && asked.request.allowed.empty();
+    for (const std::string& sentence : asked.request.refused)
+      findings.push_back({nothing ? Severity::kError : Severity::kWarning, pointer,
+                          "asks for more than a level may: " + sentence + "; " + device_cure(asked)});
+    if (asked.used && !asked.request.allowed.empty())
+      findings.push_back({Severity::kNote, pointer, "asks for the device `" + asked.request.allowed + "`"});
+  }
+}
+
 // Scripts that are not there, or hold no path.
 void find_in_scripts(const Level& level, const fs::path& folder, Findings& findings) {
   ScriptLibrary scripts;
@@ -255,6 +270,7 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
   for (const DeviceFault& fault : find_shared_devices(level))
     findings.push_back({Severity::kError, pointer_of(level, fault.node), fault.what});
   find_idle(level, findings);
+  find_requests(level, findings);
   // Files that the level names.
   const fs::path folder = level.path.parent_path();
   find_in_soft_nodes(level, folder, findings);

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <string_view>
 
+#include "devices/believable.h"
 #include "devices/spec.h"
 
 namespace pliant {
 namespace {
+
+constexpr const char* kNetworkDriver = "network";
 
 bool pushes(const DeviceInfo& device) {
   return device.can.renders_force && !device.can.resists_only;
@@ -46,8 +49,12 @@ Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const Devic
   std::string missing;
   for (const DeviceInfo& device : there) {
     if (!fits(device)) continue;
-    if (!device.missing.empty()) {
-      if (missing.empty()) missing = fmt::format("{}: {}", device.name, device.missing);
+    std::string wrong = device.missing;
+    if (wrong.empty() && device.driver == kNetworkDriver)
+      wrong = "any program may answer there, so it is taken by its name only: device:" + full_id(device);
+    if (wrong.empty()) wrong = beyond_belief(device.can);
+    if (!wrong.empty()) {
+      if (missing.empty() || device.missing.empty()) missing = fmt::format("{}: {}", device.name, wrong);
     } else if (!best || (pushes(device) && device.can.max_force > best->can.max_force)) {
       best = &device;
     }

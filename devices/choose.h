@@ -4,7 +4,8 @@
 //   DRIVER or DRIVER:ID     a driver's first device, or the one of that id (as `pliant devices` prints it)
 //   any-force               whatever pushes in three axes, the strongest first
 //   any-pose                whatever senses position and rotation
-//   any                     whatever there is; none of these three is ever a simulated device
+//   any                     whatever there is; none of these three is ever a simulated device, one that whoever sends
+//                           from a port says to be there (`network`), or one whose limits cannot be
 //   mouse                   the mouse of the window
 // What follows "|" in an alternative is handed on with it (devices/wrappers).
 #pragma once

@@ -33,6 +33,7 @@ struct DevicesView {
 struct DeviceOrders {
   std::vector<std::string> arm, disarm, stop;  // by effector
   bool stop_all = false;
+  bool allow = false, decline = false;  // the question whether a level may have the devices that it asks for
   bool any() const { return stop_all || !arm.empty() || !disarm.empty() || !stop.empty(); }
 };
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "devices/believable.h"
 #include "systems/device/device_model.h"
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
@@ -42,16 +43,15 @@ Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id
   DeviceCapabilities can;
   Servo* servo = nullptr;
   try {
+    // Before it is opened: a line that two programs ask at once answers neither.
+    if (!claimed.empty())
+      if (Status taken = claim.take(claimed); !taken) return taken;
     if (Status status = driver->open(id); !status) return status;
     opened = true;
     can = driver->capabilities();
-    for (const double limit : {can.max_force, can.max_torque, can.max_stiffness, can.max_grip, can.continuous_force,
-                               can.max_velocity, can.rate, can.latency, can.damping})
-      if (!(limit >= 0.0))
-        return failed("a limit among its capabilities is negative or no number; say 0 where it is not known");
+    if (const std::string wrong = beyond_belief(can); !wrong.empty()) return failed(wrong);
+    if (can.simulated || !renders(can)) claim.release();  // any number may read it
     if (wants_servo(can)) {
-      if (!claimed.empty() && !can.simulated)
-        if (Status taken = claim.take(claimed); !taken) return failed(taken.error().message());
       auto served = std::make_unique<Servo>(std::move(driver), guard);
       servo = served.get();
       driver = std::move(served);

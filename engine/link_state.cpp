@@ -34,6 +34,7 @@ bool LinkState::sense(const DeviceSample* sample, double now) {
   follow_orders(now);
   if (sample) {
     ++report_.figures.samples;
+    if (!sample->ready) ++report_.dropped.not_ready;
     report_.sample = *sample;
     came_at_ = now;
     came_ = sample->ready;

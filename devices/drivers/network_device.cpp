@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "devices/believable.h"
 #include "devices/ports/udp_port.h"
+#include "devices/spec.h"
 #include "runtime/clock.h"
 
 namespace pliant {
@@ -12,18 +13,14 @@ namespace {
 
 constexpr double kModelRadius = 0.010;  // [m] farther from where it was made a tick cannot take a hand
 constexpr double kReopen = 0.1;         // [s] between two tries to open
+constexpr double kForgotten = 1.2;      // [s] a device that hears nothing for 1 s listens to others
 constexpr double kOpenFor = 2.0;        // [s] that open() waits: a device that was left alone listens anew after 1 s
 constexpr double kClockDrift = 2e-4;    // [1] two quartz clocks differ by less
 constexpr int kMostAtOnce = 64;         // frames that one read() takes
 
-std::uint32_t random_session() {
-  std::random_device random;
-  const std::uint32_t session = random();
-  return session != 0 ? session : 1;
-}
-
 Result<std::unique_ptr<PacketPort>> open_udp(const std::string& id) {
-  const auto address = parse_udp_address(id.empty() ? kNetworkPort : id);
+  const std::string before = id.substr(0, id.find(','));
+  const auto address = parse_udp_address(trimmed(before).empty() ? kNetworkPort : std::string(trimmed(before)));
   if (!address) return address.error();
   auto port = UdpPort::connect(*address);
   if (!port) return port.error();
@@ -41,31 +38,36 @@ NetworkDevice::NetworkDevice(PortOpener opener, SecondsClock clock)
     : opener_(std::move(opener)), clock_(std::move(clock)) {}
 
 Status NetworkDevice::open(const std::string& id) {
+  auto named = parse_keyed_address(id);
+  if (!named) return named.error();
   auto port = opener_(id);
   if (!port) return port.error();
   *this = NetworkDevice(opener_, clock_);
   port_ = std::move(*port);
-  own_ = random_session();
+  key_ = std::move(named->key);
   const double begin = clock_();
+  // One that is busy is asked for as long: an engine that has died is forgotten after a second.
   for (double now = begin; now - begin < kOpenFor && device_ == 0; now = clock_()) {
-    NetworkFrame frame;
-    frame.kind = FrameKind::kOpen;
-    opened_at_ = now;
-    send(frame, now);
-    FrameBytes bytes;
+    const double asked = now;
+    ask(now);
     for (double until = now + kReopen; (now = clock_()) < until && device_ == 0;) {
-      const auto got = port_->receive(bytes, until - now);
-      if (!got) return got.error();
       NetworkFrame answer;
-      if (*got == 0 || parse_frame(std::span(bytes).first(*got), answer) != FrameFault::kNone) continue;
-      if (accept(answer, clock_())) can_.latency = clock_() - opened_at_;
+      const auto got = receive(answer, until - now);
+      if (!got) return got.error();
+      if (*got != 0 && accept(answer, clock_())) can_.latency = clock_() - asked;
     }
   }
-  if (device_ == 0) {
-    port_.reset();
-    return Error{shown(id), "does not answer; start the device, or give its own PORT or ADDRESS:PORT"};
-  }
-  return Done{};
+  if (device_ != 0) return Done{};
+  port_.reset();
+  if (busy_[0] != 0)
+    return Error{shown(id), "is in use by " +
+                                (busy_[0] == '?' ? "another engine" : std::string("the engine at ") + busy_.data()) +
+                                "; end that one first"};
+  if (const std::string frames = describe(counts_); !frames.empty())
+    return Error{shown(id), "answers with frames that cannot be used (" + frames + "); " + cure_for(counts_)};
+  return Error{shown(id), key_ ? "does not answer to this key; start the device, and give it the same key"
+                               : "does not answer; start the device, give its own PORT or ADDRESS:PORT, and its key if "
+                                 "it has one (,key=FILE)"};
 }
 
 void NetworkDevice::send(NetworkFrame& frame, double now) {
@@ -73,13 +75,38 @@ void NetworkDevice::send(NetworkFrame& frame, double now) {
   frame.sequence = sent_.next(now);
   frame.time_us = static_cast<std::uint64_t>(now * 1e6);
   FrameBytes bytes;
-  const std::size_t length = write_frame(frame, bytes);
+  const std::size_t length = write_frame(frame, bytes, key());
   (void)port_->send(std::span(bytes).first(length));  // a frame that cannot leave is lost, as on the way
+}
+
+// With a key the device's session is asked for first: it opens for who names the one that it has now, and never for a
+// frame that somebody has kept. Each question is of a session of its own, so that no answer from before fits.
+void NetworkDevice::ask(double now) {
+  opened_at_ = now;
+  if (key_ || own_ == 0) own_ = random_session();
+  NetworkFrame frame;
+  frame.kind = key_ ? FrameKind::kAsk : FrameKind::kOpen;
+  send(frame, now);
+}
+
+// 0: nothing, or nothing that can be used.
+Result<std::size_t> NetworkDevice::receive(NetworkFrame& frame, double seconds) {
+  FrameBytes bytes;
+  auto got = port_->receive(bytes, seconds);
+  if (!got || *got == 0) return got;
+  const FrameFault fault = parse_frame(std::span(bytes).first(*got), frame, key());
+  count_fault(counts_, fault);
+  return fault == FrameFault::kNone ? *got : std::size_t{0};
 }
 
 // Of the device that was opened, and of nobody else.
 bool NetworkDevice::accept(const NetworkFrame& frame, double now) {
   const bool answers = frame.kind == FrameKind::kDescription && frame.peer == own_ && frame.session != 0;
+  if (frame.kind == FrameKind::kBusy && frame.peer == own_ && device_ == 0) {
+    busy_ = frame.busy.by;
+    if (busy_[0] == 0) busy_[0] = '?';
+    return false;
+  }
   const bool anew = frame.session != device_ || comes_after(frame.sequence, heard_sequence_);
   if (answers && (device_ == 0 || (silent(now) && anew))) {
     device_ = frame.session;  // it has been started again, or its clock has been set
@@ -90,6 +117,12 @@ bool NetworkDevice::accept(const NetworkFrame& frame, double now) {
     clock_offset_ = now - static_cast<double>(frame.time_us) * 1e-6;
     heard_ = false;
     ++counts_.accepted;
+    if (key_) {
+      NetworkFrame open;
+      open.kind = FrameKind::kOpen;
+      open.peer = device_;
+      send(open, now);
+    }
     return true;
   }
   if (device_ == 0 || frame.peer != own_ || frame.session != device_) {
@@ -125,16 +158,12 @@ bool NetworkDevice::accept_state(const NetworkFrame& frame, double now) {
 }
 
 void NetworkDevice::hear(double now) {
-  FrameBytes bytes;
   for (int i = 0; i < kMostAtOnce; ++i) {
-    const auto got = port_->receive(bytes, 0.0);
-    if (!got || *got == 0) return;
+    const std::uint64_t dropped = counts_.dropped();
     NetworkFrame frame;
-    const FrameFault fault = parse_frame(std::span(bytes).first(*got), frame);
-    if (fault != FrameFault::kNone)
-      ++(fault == FrameFault::kForeign ? counts_.foreign : counts_.damaged);
-    else if (accept(frame, now) && frame.kind == FrameKind::kState)
-      fresh_ = true;
+    const auto got = receive(frame, 0.0);
+    if (!got || (*got == 0 && counts_.dropped() == dropped)) return;
+    if (*got != 0 && accept(frame, now) && frame.kind == FrameKind::kState) fresh_ = true;
   }
 }
 
@@ -152,11 +181,9 @@ void NetworkDevice::send_force(ForceFrame& force) {
   const double now = clock_();
   const bool quiet = silent(now);
   NetworkFrame frame;
-  if (quiet && now - opened_at_ >= kReopen) {
-    opened_at_ = now;
-    frame.kind = FrameKind::kOpen;
-    send(frame, now);
-  }
+  // One that still knows our session answers by itself; with a key it knows no other until it has forgotten ours.
+  const double since = now - (key_ && heard_ ? std::max(heard_at_, opened_at_) : opened_at_);
+  if (quiet && since >= (key_ ? kForgotten : kReopen)) ask(now);
   frame.kind = FrameKind::kForce;
   frame.peer = device_;
   frame.force = quiet ? ForceFrame{} : force;
@@ -192,6 +219,21 @@ void NetworkDevice::close() {
   port_.reset();
 }
 
+// A close frame of the session that is open: nothing that came before it is rendered after it.
+bool NetworkDevice::safe_line(SafeLine& line) const {
+  if (!port_ || port_->file() < 0 || device_ == 0) return false;
+  NetworkFrame frame;
+  frame.kind = FrameKind::kClose;
+  frame.session = own_;
+  frame.peer = device_;
+  FrameBytes bytes;
+  line.size = write_frame(frame, bytes, key());
+  static_assert(kFrameHeader + FrameKey::kTag <= std::tuple_size_v<decltype(SafeLine::bytes)>);
+  std::copy_n(bytes.begin(), line.size, line.bytes.begin());
+  line.descriptor = port_->file();
+  return true;
+}
+
 std::vector<DeviceInfo> list_network_devices() {
   DeviceInfo info{.driver = "network", .name = "network device"};
   info.missing = std::string("nothing answers on port ") + kNetworkPort +
@@ -206,11 +248,14 @@ std::vector<DeviceInfo> list_network_devices() {
   if (!(*port)->send(std::span(bytes).first(length))) return {info};
   const auto got = (*port)->receive(bytes, 0.05);
   if (!got || *got == 0 || parse_frame(std::span(bytes).first(*got), frame) != FrameFault::kNone) return {info};
+  if (frame.kind == FrameKind::kBusy)
+    info.missing = std::string("it is in use by the engine at ") + frame.busy.by.data() + "; end that one first";
   if (frame.kind != FrameKind::kDescription) return {info};
   info.id = std::string("127.0.0.1:") + kNetworkPort;
   info.missing.clear();
   if (frame.description.name[0] != 0) info.name = frame.description.name.data();
   info.can = frame.description.can;
+  if (const std::string wrong = beyond_belief(info.can); !wrong.empty()) info.missing = "it " + wrong;
   return {info};
 }
 

@@ -1,6 +1,6 @@
 // Driver "network": a device at the other end of UDP, which senses its pose and renders the local model itself
 // (network_frame.h; docs/devices/network.md). Its id is the device's address: PORT, ADDRESS:PORT or nothing for port
-// 17716 of this machine.
+// 17716 of this machine; and behind it ,key=FILE or ,key-env=NAME where both have a key (network_key.h).
 //
 // Either side that hears nothing for 20 ms renders nothing: the wire may fall silent at any time. While the device is
 // silent it is opened anew ten times a second, so that one that was started again is found without anyone's help.
@@ -12,12 +12,11 @@
 #include "devices/drivers/network_frame.h"
 #include "devices/ports/packet_port.h"
 #include "devices/ports/seconds.h"
+#include "devices/servo/device_identity.h"
 
 namespace pliant {
 
-inline constexpr const char* kNetworkPort = "17716";
-
-class NetworkDevice final : public Driver {
+class NetworkDevice final : public Driver, public CountsDropped {
  public:
   NetworkDevice();  // over UDP
   explicit NetworkDevice(PortOpener opener, SecondsClock clock = monotonic_seconds);
@@ -28,6 +27,8 @@ class NetworkDevice final : public Driver {
   void write(const DeviceWrench& wrench) override;
   bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
   void close() override;
+  bool safe_line(SafeLine& line) const override;
+  DroppedFrames dropped() const override { return counts_; }
 
   // Of the thread that reads and writes.
   const FrameCounts& counts() const { return counts_; }
@@ -36,6 +37,9 @@ class NetworkDevice final : public Driver {
   std::string name() const { return name_.data(); }
 
  private:
+  Result<std::size_t> receive(NetworkFrame& frame, double seconds);
+  void ask(double now);
+  const FrameKey* key() const { return key_ ? &*key_ : nullptr; }
   bool silent(double now) const { return !heard_ || now - heard_at_ > kFrameSilence; }
   void send(NetworkFrame& frame, double now);
   void send_force(ForceFrame& force);
@@ -46,10 +50,12 @@ class NetworkDevice final : public Driver {
   PortOpener opener_;
   SecondsClock clock_;
   std::unique_ptr<PacketPort> port_;
+  std::optional<FrameKey> key_;
   DeviceCapabilities can_;
   std::array<char, 32> name_{};
   StateFrame state_;
   FrameCounts counts_;
+  std::array<char, 64> busy_{};         // who has the device
   std::uint32_t own_ = 0, device_ = 0;  // sessions; 0: not known
   std::uint32_t heard_sequence_ = 0;
   SentTimes sent_;

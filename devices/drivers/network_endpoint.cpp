@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace pliant {
 namespace {
@@ -34,62 +33,104 @@ DeviceWrench model_wrench(const DeviceModel& model, double radius, const StateFr
 }
 
 NetworkEndpoint::NetworkEndpoint(std::unique_ptr<ListeningPort> port, DeviceCapabilities can, const std::string& name,
-                                 std::function<double()> clock)
-    : port_(std::move(port)), can_(can), clock_(std::move(clock)) {
+                                 std::function<double()> clock, std::optional<FrameKey> key)
+    : port_(std::move(port)), can_(can), clock_(std::move(clock)), key_(std::move(key)), own_(random_session()) {
   name.copy(name_.data(), name_.size() - 1);
-  std::random_device random;
-  while (own_ == 0) own_ = random();
 }
 
-void NetworkEndpoint::send(NetworkFrame& frame, double now) {
+std::size_t NetworkEndpoint::pack(NetworkFrame& frame, double now, FrameBytes& into) {
   frame.session = own_;
   frame.sequence = sent_.next(now);
   frame.time_us = static_cast<std::uint64_t>(now * 1e6);
+  return write_frame(frame, into, key());
+}
+
+void NetworkEndpoint::send(NetworkFrame& frame, double now) {
   FrameBytes bytes;
-  const std::size_t length = write_frame(frame, bytes);
+  const std::size_t length = pack(frame, now, bytes);
   (void)port_->send(std::span(bytes).first(length));
 }
 
+// With a key each engine gets a session of its own, so that an open frame that somebody has kept opens nothing.
+void NetworkEndpoint::forget() {
+  engine_ = 0;
+  has_force_ = false;
+  if (key_) own_ = random_session();
+  port_->free_peer();
+}
+
+void NetworkEndpoint::describe_to(const NetworkFrame& frame, double now) {
+  ++counts_.accepted;
+  NetworkFrame answer;
+  answer.kind = FrameKind::kDescription;
+  answer.peer = frame.session;
+  answer.description = {can_, name_};
+  send(answer, now);
+}
+
+void NetworkEndpoint::tell_busy(const NetworkFrame& frame, bool stranger, double now) {
+  ++counts_.foreign;
+  NetworkFrame answer;
+  answer.kind = FrameKind::kBusy;
+  answer.peer = frame.session;
+  port_->peer().copy(answer.busy.by.data(), answer.busy.by.size() - 1);
+  FrameBytes bytes;
+  const std::size_t length = pack(answer, now, bytes);
+  const auto packet = std::span<const std::uint8_t>(bytes).first(length);
+  if (stranger)
+    port_->answer(packet);
+  else
+    (void)port_->send(packet);
+}
+
+// Someone asks from another address while an engine has the device.
+void NetworkEndpoint::answer_stranger(double now) {
+  FrameBytes bytes;
+  const std::size_t size = port_->stranger(bytes);
+  NetworkFrame frame;
+  if (size == 0 || parse_frame(std::span(bytes).first(size), frame, key()) != FrameFault::kNone) return;
+  if (frame.kind == FrameKind::kOpen || frame.kind == FrameKind::kAsk) tell_busy(frame, true, now);
+}
+
 void NetworkEndpoint::accept(const NetworkFrame& frame, double now) {
-  if (frame.kind == FrameKind::kAsk || frame.kind == FrameKind::kOpen) {
+  if (frame.kind == FrameKind::kAsk) {
+    const bool other = key_ && engine_ != 0 && frame.session != engine_;  // with a key only who may open it asks
+    return other ? tell_busy(frame, false, now) : describe_to(frame, now);
+  }
+  if (frame.kind == FrameKind::kOpen) {
     // A second engine waits until the first has closed or has been silent for a second.
-    if (frame.kind == FrameKind::kOpen && (engine_ == 0 || frame.session == engine_)) {
-      if (engine_ == 0) {
-        port_->take_peer();
-        engine_ = frame.session;
-        heard_sequence_ = frame.sequence;
-        has_force_ = false;
-      } else if (comes_after(frame.sequence, heard_sequence_)) {
-        heard_sequence_ = frame.sequence;
-      }
-      heard_at_ = now;
-    }
-    if (frame.kind == FrameKind::kOpen && frame.session != engine_) {
+    if (engine_ != 0 && frame.session != engine_) return tell_busy(frame, false, now);
+    if (key_ && frame.peer != own_) {
       ++counts_.foreign;
       return;
     }
-    ++counts_.accepted;
-    NetworkFrame answer;
-    answer.kind = FrameKind::kDescription;
-    answer.peer = frame.session;
-    answer.description = {can_, name_};
-    send(answer, now);
-    return;
+    if (engine_ == 0) {
+      port_->take_peer();
+      engine_ = frame.session;
+      closed_ = false;
+      heard_sequence_ = frame.sequence;
+      heard_time_us_ = frame.time_us;
+      has_force_ = false;
+    } else if (comes_after(frame.sequence, heard_sequence_)) {
+      heard_sequence_ = frame.sequence;
+    }
+    heard_at_ = now;
+    return describe_to(frame, now);
   }
   if (engine_ == 0 || frame.session != engine_ || frame.peer != own_) {
     ++counts_.foreign;
   } else if (frame.kind == FrameKind::kClose) {
-    engine_ = 0;
-    has_force_ = false;
-    port_->free_peer();
+    forget();
+    closed_ = true;
   } else if (frame.kind == FrameKind::kForce) {
-    if (!comes_after(frame.sequence, heard_sequence_)) {
+    if (!comes_after(frame.sequence, heard_sequence_) || frame.time_us < heard_time_us_) {
       ++counts_.late;
       return;
     }
     counts_.lost += frame.sequence - heard_sequence_ - 1;
     ++counts_.accepted;
     heard_sequence_ = frame.sequence;
+    heard_time_us_ = frame.time_us;
     force_ = frame.force;
     has_force_ = true;
     force_at_ = heard_at_ = now;
@@ -100,24 +141,19 @@ void NetworkEndpoint::hear(double now) {
   FrameBytes bytes;
   for (int i = 0; i < 64; ++i) {
     const auto got = port_->receive(bytes, 0.0);
-    if (!got || *got == 0) return;
+    if (!got || *got == 0) break;
     NetworkFrame frame;
-    const FrameFault fault = parse_frame(std::span(bytes).first(*got), frame);
-    if (fault != FrameFault::kNone)
-      ++(fault == FrameFault::kForeign ? counts_.foreign : counts_.damaged);
-    else
-      accept(frame, now);
+    const FrameFault fault = parse_frame(std::span(bytes).first(*got), frame, key());
+    count_fault(counts_, fault);
+    if (fault == FrameFault::kNone) accept(frame, now);
   }
+  answer_stranger(now);
 }
 
 DeviceWrench NetworkEndpoint::tick(StateFrame state) {
   const double now = clock_();
   hear(now);
-  if (engine_ != 0 && now - heard_at_ > kForget) {
-    engine_ = 0;
-    has_force_ = false;
-    port_->free_peer();
-  }
+  if (engine_ != 0 && now - heard_at_ > kForget) forget();
   if (engine_ != 0) {
     NetworkFrame frame;
     frame.kind = FrameKind::kState;

@@ -1,10 +1,11 @@
 // The device's side of driver "network": what a maker of such a device runs beside its motors (examples/network_device
 // is the same in one file, without Pliant). It answers one engine at a time; whoever comes while that one is heard is
-// not listened to.
+// told who has the device.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "devices/drivers/network_frame.h"
@@ -15,29 +16,38 @@ namespace pliant {
 class NetworkEndpoint {
  public:
   NetworkEndpoint(std::unique_ptr<ListeningPort> port, DeviceCapabilities can, const std::string& name,
-                  std::function<double()> clock);
+                  std::function<double()> clock, std::optional<FrameKey> key = {});
 
   // Once a period of the device's own servo: takes what came, says where the device is, and returns what to render.
   // `now.sample` is in world axes; its time and `heard` are filled in here.
   DeviceWrench tick(StateFrame now);
 
   bool opened() const { return engine_ != 0; }
+  bool closed() const { return closed_; }  // by the last engine itself, and not by its silence
   const FrameCounts& counts() const { return counts_; }
 
  private:
   void hear(double now);
   void accept(const NetworkFrame& frame, double now);
+  void answer_stranger(double now);
+  void describe_to(const NetworkFrame& frame, double now);
+  void tell_busy(const NetworkFrame& frame, bool stranger, double now);
+  void forget();
+  const FrameKey* key() const { return key_ ? &*key_ : nullptr; }
+  std::size_t pack(NetworkFrame& frame, double now, FrameBytes& into);
   void send(NetworkFrame& frame, double now);
 
   std::unique_ptr<ListeningPort> port_;
   DeviceCapabilities can_;
   std::array<char, 32> name_{};
   std::function<double()> clock_;
+  std::optional<FrameKey> key_;
   std::uint32_t own_ = 0, engine_ = 0;  // sessions; 0: of nobody
   std::uint32_t heard_sequence_ = 0;
+  std::uint64_t heard_time_us_ = 0;  // of the engine's clock
   SentTimes sent_;
   ForceFrame force_;
-  bool has_force_ = false;
+  bool has_force_ = false, closed_ = false;
   double heard_at_ = 0.0, force_at_ = 0.0;  // [s]
   FrameCounts counts_;
 };

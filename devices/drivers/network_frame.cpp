@@ -1,7 +1,10 @@
 #include "devices/drivers/network_frame.h"
 
+#include <sys/random.h>
+
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "devices/ports/bytes.h"
 #include "devices/ports/crc32.h"
@@ -42,7 +45,7 @@ void put(ByteWriter& out, const DeviceWrench& wrench) {
 // Reads numbers and remembers whether all of them could be.
 struct Numbers {
   ByteReader& in;
-  bool good = true;
+  bool good = true, turned = true;
   double real(double most = kMostNumber) {
     const double value = in.get_real();
     good = good && std::isfinite(value) && std::abs(value) <= most;
@@ -70,8 +73,8 @@ struct Numbers {
     q.y = real(2.0);
     q.z = real(2.0);
     const double norm = glm::length(q);
-    good = good && std::abs(norm - 1.0) < 1e-3;  // written as unit, in single precision
-    return good ? q / norm : dquat(1, 0, 0, 0);
+    turned = turned && std::abs(norm - 1.0) < 1e-3;  // written as unit, in single precision
+    return good && turned ? q / norm : dquat(1, 0, 0, 0);
   }
   DeviceWrench wrench() {
     DeviceWrench w;
@@ -82,6 +85,20 @@ struct Numbers {
   }
 };
 
+template <std::size_t N>
+void put_text(ByteWriter& out, const std::array<char, N>& text) {
+  for (std::size_t i = 0; i < N; ++i) out.put(static_cast<std::uint8_t>(i + 1 < N ? text[i] : 0));
+}
+
+// Printed to terminals: nothing that steers them.
+template <std::size_t N>
+void get_text(ByteReader& in, std::array<char, N>& text) {
+  for (char& letter : text) letter = static_cast<char>(in.get<std::uint8_t>());
+  text.back() = 0;
+  for (char& letter : text)
+    if (letter != 0 && (static_cast<unsigned char>(letter) < 32 || letter == 127)) letter = '?';
+}
+
 void put_description(ByteWriter& out, const DescriptionFrame& frame) {
   std::uint32_t bits = 0, bit = 1;
   for (const auto ability : kAbilities) {
@@ -91,8 +108,7 @@ void put_description(ByteWriter& out, const DescriptionFrame& frame) {
   out.put(bits);
   for (const auto figure : kFigures) out.put_real(frame.can.*figure);
   put(out, frame.can.workspace);
-  for (std::size_t i = 0; i < frame.name.size(); ++i)
-    out.put(static_cast<std::uint8_t>(i + 1 < frame.name.size() ? frame.name[i] : 0));
+  put_text(out, frame.name);
 }
 
 bool get_description(ByteReader& in, DescriptionFrame& frame) {
@@ -101,11 +117,7 @@ bool get_description(ByteReader& in, DescriptionFrame& frame) {
   for (std::size_t i = 0; i < std::size(kAbilities); ++i) frame.can.*kAbilities[i] = (bits >> i & 1u) != 0;
   for (const auto figure : kFigures) frame.can.*figure = numbers.positive();
   frame.can.workspace = numbers.vector(kMostMetres);
-  for (char& letter : frame.name) letter = static_cast<char>(in.get<std::uint8_t>());
-  frame.name.back() = 0;
-  // Printed to terminals: nothing that steers them.
-  for (char& letter : frame.name)
-    if (letter != 0 && (static_cast<unsigned char>(letter) < 32 || letter == 127)) letter = '?';
+  get_text(in, frame.name);
   return numbers.good && std::min({frame.can.workspace.x, frame.can.workspace.y, frame.can.workspace.z}) >= 0.0;
 }
 
@@ -121,7 +133,13 @@ void put_state(ByteWriter& out, const StateFrame& frame) {
   out.put_real(frame.sample.grip);
 }
 
-bool get_state(ByteReader& in, StateFrame& frame) {
+// A rotation that is not of unit length is told apart: who makes a device has often left it out.
+FrameFault fault_of(const Numbers& numbers, bool good = true) {
+  if (!numbers.good || !good) return FrameFault::kValue;
+  return numbers.turned ? FrameFault::kNone : FrameFault::kRotation;
+}
+
+FrameFault get_state(ByteReader& in, StateFrame& frame) {
   Numbers numbers{in};
   frame.heard = in.get<std::uint32_t>();
   const auto bits = in.get<std::uint32_t>();
@@ -135,7 +153,7 @@ bool get_state(ByteReader& in, StateFrame& frame) {
   frame.velocity = numbers.vector();
   frame.spin = numbers.vector();
   frame.sample.grip = numbers.real(1.0);
-  return numbers.good && frame.sample.grip >= 0.0;
+  return fault_of(numbers, frame.sample.grip >= 0.0);
 }
 
 constexpr dmat3 DeviceModel::*kMatrices[] = {&DeviceModel::force_by_position,  &DeviceModel::force_by_turn,
@@ -153,7 +171,7 @@ void put_force(ByteWriter& out, const ForceFrame& frame) {
   for (const auto matrix : kMatrices) put(out, frame.model.*matrix);
 }
 
-bool get_force(ByteReader& in, ForceFrame& frame) {
+FrameFault get_force(ByteReader& in, ForceFrame& frame) {
   Numbers numbers{in};
   frame.heard = in.get<std::uint32_t>();
   frame.has_model = (in.get<std::uint32_t>() & kHasModel) != 0;
@@ -163,7 +181,7 @@ bool get_force(ByteReader& in, ForceFrame& frame) {
   frame.model.rotation = numbers.rotation();
   frame.model.wrench = numbers.wrench();
   for (const auto matrix : kMatrices) frame.model.*matrix = numbers.matrix();
-  return numbers.good;
+  return fault_of(numbers);
 }
 
 // Of all bytes, with the check sum itself as zeros.
@@ -188,15 +206,17 @@ std::size_t frame_length(FrameKind kind) {
       return kFrameHeader + 3 * 4 + (3 + 4 + 3 + 3 + 1) * 4;
     case FrameKind::kForce:
       return kFrameHeader + 2 * 4 + (7 + 1 + 3 + 4 + 7 + 6 * 9) * 4;
+    case FrameKind::kBusy:
+      return kFrameHeader + std::tuple_size_v<decltype(BusyFrame::by)>;
   }
   return 0;
 }
 
-std::size_t write_frame(const NetworkFrame& frame, FrameBytes& into) {
-  const std::size_t length = frame_length(frame.kind);
-  ByteWriter out{std::span(into).first(length)};
+std::size_t write_frame(const NetworkFrame& frame, FrameBytes& into, const FrameKey* key) {
+  const std::size_t bare = frame_length(frame.kind), length = bare + (key ? FrameKey::kTag : 0);
+  ByteWriter out{std::span(into).first(bare)};
   out.put(kFrameMagic);
-  out.put(kFrameVersion);
+  out.put(key ? kKeyedVersion : kFrameVersion);
   out.put(static_cast<std::uint8_t>(frame.kind));
   out.put(static_cast<std::uint16_t>(length));
   out.put(std::uint32_t{0});
@@ -207,34 +227,83 @@ std::size_t write_frame(const NetworkFrame& frame, FrameBytes& into) {
   if (frame.kind == FrameKind::kDescription) put_description(out, frame.description);
   if (frame.kind == FrameKind::kState) put_state(out, frame.state);
   if (frame.kind == FrameKind::kForce) put_force(out, frame.force);
+  if (frame.kind == FrameKind::kBusy) put_text(out, frame.busy.by);
   ByteWriter check{std::span(into).subspan(kCheckAt, 4)};
-  check.put(check_of(std::span(into).first(length)));
+  check.put(check_of(std::span(into).first(bare)));
+  if (key)
+    key->tag(std::span<const std::uint8_t>(into).first(bare),
+             std::span<std::uint8_t, FrameKey::kTag>(into.data() + bare, FrameKey::kTag));
   return length;
 }
 
-FrameFault parse_frame(std::span<const std::uint8_t> bytes, NetworkFrame& frame) {
+FrameFault parse_frame(std::span<const std::uint8_t> bytes, NetworkFrame& frame, const FrameKey* key) {
   if (bytes.size() < kFrameHeader) return FrameFault::kTruncated;
   ByteReader in(bytes);
   if (in.get<std::uint32_t>() != kFrameMagic) return FrameFault::kForeign;
-  if (in.get<std::uint8_t>() != kFrameVersion) return FrameFault::kVersion;
+  const auto version = in.get<std::uint8_t>();
+  if (version != kFrameVersion && version != kKeyedVersion) return FrameFault::kVersion;
+  const bool keyed = version == kKeyedVersion;
   NetworkFrame read;
   read.kind = static_cast<FrameKind>(in.get<std::uint8_t>());
-  const std::size_t length = frame_length(read.kind);
-  if (length == 0) return FrameFault::kKind;
+  const std::size_t bare = frame_length(read.kind), length = bare + (keyed ? FrameKey::kTag : 0);
+  if (bare == 0) return FrameFault::kKind;
   if (in.get<std::uint16_t>() != length || bytes.size() > length) return FrameFault::kLength;
   if (bytes.size() < length) return FrameFault::kTruncated;
-  if (in.get<std::uint32_t>() != check_of(bytes)) return FrameFault::kCheck;
+  if (in.get<std::uint32_t>() != check_of(bytes.first(bare))) return FrameFault::kCheck;
+  if (keyed != (key != nullptr)) return FrameFault::kKey;
+  if (key &&
+      !key->fits(bytes.first(bare), std::span<const std::uint8_t, FrameKey::kTag>(bytes.data() + bare, FrameKey::kTag)))
+    return FrameFault::kKey;
   read.session = in.get<std::uint32_t>();
   read.peer = in.get<std::uint32_t>();
   read.sequence = in.get<std::uint32_t>();
   read.time_us = in.get<std::uint64_t>();
-  bool good = true;
-  if (read.kind == FrameKind::kDescription) good = get_description(in, read.description);
-  if (read.kind == FrameKind::kState) good = get_state(in, read.state);
-  if (read.kind == FrameKind::kForce) good = get_force(in, read.force);
-  if (!good || !in.ok()) return FrameFault::kValue;
+  FrameFault fault = FrameFault::kNone;
+  if (read.kind == FrameKind::kDescription && !get_description(in, read.description)) fault = FrameFault::kValue;
+  if (read.kind == FrameKind::kState) fault = get_state(in, read.state);
+  if (read.kind == FrameKind::kForce) fault = get_force(in, read.force);
+  if (read.kind == FrameKind::kBusy) get_text(in, read.busy.by);
+  if (fault != FrameFault::kNone) return fault;
+  if (!in.ok()) return FrameFault::kTruncated;
   frame = read;
   return FrameFault::kNone;
+}
+
+void count_fault(DroppedFrames& dropped, FrameFault fault) {
+  switch (fault) {
+    case FrameFault::kNone:
+      return;
+    case FrameFault::kTruncated:
+      ++dropped.too_short;
+      return;
+    case FrameFault::kForeign:
+    case FrameFault::kKind:
+    case FrameFault::kLength:
+      ++dropped.unknown;
+      return;
+    case FrameFault::kVersion:
+      ++dropped.version;
+      return;
+    case FrameFault::kCheck:
+      ++dropped.checksum;
+      return;
+    case FrameFault::kKey:
+      ++dropped.key;
+      return;
+    case FrameFault::kValue:
+      ++dropped.number;
+      return;
+    case FrameFault::kRotation:
+      ++dropped.rotation;
+      return;
+  }
+}
+
+std::uint32_t random_session() {
+  std::uint32_t session = 0;
+  while (session == 0)
+    if (::getrandom(&session, sizeof session, 0) != sizeof session) session = 0;
+  return session;
 }
 
 }  // namespace pliant

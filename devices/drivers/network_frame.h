@@ -10,6 +10,8 @@
 #include <limits>
 #include <span>
 
+#include "devices/drivers/network_key.h"
+#include "pliant/device_state.h"
 #include "pliant/driver.h"
 
 namespace pliant {
@@ -20,11 +22,24 @@ enum class FrameKind : std::uint8_t {
   kDescription,  // device: its answer to both
   kState,        // device: what it senses
   kForce,        // engine: what to render
-  kClose         // engine: zero, and listen to anyone again
+  kClose,        // engine: zero, and listen to anyone again
+  kBusy          // device: another engine has it, and which
 };
 
 // Why a datagram is no frame.
-enum class FrameFault : std::uint8_t { kNone, kTruncated, kForeign, kVersion, kKind, kLength, kCheck, kValue };
+enum class FrameFault : std::uint8_t {
+  kNone,
+  kTruncated,
+  kForeign,  // not of this protocol
+  kVersion,
+  kKind,
+  kLength,
+  kCheck,
+  kKey,  // of another key, without one, or with one where there is none
+  kValue,
+  kRotation
+};
+void count_fault(DroppedFrames& dropped, FrameFault fault);
 
 struct DescriptionFrame {
   DeviceCapabilities can;
@@ -49,6 +64,10 @@ struct ForceFrame {
   std::uint32_t heard = 0;  // sequence of the newest state frame that the engine has accepted
 };
 
+struct BusyFrame {
+  std::array<char, 64> by{};  // the engine that has it, "192.168.1.7:40123"; as the name of a description
+};
+
 struct NetworkFrame {
   FrameKind kind = FrameKind::kAsk;
   std::uint32_t session = 0;   // the sender's, by chance; another one after each of its starts
@@ -58,22 +77,24 @@ struct NetworkFrame {
   DescriptionFrame description;
   StateFrame state;
   ForceFrame force;
+  BusyFrame busy;
 };
 
-inline constexpr std::uint32_t kFrameMagic = 0x544E4C50;  // "PLNT"
-inline constexpr std::uint8_t kFrameVersion = 1;
+inline constexpr std::uint32_t kFrameMagic = 0x544E4C50;             // "PLNT"
+inline constexpr std::uint8_t kFrameVersion = 1, kKeyedVersion = 2;  // with a tag of the key behind it
 inline constexpr std::size_t kFrameHeader = 32;
-inline constexpr std::size_t kMaxFrame = 344;
+inline constexpr std::size_t kMaxFrame = 344 + FrameKey::kTag;
 inline constexpr double kFrameSilence = 0.020;  // [s] without a frame: zero force, on either side
 inline constexpr double kFrameAnswer = 0.040;   // [s] without an answer to a frame that was sent: the same
 
 using FrameBytes = std::array<std::uint8_t, kMaxFrame>;
 
-// Bytes of a frame of this kind; 0 of an unknown one.
+// Bytes of a frame of this kind, without a tag; 0 of an unknown one.
 std::size_t frame_length(FrameKind kind);
-std::size_t write_frame(const NetworkFrame& frame, FrameBytes& into);
-// `frame` is written whole, or not at all. Every number in it is finite and every quaternion unit.
-FrameFault parse_frame(std::span<const std::uint8_t> bytes, NetworkFrame& frame);
+std::size_t write_frame(const NetworkFrame& frame, FrameBytes& into, const FrameKey* key = nullptr);
+// `frame` is written whole, or not at all. Every number in it is finite and every quaternion unit. With a key, only
+// frames of that key are any; without one, only frames without.
+FrameFault parse_frame(std::span<const std::uint8_t> bytes, NetworkFrame& frame, const FrameKey* key = nullptr);
 
 // True: `sequence` comes after `before`, also where the count has begun again.
 inline bool comes_after(std::uint32_t sequence, std::uint32_t before) {
@@ -101,12 +122,11 @@ class SentTimes {
 };
 
 // What became of the frames that came. Only accepted ones have any effect.
-struct FrameCounts {
+struct FrameCounts : DroppedFrames {
   std::uint64_t accepted = 0;
-  std::uint64_t damaged = 0;  // truncated, no frame of ours, of another version, or with numbers that cannot be
-  std::uint64_t foreign = 0;  // from another address or session
-  std::uint64_t late = 0;     // duplicated, overtaken, or with a time that runs backwards
-  std::uint64_t lost = 0;     // gaps in the sequence
 };
+
+// By chance, from the kernel; never 0.
+std::uint32_t random_session();
 
 }  // namespace pliant

@@ -113,6 +113,16 @@ class Polhem final : public Driver {
     } catch (...) {  // the device's watchdog ends the force
     }
   }
+  // The report of no currents.
+  bool safe_line(SafeLine& line) const override {
+    if (!port_ || gone_ || port_->file() < 0 || length_ > line.bytes.size()) return false;
+    std::array<std::uint8_t, kPolhemOutput> report;
+    polhem_drive(dvec3(0), report);
+    std::copy_n(report.begin(), length_, line.bytes.begin());
+    line.size = length_;
+    line.descriptor = port_->file();
+    return true;
+  }
   // One that was said to be parked when it was opened, or whose encoders were said to be right, is not so any more.
   bool gone() const override { return gone_ && by_button_; }
   void close() override {

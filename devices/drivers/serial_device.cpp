@@ -1,5 +1,6 @@
 #include "devices/drivers/serial_device.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -83,6 +84,8 @@ Status SerialDevice::open(const std::string& id) {
           .rate = 1.0 / kSerialPeriod,
           .latency = 2e-3};
   port_ = std::move(*port);
+  too_short_ = sums_ = forms_ = numbers_ = 0;
+  keep_line();
   thread_.start([this] { run(); });
   return Done{};
 }
@@ -104,11 +107,14 @@ bool SerialDevice::talk() {
     bool came = false;
     for (const double end = DeviceThread::seconds() + kSerialAnswer; !came && DeviceThread::seconds() < end;) {
       if (!hear(*port_, lines, end - DeviceThread::seconds())) return false;
-      for (std::string_view line; lines.next(line);)
-        if (const auto pose = parse_serial_pose(line)) {
-          thread_.publish(pose->sample);
-          came = true;
-        }
+      for (std::string_view line; lines.next(line);) {
+        SerialFault fault = SerialFault::kNone;
+        const auto pose = parse_serial_pose(line, &fault);
+        count(fault);
+        if (!pose) continue;
+        thread_.publish(pose->sample);
+        came = true;
+      }
     }
     silent = came ? 0 : silent + 1;
     if (silent > kSerialSilentUntilLost) return false;
@@ -126,12 +132,59 @@ void SerialDevice::run() {
       if (port && ask(**port, [this] { return thread_.stopping(); })) port_ = std::move(*port);
     }
     if (!port_) return;
+    keep_line();
   }
 }
 
 void SerialDevice::close() {
   thread_.stop();
   port_.reset();
+  if (safe_file_ >= 0) ::close(safe_file_);
+  safe_file_ = -1;
+}
+
+void SerialDevice::keep_line() {
+  const int file = port_->file();
+  if (file < 0) return;
+  if (safe_file_ < 0)
+    safe_file_ = ::fcntl(file, F_DUPFD_CLOEXEC, 3);
+  else
+    (void)::dup3(file, safe_file_, O_CLOEXEC);
+}
+
+// A line of zero force; the end of line before it ends what was cut off.
+bool SerialDevice::safe_line(SafeLine& line) const {
+  if (safe_file_ < 0) return false;
+  SerialText text;
+  const std::size_t length = serial_force(0, dvec3(0), text);
+  line.descriptor = safe_file_;
+  line.size = length + 1;
+  line.bytes[0] = '\n';
+  std::copy_n(text.begin(), length, line.bytes.begin() + 1);
+  return true;
+}
+
+void SerialDevice::count(SerialFault fault) {
+  switch (fault) {
+    case SerialFault::kNone:
+      return;
+    case SerialFault::kTooShort:
+      ++too_short_;
+      return;
+    case SerialFault::kSum:
+      ++sums_;
+      return;
+    case SerialFault::kForm:
+      ++forms_;
+      return;
+    case SerialFault::kNumber:
+      ++numbers_;
+      return;
+  }
+}
+
+DroppedFrames SerialDevice::dropped() const {
+  return {.too_short = too_short_, .unknown = forms_, .checksum = sums_, .number = numbers_};
 }
 
 std::vector<DeviceInfo> list_serial(const std::string& folder) {

@@ -6,16 +6,18 @@
 // Each force line is answered by one pose line. A board that hears no force line for 20 ms must render nothing.
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
 #include "devices/drivers/device_thread.h"
 #include "devices/drivers/serial_line.h"
 #include "devices/ports/packet_port.h"
+#include "pliant/device_state.h"
 
 namespace pliant {
 
-class SerialDevice final : public Driver {
+class SerialDevice final : public Driver, public CountsDropped {
  public:
   SerialDevice();
   explicit SerialDevice(PortOpener opener);
@@ -26,6 +28,8 @@ class SerialDevice final : public Driver {
   void write(const DeviceWrench& wrench) override { thread_.write(wrench); }
   void close() override;
   void make_safe() noexcept override { thread_.switch_off(); }
+  bool safe_line(SafeLine& line) const override;
+  DroppedFrames dropped() const override;
 
   const std::string& name() const { return identity_.name; }
 
@@ -33,12 +37,18 @@ class SerialDevice final : public Driver {
   Result<SerialIdentity> ask(PacketPort& port, const std::function<bool()>& stop) const;
   void run();
   bool talk();
+  void count(SerialFault fault);
+  void keep_line();
 
   PortOpener opener_;
   std::string id_;
   SerialIdentity identity_;
   DeviceCapabilities can_;
   std::unique_ptr<PacketPort> port_;
+  // A second name of the line, which keeps its number when the line is opened anew: a guard process is told of it from
+  // another thread. -1: none.
+  int safe_file_ = -1;
+  std::atomic<std::uint64_t> too_short_{0}, sums_{0}, forms_{0}, numbers_{0};  // lines that were not used
   DeviceThread thread_;
 };
 

@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kLongest = 96;        // of a line
 constexpr long kMostMicrometres = 5000000;  // 5 m
 constexpr long kMostMillinewtons = 100000;
+constexpr int kPoseWords = 6;  // of a pose, after its P
 
 unsigned sum_of(std::string_view text) {
   unsigned sum = 0;
@@ -19,15 +20,18 @@ unsigned sum_of(std::string_view text) {
 }
 
 // The part before the sum, where that is right.
-std::optional<std::string_view> checked(std::string_view line) {
+std::optional<std::string_view> checked(std::string_view line, SerialFault& why) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  why = line.size() < 4 ? SerialFault::kTooShort : SerialFault::kForm;
   if (line.size() < 4 || line.size() > kLongest || line[line.size() - 3] != '*') return {};
   unsigned sum = 0;
   const char* end = line.data() + line.size();
   const auto [at, fault] = std::from_chars(end - 2, end, sum, 16);
   if (fault != std::errc() || at != end) return {};
   line.remove_suffix(3);
+  why = SerialFault::kSum;
   if (sum != sum_of(line)) return {};
+  why = SerialFault::kNone;
   return line;
 }
 
@@ -65,11 +69,15 @@ long rounded(double value, double scale, long most) {
 
 }  // namespace
 
-std::optional<SerialPose> parse_serial_pose(std::string_view line) {
-  const auto text = checked(line);
+std::optional<SerialPose> parse_serial_pose(std::string_view line, SerialFault* fault) {
+  SerialFault ignored, &why = fault ? *fault : ignored;
+  const auto text = checked(line, why);
   if (!text) return {};
   Words words{*text};
+  why = SerialFault::kForm;
   if (words.word() != "P") return {};
+  const auto blanks = std::count(text->begin(), text->end(), ' ');
+  if (blanks == kPoseWords) why = SerialFault::kNumber;  // what else can be wrong
   SerialPose pose;
   pose.time_ms = static_cast<std::uint32_t>(words.number(0, 0xFFFFFFFFL));
   for (int i = 0; i < 3; ++i)
@@ -77,11 +85,13 @@ std::optional<SerialPose> parse_serial_pose(std::string_view line) {
   pose.sample.buttons = static_cast<std::uint32_t>(words.number(0, 0xFFFFFFFFL));
   pose.sample.grip = 1e-3 * static_cast<double>(words.number(0, 1000));
   if (!words.done()) return {};
+  why = SerialFault::kNone;
   return pose;
 }
 
 std::optional<SerialIdentity> parse_serial_identity(std::string_view line) {
-  const auto text = checked(line);
+  SerialFault ignored;
+  const auto text = checked(line, ignored);
   if (!text) return {};
   Words words{*text};
   if (words.word() != "I") return {};

@@ -28,7 +28,9 @@ struct SerialIdentity {
   double max_force = 0.0;  // [N]
 };
 
-std::optional<SerialPose> parse_serial_pose(std::string_view line);
+// Why a line is none.
+enum class SerialFault : std::uint8_t { kNone, kTooShort, kSum, kForm, kNumber };
+std::optional<SerialPose> parse_serial_pose(std::string_view line, SerialFault* fault = nullptr);
 std::optional<SerialIdentity> parse_serial_identity(std::string_view line);
 // With its end of line, into `into`; its length. Of an axis that the device has not, zero.
 using SerialText = std::array<char, 64>;

@@ -7,18 +7,53 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <tuple>
 
 namespace pliant {
 namespace {
 
-constexpr char kBeat = 'b', kEnd = 'e';
+constexpr char kBeat = 'b', kEnd = 'e', kLine = 'l';
+
+// One datagram of the pipe: what it says, and for a line its bytes, with the line itself beside (SCM_RIGHTS).
+struct Word {
+  char what = 0;
+  std::uint8_t size = 0;
+  std::array<std::uint8_t, std::tuple_size_v<decltype(SafeLine::bytes)>> bytes{};
+};
+union Passed {  // one descriptor, aligned as the kernel wants it
+  cmsghdr head;
+  char room[CMSG_SPACE(sizeof(int))];
+};
+
+// -1: nothing came; 0: the other end is gone; else the word, and `line` where it is one.
+ssize_t hear(int pipe, Word& word, SafeLine& line) {
+  iovec data{&word, sizeof word};
+  Passed passed{};
+  msghdr message{};
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = &passed;
+  message.msg_controllen = sizeof passed;
+  const ssize_t size = ::recvmsg(pipe, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+  if (size <= 0) return size;
+  const cmsghdr* const head = CMSG_FIRSTHDR(&message);
+  if (!head || head->cmsg_type != SCM_RIGHTS) return size;
+  int descriptor = -1;
+  std::memcpy(&descriptor, CMSG_DATA(head), sizeof descriptor);
+  if (line.descriptor >= 0) ::close(line.descriptor);
+  line.descriptor = descriptor;
+  line.size = std::min<std::size_t>(word.size, line.bytes.size());
+  line.bytes = word.bytes;
+  return size;
+}
 
 // All that it does from here on is safe in a process that was forked from one with threads: system calls alone.
-[[noreturn]] void watch(int pipe, const SafeLine& line, int waits_ms) {
+[[noreturn]] void watch(int pipe, SafeLine line, int waits_ms) {
   for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_IGN);  // it ends with its parent, not before
   ::setsid();
 #ifdef SYS_close_range
@@ -43,14 +78,14 @@ constexpr char kBeat = 'b', kEnd = 'e';
       continue;
     }
     if (got < 0 && errno == EINTR) continue;
-    char beats[256];
-    const ssize_t size = ::read(pipe, beats, sizeof beats);
+    Word word;
+    const ssize_t size = hear(pipe, word, line);
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (size <= 0) {  // the other end is gone
       make_safe();
       ::_exit(0);
     }
-    if (std::memchr(beats, kEnd, static_cast<std::size_t>(size))) ::_exit(0);
+    if (word.what == kEnd) ::_exit(0);
     silent = false;
   }
 }
@@ -62,7 +97,7 @@ Status Watchman::start(const SafeLine& line, double waits) {
   if (line.descriptor < 0 || line.size == 0 || line.size > line.bytes.size())
     return Error{"guard process", "the driver names no line to write on"};
   int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
     return Error{"guard process", std::string("no socket pair (") + std::strerror(errno) + "); raise ulimit -n"};
   const pid_t child = ::fork();
   if (child < 0) {
@@ -83,6 +118,23 @@ void Watchman::beat() noexcept {
   if (pipe_ < 0) return;
   // A full one has beats enough in it.
   [[maybe_unused]] const ssize_t sent = ::send(pipe_, &kBeat, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+void Watchman::renew(const SafeLine& line) noexcept {
+  if (pipe_ < 0 || line.descriptor < 0 || line.size == 0 || line.size > line.bytes.size()) return;
+  Word word{kLine, static_cast<std::uint8_t>(line.size), line.bytes};
+  iovec data{&word, sizeof word};
+  Passed passed{};
+  msghdr message{};
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = &passed;
+  message.msg_controllen = CMSG_LEN(sizeof(int));
+  passed.head.cmsg_level = SOL_SOCKET;
+  passed.head.cmsg_type = SCM_RIGHTS;
+  passed.head.cmsg_len = CMSG_LEN(sizeof(int));
+  std::memcpy(CMSG_DATA(&passed.head), &line.descriptor, sizeof(int));
+  [[maybe_unused]] const ssize_t sent = ::sendmsg(pipe_, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 void Watchman::end() noexcept {

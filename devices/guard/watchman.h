@@ -23,6 +23,8 @@ class Watchman {
   bool watches() const { return child_ > 0; }
   // From the servo, as often as it likes: does not wait.
   void beat() noexcept;
+  // Another line, or other bytes, from now on. Does not wait either; what does not get through is told again.
+  void renew(const SafeLine& line) noexcept;
   void end() noexcept;  // in order: it writes nothing
 
  private:

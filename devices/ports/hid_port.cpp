@@ -51,7 +51,15 @@ std::string why_not(const std::string& path) {
 
 class HidPort final : public PacketPort {
  public:
-  HidPort(Handle in, Handle out, std::string path) : in_(std::move(in)), out_(std::move(out)), path_(std::move(path)) {}
+  HidPort(Handle in, Handle out, std::string path)
+      : guard_(::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)),
+        in_(std::move(in)),
+        out_(std::move(out)),
+        path_(std::move(path)) {}
+  ~HidPort() override {
+    if (guard_ >= 0) ::close(guard_);
+  }
+  int file() const override { return guard_; }
 
   Status send(std::span<const std::uint8_t> packet) override {
     if (hid_write(out_.get(), packet.data(), packet.size()) < 0) return gone();
@@ -88,6 +96,8 @@ class HidPort final : public PacketPort {
     return Error{path_, fmt::format("refuses feature report {}; plug the device in again", number)};
   }
 
+  // One more for a guard process, as hidapi tells none of its own.
+  int guard_ = -1;
   // One each way: hidapi keeps the last error in its handle, and what is sent may come from another thread.
   Handle in_, out_;
   std::string path_;

@@ -24,6 +24,8 @@ class PacketPort {
   // HID feature report `number`, its number first; the length that came. Lines without such a thing fail.
   virtual Result<std::size_t> feature(std::uint8_t number, std::span<std::uint8_t> into);
   virtual Status set_feature(std::span<const std::uint8_t> report);
+  // What another process may write to as well, to switch the device off; -1: there is no such thing.
+  virtual int file() const { return -1; }
   // The HID report descriptor; empty where there is none.
   virtual std::vector<std::uint8_t> descriptor() { return {}; }
 };

@@ -15,6 +15,7 @@ class SerialPort final : public PacketPort {
   ~SerialPort() override;
   Status send(std::span<const std::uint8_t> packet) override;
   Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override;
+  int file() const override { return file_; }
 
  private:
   SerialPort(int file, std::string path) : file_(file), path_(std::move(path)) {}

@@ -12,6 +12,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace pliant {
 
@@ -79,7 +80,11 @@ Result<UdpAddress> parse_udp_address(const std::string& text) {
 }
 
 UdpPort::UdpPort(int socket, std::string name)
-    : socket_(socket), name_(std::move(name)), peer_(std::make_unique<Address>()), last_(std::make_unique<Address>()) {}
+    : socket_(socket),
+      name_(std::move(name)),
+      peer_(std::make_unique<Address>()),
+      last_(std::make_unique<Address>()),
+      stranger_(std::make_unique<Address>()) {}
 UdpPort::~UdpPort() {
   ::close(socket_);
 }
@@ -89,21 +94,12 @@ Result<std::unique_ptr<UdpPort>> UdpPort::connect(const UdpAddress& peer) {
   const auto socket = make_socket(peer, false, address.bytes, address.size);
   if (!socket) return socket.error();
   std::unique_ptr<UdpPort> port(new UdpPort(*socket, shown(peer)));
-  // Bound to the interface that leads to the peer, so that of this machine's own loopback none outside can be heard:
-  // a connected twin finds out which it is.
-  Address own;
-  const int probe = ::socket(address.bytes.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool routed =
-      probe >= 0 && ::connect(probe, address.raw(), address.size) == 0 && getsockname(probe, own.raw(), &own.size) == 0;
-  const int fault = errno;
-  if (probe >= 0) ::close(probe);
-  if (!routed) return Error{shown(peer), std::string("cannot be reached: ") + std::strerror(fault)};
-  if (own.bytes.ss_family == AF_INET) reinterpret_cast<sockaddr_in&>(own.bytes).sin_port = 0;
-  if (own.bytes.ss_family == AF_INET6) reinterpret_cast<sockaddr_in6&>(own.bytes).sin6_port = 0;
-  if (bind(*socket, own.raw(), own.size) != 0)
-    return Error{shown(peer), std::string("no port is free to talk to it from: ") + std::strerror(errno)};
+  // Connected: bound to the interface that leads to the peer, so that of this machine's own loopback none outside can
+  // be heard; nobody else is; and a guard process may write to it, too.
+  if (::connect(*socket, address.raw(), address.size) != 0)
+    return Error{shown(peer), std::string("cannot be reached: ") + std::strerror(errno)};
   *port->peer_ = address;
-  port->has_peer_ = true;
+  port->has_peer_ = port->connected_ = true;
   return port;
 }
 
@@ -121,7 +117,12 @@ Result<std::unique_ptr<UdpPort>> UdpPort::listen(const UdpAddress& own) {
 Status UdpPort::send(std::span<const std::uint8_t> packet) {
   Address& to = has_peer_ ? *peer_ : *last_;
   if (to.bytes.ss_family == AF_UNSPEC) return Done{};  // nobody has spoken yet
-  if (::sendto(socket_, packet.data(), packet.size(), MSG_NOSIGNAL, to.raw(), to.size) >= 0) return Done{};
+  for (int tries = 0; tries < 2; ++tries) {            // the first may be told of an earlier packet that nobody took
+    const ssize_t sent = connected_ ? ::send(socket_, packet.data(), packet.size(), MSG_NOSIGNAL)
+                                    : ::sendto(socket_, packet.data(), packet.size(), MSG_NOSIGNAL, to.raw(), to.size);
+    if (sent >= 0) return Done{};
+    if (errno != ECONNREFUSED) break;
+  }
   switch (errno) {
     case EAGAIN:
     case ECONNREFUSED:
@@ -142,8 +143,11 @@ Result<std::size_t> UdpPort::receive(std::span<std::uint8_t> into, double second
     Address from;
     const ssize_t got = ::recvfrom(socket_, into.data(), into.size(), 0, from.raw(), &from.size);
     if (got > 0) {
-      if (has_peer_ && !(from == *peer_)) {
+      if (has_peer_ && !connected_ && !(from == *peer_)) {
         ++strangers_;
+        strange_size_ = std::min<std::size_t>(static_cast<std::size_t>(got), strange_.size());
+        std::copy_n(into.begin(), strange_size_, strange_.begin());
+        *stranger_ = from;
         continue;
       }
       *last_ = from;
@@ -166,6 +170,24 @@ void UdpPort::take_peer() {
 }
 void UdpPort::free_peer() {
   has_peer_ = false;
+}
+
+std::size_t UdpPort::stranger(std::span<std::uint8_t> into) {
+  const std::size_t size = std::min(std::exchange(strange_size_, 0), into.size());
+  std::copy_n(strange_.begin(), size, into.begin());
+  return size;
+}
+void UdpPort::answer(std::span<const std::uint8_t> packet) {
+  if (stranger_->bytes.ss_family == AF_UNSPEC) return;
+  (void)::sendto(socket_, packet.data(), packet.size(), MSG_NOSIGNAL, stranger_->raw(), stranger_->size);
+}
+
+std::string UdpPort::peer() const {
+  char host[NI_MAXHOST] = {}, port[NI_MAXSERV] = {};
+  if (!has_peer_ || getnameinfo(peer_->raw(), peer_->size, host, sizeof host, port, sizeof port,
+                                NI_NUMERICHOST | NI_NUMERICSERV | NI_DGRAM) != 0)
+    return {};
+  return shown({host, port});
 }
 
 int UdpPort::port() const {

@@ -1,6 +1,8 @@
-// Datagrams to one peer. What comes from another address is dropped and counted.
+// Datagrams to one peer. What comes from another address is dropped: by the kernel where the peer is known from the
+// beginning, else counted.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -13,6 +15,10 @@ class ListeningPort : public PacketPort {
  public:
   virtual void take_peer() = 0;  // the sender of the packet that receive() gave last
   virtual void free_peer() = 0;
+  // The newest packet of someone else since the last call, while there is a peer; 0: none came. `answer` is for them.
+  virtual std::size_t stranger(std::span<std::uint8_t>) { return 0; }
+  virtual void answer(std::span<const std::uint8_t>) {}
+  virtual std::string peer() const { return {}; }  // "192.168.1.7:40123"
 };
 
 // "ADDRESS:PORT", "[IPV6]:PORT" or "PORT", which is on this machine; the rest of the two.
@@ -36,8 +42,12 @@ class UdpPort final : public ListeningPort {
   Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override;
   void take_peer() override;
   void free_peer() override;
+  std::size_t stranger(std::span<std::uint8_t> into) override;
+  void answer(std::span<const std::uint8_t> packet) override;
+  std::string peer() const override;
+  int file() const override { return connected_ ? socket_ : -1; }
 
-  std::uint64_t strangers() const { return strangers_; }  // packets that came from another address than the peer's
+  std::uint64_t strangers() const { return strangers_; }  // packets from another address than the peer's, listening
   int port() const;                                       // its own
 
  private:
@@ -45,8 +55,10 @@ class UdpPort final : public ListeningPort {
   UdpPort(int socket, std::string name);
   int socket_;
   std::string name_;  // for errors
-  std::unique_ptr<Address> peer_, last_;
-  bool has_peer_ = false;
+  std::unique_ptr<Address> peer_, last_, stranger_;
+  bool has_peer_ = false, connected_ = false;
+  std::array<std::uint8_t, 128> strange_{};  // a question is not longer
+  std::size_t strange_size_ = 0;
   std::uint64_t strangers_ = 0;
 };
 

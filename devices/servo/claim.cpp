@@ -1,14 +1,19 @@
 #include "devices/servo/claim.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
-#include <cctype>
-#include <cstdlib>
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
 #include <mutex>
 #include <set>
 #include <utility>
+
+#include "devices/servo/device_identity.h"
 
 namespace pliant {
 namespace {
@@ -22,17 +27,36 @@ std::set<std::string>& claims() {
   return taken;
 }
 
-// In the folder of whoever is logged in, else of all.
-std::string lock_file(const std::string& device) {
-  const char* const folder = std::getenv("XDG_RUNTIME_DIR");
-  std::string name;
-  for (const char c : device) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.';
-    static constexpr char kHex[] = "0123456789abcdef";
-    const auto byte = static_cast<unsigned char>(c);
-    name += plain ? std::string(1, c) : std::string{'_', kHex[byte >> 4], kHex[byte & 15]};
+// Of an identity that is longer than a name may be, its beginning and a sum (FNV-1a) of all of it.
+std::string lock_name(const std::string& identity) {
+  constexpr std::size_t kMost = 64;
+  std::uint64_t sum = 0xcbf29ce484222325ull;
+  for (const char c : identity) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return identity.size() <= kMost ? "pliant-device-" + identity
+                                  : fmt::format("pliant-device-{}-{:016x}", identity.substr(0, kMost), sum);
+}
+
+struct LockAddress {
+  sockaddr_un address{};
+  socklen_t size = 0;
+  explicit LockAddress(const std::string& name) {
+    address.sun_family = AF_UNIX;
+    std::copy(name.begin(), name.end(), address.sun_path + 1);  // a first byte of zero: no file
+    size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   }
-  return std::string(folder && *folder ? folder : "/tmp") + "/pliant-device-" + name.substr(0, 200) + ".lock";
+  const sockaddr* raw() const { return reinterpret_cast<const sockaddr*>(&address); }
+};
+
+// " (process 1234)", or "" where the kernel does not tell.
+std::string holder(const LockAddress& lock) {
+  const int asking = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (asking < 0) return {};
+  ucred who{};
+  socklen_t size = sizeof who;
+  const bool told = ::connect(asking, lock.raw(), lock.size) == 0 &&
+                    ::getsockopt(asking, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 && who.pid > 0;
+  ::close(asking);
+  return told ? fmt::format(" (process {})", who.pid) : std::string();
 }
 
 }  // namespace
@@ -50,21 +74,26 @@ DeviceClaim& DeviceClaim::operator=(DeviceClaim&& other) noexcept {
 
 Status DeviceClaim::take(const std::string& device) {
   release();
+  const std::string identity = device_identity(device);  // may ask a name server: before the mutex
+  const std::string where = "device `" + device + "`";
   const std::lock_guard hold(claims_mutex());
-  if (!claims().insert(device).second)
-    return Error{"device `" + device + "`",
-                 "moves another effector already; call Session::release() for that one first"};
-  const std::string file = lock_file(device);
-  // Where no file can be made there is nothing to lock: the claim holds within this program.
-  lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(lock_);
-    lock_ = -1;
-    claims().erase(device);
-    return Error{"device `" + device + "`",
-                 "is held by another program (its lock is " + file + "); end that one first"};
+  if (claims().contains(identity))
+    return Error{where, "moves another effector already; call Session::release() for that one first"};
+  const LockAddress lock(lock_name(identity));
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  const bool free = socket >= 0 && ::bind(socket, lock.raw(), lock.size) == 0 && ::listen(socket, 8) == 0;
+  if (!free) {
+    const int fault = errno;
+    if (socket >= 0) ::close(socket);
+    if (socket >= 0 && fault == EADDRINUSE)
+      return Error{where, "is held by another program" + holder(lock) + "; end that one first"};
+    return Error{where, fmt::format("is not opened, because it cannot be known whether another program has it ({}); "
+                                    "raise ulimit -n",
+                                    std::strerror(fault))};
   }
-  device_ = device;
+  claims().insert(identity);
+  lock_ = socket;
+  device_ = identity;
   return Done{};
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "devices/drop_counter.h"
 #include "devices/guard/last_resort.h"
 #include "devices/servo/local_force.h"
 #include "runtime/clock.h"
@@ -17,6 +18,10 @@ namespace {
 constexpr double kTellEvery = 0.05;    // [s] of reports for a person to read
 constexpr double kLateModel = 2e-3;    // [s] two ticks of the touch clock
 constexpr double kSlept = 0.020;       // [s] less is the two clocks' reading
+constexpr double kRenewEvery = 0.25;   // [s] of the line that a guard process holds
+constexpr const char* kNoSafeLine =
+    "nothing outside this program can switch its force off: if the program is killed (kill -9, out of memory), a force "
+    "stands until the device's own watchdog ends it; keep a hand on its switch";
 constexpr double kLongestWait = 5e-3;  // [s] for a reply: an order is heard at least so often
 
 double seconds(clockid_t which) {
@@ -31,8 +36,12 @@ std::uint64_t ns(double s) {
 
 }  // namespace
 
+bool renders(const DeviceCapabilities& can) {
+  return can.renders_force || can.renders_torque || can.renders_grip || can.renders_vibration;
+}
+
 bool wants_servo(const DeviceCapabilities& can) {
-  return can.rate > 0.0 && (can.renders_force || can.renders_torque || can.renders_grip || can.renders_vibration);
+  return can.rate > 0.0 && renders(can);
 }
 
 Servo::Servo(std::unique_ptr<Driver> inner, const GuardParameters& parameters)
@@ -67,8 +76,13 @@ void Servo::adopt() {
   looped_ = failed_ = told_ = false;
   if (!guard_to_the_last(*inner_)) note_ = "more devices are open than a crash handler knows";
   SafeLine line;
-  if (inner_->safe_line(line))
-    if (Status started = watchman_.start(line); !started) note_ = started.error().message();
+  if (!inner_->safe_line(line)) {
+    if (!can_.simulated && renders(can_)) note_ = kNoSafeLine;
+  } else if (Status started = watchman_.start(line); !started) {
+    note_ = started.error().message();
+  }
+  line_at_ = 0.0;
+  not_ready_ = 0;
   tell();
 }
 
@@ -227,9 +241,19 @@ void Servo::period(double now) {
     came_at_ = now;
     came_ = true;
     if (sample.time > 0.0) reads_.add(ns(now - sample.time));
+    if (!sample.ready) ++not_ready_;
   }
   watchman_.beat();
+  renew_line(now);
   measure(now, sampled);
+}
+
+// A device that was opened anew has another line, or other words for zero: the guard process is told what holds now.
+void Servo::renew_line(double now) {
+  if (!watchman_.watches() || now - line_at_ < kRenewEvery) return;
+  line_at_ = now;
+  SafeLine line;
+  if (inner_->safe_line(line)) watchman_.renew(line);
 }
 
 void Servo::measure(double now, bool sampled) {
@@ -269,6 +293,8 @@ void Servo::tell() {
   DeviceReport& out = reports_.write();
   out = guard_.report();
   out.figures = figures_;
+  out.dropped = dropped_frames(*inner_);
+  out.dropped.not_ready = not_ready_;
   out.sample = newest_;
   out.sample_age = came_ ? last_ - came_at_ : -1.0;
   reports_.publish();

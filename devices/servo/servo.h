@@ -22,7 +22,9 @@
 
 namespace pliant {
 
-// Whether a device is to be driven by a servo: it has a rate, and something to feel.
+// Whether there is something to feel of a device.
+bool renders(const DeviceCapabilities& can);
+// Whether it is to be driven by a servo: it has a rate, too.
 bool wants_servo(const DeviceCapabilities& can);
 
 class Servo final : public Driver {
@@ -74,6 +76,7 @@ class Servo final : public Driver {
   GuardOrders take_orders(double now);
   GuardWish wish(double now);
   void put(const DeviceWrench& wrench, bool make_safe);
+  void renew_line(double now);
   void measure(double now, bool sampled);
   void tell();
   void run();
@@ -109,6 +112,8 @@ class Servo final : public Driver {
   double last_ = 0.0, written_at_ = 0.0, told_at_ = 0.0;
   std::uint64_t told_periods_ = 0, told_transitions_ = 0;
   bool told_ = false;
+  double line_at_ = 0.0;         // [s] when the guard process was told of the line
+  std::uint64_t not_ready_ = 0;  // samples
   double virtual_start_ = 0.0;
   std::uint64_t virtual_periods_ = 0;
   std::thread thread_;

@@ -21,6 +21,7 @@ namespace pliant {
 namespace {
 
 constexpr double kLargestGain = 1e3;
+constexpr std::size_t kMostWrappers = 8;
 
 // The words of one wrapper. Whoever asks for a value says what it must be; the first that is wrong is the error.
 struct Words {
@@ -154,7 +155,11 @@ const std::map<std::string, Maker>& makers() {
 
 Result<DeviceChain> wrap(std::unique_ptr<Driver> driver, const std::string& words) {
   DeviceChain chain{std::move(driver), {}, {}};
-  for (const std::string& part : split(words, '|')) {
+  const std::vector<std::string> parts = split(words, '|');
+  if (parts.size() > kMostWrappers)
+    return Error{"wrappers",
+                 fmt::format("are {}, and a device has at most {}; leave some out", parts.size(), kMostWrappers)};
+  for (const std::string& part : parts) {
     Words one;
     bool first = true;
     one.where = "wrapper `" + part + "`";

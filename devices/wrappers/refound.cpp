@@ -22,10 +22,8 @@ Status Refound::open(const std::string& id) {
   id_ = id;
   can_ = inner_->capabilities();
   phase_ = Phase::kHeld;
-  // Whose loop is the maker's library's is found by it, or not at all. One with a guard process is not, either: that
-  // process holds the old line.
-  SafeLine line;
-  if (can_.loop != DeviceLoop::kCallback && !inner_->safe_line(line))
+  // Whose loop is the maker's library's is found by it, or not at all.
+  if (can_.loop != DeviceLoop::kCallback)
     thread_ = std::jthread([this](const std::stop_token& stop) { look(stop); });
   return Done{};
 }

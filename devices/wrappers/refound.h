@@ -1,6 +1,5 @@
 // A device that was unplugged is found again: as soon as the driver inside says that its line is gone (Driver::gone), a
-// thread closes it and opens it anew, every kLookEvery, until it is there. Not one whose line a guard process holds
-// (Driver::safe_line). Meanwhile nothing is read, and what is
+// thread closes it and opens it anew, every kLookEvery, until it is there. Meanwhile nothing is read, and what is
 // written goes nowhere. Innermost of every device that was made by its words (chain.h).
 //
 // The driver inside belongs to one side at a time, and the phase says to which: `kHeld`, whoever calls these functions;
@@ -13,11 +12,12 @@
 #include <string>
 #include <thread>
 
+#include "devices/drop_counter.h"
 #include "pliant/driver.h"
 
 namespace pliant {
 
-class Refound final : public Driver {
+class Refound final : public Driver, public CountsDropped {
  public:
   static constexpr double kLookEvery = 0.25;  // [s]
 
@@ -33,7 +33,8 @@ class Refound final : public Driver {
   Status run(std::function<void()> tick) override { return inner_->run(std::move(tick)); }
   bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
   void make_safe() noexcept override;
-  bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
+  bool safe_line(SafeLine& line) const override { return held() && inner_->safe_line(line); }
+  DroppedFrames dropped() const override { return held() ? dropped_frames(*inner_) : DroppedFrames{}; }
   bool gone() const override { return phase_ == Phase::kGone; }
 
  private:

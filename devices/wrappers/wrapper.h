@@ -7,21 +7,25 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "devices/drop_counter.h"
 #include "pliant/driver.h"
 
 namespace pliant {
 
-class Wrapper : public Driver {
+class Wrapper : public Driver, public CountsDropped {
  public:
   explicit Wrapper(std::unique_ptr<Driver> inner) : inner_(std::move(inner)) {}
 
   Status open(const std::string& id) override {
     const Status opened = inner_->open(id);
-    return opened ? begin() : opened;
+    if (!opened) return opened;
+    inside_ = inner_->capabilities();
+    return begin();
   }
-  DeviceCapabilities capabilities() const override { return inner_->capabilities(); }
+  DeviceCapabilities capabilities() const override { return inside_ ? *inside_ : inner_->capabilities(); }
   bool read(DeviceSample& sample) override { return inner_->read(sample); }
   void write(const DeviceWrench& wrench) override { inner_->write(wrench); }
   void close() override { inner_->close(); }
@@ -30,6 +34,7 @@ class Wrapper : public Driver {
   void make_safe() noexcept override { inner_->make_safe(); }
   bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
   bool gone() const override { return inner_->gone(); }
+  DroppedFrames dropped() const override { return dropped_frames(*inner_); }
 
  protected:
   // The device inside is open: its capabilities are known.
@@ -38,12 +43,13 @@ class Wrapper : public Driver {
   const Driver& inner() const { return *inner_; }
   // [Hz] of samples: the device's, or the touch clock's usual one.
   double rate() const {
-    const double said = inner_->capabilities().rate;
+    const double said = Wrapper::capabilities().rate;
     return said > 0.0 ? said : 1000.0;
   }
 
  private:
   std::unique_ptr<Driver> inner_;
+  std::optional<DeviceCapabilities> inside_;  // asked once: in a chain each wrapper would ask the next several times
 };
 
 // SplitMix64: small, and the same everywhere.

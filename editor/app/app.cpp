@@ -54,6 +54,7 @@ bool begin_fixed(const char* name, ImVec2 low, ImVec2 high, ImGuiWindowFlags fla
 App::App(const EditOptions& options, Window& window) : options_(options), window_(window) {
   std::string note;
   settings = Settings::load(options.config, note);
+  play_.answers = DeviceAnswers::load(options.config);
   host_.emplace(window_);
   set_look();
   editor.request_close = [this] { close(); };

@@ -78,6 +78,8 @@ class App {
   void draw_side(Panel::Place place, ImVec2 low, ImVec2 high);
   void draw_viewport(ImVec2 low, ImVec2 high, double dt);
   void draw_start(ImVec2 low, ImVec2 high);
+  bool ask_for_devices();
+  void begin_play();
   void draw_play_buttons();
   void draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high);
   bool touch(const ViewportInput& in);  // the mouse in a level that is played; true: it is taken

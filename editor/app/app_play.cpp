@@ -23,7 +23,33 @@ double App::orthographic() const {
   return editor.view.orthographic && !as_played() ? editor.camera.orthographic_height() : 0.0;
 }
 
+// What the level asks for beyond what a level may is opened only once it has been shown and allowed.
+bool App::ask_for_devices() {
+  const std::vector<LevelRequest> asked = play_.on() ? std::vector<LevelRequest>() : play_.asks();
+  if (asked.empty()) return false;
+  Question question{"This level asks for devices, addresses or files of this machine", {}, {}};
+  question.lines.push_back("Allow it only if you know who made it.");
+  for (const LevelRequest& each : asked) {
+    question.lines.push_back("`" + each.moves + "` by " + each.id);
+    for (const std::string& sentence : each.request.refused) question.lines.push_back("    " + sentence);
+  }
+  question.answers.push_back({"Play without", "What is refused moves nothing", [this] { begin_play(); }});
+  question.answers.push_back({"Allow for this file", "It is remembered for this file and these words", [this, asked] {
+                                for (const LevelRequest& each : asked)
+                                  if (const Status kept = play_.answers.allow(editor.document.file(), each.id); !kept)
+                                    editor.say(kept.error().message());
+                                begin_play();
+                              }});
+  question.answers.push_back({"Cancel", "", {}});
+  ask(std::move(question));
+  return true;
+}
+
 void App::toggle_play() {
+  if (!ask_for_devices()) begin_play();
+}
+
+void App::begin_play() {
   if (!play_.on()) {
     take_tool("Select");  // the mouse touches
     show_panel("Plots");

@@ -63,12 +63,27 @@ PlayOptions Play::options() {
     made.sources.emplace_back(node.name, PlaySource{PlaySource::Kind::kScript, script->first,
                                                     std::make_shared<const Path>(path_of(*script->second)), 0.0});
   }
+  for (const auto& each : editor_.state().nodes)
+    if (each->node.device && answers.allows(editor_.document.file(), each->node.device->id))
+      made.allowed.insert(each->node.device->id);
   made.mouse_probe = mouse_probe;
   made.realtime = realtime;
   made.speed = speed;
   made.paused = paused_;
   made.view = editor_.camera.viewpoint();
   return made;
+}
+
+std::vector<LevelRequest> Play::asks() const {
+  Level level;
+  for (const auto& each : editor_.state().nodes) level.nodes.push_back(each->node);
+  std::vector<LevelRequest> all = device_requests(level);
+  std::erase_if(all, [&](const LevelRequest& asked) {
+    const auto source = sources.find(asked.moves);
+    const bool other = source != sources.end() && source->second.kind != PlaySource::Kind::kLevel;
+    return !asked.used || other || asked.request.refused.empty() || answers.allows(editor_.document.file(), asked.id);
+  });
+  return all;
 }
 
 void Play::start() {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "content/device_answers.h"
+#include "content/level/device_request.h"
 #include "editor/app/editor.h"
 #include "editor/play/play_run.h"
 #include "editor/viewport/stage.h"
@@ -38,6 +40,10 @@ class Play {
   bool mouse_probe = true;                    // a probe for the mouse is added where nothing else is moved by it
   bool realtime = false;
   double speed = 1.0;
+
+  DeviceAnswers answers;  // which devices of which levels the user allows
+  // What the level asks for, may not have, and nobody has answered yet.
+  std::vector<LevelRequest> asks() const;
 
   bool on() const { return run_ != nullptr; }
   // Runs, or is about to.

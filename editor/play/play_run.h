@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -37,6 +38,7 @@ struct PlaySource {
 struct PlayOptions {
   std::function<Result<Level>()> level;                     // called on the run's thread
   std::vector<std::pair<std::string, PlaySource>> sources;  // by name; others have the level's
+  std::set<std::string> allowed;          // ids of the level that the user allows (content/level/device_request.h)
   bool mouse_probe = false;               // a probe `mouse` is added where nothing is moved by the mouse
   bool realtime = false, paused = false;  // where the level itself asks for a device, it is felt in real time
   double speed = 1.0;                     // [1] of the wall clock, in lockstep

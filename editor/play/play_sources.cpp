@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "content/level/device_request.h"
 #include "content/level/script.h"
 #include "devices/choose.h"
 #include "devices/wrappers/chain.h"
@@ -37,6 +38,16 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
       !of_level[index].id.empty()) {
     kind = PlaySource::Kind::kDriver;
     wish = of_level[index].id;
+    if (!run.options_.allowed.contains(wish)) {
+      DeviceRequest request = device_request(wish);
+      for (const std::string& sentence : request.refused)
+        say(
+            fmt::format("`{}`: the level asks for more than it may: {}; pick the device in the tab Devices, or press "
+                        "Play and allow it",
+                        name, sentence));
+      wish = std::move(request.allowed);
+      if (wish.empty()) kind = PlaySource::Kind::kNone;
+    }
   }
   if (moved == name) {
     moved.clear();

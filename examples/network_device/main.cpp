@@ -1,14 +1,21 @@
 // The device's side of Pliant's network protocol, to be copied into the firmware of a device of one's own: this file
-// needs nothing of Pliant, only sockets. Where a real one reads encoders and drives motors, this one simulates a handle
-// of 100 g that a spring pulls down. docs/devices/network.md explains every byte.
+// needs nothing of Pliant, only sockets, and libcrypto for the key (leave out what is between #ifdef PLIANT_KEY and
+// #endif where there is none). Where a real one reads encoders and drives motors, this one simulates a handle of 100 g
+// that a spring pulls down. docs/devices/network.md explains every byte.
 //
-//   network_device [PORT]       then: pliant run LEVEL --probe NAME=device:network:PORT
+//   network_device [PORT [KEYFILE]]    then: pliant run LEVEL --probe NAME=device:network:PORT[,key=KEYFILE]
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#ifdef PLIANT_KEY
+#include <openssl/crypto.h>
+#include <openssl/hmac.h>
+#include <sys/stat.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
@@ -18,15 +25,17 @@
 #include <cstdlib>
 #include <cstring>
 #include <random>
+#include <string>
 
 namespace {
 
-enum Kind : std::uint8_t { kAsk = 1, kOpen, kDescription, kState, kForce, kClose };
-constexpr double kSilence = 0.020;                         // [s] without a force frame: no force
-constexpr double kAnswer = 0.040;                          // [s] without an answer to one of our states: the same
-constexpr double kForget = 1.0;                            // [s] without any frame: another engine may come
-constexpr int kLength[] = {0, 32, 32, 104, 100, 344, 32};  // of a frame of each kind
-constexpr float kMaxForce = 3.0f;                          // [N]
+enum Kind : std::uint8_t { kAsk = 1, kOpen, kDescription, kState, kForce, kClose, kBusy };
+constexpr double kSilence = 0.020;                             // [s] without a force frame: no force
+constexpr double kAnswer = 0.040;                              // [s] without an answer to one of our states: the same
+constexpr double kForget = 1.0;                                // [s] without any frame: another engine may come
+constexpr int kLength[] = {0, 32, 32, 104, 100, 344, 32, 96};  // of a frame of each kind, without a tag
+constexpr int kTag = 32;                                       // bytes of a tag
+constexpr float kMaxForce = 3.0f;                              // [N]
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -43,7 +52,7 @@ std::uint32_t crc32(const std::uint8_t* bytes, int size) {
 
 // A frame that is written or read from its beginning. Little-endian machines only, as nearly all are.
 struct Frame {
-  std::uint8_t bytes[344] = {};
+  std::uint8_t bytes[344 + kTag] = {};
   int at = 0;
   template <class T>
   void put(T value) {
@@ -65,10 +74,8 @@ struct Force {
 
 class Device {
  public:
-  explicit Device(int socket) : socket_(socket) {
-    std::random_device random;
-    while (own_ == 0) own_ = random();
-  }
+  // `key`: empty where there is none.
+  Device(int socket, std::string key) : socket_(socket), key_(std::move(key)) { begin_session(); }
 
   // Takes every frame that has come; false frames change nothing.
   void hear() {
@@ -79,8 +86,9 @@ class Device {
                                       reinterpret_cast<sockaddr*>(&from), &size)) >= 0;
          size = sizeof from)
       if (whole(frame, got)) accept(frame, from);
-    if (engine_ != 0 && now() - heard_at_ > kForget) engine_ = 0;
+    if (engine_ != 0 && now() - heard_at_ > kForget) forget();
   }
+  long wrong_key() const { return wrong_key_; }  // frames
 
   // Where the handle is: position and velocity in metres, Y up.
   void tell(const float position[3], const float velocity[3]) {
@@ -122,38 +130,75 @@ class Device {
   }
 
  private:
-  static bool whole(const Frame& frame, ssize_t got) {
-    if (got < 32 || std::memcmp(frame.bytes, "PLNT\1", 5) != 0) return false;
+  bool whole(const Frame& frame, ssize_t got) {
     const int kind = frame.bytes[5];
-    if (kind < kAsk || kind > kClose || got != kLength[kind] || frame.get<std::uint16_t>(6) != got) return false;
+    if (got < 32 || std::memcmp(frame.bytes, "PLNT", 4) != 0 || kind < kAsk || kind > kClose) return false;
+    const int length = kLength[kind] + (key_.empty() ? 0 : kTag);
+    if (frame.bytes[4] != (key_.empty() ? 1 : 2) || got != length) {
+      wrong_key_ += frame.bytes[4] == 1 || frame.bytes[4] == 2;
+      return false;
+    }
     Frame copy = frame;
     std::memset(copy.bytes + 8, 0, 4);
-    return frame.get<std::uint32_t>(8) == crc32(copy.bytes, kLength[kind]);
+    if (frame.get<std::uint16_t>(6) != got || frame.get<std::uint32_t>(8) != crc32(copy.bytes, kLength[kind]))
+      return false;
+#ifdef PLIANT_KEY
+    std::uint8_t right[kTag];
+    if (!key_.empty()) {
+      tag(frame.bytes, kLength[kind], right);
+      if (CRYPTO_memcmp(right, frame.bytes + kLength[kind], kTag) != 0) return ++wrong_key_, false;
+    }
+#endif
+    return true;
+  }
+
+#ifdef PLIANT_KEY
+  void tag(const std::uint8_t* bytes, int size, std::uint8_t out[kTag]) const {
+    HMAC(EVP_sha256(), key_.data(), static_cast<int>(key_.size()), bytes, static_cast<std::size_t>(size), out, nullptr);
+  }
+#endif
+
+  void begin_session() {
+    std::random_device random;
+    do own_ = random();
+    while (own_ == 0);
+  }
+  // With a key each engine gets a session of its own: an open frame that somebody has kept opens nothing.
+  void forget() {
+    engine_ = 0;
+    if (!key_.empty()) begin_session();
   }
 
   void accept(const Frame& frame, const sockaddr_in& from) {
     const auto kind = frame.bytes[5];
     const auto session = frame.get<std::uint32_t>(12), peer = frame.get<std::uint32_t>(16);
     const auto sequence = frame.get<std::uint32_t>(20);
-    const bool newer = static_cast<std::int32_t>(sequence - heard_) > 0;
+    const auto time = frame.get<std::uint64_t>(24);
+    const bool newer = static_cast<std::int32_t>(sequence - heard_) > 0 && time >= heard_time_;
+    const bool same = engine_ != 0 && session == engine_ && from.sin_port == engine_address_.sin_port &&
+                      from.sin_addr.s_addr == engine_address_.sin_addr.s_addr;
+    const bool wants_it = kind == kOpen || (kind == kAsk && !key_.empty());  // with a key, only who may open it asks
+    if (wants_it && engine_ != 0 && !same) return tell_busy(session, from);
+    if (kind == kOpen && !key_.empty() && peer != own_) return;
     if (kind == kOpen && engine_ == 0) {
       engine_ = session;
       engine_address_ = from;
       heard_ = sequence;
+      heard_time_ = time;
       force_at_ = -1.0;
-    } else if (kind != kAsk && (session != engine_ || from.sin_port != engine_address_.sin_port ||
-                                from.sin_addr.s_addr != engine_address_.sin_addr.s_addr)) {
+    } else if (kind != kAsk && !same) {
       return;
     } else if (kind == kOpen && newer) {
       heard_ = sequence;
     }
     if (kind == kAsk || kind == kOpen) return describe(session, from);
     if (peer != own_) return;
-    if (kind == kClose) engine_ = 0;
+    if (kind == kClose) forget();
     if (kind != kForce || !newer) return;
     for (int i = 0; i < 76; ++i)
       if (!std::isfinite(frame.get<float>(40 + 4 * i))) return;
     heard_ = sequence;
+    heard_time_ = time;
     answered_ = frame.get<std::uint32_t>(32);
     heard_at_ = force_at_ = now();
     force_.has_model = (frame.get<std::uint32_t>(36) & 1) != 0;
@@ -176,12 +221,22 @@ class Device {
     send(frame, address);
   }
 
+  // Another engine has it, and which.
+  void tell_busy(std::uint32_t to, const sockaddr_in& address) {
+    Frame frame = begin(kBusy, to);
+    char host[INET_ADDRSTRLEN] = {}, by[64] = {};
+    inet_ntop(AF_INET, &engine_address_.sin_addr, host, sizeof host);
+    std::snprintf(by, sizeof by, "%s:%d", host, ntohs(engine_address_.sin_port));
+    for (char letter : by) frame.put(letter);
+    send(frame, address);
+  }
+
   Frame begin(Kind kind, std::uint32_t peer) {
     Frame frame;
     frame.put(std::uint32_t{0x544E4C50});
-    frame.put(std::uint8_t{1});
+    frame.put(static_cast<std::uint8_t>(key_.empty() ? 1 : 2));
     frame.put(static_cast<std::uint8_t>(kind));
-    frame.put(static_cast<std::uint16_t>(kLength[kind]));
+    frame.put(static_cast<std::uint16_t>(kLength[kind] + (key_.empty() ? 0 : kTag)));
     frame.put(std::uint32_t{0});
     frame.put(own_);
     frame.put(peer);
@@ -193,20 +248,50 @@ class Device {
   void send(Frame& frame, const sockaddr_in& to) const {
     const std::uint32_t sum = crc32(frame.bytes, frame.at);
     std::memcpy(frame.bytes + 8, &sum, sizeof sum);
+#ifdef PLIANT_KEY
+    if (!key_.empty()) {
+      tag(frame.bytes, frame.at, frame.bytes + frame.at);
+      frame.at += kTag;
+    }
+#endif
     sendto(socket_, frame.bytes, static_cast<std::size_t>(frame.at), 0, reinterpret_cast<const sockaddr*>(&to),
            sizeof to);
   }
 
   int socket_;
+  std::string key_;
+  long wrong_key_ = 0;
+  std::uint64_t heard_time_ = 0;
   std::uint32_t own_ = 0, engine_ = 0, heard_ = 0, answered_ = 0, sent_ = 0;
   double heard_at_ = -1.0, force_at_ = -1.0, sent_at_[1024] = {};
   sockaddr_in engine_address_{};
   Force force_{};
 };
 
+#ifdef PLIANT_KEY
+// "" and a sentence where it cannot be used: a key that everyone may read is none.
+std::string read_key(const char* path) {
+  struct stat about {};
+  char bytes[4098];
+  std::FILE* const file = std::fopen(path, "rb");
+  const bool secret = file && fstat(fileno(file), &about) == 0 && (about.st_mode & (S_IRWXO | S_IWGRP)) == 0;
+  std::size_t size = secret ? std::fread(bytes, 1, sizeof bytes, file) : 0;
+  if (file) std::fclose(file);
+  while (size > 0 && (bytes[size - 1] == '\n' || bytes[size - 1] == '\r')) --size;
+  if (size >= 16 && size <= 4096) return {bytes, size};
+  std::fprintf(stderr, "network_device: %s holds no key of 16 to 4096 bytes that only you may read (chmod 600)\n",
+               path);
+  return {};
+}
+#endif
+
 }  // namespace
 
 int main(int count, char** arguments) {
+  std::string key;
+#ifdef PLIANT_KEY
+  if (count > 2 && (key = read_key(arguments[2])).empty()) return 1;
+#endif
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in own{};
   own.sin_family = AF_INET;
@@ -219,7 +304,7 @@ int main(int count, char** arguments) {
   std::printf("listening on %d\n", ntohs(own.sin_port));
   std::fflush(stdout);
 
-  Device device(socket);
+  Device device(socket, key);
   float position[3] = {0, 0.02f, 0}, velocity[3] = {0, 0, 0}, force[3], largest = 0.0f;
   constexpr float kMass = 0.1f, kSpring = 40.0f, kDamping = 4.0f, kGoal = -0.01f;  // [kg] [N/m] [N s/m] [m]
   double next = now();
@@ -234,7 +319,8 @@ int main(int count, char** arguments) {
     }
     largest = std::max(largest, std::abs(force[1]));
     if (tick % 1000 == 0) {
-      std::printf("y %6.2f mm  force %6.3f N  largest %6.3f N\n", 1e3 * position[1], force[1], largest);
+      std::printf("y %6.2f mm  force %6.3f N  largest %6.3f N  frames of another key %ld\n", 1e3 * position[1],
+                  force[1], largest, device.wrong_key());
       std::fflush(stdout);
     }
     next = std::max(next + 0.001, now());

@@ -102,6 +102,36 @@ struct ServoFigures {
   bool has_priority = false;                          // SCHED_FIFO was granted
 };
 
+// What came from a device and was not used, by why; and its samples that say that its state is not known.
+struct DroppedFrames {
+  std::uint64_t too_short = 0;  // cut on the way
+  std::uint64_t unknown = 0;    // no frame of this protocol, or of no kind or length that it has
+  std::uint64_t version = 0;    // of another version
+  std::uint64_t checksum = 0;   // its check sum is wrong
+  std::uint64_t number = 0;     // holds a number that is none, or that cannot be
+  std::uint64_t rotation = 0;   // holds a rotation that is not of unit length
+  std::uint64_t key = 0;        // not of this key, or without one (docs/devices/network.md)
+  std::uint64_t foreign = 0;    // from another address or session
+  std::uint64_t late = 0;       // doubled, overtaken, replayed, or with a time that runs backwards
+  std::uint64_t lost = 0;       // gaps in the count of frames
+  std::uint64_t not_ready = 0;  // samples, of all drivers
+
+  std::uint64_t damaged() const { return too_short + unknown + version + checksum + number + rotation; }
+  std::uint64_t dropped() const { return damaged() + key + foreign + late; }
+};
+// "12 of another version, 3 with a wrong check sum"; "" where all were used. `not_ready` is not among them.
+std::string describe(const DroppedFrames& frames);
+// For people who make the device: what each kind that happened comes from. One sentence, or none.
+std::string cure_for(const DroppedFrames& frames);
+
+// A driver that counts what it does not use derives from this, too.
+class CountsDropped {
+ public:
+  virtual ~CountsDropped() = default;
+  // On the thread that reads.
+  virtual DroppedFrames dropped() const = 0;
+};
+
 // All that a person wants to know about a device. Of a driver without a rate, which has no servo: state, cause, sample,
 // forces and how often it is read; its force comes back through the gate of the touch tick.
 struct DeviceReport {
@@ -118,6 +148,7 @@ struct DeviceReport {
   std::uint64_t transitions = 0;  // since the start; the last kKept of them are in `kept`
   std::array<DeviceTransition, kKept> kept{};
   ServoFigures figures;
+  DroppedFrames dropped;
 
   // i of the newest min(transitions, kKept), oldest first.
   DeviceTransition transition(std::uint64_t i) const {

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <thread>
 
 #include "devices/choose.h"
 #include "devices/wrappers/chain.h"
@@ -21,6 +25,39 @@ std::string name_in(const World& world, Entity hand) {
   return named ? named->value : std::string();
 }
 
+// A device that is being opened, of a thread that may outlive whoever waits for it.
+struct Opening {
+  std::vector<DeviceInfo> there;
+  Result<DeviceChoice> chosen = Error{};
+  Result<DeviceChain> made = Error{};
+  DriverLink link;
+  Status done = Done{};
+};
+
+// Does `work` on a thread of its own. False: `stop` became true before it was done.
+bool does(const std::function<void()>& work, const std::function<bool()>& stop) {
+  std::packaged_task<void()> task(work);
+  std::future<void> done = task.get_future();
+  std::thread(std::move(task)).detach();
+  while (done.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+    if (stop()) return false;
+  done.get();
+  return true;
+}
+
+void open_wish(Opening& opening, const std::string& wish, bool list) {
+  if (list) {
+    register_all_drivers();
+    opening.there = list_devices();
+  }
+  opening.chosen = choose_device(wish, opening.there);
+  if (!opening.chosen || opening.chosen->id.empty()) return;
+  const std::string& id = opening.chosen->id;
+  opening.made = make_device(id);
+  if (opening.made)
+    opening.done = opening.link.connect(std::move(opening.made->driver), opening.made->id, "device `" + id + "`", id);
+}
+
 }  // namespace
 
 void DeviceLinks::begin(World& world, Held opened, dvec3 middle, std::vector<std::string>& notes) {
@@ -36,7 +73,8 @@ void DeviceLinks::begin(World& world, Held opened, dvec3 middle, std::vector<std
   links_.push_back(std::move(opened));
 }
 
-Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, std::vector<std::string>& notes) {
+Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, const std::function<bool()>& stop,
+                         std::vector<std::string>& notes) {
   for (SimulatedHands::Held& one : held.held()) {
     const Entity device = device_of(world, one.hand);
     Held opened{name_in(world, one.hand), one.hand,  device, {}, world.registry.get<HapticDevice>(device).id,
@@ -50,13 +88,16 @@ Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, std:
     if (!find_device(world, hand) || held.moves(hand)) continue;
     HapticDevice& device = world.registry.get<HapticDevice>(device_of(world, hand));
     if (device.driver != DriverKind::kExternal || device.id.empty()) continue;
-    if (!listed) {
-      register_all_drivers();
-      there = list_devices();
-      listed = true;
-    }
     const std::string name = name_in(world, hand);
-    auto chosen = choose_device(device.id, there);
+    const auto opening = std::make_shared<Opening>();
+    opening->there = there;
+    if (!does([opening, wish = device.id, list = !listed] { open_wish(*opening, wish, list); }, stop)) {
+      gave_up_ = true;
+      return Error{"probe `" + name + "`", "its device was still being opened when the run was interrupted"};
+    }
+    there = opening->there;
+    listed = true;
+    const Result<DeviceChoice>& chosen = opening->chosen;
     if (!chosen) return Error{"probe `" + name + "`", chosen.error().message()};
     for (const std::string& sentence : chosen->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
     if (chosen->id.empty()) {
@@ -66,13 +107,11 @@ Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, std:
       device.driver = DriverKind::kMouse;
       continue;
     }
-    auto made = make_device(chosen->id);
+    const Result<DeviceChain>& made = opening->made;
     if (!made) return made.error();
     for (const std::string& sentence : made->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
-    Held opened{name, hand, device_of(world, hand), {}, chosen->id, chosen->name, nullptr};
-    if (Status s = opened.link.connect(std::move(made->driver), made->id, "device `" + chosen->id + "`", chosen->id);
-        !s)
-      return s;
+    if (!opening->done) return opening->done;
+    Held opened{name, hand, device_of(world, hand), std::move(opening->link), chosen->id, chosen->name, nullptr};
     device.id = chosen->id;
     begin(world, std::move(opened), place_of(world, hand), notes);
   }
@@ -168,11 +207,48 @@ void DeviceLinks::stop_all() {
   for (Held& held : links_) held.link.stop();
 }
 
+bool DeviceLinks::never_ready(Entity hand) {
+  for (Held& held : links_)
+    if (held.hand == hand && !held.simulated) {
+      const DeviceReport& report = held.link.report();
+      return report.figures.periods > 0 && report.figures.samples == report.dropped.not_ready;
+    }
+  return false;
+}
+
+namespace {
+
+// What came of a device that could not be used.
+void find_unused(const std::string& name, const DeviceReport& report, std::vector<std::string>& all) {
+  const std::uint64_t samples = report.figures.samples, not_ready = report.dropped.not_ready;
+  if (const std::string frames = describe(report.dropped); !frames.empty())
+    all.push_back(
+        fmt::format("device of `{}`: not everything that it sent could be used, but {} frames or lines were "
+                    "dropped: {}; {}",
+                    name, report.dropped.dropped(), frames, cure_for(report.dropped)));
+  if (samples > 0 && not_ready == samples)
+    all.push_back(
+        fmt::format("device of `{}`: it was not ready for the whole run ({} samples, and each says that its "
+                    "state is not known); calibrate or home it, release its emergency stop, let it cool",
+                    name, samples));
+  else if (not_ready > 0)
+    all.push_back(fmt::format("device of `{}`: {} of {} samples say that it is not ready; nothing was felt meanwhile",
+                              name, not_ready, samples));
+  if (samples == 0 && report.figures.periods > 0)
+    all.push_back(
+        fmt::format("device of `{}`: no sample came in the whole run; check that it is switched on and sends "
+                    "where it is",
+                    name));
+}
+
+}  // namespace
+
 std::vector<std::string> DeviceLinks::findings() {
   std::vector<std::string> all;
   for (Held& held : links_) {
     if (std::string late = held.link.late_note(held.name); !late.empty()) all.push_back(std::move(late));
     const DeviceReport& report = held.link.report();
+    if (!held.simulated) find_unused(held.name, report, all);
     std::uint64_t worse = 0;
     std::string last;
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(report.transitions, DeviceReport::kKept); ++i) {

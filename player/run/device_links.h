@@ -2,6 +2,7 @@
 // opened before its clocks start, and written zero with the last of its ticks.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,11 @@ class DeviceLinks {
   // Opens what each hand with the driver `external` asks for by its `id`, and takes those of `held`; one without an id
   // is moved by nobody. Where the mouse is an alternative, it takes its place. `notes`: what is not as one might
   // expect.
-  Status open(World& world, SimulatedHands& held, bool windowed, std::vector<std::string>& notes);
+  // Opening may take long (a name server, a maker's library): where `stop` becomes true it is given up, with an error,
+  // and goes on on a thread of its own, so that the program must end at once (gave_up()).
+  Status open(World& world, SimulatedHands& held, bool windowed, const std::function<bool()>& stop,
+              std::vector<std::string>& notes);
+  bool gave_up() const { return gave_up_; }
   bool any() const { return !links_.empty(); }
   bool any_real() const;  // and not only simulated hands
   // Before the run: whether simulated hands go by the wall's clock, or by the servo's periods.
@@ -39,6 +44,8 @@ class DeviceLinks {
   void view(DevicesView& out);
   void order(const DeviceOrders& orders);
   void stop_all();  // no force until each is armed; from any thread
+  // No sample has come of it that said where it is: nothing else that can be said of its probe helps.
+  bool never_ready(Entity hand);
   // What became of each: transitions that a person should know of.
   std::vector<std::string> findings();
 
@@ -54,6 +61,7 @@ class DeviceLinks {
   std::vector<Held> links_;
   std::vector<DevicesView::Other> others_;
   std::vector<DeviceInfo> unusable_;
+  bool gave_up_ = false;
 };
 
 }  // namespace pliant

@@ -98,6 +98,32 @@ OrderedJson probes(const RunFigures& figures) {
   return list;
 }
 
+// What came of each device, and what of it could not be used.
+OrderedJson devices(const RunFigures& figures) {
+  OrderedJson list = OrderedJson::array();
+  for (const DeviceView& device : figures.devices.devices) {
+    const DroppedFrames& d = device.report.dropped;
+    list.push_back({{"probe", device.effector},
+                    {"id", device.id},
+                    {"name", device.name},
+                    {"state", name_of(device.report.state)},
+                    {"samples", device.report.figures.samples},
+                    {"not_ready", d.not_ready},
+                    {"lost", d.lost},
+                    {"dropped",
+                     {{"too_short", d.too_short},
+                      {"unknown", d.unknown},
+                      {"version", d.version},
+                      {"checksum", d.checksum},
+                      {"number", d.number},
+                      {"rotation", d.rotation},
+                      {"key", d.key},
+                      {"foreign", d.foreign},
+                      {"late", d.late}}}});
+  }
+  return list;
+}
+
 // Beyond the contract: what each system cost.
 OrderedJson systems(const Schedule<World>& schedule) {
   OrderedJson list = OrderedJson::array();
@@ -151,6 +177,7 @@ std::string report_json(const RunFigures& figures) {
                                     {"max", frames ? frames->upload_bytes_max() : 0}};
   json["objects"] = objects(figures);
   json["probes"] = probes(figures);
+  if (!figures.devices.devices.empty()) json["devices"] = devices(figures);
   if (figures.soft) json["soft"] = soft(*figures.soft, figures.world.soft->tally);
   json["dropped"] = figures.dropped;
   json["hash"] = figures.hash;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "components/world.h"
+#include "engine/device_view.h"
 #include "engine/journal.h"
 #include "engine/soft_clock.h"
 #include "player/record/keeper.h"
@@ -32,6 +33,7 @@ struct RunFigures {
   const SoftClock* soft = nullptr;          // null: the level has nothing soft or rigid that moves
   std::vector<std::optional<Miss>> misses;  // of each probe of the journal: nothing where it touched, or no surface is
   std::string ended;                        // done, interrupted, or the error that ended it
+  DevicesView devices{};                    // that moved probes and tools
 };
 
 std::string report_json(const RunFigures& figures);

@@ -10,7 +10,10 @@
 #include <iostream>
 #include <thread>
 
+#include "devices/believable.h"
 #include "devices/choose.h"
+#include "devices/drop_counter.h"
+#include "devices/servo/claim.h"
 #include "devices/servo/servo.h"
 #include "devices/wrappers/chain.h"
 #include "player/exit.h"
@@ -41,8 +44,13 @@ class HeldDevice {
     shown = chosen->name;
     auto made = make_device(chosen->id);
     if (!made) return made.error();
+    if (Status s = claim_.take(chosen->id); !s) return s;
     if (Status s = made->driver->open(made->id); !s) return s;
     driver_ = std::move(made->driver);
+    const DeviceCapabilities can = driver_->capabilities();
+    if (const std::string wrong = beyond_belief(can); !wrong.empty())
+      return Error{"device `" + chosen->id + "`", wrong};
+    if (can.simulated || !renders(can)) claim_.release();
     if (wants_servo(driver_->capabilities())) {
       auto served = std::make_unique<Servo>(std::move(driver_));
       servo_ = served.get();
@@ -63,9 +71,12 @@ class HeldDevice {
     }
   }
   Driver& driver() { return *driver_; }
+  // On the thread that reads it, or of what its servo said last.
+  DroppedFrames dropped() { return servo_ ? servo_->report().dropped : dropped_frames(*driver_); }
   Servo* servo() { return servo_; }
 
  private:
+  DeviceClaim claim_;
   std::unique_ptr<Driver> driver_;
   Servo* servo_ = nullptr;
 };
@@ -121,13 +132,16 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
     if (!(half[i] > 0.0)) half[i] = 0.1;
   RealtimeClock clock(kRate);
   DeviceSample sample;
-  std::uint64_t samples = 0, told_samples = 0;
+  std::uint64_t samples = 0, told_samples = 0, not_ready = 0;
   double told_at = 0.0;
   bool drew = false;
   while (!interrupt.requested()) {
     const Tick tick = clock.next();
     if (tick.time > seconds) break;
-    if (held.driver().read(sample)) ++samples;
+    if (held.driver().read(sample)) {
+      ++samples;
+      if (!sample.ready) ++not_ready;
+    }
     held.driver().write({.force = force(tick.time)});
     if (tick.time - told_at < (drawn ? kTellEvery : 1.0)) continue;
     const double rate = static_cast<double>(samples - told_samples) / (tick.time - told_at);
@@ -140,7 +154,16 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
     told_samples = samples;
   }
   held.driver().write({});
-  if (samples == 0) note("no sample came; is the device switched on, and does nobody else hold it?");
+  const DroppedFrames dropped = held.dropped();
+  if (const std::string frames = describe(dropped); !frames.empty())
+    note(fmt::format("{} frames or lines were dropped: {}; {}", dropped.dropped(), frames, cure_for(dropped)));
+  if (samples == 0)
+    note("no sample came; is the device switched on, and does nobody else hold it?");
+  else if (not_ready > 0)
+    note(
+        fmt::format("{} of {} samples say that the device is not ready; calibrate or home it, release its emergency "
+                    "stop, let it cool",
+                    not_ready, samples));
 }
 
 bool confirmed(double most) {

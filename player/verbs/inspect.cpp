@@ -12,6 +12,7 @@
 
 #include "content/keys/enum_words.h"
 #include "content/keys/unused_keys.h"
+#include "content/level/device_request.h"
 #include "content/level/device_use.h"
 #include "content/level/level_budget.h"
 #include "content/level/unit.h"
@@ -215,6 +216,13 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
   for (std::string& sentence : unused_key_notes(level)) notes.push_back(std::move(sentence));
   for (const DeviceFault& idle : find_unmoved_probes(level))
     notes.push_back("`" + level.nodes[idle.node].name + "` " + idle.what);
+  OrderedJson asked_for = OrderedJson::array();
+  for (const LevelRequest& asked : device_requests(level)) {
+    asked_for.push_back({{"moves", asked.moves}, {"id", asked.id}, {"allowed", asked.request.allowed}});
+    for (const std::string& sentence : asked.request.refused)
+      notes.push_back("`" + asked.moves + "` asks for more than a level may: " + sentence);
+  }
+  json["device_ids"] = asked_for;
   json["notes"] = notes;
   return json;
 }
@@ -253,6 +261,8 @@ void print_text(const OrderedJson& json, const Box& box) {
     print("  tool {}: {}, force {}\n", tool["name"].get<std::string>(),
           device.empty() ? "no device" : "device " + device, tool["force"].get<std::string>());
   }
+  for (const OrderedJson& asked : json["device_ids"])
+    print("  asks for a device: {} by `{}`\n", asked["moves"].get<std::string>(), asked["id"].get<std::string>());
   print_tissue(json["flesh"]);
   for (const OrderedJson& sentence : json["notes"]) print("  note: {}\n", sentence.get<std::string>());
   if (!json["touchable"].get<bool>())

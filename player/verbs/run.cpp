@@ -10,7 +10,9 @@
 #include <optional>
 #include <utility>
 
+#include "content/device_answers.h"
 #include "content/files/file_io.h"
+#include "devices/guard/last_resort.h"
 #include "editor/app/settings.h"
 #include "editor/ui/device_list.h"
 #include "engine/body_journal.h"
@@ -122,13 +124,15 @@ bool is_moved(const RunFigures& figures, std::size_t hand) {
 
 // Nothing silent: what kept a hand from what the law says, who touched nothing at all, and what soft steps left
 // imperfect.
-std::vector<std::string> explain_run(RunFigures& figures) {
+std::vector<std::string> explain_run(RunFigures& figures, DeviceLinks& devices) {
   std::vector<std::string> sentences;
   for (std::size_t i = 0; i < figures.journal.probes().size(); ++i) {
     const Entity hand = figures.journal.probes()[i];
     const ProbeSummary& summary = figures.keeper.summaries()[i];
     figures.misses.emplace_back();
-    if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
+    if (summary.contact_ticks == 0 && devices.never_ready(hand)) {
+      // its device says why
+    } else if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
       sentences.push_back(fmt::format("{} `{}` never touched anything: nothing moves it; give it --probe {}=orbit",
                                       summary.tool ? "tool" : "probe", summary.name, summary.name));
     } else if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
@@ -211,12 +215,35 @@ Ran run_headless(const RunOptions& options, TouchLoop& loop) {
   return ran;
 }
 
-Ran run_shown(const RunOptions& options, const RunOptions& asked, Shown& shown, TouchLoop& loop, Prepared& next) {
+// What a level asks for beyond what it may, as a window says it.
+std::vector<std::string> question_of(const Prepared& run) {
+  if (run.refused.empty()) return {};
+  std::vector<std::string> lines{
+      "This level asks for devices, addresses or files of this machine. Allow it only if you "
+      "know who made it."};
+  for (const LevelRequest& asked : run.refused) {
+    lines.push_back("`" + asked.moves + "` by " + asked.id);
+    for (const std::string& sentence : asked.request.refused) lines.push_back("    " + sentence);
+  }
+  return lines;
+}
+
+Status allow_all(const Prepared& run) {
+  DeviceAnswers answers = DeviceAnswers::load();
+  for (const LevelRequest& asked : run.refused)
+    if (Status kept = answers.allow(run.file, asked.id); !kept) return kept;
+  return Done{};
+}
+
+Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, TouchLoop& loop, Prepared& next) {
+  const RunOptions& asked = run.asked;
   WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
                         loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
   session.soft = loop.soft;
   session.devices = loop.devices;
   session.level = options.level;
+  session.question = question_of(run);
+  session.allow = [&run] { return allow_all(run); };
   std::string unread;
   const Settings settings = Settings::load({}, unread);
   if (!unread.empty()) note(unread);
@@ -266,9 +293,15 @@ Status finish(Keeper& keeper, Journal& journal) {
 }
 
 // Devices are felt in real time; a simulated one, or one whose samples come by the clock, may be stepped.
-Outcome open_devices(RunOptions& options, bool windowed, Prepared& run, DeviceLinks& devices) {
+Outcome open_devices(RunOptions& options, bool windowed, Prepared& run, const Interrupt& interrupt,
+                     DeviceLinks& devices) {
   std::vector<std::string> notes;
-  const Status opened = devices.open(run.world, run.hands, windowed, notes);
+  const auto stop = [&interrupt] { return interrupt.requested(); };
+  const Status opened = devices.open(run.world, run.hands, windowed, stop, notes);
+  if (devices.gave_up()) {  // a thread that nobody can end still opens it
+    make_all_safe();
+    ::_exit(fail(kFailed, opened.error()));
+  }
   for (const std::string& sentence : notes) say(run, sentence);
   if (!opened) return wrong_arguments(opened.error());
   if (!options.realtime && !windowed && devices.any_real() && !options.lockstep) options.realtime = true;
@@ -295,7 +328,7 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
 
   DeviceLinks devices;
   if (!run.replay)
-    if (Outcome wrong = open_devices(options, shown, run, devices)) return wrong;
+    if (Outcome wrong = open_devices(options, shown, run, interrupt, devices)) return wrong;
 
   auto out = OutputFolder::create(options.out.empty() ? "out/" + world.name : options.out, options.force);
   if (!out) return failed(out.error());
@@ -354,7 +387,7 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
     loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps) : spread_frames(ticks, spread);
   }
   Prepared other;
-  const Ran ran = shown ? run_shown(options, run.asked, *shown, loop, other) : run_headless(options, loop);
+  const Ran ran = shown ? run_shown(options, run, *shown, loop, other) : run_headless(options, loop);
   soft.stop();  // where an exception left it running
   if (ran.opened) next = std::move(other);
   if (soft.any()) world.dropped |= world.soft->dropped;
@@ -389,9 +422,10 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
                      wrong                   ? sentence_of(kFailed, *wrong)
                      : interrupt.requested() ? "interrupted"
                                              : "done"};
+  devices.view(figures.devices);
   std::vector<std::string> sentences;
   try {
-    sentences = explain_run(figures);
+    sentences = explain_run(figures, devices);
     for (std::string& sentence : devices.findings()) sentences.push_back(std::move(sentence));
   } catch (const std::exception& error) {  // the figures are written without them
     figures.misses.resize(journal.probes().size());

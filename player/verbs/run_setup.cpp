@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "content/device_answers.h"
 #include "content/keys/enum_words.h"
+#include "content/keys/extension_table.h"
 #include "content/keys/unused_keys.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/unit.h"
@@ -58,6 +60,20 @@ std::optional<ProbeSource> mouse_probe(const Level& level) {
   return ProbeSource{name, DriverKind::kMouse, {}};
 }
 
+// A name that the level does not have makes a new probe: on purpose, or misspelled.
+void say_added(const RunOptions& options, const Level& level, Prepared& run) {
+  std::vector<std::string> names;
+  for (const LevelNode& node : level.nodes)
+    if (node.probe || node.handle) names.push_back(node.name);
+  for (const std::string& argument : options.probes) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const std::string near = suggestion(name, names);
+    say(run, fmt::format("--probe {}: the level has no probe or tool of that name, so one was added{}", name,
+                         near.empty() ? fmt::format("; it has: {}", fmt::join(names, ", ")) : near));
+  }
+}
+
 // Probes that are not the level's: from --probe, from the recording, or one on a mesh that has none.
 Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bool bare, Prepared& run,
                       std::vector<ProbeSource>& sources) {
@@ -82,7 +98,38 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
         "the file has no probe, so one named `probe` touches it on the path `orbit`; --probe NAME=SOURCE gives others");
     sources = added = {{"probe", DriverKind::kOrbit, {}}};
   }
+  if (!bare && !run.replay) say_added(options, level, run);
   if (const Status status = add_probes(level, added); !status) return wrong_arguments(status.error());
+  return {};
+}
+
+// What the level asks for and may not have is left out, unless the user has said otherwise: by --probe, by an answer
+// for this file, or afterwards by --set.
+void hold_back_requests(const RunOptions& options, Level& level, Prepared& run) {
+  const DeviceAnswers answers = DeviceAnswers::load();
+  for (LevelRequest& asked : device_requests(level)) {
+    if (asked.request.refused.empty() || answers.allows(run.file, asked.id)) continue;
+    level.nodes[asked.node].device->id = asked.request.allowed;
+    const bool named = std::any_of(options.probes.begin(), options.probes.end(), [&](const std::string& argument) {
+      return argument.starts_with(asked.moves + "=");
+    });
+    if (!named) run.refused.push_back(std::move(asked));
+  }
+}
+
+// Nothing is left of what would move it: that is an error, and in a window a question.
+Outcome refuse_requests(bool windowed, const Level& level, Prepared& run) {
+  std::erase_if(run.refused, [&](const LevelRequest& asked) {
+    const HapticDevice& device = *level.nodes[asked.node].device;
+    return device.driver != DriverKind::kExternal || device.id != asked.request.allowed;
+  });
+  for (const LevelRequest& asked : run.refused) {
+    const std::string where = "`" + asked.moves + "`";
+    const std::string what =
+        "the level asks for more than it may: " + fmt::format("{}", fmt::join(asked.request.refused, "; "));
+    if (asked.request.allowed.empty() && !windowed) return failed({where, what + "; " + device_cure(asked)});
+    say(run, where + ": " + what + "; " + (windowed ? "the window asks you" : device_cure(asked)));
+  }
   return {};
 }
 
@@ -115,6 +162,7 @@ void say_unmoved(bool windowed, Prepared& run) {
     if (!device) continue;
     if (device->driver == DriverKind::kExternal && !device->id.empty())
       continue;  // opened right before the clocks start
+    if (device->driver == DriverKind::kExternal && !run.refused.empty()) continue;  // said already
     const bool mouse = device->driver == DriverKind::kMouse && !windowed;
     if (!mouse && (device->driver != DriverKind::kExternal || run.hands.moves(hand))) continue;
     const Name* name = run.world.registry.find<Name>(hand);
@@ -232,6 +280,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   auto loaded = load_level(*file);
   if (!loaded) return failed(loaded.error());
   Level& level = *loaded;
+  run.file = *file;
   std::vector<std::string> notes = level.notes;
 
   const bool bare = !level.has_pliant();
@@ -242,12 +291,14 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
     make_touchable(level);
     if (const std::string hint = unit_hint(bounds(level)); !hint.empty()) say(run, hint);
   }
+  if (!run.replay) hold_back_requests(options, level, run);
   std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
   SafetyCap cap;
   if (options.max_force > 0.0) cap.max_force = options.max_force;
   for (const std::string& sentence : cap_safety(level, cap)) say(run, sentence);
   if (Outcome wrong = apply_settings(options, *unit, level, run)) return wrong;
+  if (Outcome wrong = refuse_requests(windowed, level, run)) return wrong;
   // Budgets are measured at the rate that the run has.
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;

@@ -1,11 +1,13 @@
 // From arguments and files to a world that is ready to be touched.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "components/world.h"
+#include "content/level/device_request.h"
 #include "engine/recording.h"
 #include "engine/simulated_hands.h"
 #include "player/exit.h"
@@ -36,6 +38,8 @@ struct Prepared {
   std::optional<Recording> replay;
   std::vector<std::string> notes;
   SimulatedHands hands;     // not connected
+  std::filesystem::path file;         // of the level
+  std::vector<LevelRequest> refused;  // devices that it asks for and may not have without a word of the user's
   std::uint64_t scene = 0;  // scene_hash() of the level that runs
   // For a recording: --set, --unit, --error and --tool-force, those of a replay before them.
   std::vector<std::string> settings;

@@ -333,6 +333,23 @@ void Overlay::draw_devices(const OverlayState& state) {
   ImGui::End();
 }
 
+void Overlay::draw_question(const OverlayState& state) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.4f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(560 * scale_, 0.8f * size.x), 0}, ImGuiCond_Always);
+  ImGui::Begin("question", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  const ui::Scope scope("Question");
+  ImGui::PushTextWrapPos(0);
+  for (const std::string& line : state.question) ImGui::TextUnformatted(line.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::Separator();
+  if (ui::button("Allow for this file", "It is remembered for this file and these words")) orders_.allow = true;
+  ImGui::SameLine();
+  if (ui::button("Not now", "Go on without that device")) orders_.decline = true;
+  ImGui::End();
+}
+
 void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint, const OverlayMouse& mouse, int width,
                    int height, double dt) {
   ImGuiIO& io = ImGui::GetIO();
@@ -345,6 +362,7 @@ void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint
   ImGui::NewFrame();
   if (state.figures) draw_panel(state, options, tint);
   if (state.figures && state.show_devices) draw_devices(state);
+  if (!state.question.empty()) draw_question(state);
   if (state.help) draw_help(state, scale_);
   if (!state.message.empty()) draw_message(state, scale_);
   if (state.cursor && !io.WantCaptureMouse) draw_cursor(state, scale_);

@@ -66,7 +66,8 @@ struct OverlayState {
   std::vector<ProbeLine> probes;
   bool show_devices = false;
   DevicesView devices;
-  std::string stop_keys;  // of the emergency stop
+  std::string stop_keys;              // of the emergency stop
+  std::vector<std::string> question;  // whether the level may have what it asks for, line by line; empty: none
   // The cursor, where a probe is driven by the mouse. [pixel]
   bool cursor = false, pressing = false;
   double cursor_x = 0, cursor_y = 0;
@@ -98,6 +99,7 @@ class Overlay {
  private:
   void draw_panel(const OverlayState& state, RenderOptions& options, float tint);
   void draw_devices(const OverlayState& state);
+  void draw_question(const OverlayState& state);
   float scale_;
   bool large_ = false;
   DeviceOrders orders_;

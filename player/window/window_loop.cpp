@@ -77,6 +77,7 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
   }
   state_.stop_keys = session.devices ? session.stop_keys : std::string();
   state_.show_devices = session.devices != nullptr;
+  for (const std::string& line : session.question) state_.question.push_back(printable(line));
   mouse_.x = 0.5 * session.window.width();
   mouse_.y = 0.5 * session.window.height();
   probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
@@ -195,6 +196,7 @@ Status WindowLoop::learn(const PictureDone& done) {
   widgets_ = done.widgets;
   press_widgets();
   if (s_.devices && done.orders.any()) s_.devices->order(done.orders);
+  if (done.orders.allow || done.orders.decline) answer_question(done.orders.allow);
   if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
     ++screenshots_;  // another window took the name meanwhile
   else if (!shooting_.empty())

@@ -38,6 +38,7 @@ class WindowLoop {
   void release();
   void move(const InputEvent& event);
   void wheel(const InputEvent& event);
+  void answer_question(bool allowed);
   void open(const std::string& file);  // on a thread of its own
   void look_for_opened();
   void say(const std::string& sentence, bool error);

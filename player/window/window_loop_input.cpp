@@ -27,6 +27,15 @@ void WindowLoop::say(const std::string& sentence, bool error) {
   said_at_ = seconds_;
 }
 
+// The level begins anew with what it may have now.
+void WindowLoop::answer_question(bool allowed) {
+  if (state_.question.empty()) return;
+  state_.question.clear();
+  if (!allowed) return;
+  if (const Status kept = s_.allow(); !kept) say(kept.error().message(), true);
+  open(s_.level);
+}
+
 void WindowLoop::open(const std::string& file) {
   if (opening_.valid()) return;
   say("opening " + file, false);

@@ -36,6 +36,9 @@ struct WindowSession {
   std::uint64_t ticks = 0;                    // at most
   std::vector<std::uint64_t> frame_ticks;     // after which pictures are staged, ascending
   int frame_width = 960, frame_height = 540;  // [pixel] of those
+  // What the level asks for beyond what a level may, line by line; empty: nothing. `allow` remembers that it may.
+  std::vector<std::string> question;
+  std::function<Status()> allow;
   // Prepares another level on a thread of its own; nothing: it is ready, else why not.
   std::function<std::optional<Error>(const std::string& file)> open;
 };

@@ -187,7 +187,7 @@ TEST(SimulatedDevice, BadWordsGetOneSentence) {
              {"touch,delay=2", "up to 1s"},
              {"touch,delay=-1ms", "up to 1s"},
              {"touch,mass=0", "0.001 to 100 kg"},
-             {"touch,rate=nan", "1 to 20000 Hz"},
+             {"touch,rate=nan", "10 to 20000 Hz"},
              {"touch,lag=0.001us", "lag must be 0 or at least 10us"},
              {"touch,mass=0.001,damping=1000", "give more mass"},
              {"touch,push=0:2e3:0", "at most 1000 N"},

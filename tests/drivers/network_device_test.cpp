@@ -175,13 +175,14 @@ TEST(NetworkDevice, DoubledOvertakenForeignAndDamagedFramesAreDroppedAndCounted)
   FrameCounts counts = driver.counts();
   EXPECT_EQ(counts.accepted - before.accepted, 10u);
   EXPECT_EQ(counts.late - before.late, 10u);
-  EXPECT_EQ(counts.foreign - before.foreign, 10u);
-  EXPECT_EQ(counts.damaged - before.damaged, 10u);
+  EXPECT_EQ(counts.unknown - before.unknown, 10u);
+  EXPECT_EQ(counts.too_short - before.too_short, 10u);
+  EXPECT_EQ(counts.dropped() - before.dropped(), 30u);
   EXPECT_EQ(counts.lost, before.lost);
   bench.step();
   const FrameCounts& heard = bench.device->counts();
   EXPECT_EQ(heard.late - heard_before.late, 10u);
-  EXPECT_EQ(heard.damaged - heard_before.damaged, 10u);
+  EXPECT_EQ(heard.too_short - heard_before.too_short, 10u);
   // One that was overtaken by nine others.
   bench.carry = [](auto& wire, double due, const NetworkBench::Packet& p) { wire.push_back({due, p}); };
   driver.read(sample);

@@ -1,7 +1,9 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -11,6 +13,7 @@
 
 #include "devices/drivers/serial_device.h"
 #include "devices/ports/serial_port.h"
+#include "devices/servo/servo.h"
 #include "tests/drivers/until.h"
 
 namespace pliant {
@@ -82,6 +85,7 @@ struct Board {
   std::atomic<long> x{0};          // [um]
   std::atomic<long> fx{0}, fy{0};  // [mN]
   std::atomic<int> forces{0};
+  std::atomic<unsigned> newest{1};  // number of the last force
   std::thread thread;
 
   Board() {
@@ -123,6 +127,7 @@ struct Board {
                    with_sum(line.substr(0, line.size() - 3)) == line) {
           fx = a;
           fy = b;
+          newest = number;
           ++forces;
           const std::string pose = "P " + std::to_string(number) + " " + std::to_string(x) + " 0 0 1 0";
           say(garbled ? pose + "*00\n" : with_sum(pose) + "\n");
@@ -132,6 +137,43 @@ struct Board {
   }
   int held = -1;
 };
+
+TEST(SerialDevice, LinesThatAreNotUsedAreCountedByWhy) {
+  Board board;
+  SerialDevice driver;
+  ASSERT_TRUE(driver.open(board.path));
+  EXPECT_EQ(describe(driver.dropped()), "");
+  board.garbled = true;
+  DeviceSample sample;
+  EXPECT_TRUE(runs_until(driver, sample, {}, [&](bool) { return driver.dropped().checksum > 3; }));
+  EXPECT_EQ(driver.dropped().damaged(), driver.dropped().checksum);
+  EXPECT_NE(describe(driver.dropped()).find("with a wrong check sum"), std::string::npos);
+  for (const auto& [line, why] :
+       {std::pair<std::string, SerialFault>(with_sum("P 1 0 0 0 0 1001"), SerialFault::kNumber),
+        {with_sum("P 1 0 0 0"), SerialFault::kForm},
+        {"P 1 0 0 0 0 0*00", SerialFault::kSum},
+        {"P", SerialFault::kTooShort},
+        {with_sum("P 1 0 0 0 0 0"), SerialFault::kNone}}) {
+    SerialFault fault = SerialFault::kNone;
+    (void)parse_serial_pose(line, &fault);
+    EXPECT_EQ(fault, why) << line;
+  }
+}
+
+TEST(SerialDevice, AfterKillNineAGuardProcessWritesALineOfZero) {
+  Board board;
+  const pid_t engine = fork();
+  if (engine == 0) {
+    Servo servo(std::make_unique<SerialDevice>());
+    if (!servo.open(board.path) || !servo.start()) _exit(3);
+    for (;;) usleep(1000);
+  }
+  ASSERT_TRUE(soon([&] { return board.forces > 100; }));
+  ASSERT_NE(board.newest, 0u);
+  kill(engine, SIGKILL);
+  waitpid(engine, nullptr, 0);
+  EXPECT_TRUE(soon([&] { return board.newest == 0u; })) << "the guard process's own line";
+}
 
 TEST(SerialDevice, ABoardOfOneAxisIsReadAndPushedAlongThatAxisAlone) {
   Board board;

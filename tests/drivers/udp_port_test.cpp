@@ -57,7 +57,6 @@ TEST(UdpPort, PacketsGoBothWaysAndNobodyElseIsHeard) {
   ASSERT_TRUE(say(**device, "true"));
   ASSERT_TRUE(hear(**engine, text));
   EXPECT_EQ(text, "true");
-  EXPECT_EQ((*engine)->strangers(), 1u);
 }
 
 TEST(UdpPort, APeerThatIsNotThereIsSilenceAndNoError) {

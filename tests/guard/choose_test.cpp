@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "devices/believable.h"
+
 namespace pliant {
 namespace {
 
@@ -30,6 +34,30 @@ TEST_F(Choose, TheStrongestThatPushesIsAnyForce) {
   const auto chosen = choose_device("any-force", there);
   ASSERT_TRUE(chosen) << chosen.error().message();
   EXPECT_EQ(chosen->id, "strong:7");
+}
+
+TEST_F(Choose, NoKindIsAStrangerOnAPortOrClaimsWhatCannotBe) {
+  there.push_back(device("network", "127.0.0.1:17716", 1e9));
+  there.push_back(device("weak", "boast", 1e9));
+  for (const char* kind : {"any-force", "any"}) EXPECT_EQ(choose_device(kind, there)->id, "strong:7") << kind;
+  const std::vector<DeviceInfo> alone{device("network", "127.0.0.1:17716", 5.0)};
+  const auto none = choose_device("any-force", alone);
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message(), HasSubstr("by its name only: device:network:127.0.0.1:17716"));
+  const auto boast = choose_device("any-force", std::vector<DeviceInfo>{device("weak", "boast", 1e9)});
+  ASSERT_FALSE(boast);
+  EXPECT_THAT(boast.error().message(), HasSubstr("says a largest force of 1e+09 N"));
+}
+
+TEST(Believable, LimitsAreFiniteAndOfAHapticDevice) {
+  EXPECT_EQ(beyond_belief({.max_force = 8.0, .max_stiffness = 3000.0, .rate = 4000.0}), "");
+  EXPECT_EQ(beyond_belief({}), "");
+  EXPECT_THAT(beyond_belief({.max_force = 1e9}), HasSubstr("largest force"));
+  EXPECT_THAT(beyond_belief({.max_force = NAN}), HasSubstr("largest force"));
+  EXPECT_THAT(beyond_belief({.max_torque = -1.0}), HasSubstr("largest torque"));
+  EXPECT_THAT(beyond_belief({.workspace = {0.1, INFINITY, 0.1}}), HasSubstr("workspace"));
+  EXPECT_THAT(beyond_belief({.rate = 0.01}), HasSubstr("a rate of 0.01 Hz"));
+  EXPECT_THAT(beyond_belief({.rate = 1e6}), HasSubstr("rate"));
 }
 
 TEST_F(Choose, ADriversFirstDeviceOrTheOneThatIsNamed) {

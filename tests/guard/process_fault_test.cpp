@@ -17,6 +17,7 @@
 
 #include "devices/guard/last_resort.h"
 #include "devices/servo/claim.h"
+#include "devices/servo/device_identity.h"
 #include "devices/servo/servo.h"
 
 namespace pliant {
@@ -225,6 +226,84 @@ TEST(ProcessFault, OneDeviceHasOneWriterHereAndInOtherPrograms) {
   ::waitpid(other, nullptr, 0);
   EXPECT_TRUE(first.take(device)) << "a program that has ended holds nothing";
   for (const int end : {ready[0], ready[1], done[0], done[1]}) ::close(end);
+}
+
+// The same device in two processes, however each of them writes it, and whatever folder each of them has.
+TEST(ProcessFault, EverySpellingOfADeviceIsThatDevice) {
+  const std::string link = ::testing::TempDir() + "pliant-by-id-" + std::to_string(::getpid());
+  ::unlink(link.c_str());
+  ASSERT_EQ(::symlink("/dev/null", link.c_str()), 0);
+  const std::pair<std::string, std::string> same[] = {
+      {"network", "network:17716"},
+      {"network:127.0.0.1:17716", "network:localhost:17716"},
+      {"network:17716", "network:[::1]:17716"},
+      {"network:17716", "network:[::ffff:127.0.0.1]:17716"},
+      {"network:17716", "network:127.0.0.2:017716|delay=5ms"},
+      {"network:17716,key=/a", "network:17716 ,key-env=B"},
+      {"network:10.1.2.3:5", "network:[::ffff:10.1.2.3]:5"},
+      {"serial:/dev/null", "serial:" + link + "@1000000"},
+      {"serial:/dev/null", "serial:/dev/../dev//null|scale=2"},
+      {"forcedimension", "forcedimension:0"},
+      {"falcon", "falcon:/some/firmware.bin"},
+  };
+  for (const auto& [ours, theirs] : same) {
+    int told[2], done[2];
+    ASSERT_EQ(::pipe(told), 0);
+    ASSERT_EQ(::pipe(done), 0);
+    const pid_t other = ::fork();
+    if (other == 0) {
+      ::close(done[1]);
+      ::setenv("XDG_RUNTIME_DIR", "/nonexistent", 1);
+      DeviceClaim claim;
+      char held = claim.take(theirs) ? 'y' : 'n';
+      [[maybe_unused]] ssize_t size = ::write(told[1], &held, 1);
+      size = ::read(done[0], &held, 1);
+      ::_exit(0);
+    }
+    char held = '?';
+    ASSERT_EQ(::read(told[0], &held, 1), 1);
+    EXPECT_EQ(held, 'y') << theirs;
+    const Status taken = DeviceClaim().take(ours);
+    EXPECT_FALSE(taken) << ours << " and " << theirs;
+    if (!taken)
+      EXPECT_THAT(taken.error().message(),
+                  testing::HasSubstr("is held by another program (process " + std::to_string(other) + ")"));
+    for (const int end : {told[0], told[1], done[0], done[1]}) ::close(end);
+    ::waitpid(other, nullptr, 0);
+    EXPECT_TRUE(DeviceClaim().take(ours)) << "a program that has ended holds nothing";
+  }
+  ::unlink(link.c_str());
+  EXPECT_NE(device_identity("network:10.1.2.3:5"), device_identity("network:10.1.2.3:6"));
+  EXPECT_NE(device_identity("serial:/dev/null"), device_identity("serial:/dev/zero"));
+  EXPECT_NE(device_identity("haply:A"), device_identity("haply:B"));
+}
+
+// A line that was opened anew: the guard process writes on the new one.
+TEST(ProcessFault, AGuardProcessIsToldOfANewLine) {
+  int first[2], second[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, first), 0);
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, second), 0);
+  SafeLine line;
+  line.descriptor = first[1];
+  line.size = 3;
+  line.bytes = {1, 2, 3};
+  {
+    Watchman watchman;
+    ASSERT_TRUE(watchman.start(line, 0.05));
+    line.descriptor = second[1];
+    line.size = 2;
+    line.bytes = {7, 8};
+    watchman.renew(line);
+    watchman.beat();
+    std::uint8_t bytes[8] = {};
+    pollfd watched{second[0], POLLIN, 0};
+    ASSERT_EQ(::poll(&watched, 1, 5000), 1);
+    EXPECT_EQ(::recv(second[0], bytes, sizeof bytes, 0), 2);
+    EXPECT_EQ(bytes[0], 7);
+    watched.fd = first[0];
+    EXPECT_EQ(::poll(&watched, 1, 0), 0) << "nothing on the old one";
+  }
+  for (const int end : {first[0], first[1], second[0], second[1]}) ::close(end);
 }
 
 // A maker's library of another version: it is there, and one function is not.

@@ -91,19 +91,22 @@ TEST(Refound, AnotherDeviceInItsPlaceIsNotTaken) {
   ASSERT_TRUE(comes_true([&] { return device.read(sample); }));
 }
 
-TEST(Refound, OneWhoseLineAGuardProcessHoldsIsNotOpenedAnewBehindItsBack) {
+// The servo tells the guard process of the new line (ProcessFault.AGuardProcessIsToldOfANewLine).
+TEST(Refound, OneWhoseLineAGuardProcessHoldsIsOpenedAnewTooAndHasNoLineMeanwhile) {
   Plug plug;
   plug.guarded = true;
   Refound device(std::make_unique<PluggedDevice>(plug));
   ASSERT_TRUE(device.open("left"));
   DeviceSample sample;
+  SafeLine line;
+  EXPECT_TRUE(device.safe_line(line));
   plug.in = false;
   EXPECT_FALSE(device.read(sample));
+  EXPECT_FALSE(device.safe_line(line));
   plug.in = true;
-  std::this_thread::sleep_for(std::chrono::duration<double>(3 * Refound::kLookEvery));
-  EXPECT_EQ(plug.opened, 1);
-  EXPECT_FALSE(device.read(sample));
-  EXPECT_TRUE(device.gone());
+  ASSERT_TRUE(comes_true([&] { return device.read(sample); }));
+  EXPECT_EQ(plug.opened, 2);
+  EXPECT_TRUE(device.safe_line(line));
 }
 
 TEST(Refound, ClosingWhileItIsGoneEndsTheSearchAndOpeningBeginsAnew) {

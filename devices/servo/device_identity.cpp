@@ -1,0 +1,121 @@
+#include "devices/servo/device_identity.h"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "devices/spec.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+using Address = std::array<std::uint8_t, 16>;  // IPv6, or IPv4 mapped into it
+
+constexpr Address kMapped{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
+
+bool address_of(const sockaddr* from, Address& out) {
+  if (from && from->sa_family == AF_INET) {
+    out = kMapped;
+    std::memcpy(out.data() + 12, &reinterpret_cast<const sockaddr_in*>(from)->sin_addr, 4);
+    return true;
+  }
+  if (!from || from->sa_family != AF_INET6) return false;
+  std::memcpy(out.data(), &reinterpret_cast<const sockaddr_in6*>(from)->sin6_addr, 16);
+  return true;
+}
+
+bool mapped(const Address& a) {
+  return std::equal(kMapped.begin(), kMapped.begin() + 12, a.begin());
+}
+
+// A loopback address, none in particular, or one of this machine's own: all reach the same ports.
+bool is_here(const Address& a) {
+  Address one{};
+  if (a == one) return true;
+  one[15] = 1;
+  if (a == one) return true;
+  if (mapped(a) && (a[12] == 127 || (a[12] | a[13] | a[14] | a[15]) == 0)) return true;
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return false;
+  bool own = false;
+  for (const ifaddrs* each = all; each && !own; each = each->ifa_next)
+    if (Address its; address_of(each->ifa_addr, its)) own = its == a;
+  freeifaddrs(all);
+  return own;
+}
+
+std::string network_identity(const std::string& id) {
+  const std::string text(trimmed(id.substr(0, id.find(','))));
+  const std::size_t colon = text.rfind(':');
+  std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
+  std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+  if (port.empty()) port = kNetworkPort;
+  port.erase(0, std::min(port.find_first_not_of('0'), port.size() - 1));
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* list = nullptr;
+  if (getaddrinfo(host.c_str(), nullptr, &hints, &list) != 0) return "network:" + text;
+  Address address{};
+  const bool known = address_of(list->ai_addr, address);
+  freeaddrinfo(list);
+  if (!known) return "network:" + text;
+  if (is_here(address)) return "network:here:" + port;
+  std::string numbers;
+  for (const std::uint8_t byte : address) numbers += fmt::format("{:02x}", byte);
+  return fmt::format("network:{}:{}", numbers, port);
+}
+
+// Of a device file by what is behind it. False: it is none.
+bool node_identity(const std::string& path, std::string& out) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return false;
+  out = S_ISCHR(file.st_mode) ? fmt::format("node:{}:{}", major(file.st_rdev), minor(file.st_rdev))
+                              : fmt::format("file:{}:{}", file.st_dev, file.st_ino);
+  return true;
+}
+
+// A serial number: the device file of the only HID device that has it.
+bool hid_identity(const std::string& serial, std::string& out) {
+  if (serial.empty()) return false;
+  std::vector<fs::path> found;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator("/sys/class/hidraw", none)) {
+    std::ifstream words(entry.path() / "device/uevent");
+    for (std::string line; std::getline(words, line);)
+      if (line == "HID_UNIQ=" + serial) found.push_back("/dev" / entry.path().filename());
+  }
+  return found.size() == 1 && node_identity(found.front(), out);
+}
+
+}  // namespace
+
+std::string device_identity(const std::string& device) {
+  const std::string words(trimmed(std::string_view(device).substr(0, device.find('|'))));
+  const std::size_t colon = words.find(':');
+  const std::string driver(trimmed(words.substr(0, colon)));
+  const std::string id(colon == std::string::npos ? std::string_view()
+                                                  : trimmed(std::string_view(words).substr(colon + 1)));
+  if (driver == "network") return network_identity(id);
+  if (driver == "falcon" || driver == "simulated") return driver;  // its id is a file, or what it is to be like
+  std::string identity;
+  const std::size_t speed = driver == "serial" ? id.rfind('@') : std::string::npos;
+  const std::string file = id.substr(0, std::min(speed, id.find_first_of(",?")));
+  if (file.find('/') != std::string::npos && node_identity(file, identity)) return identity;
+  if (hid_identity(file, identity)) return identity;
+  return driver + ":" + (file.empty() ? "0" : file);  // the first, which libraries count from 0
+}
+
+}  // namespace pliant
