@@ -129,7 +129,9 @@ void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) 
     late_ += since > kForceHolds;
   }
   if (!servo_) {
-    if (!state_->may_leave(wrench, tick.time)) device.force_sent = device.torque_sent = dvec3(0);
+    const double share = state_->may_leave(wrench, tick.time);
+    device.force_sent *= share;
+    device.torque_sent *= share;
     driver_->write({device.force_sent, device.torque_sent});
     return;
   }

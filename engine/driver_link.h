@@ -11,10 +11,11 @@
 #include "engine/link_state.h"
 #include "runtime/clock.h"
 #include "runtime/result.h"
+#include "systems/safety/safety.h"
 
 namespace pliant {
 
-inline constexpr double kForceHolds = 0.020;  // [s] that devices and their drivers' threads go on with a force
+inline constexpr double kForceHolds = kForceLasts;  // [s] that devices and their drivers' threads go on with a force
 
 class DriverLink {
  public:

@@ -1,5 +1,7 @@
 #include "engine/link_state.h"
 
+#include <algorithm>
+
 namespace pliant {
 
 void LinkState::to(DeviceState state, DeviceCause cause, double now) {
@@ -28,7 +30,23 @@ void LinkState::follow_orders(double now) {
   }
 }
 
+// What the newest sample warns of takes its share at once or within kFadeTime; a battery that is low latches.
+void LinkState::warn(double elapsed) {
+  const double since = std::clamp(elapsed, 0.0, 0.01);
+  const std::uint32_t warnings = report_.sample.warnings;
+  if (warnings & kDeviceBatteryLow) {
+    share_ = std::max(0.0, share_ - since / kFadeTime);
+    if (share_ > 0.0 || report_.state != DeviceState::kActive) return;
+    to(DeviceState::kTripped, DeviceCause::kBatteryLow, now_);
+    latched_ = true;
+    return;
+  }
+  const double most = warnings & kDeviceWarm ? 0.5 : 1.0;
+  share_ = std::min(most, share_ + since / kRise);
+}
+
 bool LinkState::sense(const DeviceSample* sample, double now) {
+  const double before = now_;
   now_ = now;
   ++report_.figures.periods;
   follow_orders(now);
@@ -46,16 +64,18 @@ bool LinkState::sense(const DeviceSample* sample, double now) {
     if (now - came_at_ > kLostAfter) came_ = false;
     if (!came_ && report_.state == DeviceState::kActive) to(DeviceState::kDisconnected, DeviceCause::kNoSample, now);
   }
+  warn(now - before);
   return renewed_;
 }
 
-bool LinkState::may_leave(const DeviceWrench& wrench, double now) {
+double LinkState::may_leave(const DeviceWrench& wrench, double now) {
   const bool may = !latched_;
+  const double share = may ? share_ : 0.0;
   report_.wanted = wrench;
-  report_.sent = may ? wrench : DeviceWrench{};
+  report_.sent = {share * wrench.force, share * wrench.torque, share * wrench.grip};
   report_.force = length(report_.sent.force);
   if (now - told_at_ >= kTellEvery || !told_ || renewed_ || !may) tell(now);
-  return may;
+  return share;
 }
 
 void LinkState::rest(const DeviceSample* sample) {

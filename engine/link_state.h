@@ -16,6 +16,8 @@ class LinkState {
  public:
   static constexpr double kLostAfter = 0.1;   // [s] without a sample
   static constexpr double kTellEvery = 0.05;  // [s] of reports
+  static constexpr double kFadeTime = 0.5;    // [s] in which a low battery takes the force away
+  static constexpr double kRise = 0.2;        // [s] in which what a warning took comes back
 
   explicit LinkState(const DeviceCapabilities& can) : can_(can) {}
 
@@ -23,8 +25,9 @@ class LinkState {
   // True: it has just been armed, so that its force is to come back through the gate.
   bool sense(const DeviceSample* sample, double now);
   bool renewed() const { return renewed_; }  // in this tick
-  // What the safety layer lets leave; false: nothing leaves.
-  bool may_leave(const DeviceWrench& wrench, double now);
+  // [1] The share that may leave of what the safety layer lets through: none of what is stopped, half of it for a warm
+  // device, and what a low battery has left within kFadeTime.
+  double may_leave(const DeviceWrench& wrench, double now);
   void rest(const DeviceSample* sample);  // in a pause, where time stands still
 
   // --- Anybody's
@@ -38,12 +41,14 @@ class LinkState {
   void to(DeviceState state, DeviceCause cause, double now);
   void follow_orders(double now);
   void tell(double now);
+  void warn(double elapsed);
 
   DeviceCapabilities can_;
   std::atomic<std::uint32_t> orders_{0};
   TripleBuffer<DeviceReport> reports_;
   DeviceReport report_;
   double came_at_ = 0.0, told_at_ = 0.0, now_ = 0.0;  // [s]
+  double share_ = 1.0;                                // [1] that the device's warnings leave
   std::uint64_t told_samples_ = 0;
   bool came_ = false, latched_ = false, renewed_ = false, told_ = false;
 };

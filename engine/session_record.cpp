@@ -180,7 +180,9 @@ void Session::Parts::begin_replay(Recording recording) {
 Tick Session::Parts::replayed_tick() {
   const double dt = 1.0 / world.simulation.touch_rate;
   const std::size_t n = static_cast<std::size_t>(ticks);
-  const Tick tick{replayed->ticks[n], dt, static_cast<double>(replayed->ticks[n]) * dt};
+  const std::uint64_t index = replayed->ticks[n], next = n > 0 ? replayed->ticks[n - 1] + 1 : index;
+  const Tick tick{index, dt, static_cast<double>(index) * dt,
+                  index > next ? static_cast<double>(index - next) * dt : 0.0};
   for (std::size_t i = 0; i < effectors.size(); ++i) {
     const RecordedPose& pose = replayed->poses[n * effectors.size() + i];
     HapticDevice& device = world.registry.get<HapticDevice>(effectors[i].device);

@@ -136,7 +136,9 @@ void TouchClock::loop() {
     const std::uint64_t index = wall.index - stood;
     if (index >= ticks_) break;
     overruns_ = clock.overruns() - stood_overruns;
-    last_ = {index, wall.dt, static_cast<double>(index) * wall.dt};
+    const std::uint64_t next = count_ > 0 ? last_.index + 1 : index;
+    last_ = {index, wall.dt, static_cast<double>(index) * wall.dt,
+             index > next ? static_cast<double>(index - next) * wall.dt : 0.0};
     tick(last_);
     tell(last_.time);
   }

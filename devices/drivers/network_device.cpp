@@ -5,13 +5,14 @@
 
 #include "devices/believable.h"
 #include "devices/ports/udp_port.h"
+#include "devices/servo/local_force.h"
 #include "devices/spec.h"
 #include "runtime/clock.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kModelRadius = 0.010;  // [m] farther from where it was made a tick cannot take a hand
+constexpr double kModelRadius = 0.010;  // [m] of a model without a limit: farther a tick cannot take a hand
 constexpr double kReopen = 0.1;         // [s] between two tries to open
 constexpr double kForgotten = 1.2;      // [s] a device that hears nothing for 1 s listens to others
 constexpr double kOpenFor = 2.0;        // [s] that open() waits: a device that was left alone listens anew after 1 s
@@ -151,6 +152,7 @@ bool NetworkDevice::accept_state(const NetworkFrame& frame, double now) {
   heard_at_ = now;
   state_ = frame.state;
   state_.sample.time = std::min(now, sensed + clock_offset_);
+  if (frame.state.low) state_.sample.warnings |= kDeviceBatteryLow;
   state_.sample.ready = frame.state.sample.ready && !frame.state.stopped && !frame.state.hot &&
                         sent_.unanswered(frame.state.heard, now) < kFrameAnswer;
   if (const double age = sent_.age(frame.state.heard, now); std::isfinite(age)) round_trip_ = age;
@@ -204,7 +206,8 @@ bool NetworkDevice::write_model(const DeviceModel& model, const DeviceWrench& wr
   force.wrench = wrench;
   force.has_model = true;
   force.model = model;
-  force.radius = kModelRadius;
+  force.radius = model.max_force > 0.0 ? model_radius(model, model.max_force)
+                                       : std::min(kModelRadius, model_radius(model, can_.max_force));
   send_force(force);
   return true;
 }

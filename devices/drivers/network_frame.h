@@ -59,7 +59,7 @@ struct StateFrame {
 struct ForceFrame {
   DeviceWrench wrench;  // now; all there is where has_model is false
   bool has_model = false;
-  DeviceModel model;        // its time is not sent: it is as old as the frame
+  DeviceModel model;        // its time is not sent: it is as old as the frame; nor are its limits: `radius` keeps them
   double radius = 0.0;      // [m] within which the model holds; farther away, its value at this distance
   std::uint32_t heard = 0;  // sequence of the newest state frame that the engine has accepted
 };

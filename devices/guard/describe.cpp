@@ -39,7 +39,7 @@ const char* sentence(DeviceCause cause) {
     case DeviceCause::kJumped:
       return "its pose jumped farther than a hand can; check its sensors";
     case DeviceCause::kFrozen:
-      return "its pose did not change by one count for a second under force; hold it, or restart the device";
+      return "its pose did not change by one count for half a second under force; hold it, or restart the device";
     case DeviceCause::kTimeBack:
       return "its samples' time went back or lies ahead; check the driver's clock";
     case DeviceCause::kTooFast:

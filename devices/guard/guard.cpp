@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kUnitNear = 0.01;     // [1] how far from unit length a rotation may be
 constexpr double kFarthestPose = 1e6;  // [m] of a device that says no workspace
-constexpr double kUsualForce = 3.3;    // [N] where nobody says a largest one
 
 bool finite(dvec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -64,11 +63,13 @@ void Guard::to(DeviceState state, DeviceCause cause, double now) {
 
 void Guard::send_nothing() {
   last_ = report_.sent = {};
-  report_.force = ramp_ = slow_speed_ = 0.0;
+  report_.force = ramp_ = slow_speed_ = share_ = most_ = most_turn_ = 0.0;
   carried_ = dvec3(0);
   fade_ = 1.0;
   push_.forget();
   twist_.forget();
+  pushed_.forget();
+  twisted_.forget();
 }
 
 void Guard::trip(DeviceCause cause, double now) {
@@ -194,10 +195,10 @@ void Guard::watch(double now) {
   // A hand that holds quite still looks the same, and is asked: its force fades, and whatever moves by that, if only by
   // one count, has it back.
   const double still = now - changed_at_;
-  if (still > kFrozenAfter && fade_ <= 0.0)
+  if (still > kFrozenAfter + kFrozenFade && fade_ <= 0.0)
     lose(DeviceCause::kFrozen, now);
-  else if (still > kFrozenAfter - kFadeTime && (fade_ < 1.0 || length(last_.force) > kGateForce))
-    fade_ = std::max(0.0, fade_ - dt_ / kFadeTime);
+  else if (still > kFrozenAfter && (fade_ < 1.0 || length(last_.force) > kGateForce))
+    fade_ = std::max(0.0, fade_ - dt_ / kFrozenFade);
   else if (!(warnings_ & kDeviceBatteryLow))
     fade_ = parameters_.ramp > 0.0 ? std::min(1.0, fade_ + dt_ / parameters_.ramp) : 1.0;
 }
@@ -276,6 +277,28 @@ bool Guard::runs_away(const GuardWish& wish, double dt) {
   return against > kRunawayGain && against - slow_speed_ > kRunawayGain;
 }
 
+// A limit that is raised under a hand comes in as a force does.
+double Guard::risen_slowly(double before, double most, double dt) const {
+  const bool rises = before > 0.0 && most > before && std::isfinite(most) && parameters_.ramp > 0.0;
+  return rises ? std::min(most, before + most * dt / parameters_.ramp) : most;
+}
+
+// Where a larger share of what is wanted may leave than in the last period, the hand has done the work on the smaller
+// one. Where the limit is raised, it has gone at least the energy over the limit under it.
+void Guard::credit(const GuardWish& wish, double share, double most) {
+  const dvec3 whole = wish.wrench.force - wish.weight;
+  pushed_.follow(clamp_norm(whole, most), heard_ ? way_ - carried_ : dvec3(0), wish.stiffness);
+  twisted_.follow(wish.wrench.torque, turn_, wish.turning_stiffness);
+  energy_.work -= std::max(0.0, share - share_) * (pushed_.energy() + twisted_.energy());
+  if (most_ > 0.0 && most > most_) {
+    const double raised = std::max(0.0, std::min(most, share * length(whole)) - most_);
+    const double gained = raised * pushed_.energy() / most_;
+    pushed_.raise(gained);
+    energy_.work -= gained;
+  }
+  share_ = share;
+}
+
 DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   ramp_ = parameters_.ramp > 0.0 ? std::min(1.0, ramp_ + dt / parameters_.ramp) : 1.0;
   if (warnings_ & kDeviceBatteryLow) fade_ = std::max(0.0, fade_ - dt / kFadeTime);
@@ -297,6 +320,13 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
     report_.max_force = force_most *= kWarmShare;
   }
   if (warnings_ & kDeviceWarm) torque_most *= kWarmShare;
+  carried_ += wish.velocity * dt;
+  force_most = risen_slowly(most_, force_most, dt);
+  torque_most = risen_slowly(most_turn_, torque_most, dt);
+  credit(wish, gain, force_most);
+  most_turn_ = torque_most;
+  most_ = force_most;
+  if (std::isfinite(force_most)) report_.max_force = force_most;
 
   wrench.force = can_.renders_force ? clamp_norm(gain * wrench.force, force_most) : dvec3(0);
   wrench.torque = can_.renders_torque ? clamp_norm(gain * wrench.torque, torque_most) : dvec3(0);
@@ -314,15 +344,18 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
       wrench.force = dvec3(0);
     }
   }
-  wrench.force = slewed(last_.force, wrench.force, parameters_.slew * dt);
-  wrench.torque = slewed(last_.torque, wrench.torque, kGuardLever * parameters_.slew * dt);
+  // A period that comes late is none the longer for it: what it missed would be a step.
+  const double slew = parameters_.slew * (can_.rate > 0.0 ? std::min(dt, 1.0 / can_.rate) : dt);
+  wrench.force = slewed(last_.force, wrench.force, slew);
+  wrench.torque = slewed(last_.torque, wrench.torque, kGuardLever * slew);
 
-  carried_ += wish.velocity * dt;
   const dvec3 way = heard_ ? way_ - carried_ : dvec3(0);
   if (heard_) carried_ = dvec3(0);
   const EnergyAccount before = energy_;
-  wrench.force = push_.damp(before, wrench.force, weight, way, force_most, kGuardSlowHand * dt);
-  wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kGuardSlowTurn * dt);
+  wrench.force =
+      push_.damp(before, wrench.force, weight, way, force_most, kGuardSlowHand * dt, wish.stiffness, kGuardSpring);
+  wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kGuardSlowTurn * dt,
+                              wish.turning_stiffness, kGuardTurnSpring);
   if (can_.resists_only && speed > 0.0) {
     const dvec3 along = (velocity_ - wish.velocity) / speed;
     wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;

@@ -23,10 +23,12 @@ namespace pliant {
 inline constexpr double kSampleHolds = 0.010;    // [s] a pose older than this is none; of slow devices 2.5 periods
 inline constexpr double kModelHolds = 0.010;     // [s] the same of a model
 inline constexpr double kLatchAfter = 0.100;     // [s] of either: the device trips
+inline constexpr double kUsualForce = 3.3;       // [N] where nobody says a largest one
 inline constexpr double kGateForce = 0.2;        // [N] the gate opens below this
 inline constexpr double kGateTorque = 0.01;      // [N m] and this
 inline constexpr double kSettleTime = 0.05;      // [s] of fresh samples before a device arms itself
-inline constexpr double kFrozenAfter = 1.0;      // [s] of the very same pose under force
+inline constexpr double kFrozenAfter = 0.3;      // [s] of the very same pose under force, then it fades
+inline constexpr double kFrozenFade = 0.2;       // [s] within which it is gone
 inline constexpr double kFarOut = 2.0;           // [1] times the workspace's half diagonal: not a pose of this device
 inline constexpr double kFastestSample = 20.0;   // [m/s] what is faster is a jump
 inline constexpr double kRunawayGain = 0.05;     // [m/s] of speed against the force, gathered in about kRunawayTime
@@ -51,11 +53,12 @@ struct GuardOrders {
 
 // What the touch tick wants, as the newest model has it at the device's pose now.
 struct GuardWish {
-  bool known = false;   // there is a model
-  double age = 0.0;     // [s] of it
-  DeviceWrench wrench;  // not limited
-  dvec3 weight{0};      // [N] DeviceModel::weight
-  dvec3 velocity{0};    // [m/s] DeviceModel::carried
+  bool known = false;                               // there is a model
+  double age = 0.0;                                 // [s] of it
+  DeviceWrench wrench;                              // not limited
+  dvec3 weight{0};                                  // [N] DeviceModel::weight
+  dvec3 velocity{0};                                // [m/s] DeviceModel::carried
+  double stiffness = 0.0, turning_stiffness = 0.0;  // [N/m], [N m/rad] of it, along it; 0: not known
   double max_force = 0.0, max_torque = 0.0;
 };
 
@@ -96,6 +99,8 @@ class Guard {
   void follow_orders(const GuardOrders& orders, double now);
   void decide(const GuardWish& wish, const GuardOrders& orders, double now);
   bool runs_away(const GuardWish& wish, double dt);
+  double risen_slowly(double before, double most, double dt) const;
+  void credit(const GuardWish& wish, double share, double most);
   double force_limit(const GuardWish& wish) const;
   double torque_limit(const GuardWish& wish) const;
   DeviceWrench limited(const GuardWish& wish, double dt);
@@ -123,11 +128,14 @@ class Guard {
   double missing_since_ = 0.0;   // [s] the sample or model that is missing was there
   bool missing_ = false;
   double ramp_ = 0.0, fade_ = 1.0, heat_ = 0.0;  // [1]; heat: mean square of force over the continuous one's
+  double share_ = 0.0;                           // [1] ramp and fade of the last period
+  double most_ = 0.0, most_turn_ = 0.0;          // [N], [N m] that might leave in the last period; 0: nothing might
   double slow_speed_ = 0.0;                      // [m/s] of runs_away: the speed a moment ago
   std::array<double, kMostLosses> losses_{};     // [s] the last times
   std::size_t loss_ = 0;
   EnergyAccount energy_;
   PassivityDamper push_, twist_;
+  StoredInWish pushed_, twisted_;
   DeviceWrench last_;
   bool disarmed_ = false;  // by a person: it does not arm itself
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/guard/guard.h"
 #include "devices/guard/turn_between.h"
 
 namespace pliant {
@@ -16,6 +17,27 @@ dvec3 not_against(dvec3 v, dvec3 direction) {
 
 double norm(const dmat3& m) {
   return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]));
+}
+
+constexpr double kSinglePrecision = 1.0 - 1e-5;  // [1] of a limit: what is sent is rounded
+
+// [N/m] The largest that a force by position changes along any way: of a symmetric matrix its largest eigenvalue, to
+// rounding and from above.
+double steepest(const dmat3& m) {
+  const double whole = norm(m);
+  if (!(whole > 0.0)) return 0.0;
+  dmat3 power = m / whole;
+  double size = whole;
+  // norm(m^n)^(1/n): to a thousandth with n = 1024.
+  double root = 1.0;
+  for (int i = 0; i < 10; ++i) {
+    power = power * power;
+    const double n = norm(power);
+    root *= 0.5;
+    size *= std::pow(n, root);
+    power /= n;
+  }
+  return std::min(whole, size);
 }
 
 }  // namespace
@@ -51,6 +73,47 @@ DeviceModel softened(const DeviceModel& model, double most) {
   }
   DeviceModel out = model;
   if (largest > most) out.force_by_position *= most / largest;
+  return out;
+}
+
+double stiffness_along(const dmat3& by_position, dvec3 wanted) {
+  const double square = dot(wanted, wanted);
+  return square > 0.0 ? std::max(0.0, -dot(wanted, by_position * wanted) / square) : 0.0;
+}
+
+double model_radius(const DeviceModel& model, double most) {
+  const double slope = steepest(model.force_by_position), size = length(model.wrench.force);
+  const double room = std::max(0.0, (most > 0.0 ? most : std::max(kUsualForce, size)) - size);
+  if (!(slope > 0.0)) return kFarthestModel;
+  return std::min(kFarthestModel, room / slope);
+}
+
+DeviceModel told_elsewhere(const DeviceModel& model, const DeviceWrench& sent, double share, double most) {
+  DeviceModel out;
+  out.position = model.position;
+  out.rotation = model.rotation;
+  out.wrench = sent;
+  out.time = model.time;
+  const double size = length(sent.force);
+  const bool moves = dot(model.velocity, model.velocity) > 0.0 || norm(model.torque_by_turn) > 0.0;
+  out.max_force = kSinglePrecision * (most > 0.0 ? most : std::max(kUsualForce, size));
+  out.max_torque = model.max_torque;
+  if (size > out.max_force) out.wrench.force *= out.max_force / size;
+  if (moves || !(size > 0.0)) return out;
+  // About half of what may leave, so that it may both rise to that and fall to nothing, and does not turn round: from
+  // where the device is, as far along the force as the slope makes it.
+  const dvec3 along = sent.force / size;
+  const dmat3 slope = share * model.force_by_position;
+  const double steep = -dot(along, slope * along);
+  if (!(steep > 0.0)) return out;
+  const double off = (size - 0.5 * out.max_force) / steep;
+  for (const dmat3& by_position : {slope, -steep * glm::outerProduct(along, along)}) {
+    out.force_by_position = by_position;
+    out.position = model.position + off * along;
+    out.wrench.force = sent.force + off * (by_position * along);
+    const bool halfway = length(out.wrench.force) > 0.499 * out.max_force;
+    if (halfway && std::abs(off) <= model_radius(out, out.max_force)) break;
+  }
   return out;
 }
 

@@ -190,6 +190,8 @@ GuardWish Servo::wish(double now) {
                             guard_.velocity(), guard_.spin(), wish.age);
   wish.weight = model.weight;
   wish.velocity = model.carried;
+  wish.stiffness = stiffness_along(model.force_by_position, wish.wrench.force);
+  wish.turning_stiffness = stiffness_along(model.torque_by_turn, wish.wrench.torque);
   wish.max_force = model.max_force;
   wish.max_torque = model.max_torque;
   figures_.oldest_model = std::max(figures_.oldest_model, 1e6 * wish.age);
@@ -197,16 +199,19 @@ GuardWish Servo::wish(double now) {
   return wish;
 }
 
-// After exit() or a crash nothing is written: the device has been made safe.
-void Servo::put(const DeviceWrench& wrench, bool make_safe) {
+// After exit() or a crash nothing is written: the device has been made safe. A device that renders the model itself is
+// told one that keeps to what the guard lets leave now, however long it hears nothing more.
+void Servo::put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe) {
   if (all_made_safe()) return;
   try {
     DeviceModel model;
     if (guard_.state() == DeviceState::kActive) {
       model = softened(models_.read().model, can_.max_stiffness);
-      model.wrench = wrench;  // where the device is now
       model.position = guard_.position();
       model.rotation = guard_.rotation();
+      const double square = dot(wish.wrench.force, wish.wrench.force);
+      const double share = square > 0.0 ? std::clamp(dot(wrench.force, wish.wrench.force) / square, 0.0, 1.0) : 0.0;
+      model = told_elsewhere(model, wrench, share, guard_.report().max_force);
     }
     if (!inner_->write_model(model, wrench)) inner_->write(wrench);
     failed_ = false;
@@ -230,8 +235,9 @@ void Servo::period(double now) {
   failed_ = failed_ || threw;
   const GuardOrders orders = take_orders(now);
   guard_.sense(sampled ? &sample : nullptr, now, orders);
-  const DeviceWrench wrench = guard_.release(wish(now), now, orders);
-  put(wrench, guard_.take_make_safe());
+  const GuardWish wanted = wish(now);
+  const DeviceWrench wrench = guard_.release(wanted, now, orders);
+  put(wanted, wrench, guard_.take_make_safe());
   failed_ = failed_ || threw;
   state_ = guard_.state();
   if (sampled) {
@@ -343,7 +349,7 @@ Status Servo::start() {
 void Servo::end_thread() {
   guard_.close(seconds(CLOCK_MONOTONIC));
   state_ = guard_.state();
-  put({}, true);
+  put({}, {}, true);
   tell();
 }
 

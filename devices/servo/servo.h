@@ -75,7 +75,7 @@ class Servo final : public Driver {
   double clock() const;
   GuardOrders take_orders(double now);
   GuardWish wish(double now);
-  void put(const DeviceWrench& wrench, bool make_safe);
+  void put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe);
   void renew_line(double now);
   void measure(double now, bool sampled);
   void tell();

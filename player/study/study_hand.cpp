@@ -7,6 +7,7 @@
 
 #include "content/level_file.h"
 #include "devices/guard/guard.h"
+#include "devices/wrappers/wrapper.h"
 #include "engine/driver_link.h"
 #include "engine/simulated_hands.h"
 #include "player/print.h"
@@ -30,15 +31,44 @@ constexpr const char* kPlotted = "inverse3,hand=finger";  // little friction in 
 constexpr double kLast = 0.5;                             // [s]
 constexpr double kGrows = 2.0;                            // [1] of the buzz at the end over that of all: it is growing
 
+// Every force that is written, also between two ticks of the touch clock. It outlives its driver.
+struct Flicker {
+  dvec3 before{0}, last{0};
+  double squares = 0.0;
+  std::uint64_t writes = 0;
+
+  void add(dvec3 force) {
+    if (dot(last, last) > 0.0 || (dot(before, before) > 0.0 && dot(force, force) > 0.0)) {
+      const dvec3 off = last - 0.5 * (before + force);
+      squares += dot(off, off);
+      ++writes;
+    }
+    before = last, last = force;
+  }
+  double rms() const { return writes > 0 ? std::sqrt(squares / static_cast<double>(writes)) : 0.0; }
+};
+class Watched final : public Wrapper {
+ public:
+  Watched(std::unique_ptr<Driver> inner, Flicker& flicker) : Wrapper(std::move(inner)), flicker_(flicker) {}
+  void write(const DeviceWrench& wrench) override {
+    flicker_.add(wrench.force);
+    Wrapper::write(wrench);
+  }
+
+ private:
+  Flicker& flicker_;
+};
+
 // A probe, the device in its hand, and what both did.
 struct Held {
   Entity probe, device;
   SimulatedDevice* simulated = nullptr;
-  dvec3 middle{0};                 // [m] world: of its workspace
-  DriverLink link;                 // guarded: as in a run
-  std::unique_ptr<Driver> driver;  // else
-  std::vector<dvec3> way;          // [m] true
-  std::vector<bool> touches;       // in contact
+  dvec3 middle{0};                   // [m] world: of its workspace
+  std::unique_ptr<Flicker> flicker;  // of what is written
+  DriverLink link;                   // guarded: as in a run
+  std::unique_ptr<Driver> driver;    // else
+  std::vector<dvec3> way;            // [m] true
+  std::vector<bool> touches;         // in contact
   dvec3 last_motor{0}, last_at{0};
 };
 
@@ -80,7 +110,7 @@ ParetoRow row_of(const HandRun& run, const std::string& group, const std::string
           run.buzz,
           group,
           {run.level, run.profile, run.delay, run.guarded, run.stable(), run.late, run.force, run.work, run.stiffest,
-           run.limit}};
+           run.limit, run.flicker}};
 }
 
 // `plotted`: pairs without and with the guard. Of the levels the plot shows what shakes most.
@@ -94,8 +124,8 @@ ParetoTable table_of(const std::vector<HandRun>& plotted, const std::vector<Hand
   table.cost_axis = "cost [1]: how many times softer than the surface the hand feels it";
   table.error_name = "buzz_m";
   table.error_axis = "fast motion of the effector in contact, RMS [m]; stable: below 5\u00b710\u207b\u2075";
-  table.more = {"level",         "profile",         "delay_s", "guarded",      "stable",
-                "buzz_at_end_m", "largest_force_N", "work_J",  "stiffest_N_m", "limit_N_m"};
+  table.more = {"level",           "profile", "delay_s",      "guarded",   "stable",   "buzz_at_end_m",
+                "largest_force_N", "work_J",  "stiffest_N_m", "limit_N_m", "flicker_N"};
   table.front_by_group = true;
   for (const HandRun& run : plotted) {
     table.drawn.push_back(table.rows.size());
@@ -143,7 +173,7 @@ std::vector<std::string> sentences_of(const std::vector<HandRun>& plotted, const
 }  // namespace
 
 bool HandRun::stable() const {
-  return buzz < kQuietBuzz && late < std::max(kQuietBuzz, kGrows * buzz);
+  return flicker < kQuietForce && buzz < kQuietBuzz && late < std::max(kQuietBuzz, kGrows * buzz);
 }
 
 double HandRun::softened() const {
@@ -169,11 +199,13 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
   if (hands.empty()) return Error{level, "has no probe on a script; choose a level with PLIANT_probe"};
   std::vector<Held> held;
   for (SimulatedHands::Held& one : hands.held()) {
-    Held h{one.hand, device_of(*world, one.hand), one.device, one.middle, {}, nullptr, {}, {}};
+    Held h{one.hand, device_of(*world, one.hand), one.device, one.middle, nullptr, {}, nullptr, {}, {}};
     HapticDevice& device = world->registry.get<HapticDevice>(h.device);
     one.device->use_clock(DeviceClock::kTick);
     const DeviceCapabilities can = one.driver->capabilities();
     run.limit = stable_stiffness(can, can.rate);
+    h.flicker = std::make_unique<Flicker>();
+    one.driver = std::make_unique<Watched>(std::move(one.driver), *h.flicker);
     if (guarded) {
       if (const Status s = h.link.connect(std::move(one.driver), "", level); !s) return s.error();
       h.link.begin(device, device.rotation, h.middle);
@@ -218,6 +250,7 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
   }
   for (const Held& h : held) {
     run.buzz = std::max(run.buzz, fast_part(h, 0));
+    run.flicker = std::max(run.flicker, h.flicker->rms());
     const auto last = static_cast<std::size_t>(kLast * rate);
     const auto end =
         static_cast<std::size_t>(std::find(h.touches.rbegin(), h.touches.rend(), true).base() - h.touches.begin());

@@ -23,7 +23,8 @@ struct HandRun {
   double force = 0.0;               // [N] the largest
   double buzz = 0.0;  // [m] RMS of what is faster than about 20 Hz in the effector's motion in contact, the worst probe
   double late = 0.0;  // [m] the same of the last half second in contact: what grows is more there than before
-  double work = 0.0;  // [J] of the motors on the hands, all probes
+  double flicker = 0.0;  // [N] RMS of how much a write differs from the mean of those before and after it: switching
+  double work = 0.0;     // [J] of the motors on the hands, all probes
   double stiffest = 0.0, limit = 0.0;  // [N/m] of the level, and what the device renders stably
   bool stable() const;
   double softened() const;  // [1] how many times softer than the surface is what the hand feels
@@ -31,6 +32,10 @@ struct HandRun {
 
 // At most this much of the effector's fast motion is friction's and the encoder's; a limit cycle is more.
 inline constexpr double kQuietBuzz = 50e-6;  // [m]
+
+// A force that is written by turns is felt as half of it, and moves the effector by micrometres only. More than counts
+// of the encoder make.
+inline constexpr double kQuietForce = 0.05;  // [N]
 
 // `profile`: with keys after it, as in "omni,hand=finger". `stiffness` [N/m]: of every surface in the place of the
 // level's; 0: as it is.

@@ -79,6 +79,25 @@ void book(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx) {
   state.stored = std::max(state.stored, -state.work);
 }
 
+// [s] Of ticks before this one that could not begin.
+double missed_before(SafetyState& state, double now, double dt) {
+  const double missed = state.ticked ? now - state.ticked_at - dt : 0.0;
+  state.ticked = true;
+  state.ticked_at = now;
+  return missed > 0.5 * dt ? missed : 0.0;
+}
+
+// After `missed` [s]: `force` has risen meanwhile, and comes in from what the device still has. The way that the hand
+// has gone is counted as if the force had been there, so that it owes nothing for the rise.
+void ease_in(SafetyState& state, const HapticDevice& device, dvec3 force, dvec3 weight, dvec3 dx, double missed) {
+  const bool let_go = missed >= kUnknownWay || (missed >= kForceLasts && device.driver == DriverKind::kExternal);
+  const double size = length(force), has = let_go ? 0.0 : length(state.force);
+  if (!let_go && !(size > has)) return;
+  state.eased = size > has ? has / size : 0.0;
+  state.easing = (1.0 - state.eased) / std::clamp(missed, kLeastEase, kMostEase);
+  state.work += std::min(0.0, 0.5 * (1.0 - state.eased) * dot(force - weight, dx));
+}
+
 // Counts a difference of `missing` [N] from what was wanted, `size` [N].
 void count(SafetyTally& tally, SafetyLimit limit, double missing, double size) {
   if (missing > kCountedForce && missing > kCountedShare * size) tally.add(limit, std::min(1.0, missing / size));
@@ -138,6 +157,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
                        dvec3 position, double now, double dt) {
   SafetyResult result;
   state.tally.now = 0;
+  const double missed = missed_before(state, now, dt);
   const dvec3 at = position / limits.scale;
   if (!finite(wanted) || !finite(limits.weight) || !finite(limits.carried) || !plausible_position(position) ||
       !plausible_position(at)) {
@@ -164,6 +184,13 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
         state.tally.add(SafetyLimit::kClipped, 1.0 - limits.force / length(felt));
     } else {
       count(state.tally, SafetyLimit::kGated, length(felt), length(felt));
+    }
+    if (missed > 0.0) ease_in(state, device, force, weight, dx, missed);
+    if (state.eased < 1.0) {
+      count(state.tally, SafetyLimit::kSlewed, (1.0 - state.eased) * length(force), length(force));
+      force *= state.eased;
+      weight *= state.eased;
+      state.eased = std::min(1.0, state.eased + state.easing * dt);
     }
     const dvec3 passive = damp_excess(state, limits, force, weight, dx, dt);
     state.wanted = force - weight;
@@ -194,6 +221,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
   // Unknown: nothing leaves, at once, and the gate must be passed again. Work stays counted.
   state.engaged = false;
   state.placed = false;
+  state.eased = 1.0;
   state.force = state.weight = state.wanted = dvec3(0);
   return result;
 }

@@ -14,14 +14,16 @@ namespace {
 
 // Device pose and, from two of them, velocity: over the time between them, which is longer than a tick where the clock
 // had to skip some. Over one tick alone, the coupling's damper would answer a late tick with a blow. False: nothing is
-// known, and nothing may be felt.
-bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick) {
+// known, and nothing may be felt. `missed` [s]: of ticks between the two poses.
+bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick, double& missed) {
+  missed = 0.0;
   if (device.status != DeviceStatus::kReady || !plausible_position(device.position) ||
       !plausible_rotation(device.rotation))
     return tool.sensing = false;
   const RigidMotion before = tool.sensed;
   const double since = tick.time - tool.sensed_at;
   const double dt = since > 1.5 * tick.dt ? since : tick.dt;  // without rounding where no tick was skipped
+  if (tool.sensing) missed = dt - tick.dt;
   tool.sensed_at = tick.time;
   tool.sensed.pose = {device.position, glm::normalize(device.rotation)};
   tool.sensed.velocity.setZero();
@@ -31,6 +33,8 @@ bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick) {
     // What jumps has no velocity that could damp anything.
     if (length(went) < kFastestHand * device.workspace * dt && length(turn) < kFastestTurn * dt)
       tool.sensed.velocity = join(went / dt, turn / dt);
+    else
+      missed = 0.0;
     tool.turned += turn;
   }
   return tool.sensing = true;
@@ -204,14 +208,57 @@ void tell_soft_clock(ToolTouchState& tool, Tick tick) {
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
 
+// The device between two poses `elapsed` [s] apart, `since` [s] after the first: evenly accelerated, which a hand is
+// over a short while; over a longer one, at its mean velocity.
+RigidMotion on_the_way(const RigidMotion& before, const RigidMotion& now, double elapsed, double since) {
+  const Vector6 mean = now.velocity;
+  const Vector6 gains = elapsed < kEvenWay ? Vector6(2.0 / elapsed * (mean - before.velocity)) : Vector6::Zero();
+  const Vector6 begin = mean - 0.5 * elapsed * gains;
+  const Vector6 way = since * begin + 0.5 * since * since * gains;
+  RigidMotion out;
+  out.pose.position = before.pose.position + linear(way);
+  out.pose.rotation = glm::normalize(rotation_of(angular(way)) * before.pose.rotation);
+  out.velocity = begin + since * gains;
+  return out;
+}
+
+// The handle goes through the time of ticks that could not begin, with the device on its way. A handle that went for
+// one tick only would be left behind, and its coupling would pull at the hand in free air. A few ticks are made up as
+// they would have been, many in a few long steps, for which the contacts' matrices have not been made: by the linear
+// model.
+void catch_up(ToolTouchState& tool, const HandleModel& model, const Handle6& settings, const RigidMotion& before,
+              double missed, Tick tick) {
+  const auto ticks = static_cast<int>(std::lround(missed / tick.dt));
+  const int steps = ticks <= kMostCaughtUp ? ticks : std::min(ticks, kLongCatchUps);
+  if (steps <= 0) return;
+  const RigidMotion now = tool.sensed;
+  const double elapsed = missed + tick.dt;
+  int done = 0;
+  for (int i = 0; i < steps; ++i) {
+    const int count = (ticks - done) / (steps - i);
+    const double since = tick.dt * (1 + done);
+    const Tick part{tick.index, count * tick.dt, tick.time - elapsed + since};
+    tool.sensed = on_the_way(before, now, elapsed, since);
+    if (count > 1 && tool.used == ToolForce::kContacts) use(tool, ToolForce::kLinear);
+    step(tool, model, settings, part);
+    done += count;
+    for (int k = 0; k < count; ++k) tool.path.push({part.time + (k + 1) * tick.dt, tool.handle.velocity});
+  }
+  tool.sensed = on_the_way(before, now, elapsed, elapsed);
+  tool.sensed.pose = now.pose;
+}
+
 void feel(World& world, ToolTouchState& tool, Tick tick) {
   const Handle6& settings = settings_of(world, tool);
   tool.device_wrench.setZero();
-  const bool sensing = sense(tool, world.registry.get<HapticDevice>(tool.device), tick);
+  const RigidMotion before = tool.sensed;
+  double missed = 0.0;
+  const bool sensing = sense(tool, world.registry.get<HapticDevice>(tool.device), tick, missed);
   if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
   if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // its shell comes to its device
   if (tool.placed && sensing) {
+    catch_up(tool, model, settings, before, missed, tick);
     pull_device(tool, model, settings);
     step(tool, model, settings, tick);
     if (!motion_is_finite(tool.handle)) {

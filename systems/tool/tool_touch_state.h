@@ -28,6 +28,9 @@ inline constexpr double kMostStretch = 2.0;       // [m] a handle farther from i
 inline constexpr double kRunaway = 50.0;          // [m/s] and so has one that is faster,
 inline constexpr double kRunawayTurn = 1000.0;    // [rad/s] or turns faster
 inline constexpr std::size_t kMostFollowed = 32;  // of them, joined, that a model is brought up to date by
+inline constexpr int kMostCaughtUp = 8;   // ticks that could not begin are made up for one by one; more cost too long,
+inline constexpr int kLongCatchUps = 16;  // and are made up for in so many steps
+inline constexpr double kEvenWay = 0.05;  // [s] in which a hand is taken to gather speed evenly
 inline constexpr std::size_t kPathLength = 4096;  // ticks of the handle's path that may wait for the soft clock
 
 // Somewhere only the contacts know what the handle pushes against (stiff_contacts.h).
