@@ -7,6 +7,7 @@
 #include "systems/safety/safety.h"
 #include "systems/soft/body/coupling.h"
 #include "systems/soft/body/rotation_vector.h"
+#include "systems/tool/pull.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
@@ -189,7 +190,29 @@ void forget(ToolTouchState& tool) {
   tool.device_wrench.setZero();
 }
 
-void tell_soft_clock(ToolTouchState& tool, Tick tick) {
+// A probe that hovers or pulls meets no body: it is where its device is, and comes in anew when it has done with that.
+bool stands_aside(const World& world, ToolTouchState& tool) {
+  if (!tool.is_probe) return false;
+  const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
+  if (!hold.hovers && hold.body == kNoEntity) return false;
+  ++tool.set_backs;
+  forget(tool);
+  tool.away = true;
+  return true;
+}
+
+// The spring of a pull (pull.h), on the device: what is held goes on as the soft step left it.
+void feel_pull(const World& world, ToolTouchState& tool, const HandleModel& model, const Handle6& settings, Tick tick) {
+  const PullModel& pull = model.pull;
+  const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
+  if (hold.body == kNoEntity || pull.number != hold.number) return;
+  const double since = std::clamp(tick.time - pull.time, 0.0, kStaleSteps * model.soft_step);
+  const dvec3 stretch = pull.point + since * pull.velocity - tool.sensed.pose.position;
+  const double most = world.registry.get<HapticDevice>(tool.device).max_force;
+  tool.device_wrench = join(pull_force(stretch, pull.share * settings.translation[0], most), dvec3(0));
+}
+
+void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
   ToolInput& input = tool.input.write();
   input.status = tool.sensing ? DeviceStatus::kReady : DeviceStatus::kLost;
   input.time = tool.placed ? tick.time + tick.dt : tick.time;
@@ -200,6 +223,10 @@ void tell_soft_clock(ToolTouchState& tool, Tick tick) {
   input.impulse = tool.impulse;
   input.set_backs = tool.set_backs;
   input.seen = tool.models_set_back;
+  if (tool.is_probe) {
+    input.hold = world.registry.get<Probe>(tool.entity).hold;
+    input.max_force = world.registry.get<HapticDevice>(tool.device).max_force;
+  }
   tool.input.publish();
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
@@ -211,7 +238,9 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
   if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // its shell comes to its device
-  if (tool.placed && sensing) {
+  if (stands_aside(world, tool)) {
+    if (sensing) feel_pull(world, tool, model, settings, tick);
+  } else if (tool.placed && sensing) {
     pull_device(tool, model, settings);
     step(tool, model, settings, tick);
     if (!motion_is_finite(tool.handle)) {
@@ -228,7 +257,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
     tool.gained.setZero();
     tool.sensed.velocity.setZero();
   }
-  tell_soft_clock(tool, tick);
+  tell_soft_clock(world, tool, tick);
 }
 
 }  // namespace

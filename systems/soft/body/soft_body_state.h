@@ -37,7 +37,12 @@ class SoftBodyState final : public ToolBody {
   Vector starting_velocity() const override;
   void halt() override;
   void show(SoftObjectSnapshot& out) const override;
+  std::size_t part_count() const { return tets_.parts.size(); }
+  void show_part(std::size_t part, SoftObjectSnapshot& out) const;
+  // Of each of TetMesh::parts, in their order; they outlive it.
+  void set_part_meshes(std::vector<const std::vector<uvec3>*> triangles) { part_triangles_ = std::move(triangles); }
 
+  const TetMesh& tets() const { return tets_; }
   const Tissue& tissue() const { return tissue_; }
   void set_tie_stiffness(double ratio) { tie_->stiffness = ratio; }  // [1] handle_tie.h; with spring attachment
   bool solvable() const override {
@@ -69,6 +74,8 @@ class SoftBodyState final : public ToolBody {
   std::optional<HandleTie> tie_;
   CoupledSolver solver_;
   mutable BlockColumns pushed_;  // respond()'s
+  dquat placed_{1, 0, 0, 0};     // object frame to world at the start
+  std::vector<const std::vector<uvec3>*> part_triangles_;
   bool solvable_ = true;
 };
 
