@@ -10,6 +10,7 @@
 #include "player/verbs/content_folder.h"
 #include "player/verbs/verbs.h"
 #include "systems/soft/prepare_soft.h"
+#include "systems/soft/under_gravity.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/touch/prepare.h"
 
@@ -36,6 +37,7 @@ int validate(const std::string& argument) {
   const Findings findings = validate_level(*file, [](World& world) -> Status {
     for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
       if (const Status status = prepare_system(world); !status) return status;
+    find_sag(world);
     return Done{};
   });
   int errors = 0, warnings = 0;
