@@ -105,7 +105,8 @@ struct HandleModel {
   Vector6 force = Vector6::Zero();  // [N], [N m] that tissue and contacts put on the handle, as the soft step saw it
   LinearModel linear;
   CondensedContacts contacts;
-  PullModel pull;  // of a probe
+  PullModel pull;      // of a probe
+  bool aside = false;  // of a probe: it met no body in that step (ProbeHold)
 };
 
 // Touch clock -> soft clock, per tool.

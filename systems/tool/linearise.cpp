@@ -168,7 +168,8 @@ void take_inputs(World& world, double T) {
     before.rotation = glm::normalize(rotation_of(-left * angular(input.device.velocity)) * before.rotation);
     body->set_device(before, input.device.velocity);
     tool->pending.time = input.time;
-    if (tool->is_probe && (input.hold.hovers || !(input.hold.body == kNoEntity))) {
+    tool->pending.aside = tool->is_probe && (input.hold.hovers || !(input.hold.body == kNoEntity));
+    if (tool->pending.aside) {
       body->halt();
       if (soft.part == 0) set_back(soft, *tool, input, *body);
       body->absent = true;

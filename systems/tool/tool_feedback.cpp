@@ -57,11 +57,14 @@ int settle_ticks(const HandleModel& model) {
 }
 
 void adopt(ToolTouchState& tool, const HandleModel& model) {
+  if (model.aside) return;
   if (model.set_backs != tool.models_set_back) tool.placed = tool.away = false;  // the soft clock has moved the tool
   tool.models_set_back = model.set_backs;
   if (tool.away) return;
   if (!tool.placed) {
     tool.handle = model.handle;
+    if (tool.returns && tool.sensing) tool.handle = tool.sensed.at(model.centre);  // no spring is stretched meanwhile
+    tool.returns = false;
     tool.wrench = model.force;
     tool.placed = true;
   }
@@ -190,15 +193,18 @@ void forget(ToolTouchState& tool) {
   tool.device_wrench.setZero();
 }
 
-// A probe that hovers or pulls meets no body: it is where its device is, and comes in anew when it has done with that.
+// A probe that hovers or pulls meets no body: it is where its device is. When it has done with that, it is set back
+// there once more, and waits for the first model in which it meets bodies again.
 bool stands_aside(const World& world, ToolTouchState& tool) {
   if (!tool.is_probe) return false;
   const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
-  if (!hold.hovers && hold.body == kNoEntity) return false;
+  const bool was = tool.aside;
+  tool.aside = hold.hovers || !(hold.body == kNoEntity);
+  if (!tool.aside && !was) return false;
   ++tool.set_backs;
   forget(tool);
-  tool.away = true;
-  return true;
+  tool.away = tool.returns = true;
+  return tool.aside;
 }
 
 // The spring of a pull (pull.h), on the device: what is held goes on as the soft step left it.

@@ -106,6 +106,8 @@ struct ToolTouchState {
   Vector6 wrench = Vector6::Zero();         // [N], [N m] tissue and contacts on the handle, over the last tick
   Vector6 impulse = Vector6::Zero();        // [N s], [N m s] its sum over time
   bool away = false;                        // it waits to be set back into the hand
+  bool aside = false;                       // a probe's: it hovers or pulls, and meets no body
+  bool returns = false;                     // it did, and comes in where its device is by then
   std::uint32_t set_backs = 0;              // how often it has asked for that
   std::uint32_t models_set_back = 0;        // and how often the model in use had been
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its own origin

@@ -83,9 +83,10 @@ double farthest_in_run(UnderGravity how) {
   stage.prepare();
   const std::vector<dvec3> began = stage.tissue(bar).tissue().position();
   const TetMesh modelled = hung_bar(true, 0.03, 10);
-  if (how == UnderGravity::kModelled)
+  if (how == UnderGravity::kModelled) {
     for (std::size_t i = 0; i < began.size(); ++i)
       EXPECT_LT(length(began[i] - dvec3(0.2, 0.5, 0.1) - modelled.nodes[i]), 1e-9) << "as modelled";
+  }
   double most = 0.0;
   for (int i = 0; i < 120; ++i) {
     stage.step();
