@@ -72,6 +72,9 @@ void Pointer::add_bodies(const World& world) {
   };
   for (auto [entity, body] : world.registry.view<SoftBody>()) add(entity, body.collision_mesh, true);
   for (auto [entity, body] : world.registry.view<RigidBody>()) add(entity, body.collision_mesh, !body.fixed);
+  // A vessel that reaches out of an organ is no surface to press, but it can be taken hold of.
+  for (auto [entity, carried] : world.registry.view<Carried>())
+    if (world.registry.has<SoftBody>(carried.by)) targets_.push_back({entity, 0.0, true, carried.by});
 }
 
 void Pointer::hold(bool held) {

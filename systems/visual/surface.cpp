@@ -156,7 +156,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   Item item;
   item.entity = entity;
   item.gives_way = touch && deformable && !soft;
-  item.encloses = touch && encloses_volume(*touch);
+  item.encloses = touch && (!carried || rides) && encloses_volume(*touch);
   std::vector<Vertex> vertices = vertices_of(draw, touch, item.gives_way || soft || carried);
   if (carried && !rides) {
     item.dented_with = carried->by;
