@@ -83,7 +83,12 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
         "the file has no probe, so one named `probe` touches it on the path `orbit`; --probe NAME=SOURCE gives others");
     sources = added = {{"probe", DriverKind::kOrbit, {}}};
   }
+  const std::size_t own = level.nodes.size();
   if (const Status status = add_probes(level, added); !status) return wrong_arguments(status.error());
+  // A recording names the probes that were added, and a replay adds points of those names: their size goes with it.
+  for (std::size_t n = own; n < level.nodes.size() && !run.replay; ++n)
+    if (const LevelNode& node = level.nodes[n]; node.probe && node.probe->radius > 0.0)
+      run.settings.push_back(fmt::format("{}.probe.radius={}", node.name, node.probe->radius));
   return {};
 }
 
