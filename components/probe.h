@@ -17,6 +17,15 @@ namespace pliant {
 
 struct Mesh;
 
+// What the mouse does with its probe besides moving it. A device does neither.
+struct ProbeHold {
+  bool hovers = false;       // clear of everything: among bodies it is put where its device is, and meets none
+  Entity body = kNoEntity;   // soft or rigid, that it pulls: a spring from `point` to where it is; kNoEntity: none
+  dvec3 point{0};            // [m] world, on the body's surface when it was taken hold of
+  std::uint32_t number = 0;  // another one with every hold that is taken
+  bool operator==(const ProbeHold&) const = default;
+};
+
 // Rate: touch. Writer: read_devices (pose, velocity), friction_feedback (force).
 struct Probe : ProbeParameters {
   Handle<Mesh> shell;         // set at spawn where there are bodies that it meets: its surface, probe frame
@@ -29,6 +38,7 @@ struct Probe : ProbeParameters {
   dquat previous_rotation{1, 0, 0, 0};
   bool placed = false;  // false until the device has given a first pose; then `previous` means something
   bool fresh = false;   // this tick's pose is the first one
+  ProbeHold hold;       // writer: read_mouse, or who sets its pose
 
   dvec3 force{0};   // [N] world, on the probe: the sum over its contacts, before the safety layer
   dvec3 torque{0};  // [N m] world, about the probe's position: what its contacts make at their lever

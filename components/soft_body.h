@@ -19,6 +19,13 @@ struct SoftBody : SoftBodyParameters {
   Handle<Mesh> collision_mesh;  // set at spawn: the embedded surface, which collides and is drawn
 };
 
+// A mesh that is only drawn and goes with what it lies in (Carries). Writer: content at spawn.
+struct Carried {
+  Entity by;                 // has a SoftBody or a Deformable
+  Handle<Mesh> mesh;         // of its vertices, in the frame of `by`
+  std::vector<float> share;  // [1] of a surface's dent, per drawn vertex; empty: it is embedded in tissue
+};
+
 struct Handle6 : HandleParameters {
   std::string device;  // node with PLIANT_haptic_device
 };

@@ -8,8 +8,12 @@
 #include <vector>
 
 #include "components/math.h"
+#include "runtime/entity.h"
+#include "runtime/store.h"
 
 namespace pliant {
+
+struct Mesh;
 
 using Tet = std::array<std::uint32_t, 4>;  // nodes; positive volume: (b-a) x (c-a) . (d-a) > 0
 
@@ -39,6 +43,14 @@ struct TetReport {
   std::vector<std::string> findings;  // what a person should know, one sentence each, without the body's name
 };
 
+// A mesh that is only drawn and goes with the tissue around it.
+struct CarriedPart {
+  Entity entity;
+  Handle<Mesh> mesh;                 // in the body's object frame
+  std::vector<Embedding> embedding;  // of each of its vertices
+  std::vector<vec3> aside;           // [m] of those outside of the tissue: from where they are embedded; else empty
+};
+
 struct TetMesh {
   std::string name;
   std::vector<dvec3> nodes;        // [m] rest. Order: free ones, then those on the handle, then the pinned
@@ -46,6 +58,9 @@ struct TetMesh {
   std::uint32_t handle_count = 0;  // nodes [free_count, free_count + handle_count) belong to the rigid handle
   std::vector<Tet> tets;
   std::vector<Embedding> embedding;  // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
+  std::vector<CarriedPart> parts;
+  // [m] Where the nodes are at the start, if that is not at rest (UnderGravity). Writer: prepare_soft.
+  std::vector<dvec3> start;
   TetQuality quality;
   TetReport report;
 

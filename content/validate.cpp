@@ -289,9 +289,10 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
     return findings;
   }
   if (stopped()) return findings;
+  Status prepared = Done{};
+  if (prepare) prepared = prepare(*world);  // may say more of tissue (TetReport::findings)
   find_in_tissue(level, *world, findings);
-  if (prepare && !stopped())
-    if (const Status status = prepare(*world); !status) findings.push_back(from_prepare(level, status.error()));
+  if (!prepared && !stopped()) findings.push_back(from_prepare(level, prepared.error()));
   return findings;
 }
 

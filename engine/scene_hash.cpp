@@ -54,7 +54,7 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
 
 // A probe that a window adds for its mouse has a colour of its own, and a replay of it has not.
 bool is_not_felt(const Extension& extension, const Key& key) {
-  return (extension.name == "probe" && key.name == "color") || key.name == "error";
+  return (extension.name == "probe" && key.name == "color") || key.name == "error" || key.name == "carries";
 }
 
 void add_keys(Hash& hash, const Extension& extension, const void* owner, const fs::path& folder) {
@@ -63,6 +63,7 @@ void add_keys(Hash& hash, const Extension& extension, const void* owner, const f
   for (const Key& key : extension.keys) {
     if (key.alias || is_not_felt(extension, key)) continue;
     const Json value = key.get(owner);
+    if (key.name == "under_gravity" && value == "falls") continue;  // scenes from before it have the hash they had
     add_text(hash, value.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device")
       add_named_file(hash, folder, value.get<std::string>());

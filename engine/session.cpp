@@ -66,7 +66,7 @@ Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
       return Error{"Session::move `" + name + "`", "it had no pose before start(); give it one first"};
     if (Status s = parts_->give(*effector, EffectorSource::kPose); !s) return s;
   }
-  effector->prescribed->write() = {position, rotation / glm::length(rotation)};
+  effector->prescribed->write() = {position, rotation / glm::length(rotation), effector->hold};
   effector->prescribed->publish();
   return Done{};
 }

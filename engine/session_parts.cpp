@@ -15,6 +15,7 @@
 #include "systems/safety/safety.h"
 #include "systems/schedule.h"
 #include "systems/soft/prepare_soft.h"
+#include "systems/soft/under_gravity.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/touch/local_model.h"
 #include "systems/touch/prepare.h"
@@ -128,8 +129,11 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     static_cast<DeviceParameters&>(world.registry.get<HapticDevice>(find_effector(name)->device)) = device;
   restore_bodies();
   begin_part(0.7, 1.0);
+  const std::vector<std::string> found = tissue_findings(world);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (Status s = prepare_system(world); !s) return s;
+  for (std::string& sentence : tissue_findings(world))
+    if (std::find(found.begin(), found.end(), sentence) == found.end()) notes.push_back(std::move(sentence));
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
 
   for (std::size_t i = 0; i < objects.size(); ++i)
@@ -304,6 +308,7 @@ void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
   const double share = std::min(1.0, (tick.time - effector.heard_at + tick.dt) / effector.lasts);
   effector.now.position = share < 1.0 ? glm::mix(effector.from.position, to.position, share) : to.position;
   effector.now.rotation = share < 1.0 ? glm::slerp(effector.from.rotation, to.rotation, share) : to.rotation;
+  if (Probe* const probe = world.registry.find<Probe>(effector.entity)) probe->hold = to.hold;
   device.position = effector.now.position;
   device.rotation = effector.now.rotation;
   device.sensed_at = tick.time;

@@ -38,6 +38,7 @@ inline constexpr double kPrescribedHolds = 0.25, kLongestWay = 0.1;
 struct PrescribedPose {
   dvec3 position{0};
   dquat rotation{1, 0, 0, 0};
+  ProbeHold hold;  // of a probe that a mouse moves
 };
 
 // One probe or tool.
@@ -50,6 +51,7 @@ struct SessionEffector {
   GuardParameters guard;                                     // its device's, when it is connected
   dvec3 placed_position{0};                                  // [m] world: where the scene put it
   dquat placed_rotation{1, 0, 0, 0};                         // where its driver senses none
+  ProbeHold hold;                                            // owner's: goes with the poses from now on
   std::unique_ptr<TripleBuffer<PrescribedPose>> prescribed;  // owner -> touch clock
   bool renewed = false;  // touch clock's: the next tick is its source's first, and has it lost
   // Touch clock's: the way to the newest pose that was set.

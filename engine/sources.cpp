@@ -4,6 +4,7 @@
 
 #include "components/soft_body.h"
 #include "content/level/script.h"
+#include "content/level/unit.h"
 #include "runtime/assert.h"
 #include "systems/device/hands.h"
 #include "systems/device/orbit.h"
@@ -11,7 +12,18 @@
 namespace pliant {
 namespace {
 
-constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);  // linear: pale, among the colours of other probes
+constexpr double kMouseTip = 5e-3, kMouseTipShare = 0.015;  // [m], [1] of the level's diagonal
+constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);            // linear: pale, among the colours of other probes
+
+// A point among surfaces; where it meets bodies, a fingertip: under a point, tissue of finite elements gives way as it
+// likes. [m]
+double mouse_probe_radius(const Level& level) {
+  const bool meets = std::any_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
+    return node.in_scene && (node.soft_body || node.rigid_body);
+  });
+  const Box box = meets ? bounds(level) : Box();
+  return box.empty() ? 0.0 : std::min(kMouseTip, kMouseTipShare * static_cast<double>(box.diagonal()));
+}
 
 // The first probe or tool of this name.
 Entity find_hand(const World& world, const std::string& name) {
@@ -99,7 +111,10 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
     LevelNode node;
     node.name = name;
     node.probe.emplace();
-    if (sources[i].driver == DriverKind::kMouse) node.probe->color = kMouseColor;
+    if (sources[i].driver == DriverKind::kMouse) {
+      node.probe->color = kMouseColor;
+      node.probe->radius = mouse_probe_radius(level);
+    }
     node.device.emplace();
     node.probe_device = name;
     level.nodes.push_back(node);

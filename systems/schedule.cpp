@@ -4,6 +4,7 @@
 #include "systems/device/devices.h"
 #include "systems/soft/publish_soft.h"
 #include "systems/soft/soft_step.h"
+#include "systems/tool/pull.h"
 #include "systems/tool/tool_feedback.h"
 #include "systems/tool/tool_step.h"
 #include "systems/touch/collision.h"
@@ -38,6 +39,7 @@ std::vector<System<World>> soft_schedule() {
       {"take_edits", take_edits},            // ParameterEdit -> bodies
       {"read_tool_input", read_tool_input},  // ToolInput -> where the device holds each handle
       {"free_motion", free_motion},          // assemble, factorise, v* of every body as if nothing touched
+      {"pull_bodies", pull_bodies},          // springs by which the mouse pulls bodies -> v* of those
       {"find_contacts", find_contacts},    // surfaces -> ContactPoint {points, normal, gap}; on P1 surfaces by P1's law
       {"solve_contacts", solve_contacts},  // Delassus operator, Signorini and Coulomb -> impulses, velocities
       {"linearise_tools", linearise_tools},  // what the step says about each handle -> HandleModel

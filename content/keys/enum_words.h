@@ -45,6 +45,28 @@ constexpr const char* word_of(Fill fill) {
   return nullptr;
 }
 
+constexpr const char* word_of(UnderGravity shape) {
+  switch (shape) {
+    case UnderGravity::kFalls:
+      return "falls";
+    case UnderGravity::kSettled:
+      return "settled";
+    case UnderGravity::kModelled:
+      return "modelled";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(Carries carries) {
+  switch (carries) {
+    case Carries::kNothing:
+      return "nothing";
+    case Carries::kInside:
+      return "inside";
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(ProbeMeets meets) {
   switch (meets) {
     case ProbeMeets::kAll:

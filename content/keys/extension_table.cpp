@@ -177,6 +177,9 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
   keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
                         "thickness of the layer, which is bonded to something rigid, with `young`; 0: deep"));
+  keys.push_back(choice("carries", d(&D::carries),
+                        "which meshes that are only drawn are dented with it: none, or those that lie inside of it or "
+                        "below its node, the less the deeper they lie"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
                         "error budget: the cheapest shape, distance, reach and contact radius whose measured error on "
                         "this surface is within it, and with `young` the cheapest force law, where no key says them; "
@@ -290,6 +293,13 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(
       number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(choice("solver", s(&S::solver), "what solves the linear systems; `auto` by size, as measured"));
+  keys.push_back(choice("under_gravity", s(&S::under_gravity),
+                        "what the mesh is, and how the body begins: `falls`, the shape without weight, from which it "
+                        "falls; `settled`, the same, and it begins where it rests on what is pinned; `modelled`, the "
+                        "shape under its weight, which it keeps until it is touched"));
+  keys.push_back(choice("carries", s(&S::carries),
+                        "which meshes that are only drawn go with its tissue: none, or those that lie inside of it or "
+                        "below its node (vessels, lumps)"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
                         "error budget: the cheapest cell, soft step and solver whose measured error on this body is "
                         "within it, and of a tool the cheapest force, where no key says them; 0: none"));

@@ -56,6 +56,8 @@ constexpr UnusedRow kRows[] = {
      "is not needed where `mesh` gives the tetrahedra; remove one of them"},
     {"soft_body", "focus", [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
      "is of a lattice, and `mesh` gives the tetrahedra; remove one of them"},
+    {"soft_body", "under_gravity", [](const LevelNode& n) { return n.handle.has_value(); },
+     "is of bodies that are pinned, and a tool always begins as it rests in the hand; remove the key"},
     {"handle", "box", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
      "has no effect on a rigid body, all of which is its handle; remove it"},
     {"handle", "attachment", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },

@@ -45,8 +45,10 @@ Result<SoftPreview> preview_soft_body(const BuiltMesh& surface, const SoftBody& 
   preview.findings = std::move(tets.report.findings);
   if (std::string doubt = locking_doubt(body, preview.tetrahedra); !doubt.empty())
     preview.findings.push_back(std::move(doubt));
+  put_in_order(tets, tissue->group);
   preview.edges = edges_of(tets.tets);
-  preview.nodes = std::move(tets.nodes);
+  preview.nodes = tets.nodes;
+  preview.body = std::move(tets);
   return preview;
 }
 

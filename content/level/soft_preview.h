@@ -21,6 +21,8 @@ struct SoftPreview {
   double step_ms = 0.0;  // [ms] of a soft step on this machine, pressed by a tool: an estimate (step_cost.h)
   std::vector<std::string> findings;  // as inspect says them, without the body's name
 
+  TetMesh body;  // without embedding, its nodes in the order free, handle, pinned
+
   // To draw, object frame.
   std::vector<dvec3> nodes;                         // [m]
   std::vector<std::array<std::uint32_t, 2>> edges;  // of tetrahedra, each once; ascending

@@ -1,4 +1,6 @@
 // Level -> World. Nodes become entities in order; meshes are built once for every way in which a node scales them.
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <map>
@@ -9,6 +11,7 @@
 #include "components/mass_properties.h"
 #include "components/soft_body.h"
 #include "content/files/file_io.h"
+#include "content/level/carried_parts.h"
 #include "content/level/device_use.h"
 #include "content/level/level.h"
 #include "content/level/level_budget.h"
@@ -23,6 +26,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kDentDepth = 1.5;   // [1] of a surface's reach: so deep its dent takes along what lies below
 constexpr double kFlatScale = 1e-9;  // [1] of the diagonal cubed: no volume
 
 dmat4 inverse(const Pose& pose) {
@@ -82,6 +86,8 @@ class Spawner {
     if (Status s = count(); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = node(n); !s) return s;
+    for (std::size_t n = 0; n < level_.nodes.size(); ++n)
+      if (Status s = carry_parts(n); !s) return s;
     say_refinement();
     say_placeholders();
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
@@ -211,6 +217,69 @@ class Spawner {
     body.tets = world_.tet_meshes.add(std::move(parts->tets));
     body.collision_mesh = world_.meshes.add(std::move(parts->surface.mesh));
     world_.registry.add<Drawable>(entities_[n], {world_.draw_meshes.add(std::move(parts->surface.draw))});
+    return Done{};
+  }
+
+  // What is only drawn and lies inside of what deforms: it goes along, or a sentence says that it stays.
+  Status carry_parts(std::size_t n) {
+    const LevelNode& node = level_.nodes[n];
+    if (!node.in_scene) return Done{};
+    const SoftBody* const soft = world_.registry.find<SoftBody>(entities_[n]);
+    const Deformable* const surface = world_.registry.find<Deformable>(entities_[n]);
+    const bool carries = soft ? soft->carries == Carries::kInside : surface && surface->carries == Carries::kInside;
+    if (!soft && !carries) return Done{};  // a dent is local: what it leaves behind is no news
+    const Mesh& mesh = world_.meshes[soft ? soft->collision_mesh : surface->mesh];
+    const dmat4 to_object = inverse(rigid_part(motions_.world[n]));
+    std::vector<std::int32_t> parts =
+        find_parts(level_, static_cast<std::int32_t>(n), mesh, to_object, soft ? soft->fill : Fill::kSolid);
+    std::erase_if(parts, [&](std::int32_t part) {
+      const auto p = static_cast<std::size_t>(part);
+      return motions_.moves[p] || !world_.registry.has<Drawable>(entities_[p]) ||
+             world_.registry.has<Carried>(entities_[p]);
+    });
+    if (parts.empty()) return Done{};
+    if (!carries) {
+      std::string finding = fmt::format(
+          "leaves behind what lies inside of it and is only drawn ({}); set `carries` to "
+          "`inside`, and it goes along",
+          names_of(level_, parts));
+      notes_.push_back("`" + node.name + "`: " + finding);
+      world_.tet_meshes[soft->tets].report.findings.push_back(std::move(finding));
+      return Done{};
+    }
+    for (const std::int32_t part : parts)
+      if (Status s = carry(n, static_cast<std::size_t>(part), to_object); !s) return s;
+    return Done{};
+  }
+
+  // Its mesh is made anew in the frame of what carries it.
+  Status carry(std::size_t by, std::size_t part, const dmat4& to_object) {
+    const LevelNode& node = level_.nodes[part];
+    const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
+    if (Status s = count_triangles(part, budget_.of(node.mesh).triangles); !s) return s;
+    Result<BuiltMesh> built =
+        build_mesh(node.name, mesh.primitives, mat4(to_object * motions_.world[part]), {0.0, {}, false});
+    if (!built) return at(part, built.error().message());
+    const Entity entity = entities_[part];
+    Carried carried{entities_[by], {}, {}};
+    if (const SoftBody* const soft = world_.registry.find<SoftBody>(entities_[by])) {
+      TetMesh& tets = world_.tet_meshes[soft->tets];
+      CarriedPart& to = tets.parts.emplace_back();
+      to.entity = entity;
+      embed_part(built->mesh, tets, to);
+      carried.mesh = to.mesh = world_.meshes.add(std::move(built->mesh));
+    } else {
+      const Deformable& surface = world_.registry.get<Deformable>(entities_[by]);
+      carried.mesh = surface.mesh;
+      carried.share = dent_shares(built->draw, world_.meshes[surface.mesh], kDentDepth * surface.reach);
+    }
+    world_.registry.add<Carried>(entity, std::move(carried));
+    world_.registry.get<Drawable>(entity).mesh = world_.draw_meshes.add(std::move(built->draw));
+    const Pose pose = rigid_part(motions_.world[by]);
+    if (Pose* const its = world_.registry.find<Pose>(entity))
+      *its = pose;
+    else
+      world_.registry.add<Pose>(entity, pose);
     return Done{};
   }
 

@@ -127,6 +127,7 @@ class App {
   enum class Hand : std::uint8_t { kNone, kAsked, kHolds, kView };
   Hand hand_ = Hand::kNone;               // what a press in a level that is played has become
   std::uint64_t hand_asked_ = 0;          // the question whose answer decides that
+  bool hand_pulls_ = false;               // it was pressed with Ctrl
   std::vector<ViewLine> lines_;           // of the picture ordered last
   std::optional<std::uint64_t> selects_;  // the question whose answer is selected
   bool select_adds_ = false;

@@ -107,14 +107,16 @@ bool App::touch(const ViewportInput& in) {
     ++question_;
     dirty_picture_ |= in.dx != 0 || in.dy != 0 || hand_ != Hand::kNone || !play_.paused();
   }
-  if (in.pressed && !in.shift && !in.control) {
+  const bool pulls = in.control && hand->over() == PlayHand::Over::kBody;  // else Ctrl drags a frame
+  if (in.pressed && !in.shift && (!in.control || pulls)) {
     hand_ = Hand::kAsked;
+    hand_pulls_ = pulls;
     hand_asked_ = question_;
     dirty_picture_ = true;
   }
   if (hand_ == Hand::kAsked && picture_.question >= hand_asked_) {
     hand_ = hand->over() == PlayHand::Over::kNothing ? Hand::kView : Hand::kHolds;
-    if (hand_ == Hand::kHolds) hand->hold(true);
+    if (hand_ == Hand::kHolds) hand->hold(true, hand_pulls_);
   }
   const int clicks = static_cast<int>(std::lround(in.over ? ImGui::GetIO().MouseWheel : 0.0f));
   const bool held = hand_ == Hand::kHolds;

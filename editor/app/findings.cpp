@@ -6,6 +6,7 @@
 #include "content/keys/extension_table.h"
 #include "content/validate.h"
 #include "systems/soft/prepare_soft.h"
+#include "systems/soft/under_gravity.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/touch/prepare.h"
 
@@ -114,6 +115,9 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
     return without("Remove the handle", id, "handle");
   if (it.handle && it.rigid_body && it.rigid_body->fixed && says("`fixed`"))
     return with("Let it move", id, "rigid_body", "fixed", false);
+  if (it.soft_body && says("`carries`")) return with("Take them along", id, "soft_body", "carries", "inside");
+  if (it.soft_body && it.soft_body->under_gravity != UnderGravity::kModelled && says("`under_gravity` `modelled`"))
+    return with("Keep its shape under gravity", id, "soft_body", "under_gravity", "modelled");
   if (it.probe && says("nothing moves it"))
     return QuickFix{"Add a device, moved by the mouse", [id](const State& s, NodeId&) { return with_device(s, id); }};
   if (finding.severity == Severity::kError && says("which is no node"))
@@ -166,6 +170,7 @@ Findings find_in_state(const State& state, const std::filesystem::path& file, co
       if (stop && *stop) break;
       if (const Status status = prepare_system(world); !status) return status;
     }
+    if (!stop || !*stop) find_sag(world);
     return Done{};
   };
   return validate_level(std::move(level), prepare, stop);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "content/author/instruments.h"
+#include "content/author/organ.h"
 #include "content/author/presets.h"
 #include "content/author/staging.h"
 #include "content/author/touchable.h"
@@ -15,11 +16,14 @@
 #include "editor/panels/panels.h"
 #include "editor/ui/widgets.h"
 #include "editor/viewport/solid_view.h"
+#include "engine/pin_advice.h"
+#include "systems/soft/body/equilibrium.h"
 
 namespace pliant {
 namespace {
 
 constexpr Side kSides[] = {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack};
+constexpr std::size_t kMostAdvice = 4;
 constexpr double kPause = 0.3;                   // [s] after the last change before a preview is begun
 constexpr std::size_t kMostEdgesShown = 60'000;  // beyond it only some of them
 
@@ -28,6 +32,7 @@ struct Asked {
   std::shared_ptr<const DocumentMesh> mesh;
   dmat4 to_world{1};
   Json soft, handle;
+  dvec3 gravity{0};
   bool operator==(const Asked&) const = default;
 };
 
@@ -45,6 +50,12 @@ class SoftPanel : public Panel {
 
   void draw(Editor& editor) override {
     const DocumentNode* const node = editor.active_node();
+    if (node && node->node.mesh < 0 && !node->node.probe && !node->node.device && !node->node.light &&
+        !node->node.camera) {
+      ui::gap();
+      ui::title(node->node.name.c_str());
+      draw_organ(editor, *node);
+    }
     if (!node || node->node.mesh < 0) {
       ui::gap();
       ui::dim("Select a mesh: an organ becomes tissue here, is pinned, and gets an instrument that touches it.");
@@ -55,6 +66,7 @@ class SoftPanel : public Panel {
     if (node->node.soft_body) {
       draw_lattice(editor, *node);
       draw_pins(editor, *node);
+      draw_gravity(editor, *node);
     }
     draw_instruments(editor, *node);
   }
@@ -87,10 +99,14 @@ class SoftPanel : public Panel {
       ImGui::SameLine(0, ui::px(2));
     };
     kind("Surface", it.deformable.has_value(), "Deforms locally, vertex by vertex, at 1 kHz (P1): skin, thick organs",
-         [](Level& level, std::int32_t at) { return make_touchable_surface(level, at); });
+         [](Level& level, std::int32_t at) {
+           DeformableParameters surface;
+           surface.carries = Carries::kInside;
+           return make_touchable_surface(level, at, surface);
+         });
     kind("Soft body", it.soft_body.has_value(),
          "Tetrahedra with inertia (P2): bends, hangs, is pushed about; an instrument presses on all of it",
-         [](Level& level, std::int32_t at) { return make_soft(level, at); });
+         [](Level& level, std::int32_t at) { return make_soft(level, at, as_modelled({})); });
     kind("Neither", !it.deformable && !it.soft_body && !it.rigid_body, "Only seen", [](Level& level, std::int32_t at) {
       LevelNode& of = level.nodes[static_cast<std::size_t>(at)];
       of.deformable.reset();
@@ -100,6 +116,29 @@ class SoftPanel : public Panel {
       return Status(Done{});
     });
     ImGui::NewLine();
+    draw_organ(editor, node);
+  }
+
+  // An organ of several meshes, one in the other, in one click.
+  void draw_organ(Editor& editor, const DocumentNode& node) {
+    if (!ui::button("All parts of this organ",
+                    "The outermost of its meshes becomes tissue, and takes along those that lie inside of it: vessels, "
+                    "lumps, an inner sheet"))
+      return;
+    std::string body, parts;
+    const bool done = author(editor, "All parts of this organ", node, [&](Level& level, std::int32_t at) -> Status {
+      const Result<Organ> organ = organ_of(level, at);
+      if (!organ) return organ.error();
+      body = level.nodes[static_cast<std::size_t>(organ->body)].name;
+      const Result<std::string> made = make_soft_organ(level, at);
+      if (!made) return made.error();
+      parts = *made;
+      return Done{};
+    });
+    if (!done) return;
+    if (const DocumentNode* const made = editor.state().find(body)) editor.selected = {made->id};
+    editor.say(parts.empty() ? "`" + body + "` is tissue; nothing lies inside of it"
+                             : "`" + body + "` is tissue and takes along " + parts);
   }
 
   void draw_material(Editor& editor, const DocumentNode& node) {
@@ -198,6 +237,10 @@ class SoftPanel : public Panel {
       ui::dim(finding.c_str());
       offer(editor, node, finding);
     }
+    bool carries = body.carries == Carries::kInside;
+    if (ui::checkbox("Takes its parts along", carries, "Meshes inside of it that are only drawn go with its tissue"))
+      editor.apply("Takes its parts along",
+                   with_value(editor.state(), ids, "soft_body", "carries", carries ? "inside" : "nothing"));
     ui::checkbox("Show tetrahedra", editor.view.tetrahedra, "Their edges, in the viewport");
     if (editor.view.tetrahedra) show_edges(editor, node);
   }
@@ -234,6 +277,91 @@ class SoftPanel : public Panel {
     }
   }
 
+  // How it rests on its pins, before it is played.
+  void draw_gravity(Editor& editor, const DocumentNode& node) {
+    ui::gap(2);
+    if (!ui::section("Under gravity")) return;
+    const ui::Scope scope("Gravity");
+    const NodeId ids[] = {node.id};
+    const SoftBody& body = *node.node.soft_body;
+    const auto choice = [&](const char* label, UnderGravity value, const char* word, const char* hint) {
+      if (ui::choice_button(label, body.under_gravity == value, hint) && body.under_gravity != value)
+        editor.apply(label, with_value(editor.state(), ids, "soft_body", "under_gravity", word));
+      ImGui::SameLine(0, ui::px(2));
+    };
+    choice("As modelled", UnderGravity::kModelled, "modelled",
+           "The mesh is its shape under gravity, which it keeps until it is touched");
+    choice("Settled", UnderGravity::kSettled, "settled",
+           "The mesh is its shape without weight, and it begins where it rests on its pins");
+    choice("Falls", UnderGravity::kFalls, "falls", "The mesh is its shape without weight, from which it falls");
+    ImGui::NewLine();
+    if (!sag_ || !preview_) {
+      figure("Sag", editor.jobs.running("preview") ? "\u2026" : "\u2013");
+    } else if (!sag_->held) {
+      figure("Sag", "falls: nothing is pinned", true);
+    } else {
+      const bool kept = body.under_gravity == UnderGravity::kModelled && unloaded_ && unloaded_->found;
+      const bool much = !doubt_.empty();
+      figure("Sag",
+             kept ? fmt::format("none; {:.2g} mm without its tension", 1e3 * sag_->most)
+                  : fmt::format("{:.2g} mm, {:.1f} % of its size", 1e3 * sag_->most,
+                                100.0 * sag_->most / std::max(sag_->size, 1e-12)),
+             much);
+      if (sag_->turned > kMuchTurn)
+        figure("Turns over", fmt::format("by {:.0f}\u00b0", glm::degrees(sag_->turned)), true);
+      if (much) {
+        ImGui::TextColored(ui::palette().warning, "Warning");
+        ImGui::SameLine();
+        ui::dim(doubt_.c_str());
+      }
+    }
+    ui::checkbox("Show the sag", show_sag_, "Where it would rest on its pins without tension, in the viewport");
+    if (show_sag_) show_sag(editor, node);
+    draw_advice(editor, node);
+  }
+
+  // What sides would hold it, from the least that does.
+  void draw_advice(Editor& editor, const DocumentNode& node) {
+    if (ui::button("Suggest pins", "Looks which side, pinned, holds it: some seconds", !editor.jobs.running("pins"))) {
+      advice_.reset();
+      advice_of_ = node.id;
+      auto level = std::make_shared<Level>(level_of(editor.state()));
+      const std::int32_t at = place_in(*level, node.node.name);
+      editor.jobs.start(
+          "pins", "Looking for pins that hold " + node.node.name, [this, level, at](const Jobs::Stop& stop) {
+            auto found = std::make_shared<std::vector<PinAdvice>>(advise_pins(*level, at, stop.source.get_token()));
+            return [this, found](Editor&) { advice_ = std::move(*found); };
+          });
+    }
+    if (!advice_ || advice_of_ != node.id) return;
+    if (advice_->empty())
+      ui::dim(
+          "No side of 30 % holds it; give it a higher Young's modulus, or paint the channel `pinned` where it is "
+          "grown to something.");
+    for (std::size_t i = 0; i < advice_->size() && i < kMostAdvice; ++i) {
+      const PinAdvice& each = (*advice_)[i];
+      const std::string label = fmt::format("Pin {} {:.0f} %: sags {:.2g} mm###Pin {}", word_of(each.side),
+                                            100.0 * each.share, 1e3 * each.sag, i + 1);
+      if (ui::button(label.c_str(), "Pins this side instead of what is pinned now"))
+        author(editor, "Pin the " + std::string(word_of(each.side)), node, [each](Level& level, std::int32_t at) {
+          unpin(level, at);
+          return pin(level, at, each.side, each.share);
+        });
+    }
+  }
+
+  void show_sag(const Editor& editor, const DocumentNode& node) {
+    if (!preview_ || !shown_ || !sag_ || sag_->nodes.size() != preview_->nodes.size() || editor.playing) return;
+    const dmat4 to_world = editor.state().to_world(node.id) * glm::inverse(to_object_);
+    const std::size_t every = 1 + preview_->edges.size() / kMostEdgesShown;
+    const ImVec4& c = ui::palette().warning;
+    const auto at = [&](std::uint32_t n) { return vec3(dvec3(to_world * glm::dvec4(sag_->nodes[n], 1.0))); };
+    for (std::size_t i = 0; i < preview_->edges.size(); i += every) {
+      const auto& [a, b] = preview_->edges[i];
+      app_.extra_lines.push_back({at(a), at(b), vec4(c.x, c.y, c.z, 0.5f), true});
+    }
+  }
+
   // Begins a preview where the body is another one than the one that was previewed.
   void ask(Editor& editor, const DocumentNode& node) {
     Asked now;
@@ -242,6 +370,7 @@ class SoftPanel : public Panel {
     const Json extensions = node_extensions(node.node, Json());
     now.soft = extensions.value("PLIANT_soft_body", Json());
     now.handle = extensions.value("PLIANT_handle", Json());
+    now.gravity = editor.state().simulation.gravity;
     if (!(now == wanted_)) {
       wanted_ = now;
       wanted_at_ = editor.now;
@@ -262,9 +391,22 @@ class SoftPanel : public Panel {
       else
         preview = built.error();
       auto shared = std::make_shared<Result<SoftPreview>>(std::move(preview));
-      return [this, shared, frame](Editor&) {
+      std::optional<Equilibrium> sag;
+      std::optional<Unloaded> unloaded;
+      if (*shared && !of.handle) {
+        const std::stop_token token = stop.source.get_token();
+        const dvec3 gravity = glm::conjugate(frame.pose.rotation) * level->simulation.gravity;
+        sag = find_equilibrium((*shared)->body, *of.soft_body, gravity, nullptr, token);
+        if (of.soft_body->under_gravity == UnderGravity::kModelled && sag->held)
+          unloaded = find_unloaded((*shared)->body, *of.soft_body, gravity, token);
+      }
+      const std::string doubt = sag ? sag_doubt(*of.soft_body, *sag, unloaded ? &*unloaded : nullptr) : std::string();
+      return [this, shared, frame, sag, unloaded, doubt](Editor&) {
         trouble_.clear();
         preview_.reset();
+        sag_ = sag;
+        unloaded_ = unloaded;
+        doubt_ = doubt;
         if (*shared)
           preview_ = std::move(**shared);
         else
@@ -343,6 +485,12 @@ class SoftPanel : public Panel {
   std::optional<SoftPreview> preview_;
   dmat4 to_object_{1};
   bool shown_ = false;
+  std::optional<Equilibrium> sag_;  // of the preview
+  std::optional<Unloaded> unloaded_;
+  std::string doubt_;
+  bool show_sag_ = false;
+  std::optional<std::vector<PinAdvice>> advice_;
+  NodeId advice_of_ = kNoNode;
   std::string trouble_;
 };
 

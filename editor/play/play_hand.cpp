@@ -15,11 +15,11 @@ constexpr double kSwingArc = 0.6;      // [1] of the way that is left: so high i
 
 }  // namespace
 
-void PlayHand::take_probe(const World& world, double radius, const Viewpoint& view, std::optional<dvec3> from) {
+void PlayHand::take_probe(const World& world, const Probe& probe, const Viewpoint& view, std::optional<dvec3> from) {
   const std::lock_guard lock(mutex_);
   carrier_.reset();
   watches_ = takes_ = false;
-  pointer_.emplace(world, radius, view);
+  pointer_.emplace(world, probe.radius, view, probe.meets);
   at_ = from.value_or(pointer_->update(0.0));
 }
 
@@ -80,14 +80,27 @@ void PlayHand::see(const std::optional<Picked>& seen, const ViewRay& ray) {
 
 PlayHand::Over PlayHand::over() const {
   const std::lock_guard lock(mutex_);
-  if (pointer_ && pointer_->over_touchable()) return Over::kTouchable;
+  if (pointer_ && pointer_->over_touchable()) return pointer_->over_body() ? Over::kBody : Over::kTouchable;
   if (carrier_ && seen_ && seen_->object == carrier_->tool()) return Over::kTool;
   return Over::kNothing;
 }
 
-void PlayHand::hold(bool held) {
+ProbeHold PlayHand::probe_hold() const {
   const std::lock_guard lock(mutex_);
-  if (pointer_) pointer_->hold(held);
+  return pointer_ ? pointer_->probe_hold() : ProbeHold();
+}
+
+Entity PlayHand::holds() const {
+  const std::lock_guard lock(mutex_);
+  return pointer_ ? pointer_->holds() : kNoEntity;
+}
+
+void PlayHand::hold(bool held, bool pulls) {
+  const std::lock_guard lock(mutex_);
+  if (pointer_ && held && pulls)
+    pointer_->grab();
+  else if (pointer_)
+    pointer_->hold(held);
   if (!carrier_) return;
   if (watches_) {
     takes_ = held && seen_ && seen_->object == carrier_->tool();
@@ -101,12 +114,16 @@ void PlayHand::hold(bool held) {
 
 void PlayHand::follow(const ViewRay& ray, const Viewpoint& view) {
   const std::lock_guard lock(mutex_);
+  if (pointer_) pointer_->follow(ray, view);
   if (carrier_) carrier_->follow(ray, view);
 }
 
 void PlayHand::wheel(int steps, const Viewpoint& view) {
   const std::lock_guard lock(mutex_);
-  if (pointer_) pointer_->deepen(steps);
+  if (pointer_ && pointer_->pulls())
+    pointer_->push(steps, view);
+  else if (pointer_)
+    pointer_->deepen(steps);
   if (carrier_) carrier_->push(steps, view);
 }
 

@@ -14,11 +14,11 @@ namespace pliant {
 class PlayHand {
  public:
   // What is under the mouse.
-  enum class Over : std::uint8_t { kNothing, kTouchable, kTool };
+  enum class Over : std::uint8_t { kNothing, kTouchable, kBody, kTool };  // kBody: can be pressed, and pulled
 
   // --- The run's thread
   // `from` [m] world: where the probe is; nothing: where it is best out of the way.
-  void take_probe(const World& world, double radius, const Viewpoint& view, std::optional<dvec3> from = {});
+  void take_probe(const World& world, const Probe& probe, const Viewpoint& view, std::optional<dvec3> from = {});
   void take_tool(const World& world, Entity tool, dvec3 device);
   void watch_tool(const World& world, Entity tool);  // moves nothing, until it is taken hold of
   bool takes() const;                                // what it watches has been taken hold of: call take_tool()
@@ -26,14 +26,16 @@ class PlayHand {
   bool has_any() const;
   // Where the device should be, `dt` [s] after the last call; nothing: it moves nothing.
   std::optional<dvec3> update(double dt);
+  ProbeHold probe_hold() const;  // of the probe that it moves
 
   // --- The stage's: of the picture drawn last
   void see(const std::optional<Picked>& seen, const ViewRay& ray);
+  Entity holds() const;  // for PickQuestion::holds
 
   // --- The interface's
   Over over() const;
-  void hold(bool held);
-  void follow(const ViewRay& ray, const Viewpoint& view);  // of a tool that is held
+  void hold(bool held, bool pulls = false);
+  void follow(const ViewRay& ray, const Viewpoint& view);  // of a tool that is held, a body that is pulled
   void wheel(int steps, const Viewpoint& view);            // deeper, or a tool away from the eye
   void stand(int steps);                                   // deeper without holding
   bool pressing() const;

@@ -38,7 +38,7 @@ struct PlayRun::Inside {
   // Of a past that is had again.
   bool again = false;
   std::uint64_t until = 0;  // [ticks]
-  std::size_t next_edit = 0;
+  std::size_t next_edit = 0, next_hold = 0;
 
   // Sources.
   struct Level {  // as the level has it
@@ -70,6 +70,7 @@ struct PlayRun::Inside {
   void take_rows();
   void watch();
   void move_hand(double dt);
+  void hold_again();
   void flush();
   bool still() const { return !realtime && (again ? parts->ticks >= until : paused && steps == 0); }
 };

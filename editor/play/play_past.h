@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "components/probe.h"
 #include "engine/recording.h"
 
 namespace pliant {
@@ -19,12 +20,20 @@ struct PlayEdit {
   double value = 0.0;
 };
 
+// What the mouse held of a body from the tick of this number on.
+struct PlayHold {
+  std::uint64_t tick = 0;
+  std::uint32_t effector = 0;
+  ProbeHold hold;
+};
+
 // From the first tick on. The same level with the same past has the same bits.
 struct PlayPast {
   static constexpr std::size_t kMostTicks = 1'000'000;  // longer runs cannot be gone back in
   std::vector<std::uint64_t> ticks;                     // indices, ascending
   std::vector<RecordedPose> poses;                      // [tick][effector]
   std::vector<PlayEdit> edits;                          // by tick, ascending
+  std::vector<PlayHold> holds;                          // the same
 };
 
 // Where a run leaves its past when it has ended.

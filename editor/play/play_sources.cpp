@@ -52,6 +52,8 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   if (moved == name) {
     moved.clear();
     run.hand.let_go();
+    effector->hold = {};
+    if (Probe* const probe = parts->world.registry.find<Probe>(effector->entity)) probe->hold = {};
   }
   sources[index] = source;
   HapticDevice& device = parts->world.registry.get<HapticDevice>(effector->device);
@@ -107,7 +109,7 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
       }
       dvec3 at = device.position;
       if (const Probe* probe = parts->world.registry.find<Probe>(effector->entity)) {
-        run.hand.take_probe(parts->world, probe->radius, run.options_.view,
+        run.hand.take_probe(parts->world, *probe, run.options_.view,
                             parts->ticks > 0 ? std::optional(device.position) : std::nullopt);
         at = run.hand.update(0.0).value_or(at);
       } else {
@@ -194,7 +196,7 @@ void PlayRun::Inside::begin_past(const PlayPast& of, std::uint64_t to) {
   recording.ticks = of.ticks;
   recording.poses = of.poses;
   until = std::min<std::uint64_t>(to, of.ticks.size());
-  next_edit = 0;
+  next_edit = next_hold = 0;
   again = true;
   parts->begin_replay(std::move(recording));
 }

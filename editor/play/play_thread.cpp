@@ -176,6 +176,7 @@ Status PlayRun::Inside::tick() {
       static_cast<void>(session->set(edit.object, edit.key, edit.value));
       past.edits.push_back(edit);
     }
+  hold_again();
   move_hand(1.0 / parts->world.simulation.touch_rate);
   const Status done = session->step(1);
   take_rows();
@@ -188,7 +189,27 @@ void PlayRun::Inside::move_hand(double dt) {
   if (moved.empty()) return;
   const std::optional<dvec3> to = run.hand.update(dt);
   if (!to) return;
+  SessionEffector& effector = *parts->find_effector(moved);
+  const ProbeHold hold = run.hand.probe_hold();
+  if (!(hold == effector.hold) && !past_full) {
+    const std::uint64_t at = realtime && parts->clock ? parts->clock->now() + 1 : parts->ticks;
+    past.holds.push_back({at, static_cast<std::uint32_t>(&effector - parts->effectors.data()), hold});
+  }
+  effector.hold = hold;
   static_cast<void>(session->move(moved, *to, held));
+}
+
+// What the mouse held in a past that is had again.
+void PlayRun::Inside::hold_again() {
+  if (!again) return;
+  for (const auto& holds = run.options_.past->holds; next_hold < holds.size() && holds[next_hold].tick <= parts->ticks;
+       ++next_hold) {
+    const PlayHold& hold = holds[next_hold];
+    if (Probe* const probe = parts->world.registry.find<Probe>(parts->effectors[hold.effector].entity))
+      probe->hold = hold.hold;
+    parts->effectors[hold.effector].hold = hold.hold;
+    past.holds.push_back(hold);
+  }
 }
 
 void PlayRun::Inside::take_rows() {

@@ -54,7 +54,7 @@ Status SceneView::draw(const SolidOrder& order, GLuint framebuffer, int width, i
   options.forces = order.settings.forces;
   options.contacts = options.contact_frames = options.handles = order.settings.contacts;
   options.markers = run_ != nullptr;
-  if (asked_) renderer_->pick({asked_->x, asked_->y, width, height, 1});
+  if (asked_) renderer_->pick({asked_->x, asked_->y, width, height, 1, run_ ? run_->hand.holds() : kNoEntity});
   renderer_->draw(order.view, framebuffer, width, height);
   shown_ = order.state;
   view_ = order.view;

@@ -24,6 +24,12 @@ enum class Shape : std::uint8_t { kPunch, kHertz, kGaussian, kWendland, kVolume,
 enum class Response : std::uint8_t { kFollow, kLag };     // methods.md 1.8
 enum class Distance : std::uint8_t { kChord, kSurface };  // methods.md 1.3
 
+// Which of the meshes that are only drawn go with what they lie in.
+enum class Carries : std::uint8_t {
+  kNothing,
+  kInside,  // those that lie inside of it, or below its node
+};
+
 // A deformable surface: P1's local model, authored by what a person can feel. Keys of PLIANT_deformable.
 struct DeformableParameters {
   SpringLaw spring = SpringLaw::kLinear;
@@ -49,6 +55,7 @@ struct DeformableParameters {
   double poisson = 0.45;          // [1]
   double thickness = 0.0;         // [m] 0: deep
   double error = 0.0;             // [1] budget: what is not said of the model is chosen by it; 0: none
+  Carries carries = Carries::kNothing;
 };
 
 // What solves a soft body's linear systems (P2: black boxes).
@@ -67,6 +74,13 @@ enum class Fill : std::uint8_t {
   kWall,   // only the wall: as it is, or a layer of `thickness` behind the surface
 };
 
+// What a soft body's mesh is to gravity, and how it begins.
+enum class UnderGravity : std::uint8_t {
+  kFalls,     // the shape without weight, in which it begins, and from which it falls
+  kSettled,   // the same, but it begins where it rests on what is pinned
+  kModelled,  // the shape under its weight, in which it begins and stays; the shape without weight is found
+};
+
 // Tissue: co-rotational FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
 struct SoftBodyParameters {
   double young = 5e3;                    // [Pa]
@@ -83,6 +97,8 @@ struct SoftBodyParameters {
   double friction_sliding = 0.3;         // [1]
   SolverKind solver = SolverKind::kAuto;
   double error = 0.0;  // [1] budget: what is not said of the model is chosen by it; 0: none
+  UnderGravity under_gravity = UnderGravity::kFalls;
+  Carries carries = Carries::kNothing;
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "systems/soft/soft_state.h"
+#include "systems/soft/under_gravity.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
@@ -60,6 +61,7 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "
                     "creep; make soft_step shorter, or give bodies in contact more similar masses and stiffnesses",
                     tally.unconverged, count(figures.steps, "soft step"), tally.residual));
+  for (std::string& sentence : explain_sag(world)) sentences.push_back(std::move(sentence));
   const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] at least
   if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))
     sentences.push_back(fmt::format(

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "content/author/edit_nodes.h"
 #include "content/author/instruments.h"
+#include "content/author/organ.h"
 #include "content/author/presets.h"
 #include "content/author/save_script.h"
 #include "content/author/staging.h"
@@ -15,6 +17,7 @@
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/tets/tet_parts.h"
+#include "engine/pin_advice.h"
 #include "player/exit.h"
 #include "player/interrupt.h"
 #include "player/print.h"
@@ -118,12 +121,29 @@ struct Led {
   fs::path file;
 };
 
+// What lies inside of a surface is dented with it.
+DeformableParameters with_parts(DeformableParameters surface) {
+  surface.carries = Carries::kInside;
+  return surface;
+}
+
 Result<World> try_out(const Level& level) {
   Result<World> world = spawn(level);
   if (!world) return world;
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (const Status status = prepare_system(*world); !status) return status.error();
   return world;
+}
+
+// Where the pins hold too little, which would hold.
+void say_pins(const Level& level, std::int32_t node, const TetMesh& tets) {
+  const SoftBody& body = *level.nodes[static_cast<std::size_t>(node)].soft_body;
+  if (body.under_gravity != UnderGravity::kModelled || !tets.start.empty()) return;
+  const std::vector<PinAdvice> advice = advise_pins(level, node);
+  if (!advice.empty())
+    note(fmt::format("pinned at the {} ({:g} % of its extent) it would sag by {:.2g} mm only: --pin {}",
+                     word_of(advice.front().side), 100.0 * advice.front().share, 1e3 * advice.front().sag,
+                     word_of(advice.front().side)));
 }
 
 void say_soft(const Level& level, const World& world, const Plan& plan) {
@@ -141,6 +161,16 @@ void say_soft(const Level& level, const World& world, const Plan& plan) {
               tets.node_count() - tets.pinned_begin(), tets.node_count(), kShare * 100.0);
       else
         print("    not pinned: it falls until it lies on something\n");
+      if (!tets.parts.empty()) {
+        std::string names;
+        for (std::size_t i = 0; i < tets.parts.size() && i < 3; ++i)
+          if (const Name* part = world.registry.find<Name>(tets.parts[i].entity))
+            names += (i ? ", " : "") + in_quotes(part->value);
+        if (tets.parts.size() > 3) names += fmt::format(" and {} more", tets.parts.size() - 3);
+        print("    takes along what lies inside of it: {}\n", names);
+      }
+      for (const std::string& finding : tets.report.findings) note(in_quotes(name) + ": " + finding);
+      say_pins(level, number, tets);
     }
   }
 }
@@ -156,12 +186,17 @@ void say_rest(const Level& level, const Plan& plan, const std::vector<Led>& led)
 }
 
 // Names of meshes that are only drawn.
-std::string only_drawn(const Level& level, const std::vector<std::int32_t>& all) {
+std::string only_drawn(const Level& level, const std::vector<std::int32_t>& all, const World& world) {
+  std::set<std::int32_t> carried;  // entities are made of the nodes in the scene, in their order
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i)
+    if (level.nodes[i].in_scene && world.registry.has<Carried>(world.hierarchy.order()[row++].entity))
+      carried.insert(static_cast<std::int32_t>(i));
   std::string list;
   std::size_t count = 0;
   for (const std::int32_t number : all) {
     const LevelNode& node = level.nodes[static_cast<std::size_t>(number)];
-    if (node.has_pliant()) continue;
+    if (node.has_pliant() || carried.count(number)) continue;
     if (count++ < 3) list += (count > 1 ? ", " : "") + in_quotes(node.name);
   }
   if (count == 0) return {};
@@ -172,12 +207,15 @@ std::string only_drawn(const Level& level, const std::vector<std::int32_t>& all)
 // Everything but files. Nodes are found again by name: each new one may move the others.
 Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, Level& level) {
   for (const std::int32_t node : plan.soft) {
-    if (const Status s = make_soft(level, node, soft_body_of(*plan.preset)); !s) return s.error();
+    SoftBodyParameters tissue = as_modelled(soft_body_of(*plan.preset));
+    if (!plan.side) tissue.under_gravity = UnderGravity::kFalls;
+    if (const Status s = make_soft(level, node, tissue); !s) return s.error();
     if (plan.side)
       if (const Status s = pin(level, node, *plan.side, kShare); !s) return s.error();
   }
   for (const std::int32_t node : plan.surface)
-    if (const Status s = make_touchable_surface(level, node, surface_of(*plan.preset)); !s) return s.error();
+    if (const Status s = make_touchable_surface(level, node, with_parts(surface_of(*plan.preset))); !s)
+      return s.error();
   // New nodes are roots behind all that are shown; those of scenes that are not come after them and are not touched.
   const std::int32_t object = plan.soft.empty() ? plan.surface.front() : plan.soft.front();
   std::vector<Led> led;
@@ -276,7 +314,7 @@ int author(const AuthorOptions& options) {
   say_soft(*level, *world, *plan);
   say_rest(*level, *plan, *led);
   print("  the modulus is from: {}\n", plan->preset->source);
-  if (const std::string drawn = only_drawn(*level, objects(*level)); !drawn.empty()) print("  {}\n", drawn);
+  if (const std::string drawn = only_drawn(*level, objects(*level), *world); !drawn.empty()) print("  {}\n", drawn);
   print("  next: pliant run {}\n", options.out);
   return kDone;
 }

@@ -13,6 +13,7 @@
 #include "content/tets/tet_quality.h"
 #include "player/exit.h"
 #include "player/print.h"
+#include "systems/soft/under_gravity.h"
 
 namespace pliant {
 namespace {
@@ -58,7 +59,10 @@ std::string cells_text(double cell, double coarsest) {
 Level tissue_of(const Level& level) {
   Level bodies = level;
   bodies.environment.reset();
-  for (LevelNode& node : bodies.nodes) {
+  std::vector<bool> only_drawn;
+  for (const LevelNode& node : level.nodes) only_drawn.push_back(!node.has_pliant());
+  for (std::size_t i = 0; i < bodies.nodes.size(); ++i) {
+    LevelNode& node = bodies.nodes[i];
     node.probe.reset();
     node.device.reset();
     node.deformable.reset();
@@ -66,7 +70,7 @@ Level tissue_of(const Level& level) {
     if (node.handle) node.handle->device.clear();
     if (node.soft_body) continue;
     node.handle.reset();
-    node.mesh = -1;
+    if (!only_drawn[i]) node.mesh = -1;  // what is only drawn may lie inside of tissue
   }
   return bodies;
 }
@@ -78,8 +82,10 @@ OrderedJson describe_tissue(const Level& level) {
   bool any = false;
   for (const LevelNode& node : level.nodes) any = any || (node.in_scene && node.soft_body);
   if (!any) return list;
-  const Result<World> world = spawn(tissue_of(level));
+  Result<World> world = spawn(tissue_of(level));
   if (!world) return OrderedJson::array({{{"problem", world.error().message()}}});
+  begin_under_gravity(*world);
+  find_sag(*world);
   for (auto [entity, body] : world->registry.view<const SoftBody>()) {
     const TetMesh& tets = world->tet_meshes[body.tets];
     OrderedJson tissue = describe(tets);

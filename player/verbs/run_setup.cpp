@@ -23,6 +23,7 @@
 #include "systems/device/hands.h"
 #include "systems/device/repeat.h"
 #include "systems/soft/prepare_soft.h"
+#include "systems/soft/under_gravity.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/touch/local_model.h"
 #include "systems/touch/prepare.h"
@@ -99,7 +100,12 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
     sources = added = {{"probe", DriverKind::kOrbit, {}}};
   }
   if (!bare && !run.replay) say_added(options, level, run);
+  const std::size_t own = level.nodes.size();
   if (const Status status = add_probes(level, added); !status) return wrong_arguments(status.error());
+  // A recording names the probes that were added, and a replay adds points of those names: their size goes with it.
+  for (std::size_t n = own; n < level.nodes.size() && !run.replay; ++n)
+    if (const LevelNode& node = level.nodes[n]; node.probe && node.probe->radius > 0.0)
+      run.settings.push_back(fmt::format("{}.probe.radius={}", node.name, node.probe->radius));
   return {};
 }
 
@@ -322,8 +328,11 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
+  const std::vector<std::string> found = tissue_findings(run.world);
   for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
     if (const Status status = prepare_system(run.world); !status) return failed(status.error());
+  for (const std::string& sentence : tissue_findings(run.world))
+    if (std::find(found.begin(), found.end(), sentence) == found.end()) say(run, sentence);
   for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);
   auto held = make_hands(run.world, sources);
   if (!held) return wrong_arguments(held.error());

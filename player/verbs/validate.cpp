@@ -10,6 +10,7 @@
 #include "player/verbs/content_folder.h"
 #include "player/verbs/prepare_world.h"
 #include "player/verbs/verbs.h"
+#include "systems/soft/under_gravity.h"
 
 namespace pliant {
 namespace {
@@ -31,7 +32,11 @@ const char* word(Severity severity) {
 int validate(const std::string& argument) {
   const auto file = find_level(argument);
   if (!file) return fail(kFailed, file.error());
-  const Findings findings = validate_level(*file, prepare_world);
+  const Findings findings = validate_level(*file, [](World& world) -> Status {
+    if (const Status status = prepare_world(world); !status) return status;
+    find_sag(world);
+    return Done{};
+  });
   int errors = 0, warnings = 0;
   for (const Finding& finding : findings) {
     errors += finding.severity == Severity::kError;

@@ -19,7 +19,8 @@ constexpr ImU32 kGridColor = IM_COL32(255, 255, 255, 22), kPlotColor = IM_COL32(
 const ImVec4 kDim(0.62f, 0.66f, 0.71f, 1.0f), kGood(0.55f, 0.86f, 0.62f, 1.0f), kBad(1.0f, 0.52f, 0.45f, 1.0f);
 
 constexpr const char* kKeys[][2] = {
-    {"Left button on a surface", "press; hold it down, drag to slide"},
+    {"Left button on a surface or body", "press; hold it down, drag to slide"},
+    {"Ctrl + left on a body", "pull it; wheel: away or near"},
     {"Wheel while pressing", "deeper or shallower"},
     {"Ctrl + wheel", "stay pressed at a depth"},
     {"Left button on a tool", "carry it; wheel: away or near"},

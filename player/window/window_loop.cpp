@@ -25,11 +25,10 @@ constexpr std::size_t kLongestTitle = 28, kLongestName = 16;  // [byte] in the p
 constexpr double kHungEnd = 10.0;                             // [s] that the end waits for a picture
 constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may never come: nobody sees what the hand does
 
-// The radius of the probe that the mouse moves, if there is one. [m]
-std::optional<double> mouse_radius(const World& world) {
+std::optional<MouseProbe> mouse_probe_of(const World& world) {
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     const HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
-    if (device && device->driver == DriverKind::kMouse) return probe.radius;
+    if (device && device->driver == DriverKind::kMouse) return MouseProbe{probe.radius, probe.meets};
   }
   return {};
 }
@@ -59,9 +58,10 @@ float tint_of(const World& world) {
 WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     : s_(session),
       camera_(default_viewpoint(session.world), drawn_box(session.world, false)),
-      radius_(mouse_radius(session.world)),
-      pointer_(session.world, radius_.value_or(0.0), camera_.viewpoint()),
-      carrier_(radius_ ? std::nullopt : Carrier::of(session.world)),
+      of_mouse_(mouse_probe_of(session.world)),
+      pointer_(session.world, of_mouse_.value_or(MouseProbe{}).radius, camera_.viewpoint(),
+               of_mouse_.value_or(MouseProbe{}).meets),
+      carrier_(of_mouse_ ? std::nullopt : Carrier::of(session.world)),
       options_(renderer.options()),
       tint_(tint_of(session.world)),
       pictures_(session.window, session.world, renderer) {
@@ -81,7 +81,7 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
   mouse_.x = 0.5 * session.window.width();
   mouse_.y = 0.5 * session.window.height();
   probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
-  if (radius_ || carrier_) add_mouse(session.world, probe_at_);
+  if (of_mouse_ || carrier_) add_mouse(session.world, probe_at_);
   if (carried_ && carrier_->taken() == kNoEntity)
     say("drag `" + session.keeper.summaries()[*carried_].name + "` with the left button to move it", false);
 }
@@ -94,20 +94,22 @@ ViewRay WindowLoop::ray() const {
 // hand that sees nothing any more is nobody either.
 void WindowLoop::point(double dt) {
   const double force = mouse_probe_ ? state_.probes[*mouse_probe_].history.newest().force : 0.0;
-  cursor_.update(drag_ == Drag::kPress, force, dt);
-  if (!radius_ && !carrier_) return;
+  cursor_.update(drag_ == Drag::kPress, force, dt);  // what is pulled stretches towards the hand itself
+  if (!of_mouse_ && !carrier_) return;
   if (carrier_) {
     if (drag_ == Drag::kCarry) carrier_->follow(ray(), camera_.viewpoint());
     carrier_->update(dt);
     probe_at_ = carrier_->position();
   } else if (pointed_ && !looks_around()) {
+    if (drag_ == Drag::kPull) pointer_.follow(ray(), camera_.viewpoint());
     probe_at_ = pointer_.update(dt);
   }
   if (pictures_.seconds() < kHungPicture) {
-    s_.world.mouse->samples.write() = {probe_at_, radius_ && pointer_.free(), carrier_ ? carrier_->taken() : kNoEntity};
+    s_.world.mouse->samples.write() = {probe_at_, of_mouse_ && pointer_.free(),
+                                       carrier_ ? carrier_->taken() : kNoEntity, pointer_.probe_hold()};
     s_.world.mouse->samples.publish();
   }
-  state_.cursor = radius_ && pointed_ && !looks_around();
+  state_.cursor = of_mouse_ && pointed_ && !looks_around();
   state_.cursor_x = cursor_.x();
   state_.cursor_y = cursor_.y();
   state_.cursor_force = force;
@@ -160,7 +162,7 @@ PictureOrder WindowLoop::order(bool shown) {
   next.tint = tint_;
   const bool asked = drag_ == Drag::kAsked;
   const double x = asked ? pressed_x_ : cursor_.x(), y = asked ? pressed_y_ : cursor_.y();
-  next.question = {x, y, next.width, next.height, ++questions_};
+  next.question = {x, y, next.width, next.height, ++questions_, pointer_.holds()};
   asked_ray_ = ray_through(next.view, x, y, next.width, next.height);
   next.frame = next_frame();
   next.frame_width = s_.frame_width;

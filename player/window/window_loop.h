@@ -15,7 +15,13 @@
 namespace pliant {
 
 // What a held button does. kAsked: that hangs on what a picture shows under it, which is not known yet.
-enum class Drag : std::uint8_t { kNone, kAsked, kPress, kCarry, kOrbit, kPan };
+enum class Drag : std::uint8_t { kNone, kAsked, kPress, kPull, kCarry, kOrbit, kPan };
+
+// The probe that the mouse moves.
+struct MouseProbe {
+  double radius = 0.0;  // [m]
+  ProbeMeets meets = ProbeMeets::kAll;
+};
 
 // What one session holds while it runs. The touch clock owns the world meanwhile: this side reads only what never
 // changes (remembered before it started) and what comes by exchanges.
@@ -53,7 +59,7 @@ class WindowLoop {
 
   WindowSession& s_;
   CameraControl camera_;
-  std::optional<double> radius_;  // [m] of the probe at the mouse
+  std::optional<MouseProbe> of_mouse_;  // the probe at the mouse
   Pointer pointer_;
   std::optional<Carrier> carrier_;
   HeavyCursor cursor_;
@@ -71,6 +77,7 @@ class WindowLoop {
   double wanted_since_ = 0.0;       // [s]
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
+  bool wants_pull_ = false;                    // the press under way was made with Ctrl
   double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed
   std::optional<PickAnswer> answer_;           // the newest
   ViewRay asked_ray_;                          // of the question under way

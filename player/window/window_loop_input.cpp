@@ -64,6 +64,7 @@ void WindowLoop::press(const InputEvent& event) {
   } else {
     drag_ = Drag::kAsked;
     decides_ = questions_ + 1;
+    wants_pull_ = event.modifiers & kControl;
     pressed_x_ = cursor_.x();
     pressed_y_ = cursor_.y();
     // A hand that has rested here has been told already.
@@ -78,7 +79,10 @@ void WindowLoop::press(const InputEvent& event) {
 void WindowLoop::decide(const std::optional<Picked>& seen) {
   if (wants_mouse_) {
     drag_ = Drag::kNone;
-  } else if (radius_ && pointer_.over_touchable()) {
+  } else if (of_mouse_ && wants_pull_ && pointer_.over_body()) {
+    drag_ = Drag::kPull;
+    pointer_.grab();
+  } else if (of_mouse_ && pointer_.over_touchable()) {
     drag_ = Drag::kPress;
     pointer_.hold(true);
   } else if (carrier_ && seen && seen->object == carrier_->tool()) {
@@ -111,9 +115,11 @@ void WindowLoop::wheel(const InputEvent& event) {
   const int steps = event.y > 0 ? 1 : -1;
   if (drag_ == Drag::kPress) {
     pointer_.deepen(steps);
+  } else if (drag_ == Drag::kPull) {
+    pointer_.push(event.y, camera_.viewpoint());
   } else if (drag_ == Drag::kCarry) {
     carrier_->push(event.y, camera_.viewpoint());
-  } else if ((event.modifiers & kControl) && radius_) {
+  } else if ((event.modifiers & kControl) && of_mouse_) {
     pointer_.stand(steps);
   } else {
     camera_.zoom(event.y);

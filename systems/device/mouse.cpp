@@ -29,6 +29,9 @@ void read_mouse(World& world, Tick tick) {
     take_over(world, mouse.samples.read().takes, mouse);
     const bool free_now = mouse.samples.read().free, arrived = mouse.position == mouse.to;
     mouse.to = mouse.samples.read().position;
+    for (auto [entity, probe] : world.registry.view<Probe>())
+      if (world.registry.get<HapticDevice>(probe.device).driver == DriverKind::kMouse)
+        probe.hold = mouse.samples.read().hold;
     free = free_now && mouse.free && arrived;  // the way out of a press is travelled: force acts along it
     mouse.free = free_now;
     mouse.from = free ? mouse.to : mouse.position;

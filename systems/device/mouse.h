@@ -19,6 +19,7 @@ struct MouseSample {
   dvec3 position{0};         // [m] world
   bool free = true;          // it hovers: it is put there, and does not travel through whatever lies on the way
   Entity takes = kNoEntity;  // a device that the hand has taken hold of: script or orbit lead it no longer
+  ProbeHold hold;            // of a probe
 };
 
 // One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at

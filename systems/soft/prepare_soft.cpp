@@ -13,6 +13,7 @@
 #include "systems/soft/body/rigid_tool.h"
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/soft_state.h"
+#include "systems/soft/under_gravity.h"
 #include "systems/touch/surface_query.h"
 #include "systems/touch/touch_state.h"
 
@@ -45,6 +46,10 @@ Status add_soft(const World& world, SoftState& soft) {
                                                  handle, pose_of(world, entity), body.solver);
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
+    std::vector<const std::vector<uvec3>*> parts;
+    for (const CarriedPart& part : world.tet_meshes[body.tets].parts)
+      parts.push_back(&world.meshes[part.mesh].triangles);
+    state->set_part_meshes(std::move(parts));
     state->self_collides = true;  // fingers pinch, a strip folds
     add(soft, entity, std::move(state));
   }
@@ -104,6 +109,11 @@ SoftSnapshot first_snapshot(const SoftState& soft) {
     if (soft.bodies[i]->kind == BodyKind::kProbe) continue;  // a marker shows it
     snapshot.objects.emplace_back();
     soft.bodies[i]->show(snapshot.objects.back());
+    if (const auto* tissue = dynamic_cast<const SoftBodyState*>(soft.bodies[i].get()))
+      for (std::size_t part = 0; part < tissue->part_count(); ++part) {
+        snapshot.objects.emplace_back();
+        tissue->show_part(part, snapshot.objects.back());
+      }
     const auto* body = dynamic_cast<const ToolBody*>(soft.bodies[i].get());
     if (body && body->has_handle()) snapshot.handles.push_back({body->entity, body->handle().object_pose(), {}, {}});
   }
@@ -151,6 +161,7 @@ Status prepare_soft(World& world) {
   world.soft = nullptr;
   world.soft_snapshots = nullptr;
   auto soft = std::make_shared<SoftState>();
+  begin_under_gravity(world);
   if (Status status = add_soft(world, *soft); !status) return status;
   if (Status status = add_rigid(world, *soft); !status) return status;
   add_probes(world, *soft);

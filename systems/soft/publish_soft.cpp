@@ -1,5 +1,6 @@
 #include "systems/soft/publish_soft.h"
 
+#include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/soft/soft_state.h"
 #include "systems/touch/touch_state.h"
@@ -18,6 +19,8 @@ void show_bodies(const SoftState& soft, SoftSnapshot& out) {
     const Body& body = *soft.bodies[i];
     if (body.kind == BodyKind::kProbe) continue;
     body.show(out.objects[object++]);
+    if (const auto* tissue = dynamic_cast<const SoftBodyState*>(&body))
+      for (std::size_t part = 0; part < tissue->part_count(); ++part) tissue->show_part(part, out.objects[object++]);
     const auto* tool = dynamic_cast<const ToolBody*>(&body);
     if (!tool || !tool->has_handle()) continue;
     const Vector6 wrench = tool->handle_wrench();

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "components/haptic_device.h"
+#include "components/probe.h"
 #include "systems/soft/body/handle.h"
 
 namespace pliant {
@@ -83,6 +84,14 @@ struct CondensedContacts {
   void prepare_tick(double seconds);               // fills what stands below `tick`
 };
 
+// A body that a probe pulls, as the soft step has it (pull.h).
+struct PullModel {
+  std::uint32_t number = 0;     // ProbeHold::number; 0: none
+  double time = 0.0;            // [s]
+  dvec3 point{0}, velocity{0};  // [m], [m/s] world, of what is held
+  double share = 0.0;           // [1] of the spring: it comes in over some steps
+};
+
 // Soft clock -> touch clock, per tool.
 struct HandleModel {
   std::uint64_t step = 0;                 // 0: nothing has been published yet
@@ -96,6 +105,8 @@ struct HandleModel {
   Vector6 force = Vector6::Zero();  // [N], [N m] that tissue and contacts put on the handle, as the soft step saw it
   LinearModel linear;
   CondensedContacts contacts;
+  PullModel pull;      // of a probe
+  bool aside = false;  // of a probe: it met no body in that step (ProbeHold)
 };
 
 // Touch clock -> soft clock, per tool.
@@ -108,6 +119,8 @@ struct ToolInput {
   RigidMotion handle;   // the 1 kHz handle's centre
   std::uint32_t set_backs = 0;  // how often the touch clock has asked for the tool to be set back into the hand
   std::uint32_t seen = 0;       // HandleModel::set_backs of the model in use
+  ProbeHold hold;               // of a probe
+  double max_force = 0.0;       // [N] of its device: a pull is no harder
   // [N s], [N m s] Sum over all ticks so far of what tissue and contacts did to the handle.
   Vector6 impulse = Vector6::Zero();
 };

@@ -168,6 +168,13 @@ void take_inputs(World& world, double T) {
     before.rotation = glm::normalize(rotation_of(-left * angular(input.device.velocity)) * before.rotation);
     body->set_device(before, input.device.velocity);
     tool->pending.time = input.time;
+    tool->pending.aside = tool->is_probe && (input.hold.hovers || !(input.hold.body == kNoEntity));
+    if (tool->pending.aside) {
+      body->halt();
+      if (soft.part == 0) set_back(soft, *tool, input, *body);
+      body->absent = true;
+      continue;
+    }
     if (soft.part == 0 && set_back(soft, *tool, input, *body)) continue;
     if (!says_where(*tool, input)) continue;
     if (soft.part == 0) hear_wrench(*tool, input);

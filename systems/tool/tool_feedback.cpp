@@ -7,6 +7,7 @@
 #include "systems/safety/safety.h"
 #include "systems/soft/body/coupling.h"
 #include "systems/soft/body/rotation_vector.h"
+#include "systems/tool/pull.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
@@ -60,11 +61,14 @@ int settle_ticks(const HandleModel& model) {
 }
 
 void adopt(ToolTouchState& tool, const HandleModel& model) {
+  if (model.aside) return;
   if (model.set_backs != tool.models_set_back) tool.placed = tool.away = false;  // the soft clock has moved the tool
   tool.models_set_back = model.set_backs;
   if (tool.away) return;
   if (!tool.placed) {
     tool.handle = model.handle;
+    if (tool.returns && tool.sensing) tool.handle = tool.sensed.at(model.centre);  // no spring is stretched meanwhile
+    tool.returns = false;
     tool.wrench = model.force;
     tool.placed = true;
   }
@@ -193,7 +197,32 @@ void forget(ToolTouchState& tool) {
   tool.device_wrench.setZero();
 }
 
-void tell_soft_clock(ToolTouchState& tool, Tick tick) {
+// A probe that hovers or pulls meets no body: it is where its device is. When it has done with that, it is set back
+// there once more, and waits for the first model in which it meets bodies again.
+bool stands_aside(const World& world, ToolTouchState& tool) {
+  if (!tool.is_probe) return false;
+  const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
+  const bool was = tool.aside;
+  tool.aside = hold.hovers || !(hold.body == kNoEntity);
+  if (!tool.aside && !was) return false;
+  ++tool.set_backs;
+  forget(tool);
+  tool.away = tool.returns = true;
+  return tool.aside;
+}
+
+// The spring of a pull (pull.h), on the device: what is held goes on as the soft step left it.
+void feel_pull(const World& world, ToolTouchState& tool, const HandleModel& model, const Handle6& settings, Tick tick) {
+  const PullModel& pull = model.pull;
+  const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
+  if (hold.body == kNoEntity || pull.number != hold.number) return;
+  const double since = std::clamp(tick.time - pull.time, 0.0, kStaleSteps * model.soft_step);
+  const dvec3 stretch = pull.point + since * pull.velocity - tool.sensed.pose.position;
+  const double most = world.registry.get<HapticDevice>(tool.device).max_force;
+  tool.device_wrench = join(pull_force(stretch, pull.share * settings.translation[0], most), dvec3(0));
+}
+
+void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
   ToolInput& input = tool.input.write();
   input.status = tool.sensing ? DeviceStatus::kReady : DeviceStatus::kLost;
   input.time = tool.placed ? tick.time + tick.dt : tick.time;
@@ -204,6 +233,10 @@ void tell_soft_clock(ToolTouchState& tool, Tick tick) {
   input.impulse = tool.impulse;
   input.set_backs = tool.set_backs;
   input.seen = tool.models_set_back;
+  if (tool.is_probe) {
+    input.hold = world.registry.get<Probe>(tool.entity).hold;
+    input.max_force = world.registry.get<HapticDevice>(tool.device).max_force;
+  }
   tool.input.publish();
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
@@ -257,7 +290,9 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
   if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // its shell comes to its device
-  if (tool.placed && sensing) {
+  if (stands_aside(world, tool)) {
+    if (sensing) feel_pull(world, tool, model, settings, tick);
+  } else if (tool.placed && sensing) {
     catch_up(tool, model, settings, before, missed, tick);
     pull_device(tool, model, settings);
     step(tool, model, settings, tick);
@@ -275,7 +310,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
     tool.gained.setZero();
     tool.sensed.velocity.setZero();
   }
-  tell_soft_clock(tool, tick);
+  tell_soft_clock(world, tool, tick);
 }
 
 }  // namespace

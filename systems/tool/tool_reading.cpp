@@ -49,9 +49,27 @@ ProbeReading tool_reading(const World& world, Entity entity) {
   return out;
 }
 
+namespace {
+
+// A probe that pulls a body touches it, whichever way the force goes.
+bool read_pull(const World& world, const ToolTouchState& tool, ProbeReading& out) {
+  const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
+  const double force = length(out.force);
+  if (hold.body == kNoEntity || tool.model.read().pull.number != hold.number || !(force > 0.0)) return false;
+  out.in_contact = true;
+  out.object = kNoEntity;
+  out.depth = out.height = 0.0;
+  out.normal = out.force / force;
+  split_force(out);
+  return true;
+}
+
+}  // namespace
+
 void add_body_reading(const World& world, Entity probe, ProbeReading& out) {
   const ToolTouchState* const tool = find_tool(world, probe);
-  if (!tool || !read_contact(*tool, out.in_contact ? out.normal_force : 0.0, out)) return;
+  if (!tool || read_pull(world, *tool, out) || !read_contact(*tool, out.in_contact ? out.normal_force : 0.0, out))
+    return;
   out.object = kNoEntity;
   out.height = 0.0;
   split_force(out);

@@ -9,6 +9,7 @@
 #include "components/soft_body.h"
 #include "components/world.h"
 #include "systems/safety/safety.h"
+#include "systems/soft/body/body.h"
 #include "systems/tool/handle_model.h"
 #include "systems/tool/tool_tick.h"
 
@@ -53,6 +54,18 @@ struct HandleStep {
   Vector6 velocity = Vector6::Zero();
 };
 
+// What a probe holds of a body, and pulls. Writer: the soft clock (pull.h).
+struct Pull {
+  struct Part {
+    SurfacePoint point;
+    double weight = 0.0;  // [1] they sum to 1
+  };
+  std::uint32_t number = 0;  // ProbeHold::number that this is of; 0: none so far
+  std::uint32_t body = 0;    // into SoftState::bodies
+  std::vector<Part> parts;   // empty: there is nothing to hold
+  double held_for = 0.0;     // [s]
+};
+
 struct ToolTouchState {
   Entity entity;  // has a Handle6 and a SoftBody or RigidBody; or a Probe
   bool is_probe = false;
@@ -71,6 +84,7 @@ struct ToolTouchState {
       Vector6::Zero();         // [N], [N m] what tissue and contacts did to the handle, mean since the last input
   std::uint32_t set_back = 0;  // ToolInput::set_backs done
   CondensedState replay;
+  Pull pull;  // of a probe
 
   ToolForce wanted = ToolForce::kContacts;  // Handle6::force
   SweepLimits limits;  // of a tick; in lockstep budget_ns is 0: never wall time, always the same bits
@@ -95,6 +109,8 @@ struct ToolTouchState {
   Vector6 wrench = Vector6::Zero();         // [N], [N m] tissue and contacts on the handle, over the last tick
   Vector6 impulse = Vector6::Zero();        // [N s], [N m s] its sum over time
   bool away = false;                        // it waits to be set back into the hand
+  bool aside = false;                       // a probe's: it hovers or pulls, and meets no body
+  bool returns = false;                     // it did, and comes in where its device is by then
   std::uint32_t set_backs = 0;              // how often it has asked for that
   std::uint32_t models_set_back = 0;        // and how often the model in use had been
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its own origin

@@ -52,7 +52,7 @@ Result<Picking> Picking::make() {
   return made;
 }
 
-void Picking::draw(const Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question) {
+void Picking::draw(Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question) {
   question_ = question;
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glViewport(0, 0, 1, 1);
@@ -63,7 +63,8 @@ void Picking::draw(const Surfaces& surfaces, const mat4& clip_from_world, const 
   program_.use();
   const mat4 through_pixel = narrowed(question) * clip_from_world;
   glUniformMatrix4fv(clip_from_world_, 1, GL_FALSE, &through_pixel[0][0]);
-  surfaces.draw_all();
+  surfaces.hold(question.holds);
+  surfaces.draw_as_held();
 
   // Into memory of the GPU's own; it is only fetched once it is there.
   glBindBuffer(GL_PIXEL_PACK_BUFFER, answer_.id());

@@ -21,7 +21,7 @@ class Picking {
   static Result<Picking> make();
 
   // Draws the surfaces as the GPU has them. An answer that nobody took yet is forgotten.
-  void draw(const Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question);
+  void draw(Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question);
   // The answer, once, as soon as the GPU has it; with `wait`, not before.
   std::optional<PickAnswer> take(const Surfaces& surfaces, bool wait);
 

@@ -24,14 +24,17 @@ struct PickQuestion {
   double x = 0, y = 0;        // [pixel] from the upper left corner
   int width = 1, height = 1;  // [pixel] of the picture
   std::uint64_t number = 0;   // to know the answer by
+  // A soft or rigid body that is pressed: it is asked of as it stood when it was first held. Asked of as it is, it
+  // would run away before whoever presses it.
+  Entity holds = kNoEntity;
 };
 
 // A place on a surface.
 struct Picked {
   Entity object;
   dvec3 point{0};         // [m] world, as drawn: dented, moved
-  dvec3 rest{0};          // [m] world, of the same place at rest (of a soft body: as drawn)
-  dvec3 normal{0, 1, 0};  // [1] world, outward, at rest (of a soft body: as drawn)
+  dvec3 rest{0};          // [m] world, of the same place at rest (of a soft or rigid body: as drawn, or as held)
+  dvec3 normal{0, 1, 0};  // [1] world, outward, likewise
 };
 
 struct PickAnswer {

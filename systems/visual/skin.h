@@ -30,6 +30,8 @@ class Skin {
   std::size_t vertices() const { return here_.size(); }
   const Box& box() const { return box_; }  // [m] world
   const gpu::Buffer& buffer() const { return on_card_; }
+  // As it was last taken.
+  gpu::Buffer copy() const { return gpu::Buffer::writable(here_.data(), here_.size() * sizeof(glm::uvec4)); }
 
  private:
   std::vector<glm::uvec4> here_;

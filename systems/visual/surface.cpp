@@ -38,6 +38,7 @@ const Mesh* touch_mesh_of(const World& world, Entity entity) {
   if (const Deformable* deformable = world.registry.find<Deformable>(entity)) mesh = deformable->mesh;
   if (const SoftBody* soft = world.registry.find<SoftBody>(entity)) mesh = soft->collision_mesh;
   if (const RigidBody* rigid = world.registry.find<RigidBody>(entity)) mesh = rigid->collision_mesh;
+  if (const Carried* carried = world.registry.find<Carried>(entity)) mesh = carried->mesh;
   return mesh.valid() ? &world.meshes[mesh] : nullptr;
 }
 
@@ -129,6 +130,9 @@ Result<Surfaces> Surfaces::make(const World& world) {
       made.has_glass_ = made.has_glass_ || made.materials_.transmits(part.run.material);
     made.items_.push_back(std::move(item));
   }
+  for (Item& item : made.items_)
+    for (std::size_t i = 0; i < made.items_.size() && !(item.dented_with == kNoEntity); ++i)
+      if (made.items_[i].entity == item.dented_with) item.stream_of = i;
   if (std::any_of(made.items_.begin(), made.items_.end(), [](const Item& item) { return item.replayed; })) {
     Result<ReplayProgram> replay = ReplayProgram::make();
     if (!replay) return replay.error();
@@ -146,12 +150,19 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   const Deformable* deformable = world.registry.find<Deformable>(entity);
   const SoftBody* soft = world.registry.find<SoftBody>(entity);
   const Mesh* touch = touch_mesh_of(world, entity);
+  const Carried* carried = world.registry.find<Carried>(entity);
+  const bool rides = soft || (carried && carried->share.empty());
 
   Item item;
   item.entity = entity;
   item.gives_way = touch && deformable && !soft;
-  item.encloses = touch && encloses_volume(*touch);
-  item.vertices = gpu::Buffer::fixed<Vertex>(vertices_of(draw, touch, item.gives_way || soft));
+  item.encloses = touch && (!carried || rides) && encloses_volume(*touch);
+  std::vector<Vertex> vertices = vertices_of(draw, touch, item.gives_way || soft || carried);
+  if (carried && !rides) {
+    item.dented_with = carried->by;
+    for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v].touch_normal *= carried->share[v];
+  }
+  item.vertices = gpu::Buffer::fixed<Vertex>(vertices);
   item.indices = gpu::Buffer::fixed<std::uint32_t>(draw.indices);
   item.layout = layout_of(item.vertices, item.indices);
   item.rest = box_of(draw);
@@ -164,7 +175,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
 
   // A field that does not exist yet, or has another size than its mesh, counts as at rest. Whatever has none reads
   // zeros.
-  const std::size_t padded = touch && (item.gives_way || soft) ? std::size_t{touch->zone_count()} * kZoneSize : 0;
+  const std::size_t padded = touch && (item.gives_way || rides) ? std::size_t{touch->zone_count()} * kZoneSize : 0;
   std::vector<vec4> stream(padded, vec4(0));
   if (item.gives_way && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
     stream = world.fields[deformable->field].stream;
@@ -175,7 +186,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
     if (item.on_gpu) item.field = FieldOnGpu(*touch);
     if (item.replayed) item.replay = FieldReplay(*touch, *deformable, 1 / world.simulation.touch_rate);
   }
-  if (touch && soft) item.skin = Skin(touch->vertex_count);
+  if (touch && rides) item.skin = Skin(touch->vertex_count);
 
   item.to_world = placement_of(world, entity);
   item.mirrored = glm::determinant(mat3(item.to_world)) < 0;
@@ -236,6 +247,17 @@ std::size_t Surfaces::upload() {
   }
   changed_ = changed_ || travelled > 0;
   return travelled;
+}
+
+void Surfaces::hold(Entity object) {
+  if (object == held_.object) return;
+  held_ = {};
+  held_.object = object;
+  const Item* const item = object == kNoEntity ? nullptr : find(object);
+  if (!item || !item->moves) return;
+  const MapPlacement block = placement_block(item->to_world, item->number, item->rides);
+  held_.placement = gpu::Buffer::writable(&block, sizeof block);
+  held_.skin = item->skin.copy();
 }
 
 Box Surfaces::box() const {

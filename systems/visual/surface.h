@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "components/world.h"
@@ -40,8 +41,10 @@ class Surfaces {
   bool has_glass() const { return has_glass_; }
   // Depth alone, into the shadow map that is current.
   void draw_shadow() const;
+  // From now on this body is drawn by draw_as_held() as it stands now; kNoEntity: none is.
+  void hold(Entity object);
   // Everything that can be seen, for the program that is in use.
-  void draw_all() const;
+  void draw_as_held() const;
 
   // World boxes of the surfaces, at rest, in no order. [m]
   const std::vector<Box>& boxes() const { return boxes_; }
@@ -61,11 +64,13 @@ class Surfaces {
     gpu::VertexArray layout;
     std::vector<Part> parts;
     StreamCopies stream;
-    FieldOnGpu field;                  // only where the field is a list on the GPU
-    std::vector<FieldSource> sources;  // its newest
-    FieldReplay replay;                // only where the GPU steps a copy of the field
-    Skin skin;                         // of a soft body, else of no vertex
-    Box rest;                          // [m] object frame
+    FieldOnGpu field;                      // only where the field is a list on the GPU
+    std::vector<FieldSource> sources;      // its newest
+    FieldReplay replay;                    // only where the GPU steps a copy of the field
+    Skin skin;                             // of a soft body, else of no vertex
+    Entity dented_with = kNoEntity;        // the surface whose dents it takes part in
+    std::optional<std::size_t> stream_of;  // that one's place among the items
+    Box rest;                              // [m] object frame
     mat4 to_world{1};
     bool moves = false;  // a soft or rigid body, or carried by a prescribed motion
     std::uint32_t number = 0;
@@ -77,6 +82,11 @@ class Surfaces {
     bool mirrored = false;  // its placement turns triangles inside out
   };
   static Item make_item(const World& world, Entity entity, const DrawMesh& draw);
+  // What hold() keeps: where a soft body's vertices and a rigid one's placement were.
+  struct Held {
+    Entity object = kNoEntity;
+    gpu::Buffer skin, placement;
+  };
   Item* find(Entity entity);
   void bind(const Item& item) const;
   void draw_part(const Part& part) const;
@@ -84,6 +94,7 @@ class Surfaces {
 
   std::vector<Item> items_;
   std::vector<Box> boxes_;
+  Held held_;
   Materials materials_;
   gpu::Program program_, shadow_;
   FieldProgram field_program_;  // these two are compiled only if some field needs them

@@ -8,7 +8,8 @@ namespace pliant {
 
 void Surfaces::bind(const Item& item) const {
   glBindVertexArray(item.layout.id());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kStreamBinding, item.stream.buffer().id());
+  const Item& dented = item.stream_of ? items_[*item.stream_of] : item;
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kStreamBinding, dented.stream.buffer().id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSkinBinding, item.skin.buffer().id());
   glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, item.placement.id());
   glFrontFace(item.mirrored ? GL_CW : GL_CCW);
@@ -37,9 +38,13 @@ void Surfaces::draw_one(const Item& item, const Part& part) const {
   draw_part(part);
 }
 
-void Surfaces::draw_all() const {
+void Surfaces::draw_as_held() const {
   for (const Item& item : items_) {
     bind(item);
+    if (item.entity == held_.object && held_.placement.size() > 0) {
+      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSkinBinding, held_.skin.id());
+      glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, held_.placement.id());
+    }
     for (const Part& part : item.parts) draw_one(item, part);
   }
 }

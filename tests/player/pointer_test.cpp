@@ -108,6 +108,66 @@ TEST(Pointer, WhereNothingIsSeenTheProbeGoesWithTheRayThatSawNothing) {
   EXPECT_TRUE(pointer.free());
 }
 
+// A block that moves, and one that does not.
+struct BodyScene : PointerScene {
+  Entity block, wall;
+  BodyScene() {
+    Mesh mesh;
+    mesh.box = {vec3(-0.05f), vec3(0.05f)};
+    const Handle<Mesh> shape = world.meshes.add(std::move(mesh));
+    block = world.registry.create();
+    world.registry.add<SoftBody>(block).collision_mesh = shape;
+    wall = world.registry.create();
+    RigidBody& fixed = world.registry.add<RigidBody>(wall);
+    fixed.collision_mesh = shape;
+    fixed.fixed = true;
+  }
+};
+
+TEST(Pointer, PressesABodyFromWhereItStoodWhenThePressBegan) {
+  const BodyScene scene;
+  Pointer pointer(scene.world, 0.005, kAbove);
+  pointer.see(on(scene.block, {0, 0.05, 0}, {0, 0.05, 0}), kDown);
+  EXPECT_TRUE(pointer.over_touchable());
+  EXPECT_EQ(pointer.holds(), kNoEntity);
+  EXPECT_TRUE(pointer.probe_hold().hovers);
+  pointer.hold(true);
+  EXPECT_EQ(pointer.holds(), scene.block) << "the picture is asked of the body as it was";
+  EXPECT_LT(settled(pointer).y, 0.055);
+  EXPECT_FALSE(pointer.probe_hold().hovers);
+  pointer.hold(false);
+  EXPECT_EQ(pointer.holds(), kNoEntity);
+}
+
+TEST(Pointer, PullsABodyInThePlaneThatFacesTheEyeUntilItIsLetGo) {
+  const BodyScene scene;
+  Pointer pointer(scene.world, 0.005, kAbove);
+  pointer.see(on(scene.wall, {0, 0.05, 0}, {0, 0.05, 0}), kDown);
+  pointer.grab();
+  EXPECT_FALSE(pointer.pulls()) << "a wall does not come along";
+  pointer.see(on(scene.block, {0, 0.05, 0}, {0, 0.05, 0}), kDown);
+  pointer.grab();
+  ASSERT_TRUE(pointer.pulls());
+  EXPECT_EQ(pointer.probe_hold().body, scene.block);
+  EXPECT_FALSE(pointer.free());
+  EXPECT_LT(length(pointer.update(0.01) - dvec3(0, 0.05, 0)), 1e-12);
+  pointer.follow({{0, 1, 0}, normalize(dvec3(0.1, -1, 0))}, {.eye = {0, 1, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}});
+  EXPECT_LT(length(pointer.update(0.01) - dvec3(0.095, 0.05, 0)), 1e-9);
+  const std::uint32_t first = pointer.probe_hold().number;
+  pointer.hold(false);
+  EXPECT_EQ(pointer.probe_hold().body, kNoEntity);
+  pointer.grab();
+  EXPECT_NE(pointer.probe_hold().number, first);
+}
+
+TEST(Pointer, AProbeThatMeetsSurfacesOnlyNeitherPressesNorPullsBodies) {
+  const BodyScene scene;
+  Pointer pointer(scene.world, 0.005, kAbove, ProbeMeets::kSurfaces);
+  pointer.see(on(scene.block, {0, 0.05, 0}, {0, 0.05, 0}), kDown);
+  EXPECT_FALSE(pointer.over_touchable());
+  EXPECT_FALSE(pointer.over_body());
+}
+
 TEST(HeavyCursor, GoesSlowerTheMoreItIsPushedBackAndRejoinsTheHand) {
   HeavyCursor cursor;
   cursor.move_to(100, 50);

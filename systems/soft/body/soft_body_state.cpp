@@ -38,6 +38,18 @@ dvec3 box_size(const TetMesh& tets) {
   return most - least;
 }
 
+// Weighted by area; in double, for the cross product of a small triangle's edges.
+void add_normals(const std::vector<uvec3>& triangles, const std::vector<dvec3>& at, std::vector<vec3>& normals) {
+  for (const uvec3 t : triangles) {
+    const dvec3 area = cross(at[t.y] - at[t.x], at[t.z] - at[t.x]);
+    for (int corner = 0; corner < 3; ++corner) normals[t[corner]] += vec3(area);
+  }
+  for (vec3& normal : normals) {
+    const float size = length(normal);
+    normal = size > 0 ? normal / size : vec3(0, 1, 0);
+  }
+}
+
 Block to_block(const dmat3& m) {
   Block out;
   for (int row = 0; row < 3; ++row)
@@ -58,6 +70,7 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
       tissue_(tets, material_of(body), moving_nodes(tets, handle)),
       solver_(std::move(solver), tissue_.inner(), has_handle_nodes(tets, handle)) {
   ASSERT(tets.embedding.size() == surface.vertex_count);
+  placed_ = placement.rotation;
   collision_mesh = &surface;
   friction_static = body.friction_static;
   friction_sliding = body.friction_sliding;
@@ -75,7 +88,7 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
     balance_ /= mass_;
   }
   for (std::size_t i = 0; i < tets.nodes.size(); ++i) {
-    tissue_.position()[i] = placement.to_world(tets.nodes[i]);
+    tissue_.position()[i] = placement.to_world(tets.start.empty() ? tets.nodes[i] : tets.start[i]);
     tissue_.velocity()[i] = dvec3(0);
   }
   velocity_ = Vector::Zero(size());
@@ -272,16 +285,25 @@ void SoftBodyState::show(SoftObjectSnapshot& out) const {
   std::transform(tissue_.position().begin(), tissue_.position().end(), out.nodes.begin(),
                  [](dvec3 x) { return vec3(x); });
 
-  // Weighted by area; in double, for the cross product of a small triangle's edges.
-  for (const uvec3 t : collision_mesh->triangles) {
-    const dvec3 area =
-        cross(surface_position[t.y] - surface_position[t.x], surface_position[t.z] - surface_position[t.x]);
-    for (int corner = 0; corner < 3; ++corner) out.normal[t[corner]] += vec3(area);
+  add_normals(collision_mesh->triangles, surface_position, out.normal);
+}
+
+void SoftBodyState::show_part(std::size_t number, SoftObjectSnapshot& out) const {
+  const CarriedPart& part = tets_.parts[number];
+  std::vector<dvec3> at(part.embedding.size());
+  const dquat turned = handle_ ? handle_->object_pose().rotation : placed_;
+  for (std::size_t v = 0; v < at.size(); ++v) {
+    const Embedding& place = part.embedding[v];
+    const Tet& tet = tets_.tets[place.tet];
+    dvec3 x(0);
+    for (std::size_t k = 0; k < 4; ++k) x += place.weight[k] * tissue_.position()[tet[k]];
+    at[v] = part.aside.empty() ? x : x + turned * dvec3(part.aside[v]);
   }
-  for (vec3& normal : out.normal) {
-    const float size = length(normal);
-    normal = size > 0 ? normal / size : vec3(0, 1, 0);
-  }
+  out.object = part.entity;
+  out.position.resize(at.size());
+  std::transform(at.begin(), at.end(), out.position.begin(), [](dvec3 x) { return vec3(x); });
+  out.normal.assign(at.size(), vec3(0));
+  add_normals(*part_triangles_[number], at, out.normal);
 }
 
 }  // namespace pliant

@@ -38,7 +38,12 @@ class SoftBodyState final : public ToolBody {
   void halt() override;
   void set_elasticity(double young, double poisson, RayleighDamping damping) override;
   void show(SoftObjectSnapshot& out) const override;
+  std::size_t part_count() const { return tets_.parts.size(); }
+  void show_part(std::size_t part, SoftObjectSnapshot& out) const;
+  // Of each of TetMesh::parts, in their order; they outlive it.
+  void set_part_meshes(std::vector<const std::vector<uvec3>*> triangles) { part_triangles_ = std::move(triangles); }
 
+  const TetMesh& tets() const { return tets_; }
   const Tissue& tissue() const { return tissue_; }
   void set_tie_stiffness(double ratio) { tie_->stiffness = ratio; }  // [1] handle_tie.h; with spring attachment
   bool solvable() const override {
@@ -70,6 +75,8 @@ class SoftBodyState final : public ToolBody {
   std::optional<HandleTie> tie_;
   CoupledSolver solver_;
   mutable BlockColumns pushed_;  // respond()'s
+  dquat placed_{1, 0, 0, 0};     // object frame to world at the start
+  std::vector<const std::vector<uvec3>*> part_triangles_;
   bool solvable_ = true;
 };
 

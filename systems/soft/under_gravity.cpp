@@ -1,0 +1,116 @@
+#include "systems/soft/under_gravity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "components/soft_body.h"
+#include "systems/soft/body/equilibrium.h"
+#include "systems/soft/body/soft_body_state.h"
+#include "systems/soft/soft_state.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kFarAtEnd = 0.1;    // [1] of a body's size: farther from where it began is said after a run
+constexpr double kOutOfScene = 5.0;  // [1] of its size: a body that has fallen so far lies on nothing
+
+std::string name_in_quotes(const World& world, Entity entity) {
+  const Name* name = world.registry.find<Name>(entity);
+  return "`" + (name ? name->value : std::string()) + "`";
+}
+
+dvec3 gravity_of(const World& world, Entity entity) {
+  const Pose* pose = world.registry.find<Pose>(entity);
+  return pose ? glm::conjugate(pose->rotation) * world.simulation.gravity : world.simulation.gravity;
+}
+
+// Of a tool, the handle decides where it is; it always begins as it rests.
+bool decides(const World& world, Entity entity, const SoftBody& body, const TetMesh& tets) {
+  return body.under_gravity != UnderGravity::kFalls && length(world.simulation.gravity) > 0.0 &&
+         !(world.registry.has<Handle6>(entity) && tets.handle_count > 0);
+}
+
+void begin_body(const SoftBody& body, dvec3 gravity, TetMesh& tets) {
+  if (!tets.start.empty() && body.under_gravity == UnderGravity::kModelled) tets.nodes = tets.start;
+  tets.start.clear();
+  const auto say = [&](std::string what) { tets.report.findings.push_back(std::move(what)); };
+  if (tets.pinned_begin() == tets.node_count())
+    return say("is not pinned, so it falls whatever `under_gravity` says; pin it");
+  if (body.under_gravity == UnderGravity::kModelled) {
+    Unloaded unloaded = find_unloaded(tets, body, gravity);
+    if (!unloaded.found) return say(sag_doubt(body, {.held = true}, &unloaded));
+    tets.start = std::move(tets.nodes);
+    tets.nodes = std::move(unloaded.nodes);
+    return;
+  }
+  Equilibrium rest = find_equilibrium(tets, body, gravity);
+  if (rest.converged) tets.start = std::move(rest.nodes);
+  if (std::string doubt = sag_doubt(body, rest, nullptr); !doubt.empty()) say(std::move(doubt));
+}
+
+}  // namespace
+
+void begin_under_gravity(World& world) {
+  for (auto [entity, body] : world.registry.view<SoftBody>()) {
+    TetMesh& tets = world.tet_meshes[body.tets];
+    if (decides(world, entity, body, tets)) begin_body(body, gravity_of(world, entity), tets);
+  }
+}
+
+void find_sag(World& world) {
+  for (auto [entity, body] : world.registry.view<SoftBody>()) {
+    TetMesh& tets = world.tet_meshes[body.tets];
+    const bool tool = world.registry.has<Handle6>(entity);
+    if (tool || body.under_gravity != UnderGravity::kFalls || !(length(world.simulation.gravity) > 0.0)) continue;
+    const Equilibrium rest = find_equilibrium(tets, body, gravity_of(world, entity));
+    if (std::string doubt = sag_doubt(body, rest, nullptr); !doubt.empty())
+      tets.report.findings.push_back(std::move(doubt));
+  }
+}
+
+std::vector<std::string> tissue_findings(const World& world) {
+  std::vector<std::string> all;
+  for (auto [entity, body] : world.registry.view<const SoftBody>())
+    for (const std::string& finding : world.tet_meshes[body.tets].report.findings)
+      all.push_back(name_in_quotes(world, entity) + ": " + finding);
+  return all;
+}
+
+std::vector<std::string> explain_sag(const World& world) {
+  std::vector<std::string> all;
+  if (!world.soft) return all;
+  for (const std::unique_ptr<Body>& body : world.soft->bodies) {
+    const auto* tissue = dynamic_cast<const SoftBodyState*>(body.get());
+    if (!tissue || tissue->has_handle()) continue;
+    const TetMesh& tets = tissue->tets();
+    const Pose* pose = world.registry.find<Pose>(body->entity);
+    std::vector<dvec3> began = tets.start.empty() ? tets.nodes : tets.start;
+    if (pose)
+      for (dvec3& x : began) x = pose->to_world(x);
+    const double size = size_of(began);
+    double most = 0.0;
+    for (std::size_t i = 0; i < began.size(); ++i)
+      most = std::max(most, length(tissue->tissue().position()[i] - began[i]));
+    const double turned = turn_between(began, tissue->tissue().position());
+    const std::string name = name_in_quotes(world, body->entity);
+    const bool pinned = tets.pinned_begin() < tets.node_count();
+    if (!pinned && most > kOutOfScene * size)
+      all.push_back(
+          fmt::format("{} fell {:.3g} m, as nothing holds it; pin it, or put something below it", name, most));
+    else if (pinned && turned > kMuchTurn)
+      all.push_back(
+          fmt::format("{} ended turned by {:.0f} degrees, and {:.3g} mm from where it began: what is pinned "
+                      "does not hold it; pin more of it, or let it keep its shape (`under_gravity` "
+                      "`modelled`)",
+                      name, turned * 180.0 / 3.14159265358979, most * 1e3));
+    else if (pinned && most > kFarAtEnd * size)
+      all.push_back(
+          fmt::format("{} ended {:.3g} mm from where it began, {:.0f} % of its size; if it shall not sag so "
+                      "far, pin more of it, or let it keep its shape (`under_gravity` `modelled`)",
+                      name, most * 1e3, 100.0 * most / size));
+  }
+  return all;
+}
+
+}  // namespace pliant
