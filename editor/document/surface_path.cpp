@@ -374,8 +374,8 @@ class RowMaker {
       for (const double share : {0.5, 0.25, 0.75}) {
         const double off = stands_off(height_.at(i, a.time + share * (b.time - a.time)));
         const dvec3 straight = a.middle + share * (b.middle - a.middle);
-        close = close &&
-                distance_outside(surfaces_, straight, reach(off, legs_[i].on != nullptr)) >= off - 0.5 * tolerance_;
+        const double within = reach(off, legs_[i].on != nullptr) + length(b.middle - a.middle);
+        close = close && distance_outside(surfaces_, straight, within) >= off - 0.5 * tolerance_;
       }
     }
     if (close) return;

@@ -41,9 +41,9 @@ class FirstLevelWindowTest : public CommandTest {
   // `kind` of tissue, `tool` of the buttons.
   void tell(const std::string& organ, bool soft, const std::string& tool) const {
     std::string story = "await Inspector/Search\nclick Viewport@0.5,0.5\nclick Tab/Tissue\n";
-    story += soft ? "click Tissue/Soft body\nclick Tissue/Material/liver\nclick Tissue/Pinned/Bottom\n"
+    story += soft ? "click Tissue/Soft body\nclick Tissue/Material/liver\nwheel Tissue/Material/liver -20\nclick Tissue/Pinned/Bottom\n"
                   : "click Tissue/Surface\nclick Tissue/Material/liver\n";
-    story += "click Tools/Paint\nawait Paint/Fill all\ndrag Viewport@0.48,0.5 to Viewport@0.52,0.5 in 0.3\n";
+    story += "click Tools/Paint\nwait 1\ndrag Viewport@0.48,0.5 to Viewport@0.52,0.5 in 0.3\n";
     story += "click Tools/Select\nclick Tab/Tissue\nclick Tissue/Instruments/" + tool + "\n";
     story +=
         "click Tab/Path\nclick Path/Set keys\nclick Viewport@0.49,0.49\nclick Viewport@0.53,0.46\nclick Path/Leave\n";

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <limits>
 #include <sstream>
 
 #include "content/keys/extension_table.h"
@@ -163,11 +162,17 @@ TEST(Saving, WhatCannotBeOpenedReplacesNothing) {
     keys.keys = {{0.0, {0, 0.1, 0}, {0, 1, 0}, 0.0}, {1.0, {0, 0.1, 0}, {0, 1, 0}, 0.01}};
     const NodeId finger = id_of(document, "finger");
     ASSERT_TRUE(document.change("path", with_script(document.state(), finger, "press.csv", keys)).ok());
-    LocalTransform local;
-    local.translation.x = std::numeric_limits<float>::quiet_NaN();
-    ASSERT_TRUE(document.change("move", placed(document.state(), finger, local)).ok());
+    // Through an edit that checks nothing: a device that is not there.
+    ASSERT_TRUE(document
+                    .change("probe", by_level(document.state(), document.next_id(),
+                                              [](Level& level) -> Status {
+                                                for (LevelNode& node : level.nodes)
+                                                  if (node.probe) node.probe_device = "nobody";
+                                                return Done{};
+                                              }))
+                    .ok());
     const Status status = document.save();
-    ASSERT_FALSE(status.ok()) << "a place that is no number";
+    ASSERT_FALSE(status.ok()) << "its probe names a device that is not there";
     EXPECT_NE(status.error().message().find("could not be opened again"), std::string::npos)
         << status.error().message();
     EXPECT_NE(status.error().message().find("; "), std::string::npos) << status.error().message();
