@@ -25,7 +25,18 @@ struct SaveOptions {
   bool no_draco = false;  // what is compressed is written plain
   Existing existing = Existing::kReplace;
 };
-// Writes .gltf (with a .bin beside it) or .glb by the extension; the file appears whole (written aside, then renamed).
+// A file that is still to be written.
+struct MadeFile {
+  std::filesystem::path path;
+  Bytes bytes;
+};
+// .gltf (with a .bin beside it) or .glb by the extension, in the order in which they are written. They have been read
+// back as load_level reads them: what it would refuse is an error here.
+Result<std::vector<MadeFile>> make_level_files(const Level& level, const std::filesystem::path& path,
+                                               const SaveOptions& options = {});
+// All of them or none appear, each whole (written aside, then renamed).
+Status write_made(const std::vector<MadeFile>& files, Existing existing = Existing::kReplace);
+// Both in one: what cannot be opened again replaces nothing.
 Status save_level(const Level& level, const std::filesystem::path& path, const SaveOptions& options = {});
 
 // --set NODE.EXT.KEY=VALUE (level-format.md), in order. NODE is a name or `*`. Keys that depend on each other are

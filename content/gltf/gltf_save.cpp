@@ -178,7 +178,37 @@ Result<Bytes> level_as_glb(const Level& level) {
   return as_glb(document->json.dump(), bin);
 }
 
-Status save_level(const Level& level, const fs::path& path, const SaveOptions& options) {
+namespace {
+
+// The text of a document; a name that is no UTF-8 has none.
+Result<std::string> json_text(const Json& json, int indent) {
+  try {
+    return json.dump(indent);
+  } catch (const Json::exception&) {
+    return Error{"", "holds a name or a text that is not UTF-8; type it anew"};
+  }
+}
+
+// What is written is read first, as every run and the editor read it.
+Status check_opens(Json json, const Bytes& bin, std::size_t size, const fs::path& path) {
+  if (!bin.empty()) json["buffers"][0].erase("uri");
+  const Result<std::string> text = json_text(json, -1);
+  if (!text) return Error{path.string(), text.error().what};
+  const auto cannot = [&](const std::string& where, const std::string& why) {
+    return Error{path.string(), fmt::format("is not written, as it could not be opened again: {}{}{}", where,
+                                            where.empty() ? "" : " ", why)};
+  };
+  if (size > most(limits::kFile))
+    return cannot("", "it " + beyond(limits::kFile, static_cast<double>(size), "split the level"));
+  const Result<Level> again = load_gltf(as_glb(*text, bin), true, path.parent_path());
+  if (again) return Done{};
+  const std::string& what = again.error().what;
+  return cannot(again.error().where, what + (what.find("; ") == std::string::npos ? "; undo what was set last" : ""));
+}
+
+}  // namespace
+
+Result<std::vector<MadeFile>> make_level_files(const Level& level, const fs::path& path, const SaveOptions& options) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
@@ -196,10 +226,10 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
     Findings findings;
     if (level.source) reread_model(document, findings);
     if (any_error(findings)) return Error{path.string() + " " + findings.back().pointer, findings.back().message};
-    if (const Status status = decompress_document(document, options.no_draco); !status) return status;
+    if (const Status status = decompress_document(document, options.no_draco); !status) return status.error();
   }
   if (options.draco_bits != 0)
-    if (const Status status = compress_document(document, options.draco_bits); !status) return status;
+    if (const Status status = compress_document(document, options.draco_bits); !status) return status.error();
 
   const bool glb = extension == ".glb";
   std::error_code ignored;
@@ -209,17 +239,36 @@ Status save_level(const Level& level, const fs::path& path, const SaveOptions& o
   Bytes bin = pack_document(document, !glb && same_folder);
   const fs::path beside = fs::path(path).replace_extension(".bin");
   if (!glb && !bin.empty()) document.json["buffers"][0]["uri"] = as_uri(beside.filename().string());
-  const std::string text = glb ? document.json.dump() : document.json.dump(2) + "\n";
-  if (const Status status = check_readable(text); !status)
+  Result<std::string> text = json_text(document.json, glb ? -1 : 2);
+  if (!text) return Error{path.string(), text.error().what};
+  if (!glb) *text += "\n";
+  if (const Status status = check_readable(*text); !status)
     return Error{path.string() + " " + status.error().where, status.error().what};
-  if (glb) return write_file(path, as_glb(text, bin), options.existing);
-  std::vector<FileToWrite> files;
-  if (!bin.empty()) {
-    if (const Status status = check_unrelated(beside, path); !status) return status;
-    files.push_back({beside, bin});
+  std::vector<MadeFile> files;
+  if (glb) {
+    files.push_back({path, as_glb(*text, bin)});
+  } else {
+    if (!bin.empty()) {
+      if (const Status status = check_unrelated(beside, path); !status) return status.error();
+      files.push_back({beside, bin});
+    }
+    files.push_back({path, Bytes(text->begin(), text->end())});
   }
-  files.push_back({path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size())});
-  return write_files(files, options.existing);
+  if (const Status status = check_opens(std::move(document.json), bin, files.back().bytes.size(), path); !status)
+    return status.error();
+  return files;
+}
+
+Status write_made(const std::vector<MadeFile>& files, Existing existing) {
+  std::vector<FileToWrite> all;
+  for (const MadeFile& each : files) all.push_back({each.path, each.bytes});
+  return write_files(all, existing);
+}
+
+Status save_level(const Level& level, const fs::path& path, const SaveOptions& options) {
+  const Result<std::vector<MadeFile>> files = make_level_files(level, path, options);
+  if (!files) return files.error();
+  return write_made(*files, options.existing);
 }
 
 }  // namespace pliant

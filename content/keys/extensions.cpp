@@ -22,7 +22,8 @@ class KeyReader {
   void read(const Json& json, const std::string& pointer) {
     extension_.add(owner_);
     walk(json, "", pointer);
-    if (extension_.name == "deformable" && given("young") && given("stiffness"))
+    // A modulus of 0 is not given.
+    if (extension_.name == "deformable" && given("stiffness") && static_cast<LevelNode*>(owner_)->deformable->young > 0)
       report_(pointer, "gives both young and stiffness; keep one, young is calibrated to a stiffness");
     if (const std::string clash = extension_.settle(owner_); !clash.empty()) {
       const std::string first = clash.substr(0, clash.find(' '));  // the key that it begins with, if any
@@ -123,6 +124,7 @@ Json write(const Extension& extension, const void* owner, const void* defaults, 
   const bool young = extension.name == "deformable" && static_cast<const LevelNode*>(owner)->deformable->young > 0.0;
   for (const Key& key : extension.keys) {
     if (key.alias || (young && key.name == "stiffness")) continue;
+    if (extension.name == "deformable" && key.name == "young" && !young) continue;  // 0: not given, also where said
     const Json value = key.get(owner);
     if (value.is_null() || (value == key.get(defaults) && !stated.contains(extension.name + "." + key.name))) continue;
     place(out, key.name) = value;

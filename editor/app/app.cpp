@@ -319,6 +319,7 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   draw_question();
   wanted_tabs_.clear();
   ui::end_widgets();
+  if (const auto refused = ui::take_refused()) editor.say(*refused, Severity::kWarning);
   host_->end();
   order_picture();
   extra_lines.clear();
@@ -378,11 +379,13 @@ void App::draw_top() {
   ImGui::SameLine(0, ui::px(ui::kWide));
   {
     const ui::Scope scope("Tools");
+    ImGui::PushID("Tools");  // the menu has a button of the same name
     for (const auto& each : tools_) {
       if (ui::choice_button(each->name(), tool() == each.get(), each->hint(), each->usable(editor)))
         take_tool(each->name());
       ImGui::SameLine(0, ui::px(2));
     }
+    ImGui::PopID();
   }
   ImGui::SameLine(0, ui::px(ui::kWide));
   draw_play_buttons();

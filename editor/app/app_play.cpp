@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "editor/app/app.h"
+#include "editor/play/run_findings.h"
 #include "editor/ui/widgets.h"
 
 namespace pliant {
@@ -181,6 +182,16 @@ void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
     list.AddRectFilled({corner.x - ui::px(8), y - ui::px(3)}, {corner.x + wide.x + ui::px(8), y + wide.y + ui::px(3)},
                        ui::color(p.window, 0.7f), ui::px(4));
     list.AddText({corner.x, y}, ui::color(p.text), felt.c_str());
+    y += wide.y + ui::px(8);
+  }
+  for (const RunFinding& each : run_findings(editor.state(), s, play_.traces())) {
+    if (each.brief.empty()) continue;
+    const std::string said = each.effector + "  " + each.brief;
+    const ImVec2 wide = ImGui::CalcTextSize(said.c_str());
+    list.AddRectFilled({corner.x - ui::px(8), y - ui::px(3)}, {corner.x + wide.x + ui::px(8), y + wide.y + ui::px(3)},
+                       ui::color(p.window, 0.85f), ui::px(4));
+    list.AddText({corner.x, y}, ui::color(p.warning), said.c_str());
+    ui::known_at("Play/" + each.effector + " " + each.brief, {corner.x, y}, {corner.x + wide.x, y + wide.y});
     y += wide.y + ui::px(8);
   }
 }

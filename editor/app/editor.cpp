@@ -170,6 +170,20 @@ std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {
   return nullptr;
 }
 
+std::shared_ptr<const PaintSurface> Editor::surface_now(NodeId id) {
+  if (auto ready = surface_of(id)) return ready;
+  const DocumentNode* const node = state().find(id);
+  if (!node || node->node.mesh < 0) return nullptr;
+  const auto mesh = state().meshes[static_cast<std::size_t>(node->node.mesh)];
+  const dmat3 frame(state().to_world(id));
+  auto made = PaintSurface::make(*mesh, frame);
+  if (!made) return nullptr;
+  auto ready = std::make_shared<const PaintSurface>(*std::move(made));
+  for (const auto& each : surfaces_)
+    if (each->mesh == mesh && each->frame == frame) each->surface = ready;
+  return ready;
+}
+
 void Editor::copy() {
   if (selected.empty()) return;
   clipboard = state();

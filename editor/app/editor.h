@@ -82,6 +82,7 @@ class Editor {
   // --- Findings of the document as it stands
   std::vector<EditorFinding> findings;
   std::uint64_t found_at = ~std::uint64_t{0};  // the revision that they are of
+  std::vector<EditorFinding> run_findings;     // of the last run, until the next
   std::uint64_t files_read = 0;  // grows when a file that the level names (a script, a panorama) is another one on disk
 
   // --- View
@@ -93,6 +94,8 @@ class Editor {
   // --- Surfaces to paint and to point at, by mesh and scale; made in the background
   // Null: not ready yet (it has been begun); the error is said once.
   std::shared_ptr<const PaintSurface> surface_of(NodeId id);
+  // The same at once, where it takes that long; null: it cannot be made.
+  std::shared_ptr<const PaintSurface> surface_now(NodeId id);
   const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
 
   // --- Clipboard

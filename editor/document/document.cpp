@@ -97,16 +97,23 @@ std::string Document::title() const {
   return state().rest->name.empty() ? "untitled" : state().rest->name + " (not saved)";
 }
 
-// Scripts come first: a level that names one never stands without it.
+// All of it or nothing; scripts come first: a level that names one never stands without it. What could not be opened
+// again is an error before anything is replaced.
 Status Document::write(const fs::path& file, const State& state, bool scripts_too) const {
+  std::vector<MadeFile> files;
   if (scripts_too)
     for (const auto& [name, keys] : state.scripts) {
       const auto before = scripts_on_disk_.find(name);
       const bool here = file.parent_path() == folder_;
       if (here && before != scripts_on_disk_.end() && before->second == keys) continue;
-      if (Status s = save_keys(*keys, file.parent_path() / name); !s) return s;
+      const Result<std::string> text = text_of_keys(*keys, name);
+      if (!text) return text.error();
+      files.push_back({file.parent_path() / name, Bytes(text->begin(), text->end())});
     }
-  return save_state(state, file);
+  Result<std::vector<MadeFile>> level = make_level_files(level_of(state), file);
+  if (!level) return level.error();
+  for (MadeFile& each : *level) files.push_back(std::move(each));
+  return write_made(files);
 }
 
 void Document::read_scripts(State& state) {

@@ -45,10 +45,19 @@ Status write_scripts(const fs::path& copy, const Scripts& scripts) {
   }
   Json all = Json::object();
   for (const auto& [name, script] : scripts) {
-    Json keys = Json::array();
+    Json keys = Json::array(), rows = Json::array();
     for (const PathKey& k : script->keys)
       keys.push_back({k.time, k.anchor.x, k.anchor.y, k.anchor.z, k.normal.x, k.normal.y, k.normal.z, k.height});
     all[name] = {{"smooth", script->smooth}, {"repeats", script->repeats}, {"keys", std::move(keys)}};
+    if (!script->rows) continue;
+    const PathTip& t = script->tip;
+    for (const PathRow& row : *script->rows)
+      rows.push_back({row.time, row.position.x, row.position.y, row.position.z, row.rotation.w, row.rotation.x,
+                      row.rotation.y, row.rotation.z});
+    all[name]["along"] = script->along;
+    all[name]["tip"] = {t.place.x, t.place.y,  t.place.z,  t.radius,   t.axis.x,  t.axis.y,
+                        t.axis.z,  t.stands.w, t.stands.x, t.stands.y, t.stands.z};
+    all[name]["rows"] = std::move(rows);
   }
   return write_json(scripts_of_copy(copy), all);
 }
@@ -143,6 +152,17 @@ Scripts scripts_beside_copy(const fs::path& copy) {
       for (const Json& k : its.at("keys")) {
         const auto n = k.get<std::array<double, 8>>();
         script.keys.push_back({n[0], {n[1], n[2], n[3]}, {n[4], n[5], n[6]}, n[7]});
+      }
+      if (its.contains("rows")) {
+        script.along = its.at("along").get<bool>();
+        const auto t = its.at("tip").get<std::array<double, 11>>();
+        script.tip = {{t[0], t[1], t[2]}, t[3], {t[4], t[5], t[6]}, {t[7], t[8], t[9], t[10]}};
+        auto rows = std::make_shared<std::vector<PathRow>>();
+        for (const Json& row : its.at("rows")) {
+          const auto n = row.get<std::array<double, 8>>();
+          rows->push_back({n[0], {n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}});
+        }
+        if (!rows->empty()) script.rows = std::move(rows);
       }
       scripts[name] = std::make_shared<const ScriptKeys>(std::move(script));
     } catch (const Json::exception&) {  // not what was written: the others may be

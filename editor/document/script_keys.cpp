@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <sstream>
 
@@ -16,6 +18,24 @@ namespace {
 constexpr const char* kKeyWord = "# key ";
 constexpr const char* kStraight = "# straight";
 constexpr double kTolerance = 2e-4;  // [m] of keys made from rows
+
+constexpr const char *kTipWord = "# tip ", *kMadeWord = "# made ", *kAlong = "# along";
+
+std::uint64_t hash_of(std::string_view text) {  // FNV-1a
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+// What stands behind the comments of a script.
+std::string_view rows_of_text(std::string_view text) {
+  while (text.starts_with('#')) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text;
+}
 
 // The slope at key i that keeps each piece monotone.
 dvec3 slope(const std::vector<PathKey>& keys, std::size_t i) {
@@ -34,8 +54,54 @@ dvec3 slope(const std::vector<PathKey>& keys, std::size_t i) {
 
 }  // namespace
 
+bool ScriptKeys::operator==(const ScriptKeys& o) const {
+  if (keys != o.keys || smooth != o.smooth || repeats != o.repeats || along != o.along || !(tip == o.tip)) return false;
+  if (!rows || !o.rows) return !rows == !o.rows;
+  // Rotations are made unit when they are read.
+  return rows == o.rows ||
+         std::equal(rows->begin(), rows->end(), o.rows->begin(), o.rows->end(),
+                    [](const PathRow& a, const PathRow& b) { return a.time == b.time && a.position == b.position; });
+}
+
+PathRow pose_at(const ScriptKeys& script, double time) {
+  if (!script.rows || script.rows->empty()) return {time, position_at(script, time), {1, 0, 0, 0}};
+  const std::vector<PathRow>& rows = *script.rows;
+  const auto next =
+      std::upper_bound(rows.begin(), rows.end(), time, [](double t, const PathRow& row) { return t < row.time; });
+  if (next == rows.begin()) return rows.front();
+  if (next == rows.end()) return rows.back();
+  const PathRow &a = *(next - 1), &b = *next;
+  const double share = (time - a.time) / (b.time - a.time);
+  return {time, a.position + share * (b.position - a.position), glm::slerp(a.rotation, b.rotation, share)};
+}
+
+double height_at(const ScriptKeys& script, double time) {
+  ScriptKeys heights = script;
+  heights.rows = nullptr;
+  for (PathKey& key : heights.keys) {
+    key.anchor = dvec3(0);
+    key.normal = dvec3(0, 1, 0);
+  }
+  return position_at(heights, time).y;
+}
+
 dvec3 position_at(const ScriptKeys& script, double time) {
   const std::vector<PathKey>& keys = script.keys;
+  if (script.rows && !script.rows->empty() && !keys.empty()) {
+    const PathRow row = pose_at(script, time);
+    const dvec3 middle = row.position + row.rotation * script.tip.place;
+    dvec3 out = row.rotation * script.tip.axis;
+    if (script.tip.axis == dvec3(0)) {  // as the keys around it are pressed
+      const auto after =
+          std::upper_bound(keys.begin(), keys.end(), time, [](double t, const PathKey& key) { return t < key.time; });
+      const PathKey& b = after == keys.end() ? keys.back() : *after;
+      const PathKey& a = after == keys.begin() ? b : *(after - 1);
+      const double share = b.time > a.time ? std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0) : 0.0;
+      out = a.normal + share * (b.normal - a.normal);
+      if (const double size = glm::length(out); size > 1e-9) out /= size;
+    }
+    return middle - script.tip.radius * out;
+  }
   if (keys.empty()) return dvec3(0);
   if (time <= keys.front().time) return keys.front().position();
   if (time >= keys.back().time) return keys.back().position();
@@ -54,6 +120,11 @@ Path path_of(const ScriptKeys& script) {
   Path path;
   path.repeats = script.repeats;
   if (script.keys.empty()) return path;
+  if (script.rows) {
+    path.rows = *script.rows;
+    path.turns = script.tip.axis != dvec3(0);
+    return path;
+  }
   const auto add = [&](double time) { path.rows.push_back({time, position_at(script, time), {1, 0, 0, 0}}); };
   for (std::size_t i = 0; i + 1 < script.keys.size(); ++i) {
     const double from = script.keys[i].time, to = script.keys[i + 1].time;
@@ -147,16 +218,39 @@ ScriptKeys smooth_keys_of(const Path& path, double tolerance) {
   return script;
 }
 
-Status save_keys(const ScriptKeys& script, const std::filesystem::path& file) {
-  std::string text;
-  if (!script.smooth) text += std::string(kStraight) + "\n";
+Result<std::string> text_of_keys(const ScriptKeys& script, const std::string& name) {
+  const Path path = path_of(script);
+  std::string head, rows = path.turns ? "time_s,x,y,z,qw,qx,qy,qz\n" : "time_s,x,y,z\n";
+  for (const PathRow& row : path.rows) {
+    rows += fmt::format("{:.14g},{:.14g},{:.14g},{:.14g}", row.time, row.position.x, row.position.y, row.position.z);
+    const dquat& q = row.rotation;
+    rows += path.turns ? fmt::format(",{:.9g},{:.9g},{:.9g},{:.9g}\n", q.w, q.x, q.y, q.z) : "\n";
+  }
+  if (!script.smooth) head += std::string(kStraight) + "\n";
+  if (script.along) head += std::string(kAlong) + "\n";
+  if (script.rows) {
+    const PathTip& t = script.tip;
+    head += fmt::format(
+        "{}{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n{}{:016x}\n",
+        kTipWord, t.place.x, t.place.y, t.place.z, t.radius, t.axis.x, t.axis.y, t.axis.z, t.stands.w, t.stands.x,
+        t.stands.y, t.stands.z, kMadeWord, hash_of(rows));
+  }
   for (const PathKey& k : script.keys)
-    text += fmt::format("{}{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", kKeyWord, k.time,
+    head += fmt::format("{}{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", kKeyWord, k.time,
                         k.anchor.x, k.anchor.y, k.anchor.z, k.normal.x, k.normal.y, k.normal.z, k.height);
-  text += "time_s,x,y,z\n";
-  for (const PathRow& row : path_of(script).rows)
-    text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}\n", row.time, row.position.x, row.position.y, row.position.z);
-  return write_file(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  std::string text = head + rows;
+  if (text.size() > most(limits::kScriptFile))
+    return Error{name, "is not written, as no run would read it: it " +
+                           beyond(limits::kScriptFile, static_cast<double>(text.size()), "make the path shorter")};
+  if (const Result<Path> again = parse_script(text, name); !again)
+    return Error{again.error().where, "is not written, as no run would read it: " + again.error().what};
+  return text;
+}
+
+Status save_keys(const ScriptKeys& script, const std::filesystem::path& file) {
+  const Result<std::string> text = text_of_keys(script, file.string());
+  if (!text) return text.error();
+  return write_file(file, std::span(reinterpret_cast<const std::uint8_t*>(text->data()), text->size()));
 }
 
 Result<ScriptKeys> load_keys(const std::filesystem::path& file) {
@@ -166,9 +260,20 @@ Result<ScriptKeys> load_keys(const std::filesystem::path& file) {
   script.repeats = path->repeats;
   const Result<Bytes> bytes = read_file(file, limits::kScriptFile);
   if (!bytes) return bytes.error();
-  std::istringstream in(std::string(bytes->begin(), bytes->end()));
+  const std::string text(bytes->begin(), bytes->end());
+  std::istringstream in(text);
+  std::uint64_t made = 0;
+  bool has_tip = false;
   for (std::string line; std::getline(in, line) && !line.empty() && line[0] == '#';) {
     if (line == kStraight) script.smooth = false;
+    if (line == kAlong) script.along = true;
+    if (line.rfind(kMadeWord, 0) == 0) made = std::strtoull(line.c_str() + std::strlen(kMadeWord), nullptr, 16);
+    if (line.rfind(kTipWord, 0) == 0) {
+      std::istringstream words(line.substr(std::strlen(kTipWord)));
+      PathTip& t = script.tip;
+      has_tip = static_cast<bool>(words >> t.place.x >> t.place.y >> t.place.z >> t.radius >> t.axis.x >> t.axis.y >>
+                                  t.axis.z >> t.stands.w >> t.stands.x >> t.stands.y >> t.stands.z);
+    }
     if (line.rfind(kKeyWord, 0) != 0) continue;
     std::istringstream words(line.substr(6));
     PathKey k;
@@ -177,8 +282,17 @@ Result<ScriptKeys> load_keys(const std::filesystem::path& file) {
   }
   // Keys count only where they still make the rows: somebody may have changed those.
   const auto ascend = [](const PathKey& a, const PathKey& b) { return a.time >= b.time; };
-  bool same =
-      script.keys.size() > 1 && std::adjacent_find(script.keys.begin(), script.keys.end(), ascend) == script.keys.end();
+  bool same = script.keys.size() > (has_tip ? 0u : 1u) &&
+              std::adjacent_find(script.keys.begin(), script.keys.end(), ascend) == script.keys.end();
+  if (has_tip) {
+    same = same && made == hash_of(rows_of_text(text));
+    script.rows = std::make_shared<const std::vector<PathRow>>(std::move(path->rows));
+    if (same) return script;
+    Path as_it_is;
+    as_it_is.rows = *script.rows;
+    as_it_is.repeats = script.repeats;
+    return keys_of(as_it_is, kTolerance);
+  }
   for (std::size_t i = 0; same && i < path->rows.size(); ++i)
     same = length(position_at(script, path->rows[i].time) - path->rows[i].position) < 1e-6;
   return same ? script : keys_of(*path, kTolerance);

@@ -16,7 +16,8 @@ class FindingsPanel : public Panel {
   Place place() const override { return Place::kBottom; }
   std::string badge(const Editor& editor) const override {
     std::size_t count = 0;
-    for (const EditorFinding& each : editor.findings) count += each.finding.severity != Severity::kNote;
+    for (const auto* const list : {&editor.findings, &editor.run_findings})
+      for (const EditorFinding& each : *list) count += each.finding.severity != Severity::kNote;
     return count == 0 ? "" : fmt::format("{}", count);
   }
 
@@ -24,8 +25,10 @@ class FindingsPanel : public Panel {
     watch_line(editor);
     ImGui::BeginChild("list");
     const EditorFinding* fixed = nullptr;
-    for (std::size_t i = 0; i < editor.findings.size(); ++i)
-      if (row(editor, i)) fixed = &editor.findings[i];
+    std::size_t number = 0;
+    for (const auto* const list : {&editor.findings, &editor.run_findings})
+      for (const EditorFinding& each : *list)
+        if (row(editor, each, number++)) fixed = &each;
     if (fixed) {
       const QuickFix fix = *fixed->fix;
       editor.apply(fix.label, fix.fix(editor.state(), editor.document.next_id()));
@@ -36,11 +39,13 @@ class FindingsPanel : public Panel {
  private:
   static void watch_line(const Editor& editor) {
     std::size_t count[3]{};
-    for (const EditorFinding& each : editor.findings) ++count[static_cast<std::size_t>(each.finding.severity)];
+    for (const auto* const list : {&editor.findings, &editor.run_findings})
+      for (const EditorFinding& each : *list) ++count[static_cast<std::size_t>(each.finding.severity)];
+    const bool nothing = editor.findings.empty() && editor.run_findings.empty();
     const bool current = editor.found_at == editor.document.revision();
     std::string text = editor.playing && !current ? "Checked again when the run has ended"
                        : !current                 ? "Checking \u2026"
-                       : editor.findings.empty()  ? "Nothing is wrong"
+                       : nothing                  ? "Nothing is wrong"
                                                   : "";
     const auto add = [&](std::size_t n, const char* one, const char* many) {
       if (n > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "   ", n, n == 1 ? one : many);
@@ -49,12 +54,11 @@ class FindingsPanel : public Panel {
     add(count[1], "warning", "warnings");
     add(count[2], "note", "notes");
     ui::dim(text.c_str());
-    if (current) ui::known_as(editor.findings.empty() ? "Nothing is wrong" : "Checked");
+    if (current) ui::known_as(nothing ? "Nothing is wrong" : "Checked");
   }
 
   // True: its fix was asked for.
-  bool row(Editor& editor, std::size_t i) {
-    const EditorFinding& found = editor.findings[i];
+  bool row(Editor& editor, const EditorFinding& found, std::size_t i) {
     const ui::Palette& p = ui::palette();
     const Severity severity = found.finding.severity;
     const char* const word = severity == Severity::kError     ? "Error"

@@ -76,12 +76,22 @@ class InspectorPanel : public Panel {
         triangles += p.index.size() / 3;
         vertices += p.position.size();
       }
-      const vec3 size = mesh.box.empty() ? vec3(0) : mesh.box.size() * node.node.local.scale;
-      ui::dim(fmt::format("{} triangles, {} vertices\n{} \u00d7 {} \u00d7 {}", triangles, vertices,
-                          length_text(static_cast<double>(size.x), 3), length_text(static_cast<double>(size.y), 3),
-                          length_text(static_cast<double>(size.z), 3))
+      const dvec3 size = world_size(editor, node);
+      ui::dim(fmt::format("{} triangles, {} vertices\n{} \u00d7 {} \u00d7 {} in the world", triangles, vertices,
+                          length_text(size.x, 3), length_text(size.y, 3), length_text(size.z, 3))
                   .c_str());
     }
+  }
+
+  // [m] Along the node's own axes, with all scales above it.
+  static dvec3 world_size(const Editor& editor, const DocumentNode& node) {
+    if (node.node.mesh < 0) return dvec3(0);
+    const DocumentMesh& mesh = *editor.state().meshes[static_cast<std::size_t>(node.node.mesh)];
+    const dmat4 world = editor.state().to_world(node.id);
+    dvec3 size(0);
+    for (int i = 0; i < 3 && !mesh.box.empty(); ++i)
+      size[i] = static_cast<double>(mesh.box.size()[i]) * length(dvec3(world[i]));
+    return size;
   }
 
   // A row: what at the left, its field at the right. True while the label's mark for "back to the default" is pressed.
@@ -117,20 +127,37 @@ class InspectorPanel : public Panel {
     LocalTransform local = node.node.local;
     // Floats know no more than five digits of an angle.
     const dvec3 euler = glm::round(glm::degrees(glm::eulerAngles(dquat(local.rotation))) * 1e4) * 1e-4;
-    dvec3 position(local.translation),
-        turn = shown_turn_.first == node.id && same_turn(local.rotation) ? shown_turn_.second : euler,
-        scale(local.scale);
+    // Lengths are the world's, whatever the parents scale by.
+    const dmat4 parent = editor.state().to_world(node.parent);
+    const dvec3 scaled(length(dvec3(parent[0])), length(dvec3(parent[1])), length(dvec3(parent[2])));
+    const bool plain =
+        glm::all(glm::lessThan(glm::abs(scaled - 1.0), dvec3(1e-6))) || glm::any(glm::lessThan(scaled, dvec3(1e-12)));
+    const dvec3 factor = plain ? dvec3(1) : scaled, before = dvec3(local.translation) * factor,
+                size = world_size(editor, node);
+    dvec3 position = before,
+          turn = shown_turn_.first == node.id && same_turn(local.rotation) ? shown_turn_.second : euler,
+          scale(local.scale), wanted = size;
     bool changed = false;
-    changed |= triple("Position", "m", position, "Of the node's origin, in its parent's frame");
+    const std::string said =
+        plain ? std::string()
+              : fmt::format(
+                    "\nThe parents scale by {:.4g}, {:.4g}, {:.4g}: what is shown and typed is in the world's "
+                    "metres.",
+                    factor.x, factor.y, factor.z);
+    changed |= triple("Position", "m", position, ("Of the node's origin, along its parent's axes" + said).c_str());
     const bool turned = triple("Rotation", "\u00b0", turn, "About x, then y, then z of its parent's frame");
-    changed |= triple("Scale", "", scale, "Along the node's own axes");
+    changed |= triple("Scale", "", scale, "Along the node's own axes, within its parent");
+    if (size != dvec3(0))
+      changed |= triple("Size", "m", wanted, "Of the mesh in the world, along the node's own axes; changes its scale");
+    for (int i = 0; i < 3; ++i)
+      if (wanted[i] != size[i] && size[i] > 0.0 && wanted[i] > 0.0) scale[i] *= wanted[i] / size[i];
     if (turned) {
       local.rotation = quat(glm::normalize(dquat(glm::radians(turn))));
       shown_turn_ = {node.id, turn};
       shown_quat_ = local.rotation;
     }
     if (!changed && !turned) return;
-    local.translation = vec3(position);
+    if (position != before) local.translation = vec3(position / factor);
     local.scale = vec3(scale);
     editor.apply("Place " + node.node.name, placed(editor.state(), node.id, local), "place " + std::to_string(node.id));
   }
@@ -145,7 +172,8 @@ class InspectorPanel : public Panel {
     for (int i = 0; i < 3; ++i) {
       if (i) ImGui::SameLine(0, ui::px(4));
       const ImVec2 at = ImGui::GetCursorScreenPos();
-      changed |= ui::number(fmt::format("{} {}", label, axes[i]).c_str(), value[i], -1e6, 1e6, "", false, wide);
+      changed |= ui::number(fmt::format("{} {}", label, axes[i]).c_str(), value[i], -1e6, 1e6,
+                            (std::string("#") + unit).c_str(), false, wide);
       ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + ui::px(3), at.y + ImGui::GetFrameHeight()},
                                                 ui::color(ui::palette().axis[i]), ui::px(2));
     }
@@ -245,9 +273,7 @@ class InspectorPanel : public Panel {
       changed = true;
     }
     begin_row("Colour", "Linear RGB", false);
-    ImGui::SetNextItemWidth(-1);
-    changed |= ImGui::ColorEdit3("##light colour", &light.color.x, ImGuiColorEditFlags_Float);
-    ui::known_as("colour");
+    changed |= ui::color_field("colour", &light.color.x);
     if (changed) editor.apply("Light", with_light(editor.state(), node.id, light), "light " + std::to_string(node.id));
     if (ui::button("Remove light")) editor.apply("Remove light", with_light(editor.state(), node.id, {}));
   }

@@ -27,6 +27,17 @@ bool number_field(const Key& key, const char* label, Json& value, float width = 
   return true;
 }
 
+// Of the i-th number of a row: "N/m, N s/m" are two units. There is no room to show it.
+std::string row_unit(const std::string& units, std::size_t i) {
+  std::size_t begin = 0;
+  for (; i > 0; --i) {
+    const std::size_t comma = units.find(", ", begin);
+    if (comma == std::string::npos) break;
+    begin = comma + 2;
+  }
+  return "#" + units.substr(begin, units.find(", ", begin) - begin);
+}
+
 // Several numbers in a row; a press into one of them is an edit of the whole.
 bool row_field(const Key& key, Json& value, std::size_t count) {
   const float wide = (ImGui::GetContentRegionAvail().x - ui::px(4) * static_cast<float>(count - 1)) /
@@ -36,8 +47,8 @@ bool row_field(const Key& key, Json& value, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     if (i) ImGui::SameLine(0, ui::px(4));
     double number = next[i].is_number() ? next[i].get<double>() : 0.0;
-    if (ui::number(fmt::format("{} {}", key.name, i + 1).c_str(), number, least_of(key), most_of(key), "", false,
-                   wide)) {
+    if (ui::number(fmt::format("{} {}", key.name, i + 1).c_str(), number, least_of(key), most_of(key),
+                   row_unit(key.unit, i).c_str(), false, wide)) {
       next[i] = number;
       changed = true;
     }
@@ -93,7 +104,8 @@ bool box_field(const Key& key, Json& value) {
   for (const char* corner : {"min", "max"}) {
     Key part = key;
     part.name = key.name + " " + corner;
-    part.range = {};
+    part.unit = "m";
+    part.range = {-1e6, 1e6};
     changed |= row_field(part, next[corner], 3);
   }
   if (ui::button(fmt::format("None##{}", key.name).c_str())) {
@@ -165,9 +177,7 @@ bool key_field(Editor& editor, const Key& key, Json& value) {
     case KeyType::kColor: {
       float rgb[3] = {0, 0, 0};
       for (std::size_t i = 0; i < 3 && value.is_array() && i < value.size(); ++i) rgb[i] = value[i].get<float>();
-      ImGui::SetNextItemWidth(-1);
-      changed = ImGui::ColorEdit3("##colour", rgb, ImGuiColorEditFlags_Float);
-      ui::known_as(key.name);
+      changed = ui::color_field(key.name.c_str(), rgb);
       if (changed) value = Json::array({rgb[0], rgb[1], rgb[2]});
       break;
     }

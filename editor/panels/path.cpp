@@ -61,7 +61,7 @@ class PathPanel : public Panel {
 
   void draw_pace(Editor& editor) {
     double depth = editor.path_depth * 1e3, speed = editor.path_speed * 1e3;
-    ui::label("Depth", "How deep the next key presses");
+    ui::label("Depth", "How deep the next key presses the tip's surface into the organ's");
     ImGui::SameLine(ui::px(90));
     if (ui::number("depth", depth, -50, 50, "mm", false, 110)) editor.path_depth = depth * 1e-3;
     ui::label("Speed", "On the way to the next key");
@@ -88,16 +88,10 @@ class PathPanel : public Panel {
                     at.y + size.y * static_cast<float>(0.1 + 0.8 * (high - height) / span));
     };
     list.AddLine(place(begin, 0), place(begin + length_s, 0), ui::color(p.faint), ui::px(1));
-    // Heights are interpolated as positions are, where both keys are on a surface.
-    ScriptKeys heights = keys;
-    for (PathKey& key : heights.keys) {
-      key.anchor = dvec3(0);
-      key.normal = dvec3(0, 1, 0);
-    }
     std::vector<ImVec2> points;
     for (int i = 0; i <= 200; ++i) {
       const double t = begin + length_s * i / 200;
-      points.push_back(place(t, position_at(heights, t).y));
+      points.push_back(place(t, height_at(keys, t)));
     }
     list.AddPolyline(points.data(), static_cast<int>(points.size()), ui::color(p.depth), 0, ui::px(1.5f));
     for (const PathKey& key : keys.keys)
@@ -115,6 +109,18 @@ class PathPanel : public Panel {
     bool changed =
         ui::checkbox("Smooth", next.smooth, "Slows down at each turn and never passes beyond a key; else straight");
     std::string what = "Smooth";
+    ImGui::SameLine(0, ui::px(ui::kPad));
+    if (ui::checkbox(
+            "Along the surface", next.along,
+            "Between its keys the tip follows the surface, and tools are turned along its normal; else straight "
+            "from key to key, without turning")) {
+      changed = true;
+      what = "Along the surface";
+      // Heights are of the tip's surface along it, of its middle off it: the keys stay where they are.
+      const double radius = tip_of(editor.state(), id).value_or(PathTip{}).radius;
+      for (PathKey& key : next.keys)
+        if (key.normal != dvec3(0)) key.height += next.along ? -radius : radius;
+    }
     for (std::size_t i = 0; i < next.keys.size(); ++i) {
       PathKey& key = next.keys[i];
       ImGui::PushID(static_cast<int>(i));

@@ -8,7 +8,9 @@
 
 #include "editor/play/live_edits.h"
 #include "editor/play/rendered.h"
+#include "editor/play/run_findings.h"
 #include "editor/play/scene_view.h"
+#include "systems/safety/safety.h"
 
 namespace pliant {
 namespace {
@@ -105,6 +107,7 @@ void Play::start() {
       }))
     before_ = std::move(traces_);
   traces_.clear();
+  editor_.run_findings.clear();
   run_ = std::make_shared<PlayRun>(std::move(made));
   on_stage_ = false;
   editor_.playing = true;
@@ -262,7 +265,11 @@ void Play::take_samples() {
     }
     // What is had again is there already.
     for (const PlaySample& sample : taken_[i])
-      if (trace.samples.empty() || sample.time > trace.samples.back().time) trace.samples.push_back(sample);
+      if (trace.samples.empty() || sample.time > trace.samples.back().time) {
+        trace.samples.push_back(sample);
+        trace.touched += sample.touching;
+        trace.gated += (sample.limited >> static_cast<unsigned>(SafetyLimit::kGated)) & 1u;
+      }
     while (!trace.samples.empty() && trace.samples.back().time - trace.samples.front().time > PlayTrace::kKept)
       trace.samples.pop_front();
   }
@@ -287,10 +294,19 @@ void Play::update() {
   realtime |= status_.realtime;  // a device of the level asks for it
   for (; said_ < status_.notes.size(); ++said_) editor_.say(status_.notes[said_]);
   take_samples();
+  note_findings();
   put_on_stage();
   if (status_.phase != PlayPhase::kEnded) return;
   editor_.say(status_.error.empty() ? "the level has stopped playing" : status_.error, Severity::kError);
   stop();
+}
+
+void Play::note_findings() {
+  editor_.run_findings.clear();
+  for (const RunFinding& each : run_findings(editor_.state(), status_, traces_)) {
+    const DocumentNode* const node = editor_.state().find(each.effector);
+    if (node && !each.text.empty()) editor_.run_findings.push_back({{Severity::kWarning, "", each.text}, node->id, {}});
+  }
 }
 
 std::shared_ptr<const PlayPast> Play::past() {
@@ -309,6 +325,7 @@ void Play::changed(const State& before, const State& after) {
     sources.clear();
     traces_.clear();
     before_.clear();
+    editor_.run_findings.clear();
     return;
   }
   if (!on()) return;

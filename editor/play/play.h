@@ -25,6 +25,7 @@ struct PlayTrace {
   std::string name;
   double radius = 0.0;  // [m]
   std::deque<PlaySample> samples;
+  std::uint64_t touched = 0, gated = 0;  // [ticks] of the whole run: in contact; force withheld by the gate
 };
 
 class Play {
@@ -90,6 +91,7 @@ class Play {
   void put_on_stage();
   void end_past(std::vector<PlayTrace>& traces, double time);
   void take_samples();
+  void note_findings();
 
   Editor& editor_;
   std::shared_ptr<PlayRun> run_, next_;

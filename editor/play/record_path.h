@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/document/script_keys.h"
-#include "editor/paint/paint_surface.h"
+#include "editor/document/surface_path.h"
 #include "editor/play/play.h"
 
 namespace pliant {
@@ -15,12 +14,6 @@ struct RecordedPath {
   ScriptKeys keys;     // from 0 s on
   double begin = 0.0;  // [s] of the run: where the first key is
   double error = 0.0;  // [m] the farthest that the script, as it is followed, is from the run at any tick
-};
-
-// A surface that keys are anchored on, and where its frame stands.
-struct PathSurface {
-  std::shared_ptr<const PaintSurface> surface;
-  dvec3 origin{0};  // [m] world
 };
 
 // Of effector `which` of `count`, without its rest before and after. As few keys as a smooth curve within `tolerance`

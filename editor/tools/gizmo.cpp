@@ -88,13 +88,13 @@ void GizmoTool::finish(Editor& editor, bool keep) {
 }
 
 void GizmoTool::leave(Editor& editor) {
-  if (dragging_ || typing_) finish(editor, true);
+  if (dragging_ || typing_) finish(editor, understood_ || text_.empty());
 }
 
 void GizmoTool::take_text(Editor& editor, const ViewportInput& in) {
   if (in.typed.empty() && !in.erase) return;
   for (const char c : in.typed)
-    if (c >= ' ' && c < 127 && text_.size() < 40) {
+    if (c >= ' ' && c < 127 && text_.size() < 200) {
       if (c >= 'x' && c <= 'z') {  // another axis takes the place of the one before
         std::erase_if(text_, [](char t) { return t >= 'x' && t <= 'z'; });
         text_.insert(text_.begin(), c);
@@ -104,7 +104,7 @@ void GizmoTool::take_text(Editor& editor, const ViewportInput& in) {
     }
   if (in.erase && !text_.empty()) text_.pop_back();
   typing_ = true;
-  const TypedValue typed = typed_value(text_, lengths());
+  const TypedValue typed = typed_value(text_, lengths() ? "m" : snap_unit());
   understood_ = typed.understood;
   if (typed.axis != GizmoPart::kNone) part_ = typed.axis;
   if (typed.understood) {
@@ -167,7 +167,7 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
   std::string text = typing_ ? text_ + "\u258f" : std::string();
   const std::string said = any_ ? readout(amounts_) : std::string();
   if (typing_ && !understood_)
-    text += "   a number, and mm or cm where it is a length";
+    text += lengths() ? "   a length: 5 mm, 1/10, x -2 cm" : "   a number: 45, 1/3, x -2";
   else if (!said.empty())
     text += (text.empty() ? "" : "   ") + said;
   if (typing_) text += "   Enter keeps it, Esc leaves it";

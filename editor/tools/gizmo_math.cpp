@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <unordered_map>
 
+#include "editor/ui/quantity.h"
 #include "editor/viewport/frames.h"
 
 namespace pliant {
@@ -230,28 +231,21 @@ double snapped(double value, double step) {
   return step > 0.0 ? std::round(value / step) * step : value;
 }
 
-TypedValue typed_value(const std::string& text, bool length) {
+TypedValue typed_value(const std::string& text, const std::string& unit) {
   TypedValue out;
-  std::string number;
-  for (const char c : text) {
-    if (c == ' ') continue;
-    if (number.empty() && (c == 'x' || c == 'y' || c == 'z')) {
+  std::size_t begin = 0;
+  for (; begin < text.size(); ++begin) {
+    const char c = text[begin];
+    if (c == 'x' || c == 'y' || c == 'z')
       out.axis = static_cast<GizmoPart>(static_cast<int>(GizmoPart::kX) + (c - 'x'));
-      continue;
-    }
-    number += c == ',' ? '.' : c;
+    else if (c != ' ')
+      break;
   }
-  if (number.empty() || number == "-" || number == ".") return out;
-  double value = 0;
-  const char* const begin = number.data() + (number[0] == '+' ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, number.data() + number.size(), value);
-  const std::string unit = number.substr(static_cast<std::size_t>(end - number.data()));
-  constexpr std::pair<const char*, double> kUnits[] = {{"", 1},      {"m", 1},     {"cm", 1e-2},
-                                                       {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
-  const auto known = std::find_if(std::begin(kUnits), std::end(kUnits), [&](const auto& u) { return unit == u.first; });
-  out.understood =
-      error == std::errc() && std::isfinite(value) && known != std::end(kUnits) && (length || unit.empty());
-  if (out.understood) out.value = value * known->second;
+  const std::string typed = text.substr(begin);
+  if (typed.empty() || typed == "-" || typed == "." || typed == "+") return out;
+  const Result<double> read = ui::parse_quantity(typed, unit);
+  out.understood = read.ok();
+  if (read) out.value = *read;
   return out;
 }
 

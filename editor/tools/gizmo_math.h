@@ -76,13 +76,13 @@ std::vector<Placing> scaled(const Grip& grip, dvec3 factors);             // alo
 
 double snapped(double value, double step);  // to a multiple; step 0: as it is
 
-// What is typed while something is held: an axis' letter, a number, a unit: "x 0.05", "-3mm", "1e-7".
+// What is typed while something is held: an axis' letter, then a quantity (editor/ui/quantity.h): "x 0.05", "-3mm".
 struct TypedValue {
   GizmoPart axis = GizmoPart::kNone;  // none: as it was
-  std::optional<double> value;        // [m] of a length; nothing: no number yet
+  std::optional<double> value;        // in `unit`; nothing: no number yet
   bool understood = true;
 };
-TypedValue typed_value(const std::string& text, bool length);
+TypedValue typed_value(const std::string& text, const std::string& unit);
 
 // "12 mm", with the unit that suits its size.
 std::string length_text(double metres, int digits = 4);

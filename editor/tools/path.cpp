@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "components/kinematic.h"
 #include "editor/app/path_editing.h"
 #include "editor/tools/tools.h"
 #include "editor/ui/widgets.h"
@@ -17,6 +19,7 @@ constexpr double kReach = 10.0;          // [point] from a key within which the 
 constexpr double kWheel = 0.0005;        // [m] of depth a click
 constexpr std::size_t kMostLabels = 20;  // with more keys their times hide each other
 constexpr std::size_t kMostLines = 400;  // of the curve that is drawn
+constexpr std::size_t kMostGhosts = 12, kMostGhostEdges = 700;
 
 class PathTool : public ViewTool {
  public:
@@ -24,8 +27,7 @@ class PathTool : public ViewTool {
   const char* sign() const override { return "~"; }
   const char* hint() const override {
     return "Click on the organ sets a key, drag moves it, wheel over it presses deeper, Delete removes it, Alt turns "
-           "the "
-           "view.";
+           "the view.";
   }
   bool usable(const Editor& editor) const override { return path_node(editor) != kNoNode; }
 
@@ -119,9 +121,64 @@ class PathTool : public ViewTool {
       lines.push_back({before, here, vec4(c.x, c.y, c.z, 0.9f), true});
       before = here;
     }
+    ghosts(editor, keys, lines);
   }
 
  private:
+  // The probe or tool as it is at each key: edges of its mesh, or its tip.
+  static void ghosts(const Editor& editor, const ScriptKeys& keys, std::vector<ViewLine>& lines) {
+    const DocumentNode* const it = editor.state().find(effector_of(editor.state(), path_node(editor)));
+    if (!it || !keys.rows) return;
+    const std::vector<std::pair<vec3, vec3>> shape = shape_of(editor.state(), *it, keys.tip);
+    const std::size_t shown = std::min(keys.keys.size(), kMostGhosts);
+    for (std::size_t i = 0; i < keys.keys.size(); ++i) {
+      const bool active = editor.path_key == i;
+      if (i >= shown && !active) continue;
+      const ImVec4& c = active ? ui::palette().accent : ui::palette().text;
+      const PathRow at = pose_at(keys, keys.keys[i].time);
+      const auto world = [&](const vec3& p) { return vec3(at.position + at.rotation * dvec3(p)); };
+      for (const auto& [from, to] : shape)
+        lines.push_back({world(from), world(to), vec4(c.x, c.y, c.z, active ? 0.55f : 0.25f), false});
+    }
+  }
+
+  // [m] Device frame.
+  static std::vector<std::pair<vec3, vec3>> shape_of(const State& state, const DocumentNode& it, const PathTip& tip) {
+    std::vector<std::pair<vec3, vec3>> out;
+    if (it.node.mesh >= 0 && !it.node.probe) {
+      const dmat4 world = state.to_world(it.id);
+      const Pose pose = rigid_part(world);
+      std::size_t triangles = 0;
+      const DocumentMesh& mesh = *state.meshes[static_cast<std::size_t>(it.node.mesh)];
+      for (const Primitive& p : mesh.primitives) triangles += p.index.size() / 3;
+      const std::size_t every = 1 + triangles / kMostGhostEdges;
+      for (const Primitive& p : mesh.primitives)
+        for (std::size_t t = 0; t + 2 < p.index.size(); t += 3 * every) {
+          const auto place = [&](std::size_t i) {
+            return vec3(pose.to_local(dvec3(world * glm::dvec4(dvec3(p.position[p.index[i]]), 1.0))));
+          };
+          out.emplace_back(place(t), place(t + 1));
+        }
+      return out;
+    }
+    const dvec3 axis = tip.axis == dvec3(0) ? dvec3(0, 1, 0) : tip.axis;
+    const dvec3 side = normalize(std::abs(axis.x) < 0.9 ? cross(axis, dvec3(1, 0, 0)) : cross(axis, dvec3(0, 1, 0)));
+    const dvec3 frame[3] = {side, cross(axis, side), axis};
+    constexpr int kAround = 24;
+    for (int plane = 0; plane < 3; ++plane)
+      for (int i = 0; i < kAround; ++i) {
+        const auto on = [&](int k) {
+          const double a = 2.0 * glm::pi<double>() * k / kAround;
+          return vec3(tip.place + tip.radius * (std::cos(a) * frame[plane] + std::sin(a) * frame[(plane + 1) % 3]));
+        };
+        out.emplace_back(on(i), on(i + 1));
+      }
+    if (it.node.probe && it.node.probe->length > 0.0)
+      for (const dvec3& beside : {frame[0], -frame[0], frame[1], -frame[1]})
+        out.emplace_back(vec3(tip.radius * beside), vec3(tip.radius * beside + it.node.probe->length * axis));
+    return out;
+  }
+
   struct PlaceUnder {
     dvec3 point, normal;
   };
@@ -130,12 +187,11 @@ class PathTool : public ViewTool {
     const ViewRay ray = in.ray();
     std::optional<PlaceUnder> found;
     double nearest = 1e300;
-    for (const auto& each : editor.state().nodes) {
-      if (each->node.mesh < 0 || !each->node.in_scene || each->node.handle) continue;
-      const auto surface = editor.surface_of(each->id);
+    for (const NodeId id : path_grounds(editor.state())) {
+      const auto surface = editor.surface_of(id);
       if (!surface) continue;
       // The surface frame is the world's, but for where the node stands.
-      const dvec3 origin(editor.state().to_world(each->id)[3]);
+      const dvec3 origin(editor.state().to_world(id)[3]);
       const SurfaceHit hit = surface->hit({ray.from - origin, ray.along});
       if (!hit.valid()) continue;
       const double away = length(hit.point + origin - ray.from);
@@ -149,10 +205,8 @@ class PathTool : public ViewTool {
   // Begins to prepare what is not: every surface that a click may meet.
   static bool prepared(Editor& editor) {
     bool ready = true;
-    for (const auto& each : editor.state().nodes) {
-      if (each->node.mesh < 0 || !each->node.in_scene || each->node.handle || editor.surface_of(each->id)) continue;
-      ready = ready && !editor.jobs.running("surface " + std::to_string(each->id));
-    }
+    for (const NodeId id : path_grounds(editor.state()))
+      if (!editor.surface_of(id)) ready = ready && !editor.jobs.running("surface " + std::to_string(id));
     return ready;
   }
 
@@ -173,10 +227,13 @@ class PathTool : public ViewTool {
   static void add_key(Editor& editor, NodeId node, const ScriptKeys& keys, const PlaceUnder& place) {
     ScriptKeys next = keys;
     const double clear = path_clearance(editor, node);
-    PathKey key{0.0, place.point, place.normal, -editor.path_depth};
+    if (next.keys.empty()) next.along = true;
+    // Off the surface, heights are the middle's.
+    const double radius = next.along ? 0.0 : tip_of(editor.state(), node).value_or(PathTip{}).radius;
+    PathKey key{0.0, place.point, place.normal, radius - editor.path_depth};
     if (next.keys.empty()) {  // it comes from the air
       next.keys.push_back({0.0, place.point, place.normal, clear});
-      key.time = clear / editor.path_speed + editor.path_depth / editor.path_speed;
+      key.time = (clear + editor.path_depth) / editor.path_speed;
     } else {
       const double way = length(next.keys.back().position() - key.position());
       key.time = next.keys.back().time + std::max(way / editor.path_speed, 0.1);

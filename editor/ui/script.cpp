@@ -274,8 +274,14 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "type" || step.verb == "set") {
     std::string text = step.rest;
     if (step.verb == "set") {
-      const std::size_t last = step.rest.rfind(' ');
+      // The longest address that is a widget's: names and values may both hold blanks.
+      std::size_t last = step.rest.rfind(' ');
       if (last == std::string::npos) return wrong("says no value; write `set Inspector/stiffness 500`");
+      for (std::size_t at = last; at != std::string::npos && at > 0; at = step.rest.rfind(' ', at - 1))
+        if (find_widget(step.rest.substr(0, at))) {
+          last = at;
+          break;
+        }
       text = step.rest.substr(last + 1);
       const auto from = place(step.rest.substr(0, last), there);
       if (!from) return wrong(from.error().what);

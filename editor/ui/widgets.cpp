@@ -186,30 +186,10 @@ bool text_field(const char* label, std::string& value, const char* placeholder, 
   return changed;
 }
 
-bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic,
-            float width, bool* finished) {
-  ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
-  const double size = std::max(std::abs(value), 1e-6 * std::max(std::abs(least), std::abs(most)));
-  const double decade = std::pow(10.0, std::floor(std::log10(std::max(size, 1e-9))));
-  const float speed = static_cast<float>(std::max(decade, 1e-9) * 0.02);
-  const std::string_view shown = std::string_view(unit) == "1" ? "" : std::string_view(unit) == "%" ? "%%" : unit;
-  const std::string format = fmt::format("%.6g{}{}", shown.empty() ? "" : " ", shown);
-  const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp |
-                                 (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
-                                 ImGuiSliderFlags_NoRoundToFormat;
-  double next = value + 0.0;  // -0 reads as 0
-  const bool changed = ImGui::DragScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &next, speed, &least,
-                                         &most, format.c_str(), flags & ~ImGuiSliderFlags_Logarithmic);
-  known_as(label);
-  if (finished) *finished = ImGui::IsItemDeactivatedAfterEdit();
-  if (changed) value = next;
-  return changed;
-}
-
 bool slider(const char* label, double& value, double least, double most, const char* hint_text, float width) {
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
   const bool changed = ImGui::SliderScalar(fmt::format("##{}", label).c_str(), ImGuiDataType_Double, &value, &least,
-                                           &most, "", ImGuiSliderFlags_AlwaysClamp);
+                                           &most, "", ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput);
   known_as(label);
   hint(hint_text);
   return changed;

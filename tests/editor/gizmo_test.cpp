@@ -250,16 +250,16 @@ TEST(Gizmo, AFlatNodeMayBeMovedTurnedAndScaledAndStaysFinite) {
 }
 
 TEST(Gizmo, WhatIsTypedIsAnAxisANumberAndAUnit) {
-  EXPECT_EQ(typed_value("x 0.05", true).axis, GizmoPart::kX);
-  EXPECT_DOUBLE_EQ(*typed_value("x 0.05", true).value, 0.05);
-  EXPECT_DOUBLE_EQ(*typed_value("-3mm", true).value, -3e-3);
-  EXPECT_DOUBLE_EQ(*typed_value("z1e-7", true).value, 1e-7);
-  EXPECT_DOUBLE_EQ(*typed_value("+2,5cm", true).value, 0.025);
-  EXPECT_FALSE(typed_value("y -", true).value);
-  EXPECT_TRUE(typed_value("y -", true).understood);
-  EXPECT_FALSE(typed_value("12 parsecs", true).understood);
-  EXPECT_FALSE(typed_value("90mm", false).understood) << "an angle is no length";
-  EXPECT_FALSE(typed_value("1e999", true).understood);
+  EXPECT_EQ(typed_value("x 0.05", "m").axis, GizmoPart::kX);
+  EXPECT_DOUBLE_EQ(*typed_value("x 0.05", "m").value, 0.05);
+  EXPECT_DOUBLE_EQ(*typed_value("-3mm", "m").value, -3e-3);
+  EXPECT_DOUBLE_EQ(*typed_value("z1e-7", "m").value, 1e-7);
+  EXPECT_DOUBLE_EQ(*typed_value("+2,5cm", "m").value, 0.025);
+  EXPECT_FALSE(typed_value("y -", "m").value);
+  EXPECT_TRUE(typed_value("y -", "m").understood);
+  EXPECT_FALSE(typed_value("12 parsecs", "m").understood);
+  EXPECT_FALSE(typed_value("90mm", "\u00b0").understood) << "an angle is no length";
+  EXPECT_FALSE(typed_value("1e999", "m").understood);
 }
 
 TEST(Gizmo, LengthsHaveTheUnitOfTheirSize) {

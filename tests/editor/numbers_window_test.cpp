@@ -1,0 +1,47 @@
+// What is typed into a field of numbers in the window: with units, as sums, or refused in a sentence.
+#include "content/level_file.h"
+#include "tests/editor/small_level.h"
+#include "tests/player/command.h"
+
+namespace pliant::testing {
+namespace {
+
+class NumbersWindowTest : public CommandTest {};
+
+TEST_F(NumbersWindowTest, AreTakenWithTheirUnitsOrRefused) {
+  if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+  ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
+  write_text(folder / "script.txt", R"(
+await Inspector/Search
+click Scene/sheet/row
+click Tab/Inspector
+set Inspector/deformable/stiffness 0.5 N/mm
+set Inspector/deformable/stiffness 5 kg
+say of another kind than N/m
+set Inspector/deformable/stiffness 1e12
+say is out of range
+set Inspector/deformable/reach 5 mm
+set Inspector/deformable/reach 1,000
+say can be 1000 or 1.000
+set Inspector/Position x 1/10
+set Inspector/Position y 0,1
+key Ctrl+S
+hear Saved
+close
+)");
+  const Said said = pliant(
+      {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
+      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Result<Level> level = load_level(folder / "small.glb");
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  const LevelNode& sheet = level->nodes[0];
+  EXPECT_EQ(sheet.deformable->stiffness, 500.0);
+  EXPECT_EQ(sheet.deformable->reach, 0.005);
+  EXPECT_EQ(sheet.local.translation.x, 0.1f);
+  EXPECT_EQ(sheet.local.translation.y, 0.1f);
+}
+
+}  // namespace
+}  // namespace pliant::testing
