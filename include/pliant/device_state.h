@@ -38,7 +38,7 @@ enum class DeviceCause : std::uint8_t {
   kNotANumber,       // a pose is none
   kOutside,          // a pose far outside its workspace: a wrong unit
   kJumped,           // a pose no hand could reach in that time
-  kFrozen,           // the very same pose for a second, under force
+  kFrozen,           // the very same pose for half a second, under force
   kTimeBack,         // a sample is older than the one before, or from the future
   kTooFast,          // faster than its largest velocity
   kRunaway,          // it gathers speed against the force
