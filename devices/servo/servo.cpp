@@ -15,10 +15,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kTellEvery = 0.05;    // [s] of reports for a person to read
-constexpr double kLateModel = 2e-3;    // [s] two ticks of the touch clock
-constexpr double kSlept = 0.020;       // [s] less is the two clocks' reading
-constexpr double kRenewEvery = 0.25;   // [s] of the line that a guard process holds
+constexpr double kTellEvery = 0.05;   // [s] of reports for a person to read
+constexpr double kLateModel = 2e-3;   // [s] two ticks of the touch clock
+constexpr double kSlept = 0.020;      // [s] less is the two clocks' reading
+constexpr double kRenewEvery = 0.25;  // [s] of the line that a guard process holds
 constexpr const char* kNoSafeLine =
     "nothing outside this program can switch its force off: if the program is killed (kill -9, out of memory), a force "
     "stands until the device's own watchdog ends it; keep a hand on its switch";

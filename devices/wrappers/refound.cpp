@@ -23,8 +23,7 @@ Status Refound::open(const std::string& id) {
   can_ = inner_->capabilities();
   phase_ = Phase::kHeld;
   // Whose loop is the maker's library's is found by it, or not at all.
-  if (can_.loop != DeviceLoop::kCallback)
-    thread_ = std::jthread([this](const std::stop_token& stop) { look(stop); });
+  if (can_.loop != DeviceLoop::kCallback) thread_ = std::jthread([this](const std::stop_token& stop) { look(stop); });
   return Done{};
 }
 

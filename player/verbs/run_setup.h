@@ -37,10 +37,10 @@ struct Prepared {
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
-  SimulatedHands hands;     // not connected
+  SimulatedHands hands;               // not connected
   std::filesystem::path file;         // of the level
   std::vector<LevelRequest> refused;  // devices that it asks for and may not have without a word of the user's
-  std::uint64_t scene = 0;  // scene_hash() of the level that runs
+  std::uint64_t scene = 0;            // scene_hash() of the level that runs
   // For a recording: --set, --unit, --error and --tool-force, those of a replay before them.
   std::vector<std::string> settings;
 };

@@ -59,8 +59,8 @@ const std::map<std::string, std::set<std::string>> kRooms{
     {"devices/ports", {}},
     {"devices/guard", {}},
     {"devices/simulated", {"devices/pose_file.h", "devices/spec.h"}},
-    {"devices/wrappers", {"devices/pose_file.h", "devices/spec.h"}},
-    {"devices/servo", {"devices/guard"}},
+    {"devices/wrappers", {"devices/drop_counter.h", "devices/pose_file.h", "devices/spec.h"}},
+    {"devices/servo", {"devices/guard", "devices/drop_counter.h", "devices/spec.h"}},
 };
 
 // "systems/touch" of "systems/touch/foot.h".
