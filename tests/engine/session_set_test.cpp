@@ -43,6 +43,7 @@ struct Felt {
 };
 
 Felt feel(Session& session, const Value& set = {}) {
+  EXPECT_TRUE(session.release("finger"));  // a restart has kept its path
   EXPECT_TRUE(session.follow("finger", drawn()));
   EXPECT_TRUE(session.step(1200));
   if (set) {
@@ -96,7 +97,7 @@ std::vector<Case> surface_cases() {
       {"stiffness", usual, and_then(usual, [](D& d) { d.stiffness = 700; }), number("stiffness", 700)},
       {"young", layer, and_then(layer, [](D& d) { d.young = 5e4; }), number("young", 5e4)},
       {"young anew", usual, and_then(usual, [](D& d) { d.young = 5e4; }), number("young", 5e4)},
-      {"thickness", layer, and_then(layer, [](D& d) { d.thickness = 0.004; }), number("thickness", 0.004)},
+      {"thickness", layer, and_then(layer, [](D& d) { d.thickness = 0.004; }), number("thickness", 0.004), false},
       {"poisson", layer, and_then(layer, [](D& d) { d.poisson = 0.3; }), number("poisson", 0.3)},
       {"cubic", cubic, and_then(cubic, [](D& d) { d.cubic = 9e6; }), number("cubic", 9e6)},
       {"stiffening", exponential, and_then(exponential, [](D& d) { d.stiffening = 400; }), number("stiffening", 400)},
