@@ -287,7 +287,7 @@ TEST(SessionSet, WhatIsWrongIsSaid) {
   says(session.set("tissue", "shape", std::string("hertzz")), "must be one of punch, hertz,");
   says(session.set("tissue", "stiffness", -3.0), "must be in the range");
   says(session.set("tissue", "crease_angle", 0.5), "the mesh is built with it; change it in the scene");
-  says(session.set("tissue", "spring", std::string("standard_linear_solid")), "open that again");
+  says(session.set("tissue", "spring", std::string("sls")), "open that again");
   says(session.set("tissue", "friction_sliding", 0.9), "friction_sliding");
   says(session.set("finger", "id", std::string("any")), "Session::release()");
   EXPECT_EQ(*session.get("tissue", "stiffness"), 300.0) << "nothing has changed";
