@@ -11,11 +11,11 @@ namespace {
 
 using testing::HasSubstr;
 
-// Some seconds' worth of preparation.
+// Some tenths of a second's worth of preparation.
 Scene large_scene() {
   Scene scene("large");
   scene.add_surface("sheet", sheet(0.2, 300), {.stiffness = 300.0});
-  scene.add_soft_body("cube", box(0.02f), {.cell = 0.002});
+  scene.add_soft_body("cube", box(0.02f), {.cell = 0.004});
   scene.add_probe("finger");
   return scene;
 }
@@ -42,8 +42,8 @@ TEST(SessionOpen, EndsWhereItIsToldToAndLeavesNothing) {
   int calls = 0;
   auto all = Session::open(scene, [&](double, const std::string&) { return ++calls > 0; });
   ASSERT_TRUE(all);
-  ASSERT_GT(calls, 5);
-  for (const int stop : {1, calls / 2, calls}) {
+  ASSERT_GT(calls, 3);
+  for (const int stop : {1, 2, 3}) {
     int count = 0, after = 0;
     auto session = Session::open(scene, [&](double, const std::string&) {
       after += count >= stop;

@@ -43,6 +43,7 @@ struct Felt {
 };
 
 Felt feel(Session& session, const Value& set = {}) {
+  EXPECT_TRUE(session.release("finger"));  // a restart has kept its path
   EXPECT_TRUE(session.follow("finger", drawn()));
   EXPECT_TRUE(session.step(1200));
   if (set) {
@@ -96,7 +97,7 @@ std::vector<Case> surface_cases() {
       {"stiffness", usual, and_then(usual, [](D& d) { d.stiffness = 700; }), number("stiffness", 700)},
       {"young", layer, and_then(layer, [](D& d) { d.young = 5e4; }), number("young", 5e4)},
       {"young anew", usual, and_then(usual, [](D& d) { d.young = 5e4; }), number("young", 5e4)},
-      {"thickness", layer, and_then(layer, [](D& d) { d.thickness = 0.004; }), number("thickness", 0.004)},
+      {"thickness", layer, and_then(layer, [](D& d) { d.thickness = 0.004; }), number("thickness", 0.004), false},
       {"poisson", layer, and_then(layer, [](D& d) { d.poisson = 0.3; }), number("poisson", 0.3)},
       {"cubic", cubic, and_then(cubic, [](D& d) { d.cubic = 9e6; }), number("cubic", 9e6)},
       {"stiffening", exponential, and_then(exponential, [](D& d) { d.stiffening = 400; }), number("stiffening", 400)},
@@ -286,7 +287,7 @@ TEST(SessionSet, WhatIsWrongIsSaid) {
   says(session.set("tissue", "shape", std::string("hertzz")), "must be one of punch, hertz,");
   says(session.set("tissue", "stiffness", -3.0), "must be in the range");
   says(session.set("tissue", "crease_angle", 0.5), "the mesh is built with it; change it in the scene");
-  says(session.set("tissue", "spring", std::string("standard_linear_solid")), "open that again");
+  says(session.set("tissue", "spring", std::string("sls")), "open that again");
   says(session.set("tissue", "friction_sliding", 0.9), "friction_sliding");
   says(session.set("finger", "id", std::string("any")), "Session::release()");
   EXPECT_EQ(*session.get("tissue", "stiffness"), 300.0) << "nothing has changed";
