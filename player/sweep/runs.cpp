@@ -172,7 +172,7 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
       if (!is_done(line) && !interrupt.requested())
         if (const auto why = line["error"].get<std::string>(); wants_room(why) || is_full(folder))
           return Error{folder.string(), "run " + run.id + " could not write its results (" + why +
-                                            "); free some space: the same command goes on with it"};
+                                            "); with more room the same command goes on with it"};
       // A batch system may signal the sweep and its runs alike: one that this has ended is to be done again.
       if (is_done(line) || !interrupt.requested()) {
         if (Status ok = lines.add(line); !ok) return ok.error();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "player/sweep/plan.h"
+#include "player/sweep/run_id.h"
 #include "tests/player/command.h"
 
 namespace pliant::testing {
