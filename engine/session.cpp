@@ -136,6 +136,7 @@ Status Session::step(std::uint64_t ticks) {
         break;
       }
       const Tick tick = p.replayed ? p.replayed_tick() : Tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
+      if (p.replayed) p.replay_events(*this, tick.index);
       p.soft->reach(tick.time);
       p.before(tick);
       p.schedule->run(p.world, tick);
@@ -239,7 +240,9 @@ Status Session::set(const std::string& object, const std::string& key, double va
     known += (known.empty() ? "" : ", ") + std::string(live.key);
     if (key != live.key) continue;
     if (!std::isfinite(value)) return Error{"`" + object + "`: " + key, "is not a number"};
-    Edit edit{{}, k, value, {}};
+    Edit edit;
+    edit.key = k;
+    edit.value = value;
     const char* extension = live.surface ? "deformable" : "haptic_device";
     if (live.surface) {
       if (Status s = check_edit(object, surface->second, p.world.meshes[surface->second.mesh], live, value); !s)
@@ -256,6 +259,7 @@ Status Session::set(const std::string& object, const std::string& key, double va
       if (Status s = check_device(object, changed); !s) return s;
       edit.entity = p.find_effector(object)->device;
     }
+    edit.number = p.note_event({0, EventKind::kSet, object, key, 0, {value}});
     if (!p.edits->push(edit)) return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
     if (live.surface) surface->second.*(live.surface) = value;
     if (live.device) device->second.*(live.device) = value;

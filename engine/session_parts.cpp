@@ -136,6 +136,11 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   edits = std::make_unique<Ring<Edit>>(kMostEdits);
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
+  shapes.clear();
+  shapes.resize(objects.size());
+  looked = 0;
+  size_kept();
+  taken_out.assign(objects.size(), 0);
   run = std::make_shared<int>();
   for (SessionEffector& old : before) {
     SessionEffector* const effector = find_effector(old.name);
@@ -150,6 +155,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     effector->source = EffectorSource::kNone;
     if (Status s = give(*effector, old.source); !s) return s;
   }
+  if (Status s = send_standing(); !s) return s;
   return Done{};
 }
 
@@ -236,6 +242,11 @@ void Session::Parts::begin(SessionEffector& effector) {
   effector.link.begin(device, effector.placed_rotation, effector.placed_position);
   begin_anew(world, effector.entity);
   effector.renewed = ticks > 0;  // before the first tick there is nothing to lose
+  if (ticks == 0) return;
+  Edit edit;  // for a recording alone
+  edit.kind = EventKind::kNewSource;
+  edit.number = note_event({0, EventKind::kNewSource, effector.name, {}, 0, {}});
+  if (edit.number > 0) edits->push(edit);
 }
 
 void Session::Parts::zero_drivers() noexcept {
@@ -267,6 +278,7 @@ void Session::Parts::show_let_go() noexcept {
     row = {};
     row.reading.tick = last.index;
     row.reading.time = last.time;
+    if (keeps > 0) kept[static_cast<std::size_t>(&row - rows.write().data())]->record(row);
   }
   rows.publish();
 }
@@ -302,7 +314,10 @@ void Session::Parts::before(Tick tick) {
   last = tick;
   shown = false;
   Edit edit;
-  while (edits->pop(edit)) apply_edit(world, edit);
+  while (edits->pop(edit)) {
+    apply_edit(world, edit);
+    if (recorder && edit.number > 0) recorder->stamp(edit.number, tick.index);
+  }
   for (SessionEffector& effector : effectors) {
     HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
     if (after_pause) forget(effector);

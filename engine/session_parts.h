@@ -2,9 +2,11 @@
 // one runs; what the owner's thread and the clock exchange goes through exchanges.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -13,6 +15,7 @@
 #include "components/world.h"
 #include "content/level/level.h"
 #include "engine/driver_link.h"
+#include "engine/object_shape.h"
 #include "engine/recording.h"
 #include "engine/session_view.h"
 #include "engine/soft_clock.h"
@@ -77,6 +80,10 @@ class SessionRecorder {
   // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh.
   // `felt`: its guard let the force leave.
   void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready, bool felt);
+  // Owner: an event on its way to the touch clock; its number. Touch clock: the tick that it takes effect in.
+  std::uint32_t announce(const RecordedEvent& event);
+  void stamp(std::uint32_t number, std::uint64_t tick) { stamps_.record({number, tick}); }
+  void write_now(const RecordedEvent& event) { writer_.event(event); }  // before the first tick
   void drain();
   std::size_t room() const { return room_; }  // [ticks] that may wait
   void start();                               // a thread drains from now on
@@ -90,15 +97,28 @@ class SessionRecorder {
   std::uint64_t pending_tick_ = 0;
   Recorder<PoseRow> rows_;
   std::vector<PoseRow> taken_;
+  struct Stamp {
+    std::uint32_t number = 0;
+    std::uint64_t tick = 0;
+  };
+  void write_events(std::uint64_t until);
+  Recorder<Stamp> stamps_;
+  std::mutex events_mutex_;             // between the owner and the thread that writes
+  std::deque<RecordedEvent> announced_;  // by number, from first_announced_ on
+  std::uint32_t first_announced_ = 1, next_announced_ = 1;
+  std::vector<Stamp> stamped_;  // in order, not yet written
   std::jthread thread_;
 };
 
-// A parameter that changes between ticks.
+// What the owner changes between ticks: on its way to the touch clock, which says in which tick it took it.
 struct Edit {
   Entity entity;
-  std::uint32_t key = 0;  // into live_keys()
+  std::uint32_t key = 0;  // into live_keys(); of kSet
   double value = 0.0;
   Motion motion;  // that a surface has from then on
+  EventKind kind = EventKind::kSet;
+  std::uint32_t number = 0;   // of its event in the recording under way; 0: none
+  dvec3 force{0}, torque{0};  // of kHandForce
 };
 
 struct Session::Parts {
@@ -132,6 +152,19 @@ struct Session::Parts {
   std::function<void(Tick)> noted;              // touch clock's: last of every tick; must not allocate, wait or throw
   std::map<std::string, std::map<std::uint32_t, SourcePlace>> places;  // by object, of vertices that were pressed
 
+  // Questions about geometry (session_queries.cpp). Owner's.
+  std::vector<std::unique_ptr<ObjectShape>> shapes;  // of each object; made when it is first asked about
+  std::uint64_t looked = 0;                          // [ticks] + 1 of the state that look() has taken, in lockstep
+  // Every tick's rows, of each effector (session_readings.cpp).
+  std::size_t keeps = 0;  // [ticks]
+  std::vector<std::unique_ptr<Recorder<EffectorRow>>> kept;
+  std::vector<std::uint64_t> lost_told;  // of each: rows that the owner knows to be lost
+
+  // What the program does beside moving its probes (session_events.cpp). Owner's.
+  std::vector<RecordedEvent> standing;  // forces that are constant until they change, what is taken out
+  std::vector<std::uint8_t> taken_out;  // of each object
+  std::size_t replayed_events = 0;      // of the recording: done
+
   explicit Parts(const Scene& from) : scene(from) {}
   ~Parts();
 
@@ -159,10 +192,26 @@ struct Session::Parts {
   // A force on a vertex of a refined mesh, shared by the source vertices around it.
   void share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force, std::vector<vec3>& out);
   void look();  // the newest that the clocks show
+  void see();   // the same, once a state
+  ObjectShape& shape(std::size_t object);
+  const LevelMesh* given_mesh(const std::string& object) const;  // null: its surface was not given as triangles
+  Geometry body_geometry(Entity entity, const std::string& object);
+  ContactSide side(const ContactPlace& place);
+  void name_contacts(EffectorRow& row);                                 // their triangles and vertices
+  void place_vertices(Entity object, bool rest, std::vector<vec3>& out) const;  // of the view
+  void size_kept();
+  // Checks, sends to the clocks, and notes for whatever is recorded.
+  Status send(RecordedEvent event, const char* what);
+  Status send_to_hand(const RecordedEvent& event, const char* what);
+  Status send_to_body(const RecordedEvent& event, const char* what);
+  std::uint32_t note_event(const RecordedEvent& event);  // its number in the recording
+  void keep_standing(const RecordedEvent& event);
+  Status send_standing();  // to a new world
 
   // On the touch clock, or the caller's thread in lockstep.
   void before(Tick tick);
   void begin_replay(Recording recording);
+  void replay_events(Session& session, std::uint64_t tick);  // those that take effect before it
   Tick replayed_tick();  // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
   Status start_drivers();  // of real time; those that did are halted where one does not

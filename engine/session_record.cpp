@@ -18,6 +18,7 @@
 namespace pliant {
 namespace {
 
+constexpr std::size_t kMostStamps = 4096;  // events that may wait to be written
 constexpr std::size_t kRoom = 8192;  // ticks that may wait to be written
 constexpr auto kDrainEvery = std::chrono::milliseconds(20);
 
@@ -41,7 +42,11 @@ Status apply_setting(Session& session, const std::string& setting) {
 }  // namespace
 
 SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
-    : writer_(std::move(writer)), room_(room_for(effectors)), last_(effectors), rows_(room_ * effectors) {}
+    : writer_(std::move(writer)),
+      room_(room_for(effectors)),
+      last_(effectors),
+      rows_(room_ * effectors),
+      stamps_(kMostStamps) {}
 
 void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready,
                            bool felt) {
@@ -53,10 +58,31 @@ void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const Hap
   rows_.record({tick, effector, last});
 }
 
+std::uint32_t SessionRecorder::announce(const RecordedEvent& event) {
+  const std::lock_guard lock(events_mutex_);
+  announced_.push_back(event);
+  return next_announced_++;
+}
+
+// Stamps are drained after the rows: those of the rows' ticks and of earlier ones are there.
+void SessionRecorder::write_events(std::uint64_t until) {
+  const std::lock_guard lock(events_mutex_);
+  std::size_t done = 0;
+  for (; done < stamped_.size() && stamped_[done].tick <= until; ++done) {
+    while (first_announced_ < stamped_[done].number) announced_.pop_front(), ++first_announced_;
+    RecordedEvent event = announced_.front();
+    announced_.pop_front(), ++first_announced_;
+    event.tick = stamped_[done].tick;
+    writer_.event(event);
+  }
+  stamped_.erase(stamped_.begin(), stamped_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
 // A full ring, or a tick that ended in its middle, leaves a part of a tick: it is left out.
 void SessionRecorder::drain() {
   taken_.clear();
   rows_.drain(taken_);
+  stamps_.drain(stamped_);
   for (const PoseRow& row : taken_) {
     if (row.effector == 0) {
       pending_.clear();
@@ -65,6 +91,7 @@ void SessionRecorder::drain() {
     if (row.tick != pending_tick_ || row.effector != pending_.size()) continue;
     pending_.push_back(row.pose);
     if (pending_.size() < last_.size()) continue;
+    write_events(row.tick);
     writer_.tick(row.tick);
     for (const RecordedPose& pose : pending_) writer_.pose(pose);
   }
@@ -103,6 +130,10 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
   p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
+  for (RecordedEvent event : p.standing) {  // what holds from before
+    event.tick = p.ticks;
+    p.recorder->write_now(event);
+  }
   return Done{};
 }
 
@@ -152,6 +183,7 @@ void Session::Parts::begin_replay(Recording recording) {
     world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
   }
   replayed = std::move(recording);
+  replayed_events = 0;
 }
 
 Tick Session::Parts::replayed_tick() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/session_parts.h"
+#include "systems/device/devices.h"
 #include "systems/device/reading.h"
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
@@ -61,6 +62,7 @@ void Session::Parts::after(Tick tick) {
     if (world.registry.has<Probe>(effector.entity))
       for_contacts_of(world, effector.entity,
                       [&](const Contact& contact) { add_contact(world, object_entities, contact, row); });
+    if (keeps > 0) kept[i]->record(row);
   }
   after_pause = false;
   rows.publish();
@@ -103,6 +105,8 @@ Status check_edit(const std::string& name, const Deformable& surface, const Mesh
 }
 
 void apply_edit(World& world, const Edit& edit) {
+  if (edit.kind == EventKind::kHandForce) return set_hand_force(world, edit.entity, edit.force, edit.torque);
+  if (edit.kind != EventKind::kSet) return;  // the soft clock's, and only stamped here
   const LiveKey& key = live_keys()[edit.key];
   if (key.device) {
     world.registry.get<HapticDevice>(edit.entity).*(key.device) = edit.value;

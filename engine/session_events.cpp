@@ -1,0 +1,167 @@
+// What a program does to a session between ticks, beside moving its probes and setting parameters: forces of its own,
+// pushes. An event is checked here, goes to the clock that takes it, and to whatever is recorded.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/soft_body.h"
+#include "engine/driver_limits.h"
+#include "engine/session_parts.h"
+#include "systems/device/devices.h"
+#include "systems/soft/soft_state.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kMostValue = 1e9;  // [N], [m]...: what is larger is a mistake of units
+
+bool sound(const RecordedEvent& event) {
+  return std::all_of(event.values.begin(), event.values.end(), [](double v) { return std::abs(v) <= kMostValue; });
+}
+
+std::array<double, 7> two(dvec3 a, dvec3 b) {
+  return {a.x, a.y, a.z, b.x, b.y, b.z, 0.0};
+}
+
+BodyEditKind kind_of(const RecordedEvent& event) {
+  switch (event.kind) {
+    case EventKind::kPointForce:
+      return BodyEditKind::kLoadAt;
+    case EventKind::kPush:
+      return BodyEditKind::kPush;
+    case EventKind::kPointPush:
+      return BodyEditKind::kPushAt;
+    default:
+      return BodyEditKind::kLoad;
+  }
+}
+
+// A triangle of the collision mesh that one of the object's own vertices is a corner of.
+bool find_corner(const Mesh& mesh, std::uint32_t vertex, BodyEdit& edit) {
+  if (vertex >= mesh.of_source.size() || mesh.of_source[vertex] == kBorder) return false;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      if (mesh.triangles[t][k] == mesh.of_source[vertex]) {
+        edit.triangle = t, edit.corner = k;
+        return true;
+      }
+  return false;
+}
+
+bool at_a_vertex(EventKind kind) {
+  return kind == EventKind::kPointForce || kind == EventKind::kPointPush;
+}
+
+// The same standing force: another value replaces it.
+bool replaces(const RecordedEvent& now, const RecordedEvent& before) {
+  return now.kind == before.kind && now.name == before.name && now.vertex == before.vertex;
+}
+
+}  // namespace
+
+std::uint32_t Session::Parts::note_event(const RecordedEvent& event) {
+  return recorder ? recorder->announce(event) : 0;
+}
+
+void Session::Parts::keep_standing(const RecordedEvent& event) {
+  if (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush) return;
+  std::erase_if(standing, [&](const RecordedEvent& before) { return replaces(event, before); });
+  if (event.first() != dvec3(0) || event.second() != dvec3(0)) standing.push_back(event);
+}
+
+Status Session::Parts::send_standing() {
+  for (const RecordedEvent& event : std::vector<RecordedEvent>(standing))
+    if (Status s = send(event, "Session::restart"); !s) return s;
+  return Done{};
+}
+
+Status Session::Parts::send(RecordedEvent event, const char* what) {
+  const std::string where = std::string(what) + " `" + event.name + "`";
+  if (!sound(event)) return Error{where, "a value is no number, or beyond 1e9; use SI units"};
+  if (!edits->has_room()) return Error{where, "too many changes wait for a tick; make fewer at a time"};
+  return event.kind == EventKind::kHandForce ? send_to_hand(event, what) : send_to_body(event, what);
+}
+
+Status Session::Parts::send_to_hand(const RecordedEvent& event, const char* what) {
+  const SessionEffector* const effector = find_effector(event.name);
+  if (!effector) return unknown_effector(event.name);
+  if (event.second() != dvec3(0) && world.registry.has<Probe>(effector->entity))
+    return Error{std::string(what) + " `" + event.name + "`", "is a probe, which has no torque; give a force alone"};
+  Edit edit;
+  edit.entity = effector->entity;
+  edit.kind = event.kind;
+  edit.force = event.first();
+  edit.torque = event.second();
+  edit.number = note_event(event);
+  edits->push(edit);
+  keep_standing(event);
+  return Done{};
+}
+
+Status Session::Parts::send_to_body(const RecordedEvent& event, const char* what) {
+  const auto entity = find_object(event.name);
+  if (!entity) return entity.error();
+  const std::string where = std::string(what) + " `" + event.name + "`";
+  const RigidBody* const rigid = world.registry.find<RigidBody>(*entity);
+  if (world.registry.has<Deformable>(*entity))
+    return Error{where, "is a deformable surface, which gives way to contacts alone; make it a soft body"};
+  if (rigid && rigid->fixed) return Error{where, "is fixed; nothing moves it"};
+  if (world.registry.has<Handle6>(*entity))
+    return Error{where, "is held by a hand; call Session::set_hand_force() instead"};
+  BodyEdit body{kind_of(event), *entity, 0, 0, event.first(), event.second(), {}};
+  const Mesh& mesh = *collision_mesh_of(world, *entity);
+  if (at_a_vertex(event.kind) && !find_corner(mesh, event.vertex, body))
+    return Error{where, fmt::format("vertex {} is none of its {}, or no triangle uses it; see Session::vertices()",
+                                    event.vertex, mesh.of_source.size())};
+  if (!world.soft->body_edits.push(body))
+    return Error{where, "too many changes wait for a soft step; make fewer at a time"};
+  Edit edit;
+  edit.entity = *entity;
+  edit.kind = event.kind;
+  edit.number = note_event(event);
+  edits->push(edit);
+  keep_standing(event);
+  return Done{};
+}
+
+void Session::Parts::replay_events(Session& session, std::uint64_t tick) {
+  const std::vector<RecordedEvent>& events = replayed->events;
+  for (; replayed_events < events.size() && events[replayed_events].tick <= tick; ++replayed_events) {
+    const RecordedEvent& event = events[replayed_events];
+    Status done = Done{};
+    SessionEffector* const effector = find_effector(event.name);
+    if (event.kind == EventKind::kSet) {
+      done = session.set(event.name, event.key, event.values[0]);
+    } else if (event.kind != EventKind::kNewSource) {
+      done = send(event, "replay");
+    } else if (!effector) {
+      done = unknown_effector(event.name);
+    } else {
+      begin_anew(world, effector->entity);
+    }
+    if (!done) notes.push_back(fmt::format("tick {} of the recording: {}", event.tick, done.error().message()));
+  }
+}
+
+Status Session::set_hand_force(const std::string& effector, dvec3 force, dvec3 torque) {
+  return parts_->send({0, EventKind::kHandForce, effector, {}, 0, two(force, torque)}, "Session::set_hand_force");
+}
+
+Status Session::set_body_force(const std::string& body, dvec3 force, dvec3 torque) {
+  return parts_->send({0, EventKind::kBodyForce, body, {}, 0, two(force, torque)}, "Session::set_body_force");
+}
+
+Status Session::set_point_force(const std::string& body, std::uint32_t vertex, dvec3 force) {
+  return parts_->send({0, EventKind::kPointForce, body, {}, vertex, two(force, dvec3(0))}, "Session::set_point_force");
+}
+
+Status Session::push(const std::string& body, dvec3 impulse, dvec3 angular_impulse) {
+  return parts_->send({0, EventKind::kPush, body, {}, 0, two(impulse, angular_impulse)}, "Session::push");
+}
+
+Status Session::push_at(const std::string& body, std::uint32_t vertex, dvec3 impulse) {
+  return parts_->send({0, EventKind::kPointPush, body, {}, vertex, two(impulse, dvec3(0))}, "Session::push_at");
+}
+
+}  // namespace pliant
