@@ -33,15 +33,15 @@ struct RecordedPose {
 // What a program does to a session between two ticks, beside moving its probes (Session::set, set_hand_force...).
 // World frame; `name`: of an object, a probe or a tool.
 enum class EventKind : std::uint8_t {
-  kSet = 1,      // key = values[0]
-  kHandForce,    // force, torque
-  kBodyForce,    // force, torque
-  kPointForce,   // force, at `vertex`
-  kPush,         // impulse, angular impulse
-  kPointPush,    // impulse, at `vertex`
-  kPlace,        // position, rotation w x y z
-  kPresent,      // values[0]: 1 or 0
-  kNewSource     // another source moves the probe; key: limits of its driver, a line each (engine/driver_limits.h)
+  kSet = 1,     // key = values[0]
+  kHandForce,   // force, torque
+  kBodyForce,   // force, torque
+  kPointForce,  // force, at `vertex`
+  kPush,        // impulse, angular impulse
+  kPointPush,   // impulse, at `vertex`
+  kPlace,       // position, rotation w x y z
+  kPresent,     // values[0]: 1 or 0
+  kNewSource    // another source moves the probe; key: limits of its driver, a line each (engine/driver_limits.h)
 };
 inline constexpr EventKind kLastEvent = EventKind::kNewSource;
 
@@ -72,8 +72,8 @@ inline constexpr const char* kUnknownScene =
 
 struct Recording {
   RecordingHeader header;
-  std::vector<std::uint64_t> ticks;  // indices, ascending
-  std::vector<RecordedPose> poses;   // [tick][probe]
+  std::vector<std::uint64_t> ticks;   // indices, ascending
+  std::vector<RecordedPose> poses;    // [tick][probe]
   std::vector<RecordedEvent> events;  // by tick, in the order in which they happened
 };
 

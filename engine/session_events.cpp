@@ -9,6 +9,7 @@
 #include "engine/driver_limits.h"
 #include "engine/session_parts.h"
 #include "systems/device/devices.h"
+#include "systems/safety/safety.h"
 #include "systems/soft/soft_state.h"
 
 namespace pliant {
@@ -61,13 +62,20 @@ bool replaces(const RecordedEvent& now, const RecordedEvent& before) {
 }  // namespace
 
 std::uint32_t Session::Parts::note_event(const RecordedEvent& event) {
+  if (!history.lacking) {
+    history.events.push_back(event);
+    history.events.back().tick = ticks;
+  }
   return recorder ? recorder->announce(event) : 0;
 }
 
 void Session::Parts::keep_standing(const RecordedEvent& event) {
-  if (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush) return;
+  if (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace) return;
   std::erase_if(standing, [&](const RecordedEvent& before) { return replaces(event, before); });
-  if (event.first() != dvec3(0) || event.second() != dvec3(0)) standing.push_back(event);
+  if (event.kind == EventKind::kPresent) {
+    if (event.values[0] == 0.0) standing.push_back(event);
+  } else if (event.first() != dvec3(0) || event.second() != dvec3(0))
+    standing.push_back(event);
 }
 
 Status Session::Parts::send_standing() {
@@ -80,6 +88,7 @@ Status Session::Parts::send(RecordedEvent event, const char* what) {
   const std::string where = std::string(what) + " `" + event.name + "`";
   if (!sound(event)) return Error{where, "a value is no number, or beyond 1e9; use SI units"};
   if (!edits->has_room()) return Error{where, "too many changes wait for a tick; make fewer at a time"};
+  if (event.kind == EventKind::kPlace || event.kind == EventKind::kPresent) return send_to_object(event, what);
   return event.kind == EventKind::kHandForce ? send_to_hand(event, what) : send_to_body(event, what);
 }
 
@@ -125,22 +134,72 @@ Status Session::Parts::send_to_body(const RecordedEvent& event, const char* what
   return Done{};
 }
 
+Status Session::Parts::check_place(Entity object, const RecordedEvent& event) const {
+  const std::string where = "`" + event.name + "`";
+  const Registry& all = world.registry;
+  if (all.has<Handle6>(object)) return Error{where, "is held by a hand, which says where it is"};
+  if (event.kind != EventKind::kPlace) return Done{};
+  if (!plausible_position(event.first()) ||
+      !plausible_rotation({event.values[3], event.values[4], event.values[5], event.values[6]}))
+    return Error{where, "the place is not finite, or its rotation not of unit length; normalise it"};
+  if (!all.has<Deformable>(object)) return Done{};
+  if (all.has<MovingPose>(object)) return Error{where, "is carried by a motion of the scene, which says where it is"};
+  if (world.soft && !world.soft->yielding.empty())
+    return Error{where,
+                 "is a surface that soft or rigid bodies may press, which stays where it is; take it out instead"};
+  return Done{};
+}
+
+Status Session::Parts::send_to_object(const RecordedEvent& event, const char* what) {
+  const auto entity = find_object(event.name);
+  if (!entity) return entity.error();
+  if (Status s = check_place(*entity, event); !s)
+    return Error{std::string(what) + " " + s.error().where, s.error().what};
+  const bool elsewhere = event.kind == EventKind::kPlace, present = event.values[0] != 0.0;
+  Edit edit;
+  edit.entity = *entity;
+  edit.kind = event.kind;
+  edit.value = event.values[0];
+  edit.force = event.first();
+  if (elsewhere) edit.rotation = glm::normalize(dquat(event.values[3], event.values[4], event.values[5], event.values[6]));
+  BodyEdit body;
+  body.kind = elsewhere ? BodyEditKind::kPlace : present ? BodyEditKind::kPresent : BodyEditKind::kAbsent;
+  body.body = *entity;
+  body.pose = {edit.force, edit.rotation};
+  if (world.soft && !world.soft->body_edits.push(body))
+    return Error{std::string(what) + " `" + event.name + "`",
+                 "too many changes wait for a soft step; make fewer at a time"};
+  edit.number = note_event(event);
+  edits->push(edit);
+  keep_standing(event);
+  if (!elsewhere)
+    taken_out[static_cast<std::size_t>(std::find(objects.begin(), objects.end(), event.name) - objects.begin())] =
+        !present;
+  return Done{};
+}
+
+Status Session::Parts::perform(Session& session, const RecordedEvent& event) {
+  if (event.kind == EventKind::kSet) return session.set(event.name, event.key, event.values[0]);
+  if (event.kind != EventKind::kNewSource) return send(event, "replay");
+  const SessionEffector* const effector = find_effector(event.name);
+  if (!effector) return unknown_effector(event.name);
+  HapticDevice& device = world.registry.get<HapticDevice>(effector->device);
+  device.can = kNoDriver;
+  device.workspace = 1.0;
+  std::vector<std::string> limits;
+  for (std::size_t at = 0, end; (end = event.key.find('\n', at)) != std::string::npos; at = end + 1)
+    limits.push_back(event.key.substr(at, end - at));
+  begin_anew(world, effector->entity);
+  note_event(event);
+  return apply_driver_settings(world, limits);
+}
+
 void Session::Parts::replay_events(Session& session, std::uint64_t tick) {
   const std::vector<RecordedEvent>& events = replayed->events;
   for (; replayed_events < events.size() && events[replayed_events].tick <= tick; ++replayed_events) {
     const RecordedEvent& event = events[replayed_events];
-    Status done = Done{};
-    SessionEffector* const effector = find_effector(event.name);
-    if (event.kind == EventKind::kSet) {
-      done = session.set(event.name, event.key, event.values[0]);
-    } else if (event.kind != EventKind::kNewSource) {
-      done = send(event, "replay");
-    } else if (!effector) {
-      done = unknown_effector(event.name);
-    } else {
-      begin_anew(world, effector->entity);
-    }
-    if (!done) notes.push_back(fmt::format("tick {} of the recording: {}", event.tick, done.error().message()));
+    if (const Status done = perform(session, event); !done)
+      notes.push_back(fmt::format("tick {} of the recording: {}", event.tick, done.error().message()));
   }
 }
 
@@ -154,6 +213,30 @@ Status Session::set_body_force(const std::string& body, dvec3 force, dvec3 torqu
 
 Status Session::set_point_force(const std::string& body, std::uint32_t vertex, dvec3 force) {
   return parts_->send({0, EventKind::kPointForce, body, {}, vertex, two(force, dvec3(0))}, "Session::set_point_force");
+}
+
+Status Session::place(const std::string& object, dvec3 position, dquat rotation) {
+  return parts_->send({0,
+                       EventKind::kPlace,
+                       object,
+                       {},
+                       0,
+                       {position.x, position.y, position.z, rotation.w, rotation.x, rotation.y, rotation.z}},
+                      "Session::place");
+}
+
+Status Session::take_out(const std::string& object) {
+  return parts_->send({0, EventKind::kPresent, object, {}, 0, {0.0}}, "Session::take_out");
+}
+
+Status Session::put_back(const std::string& object) {
+  return parts_->send({0, EventKind::kPresent, object, {}, 0, {1.0}}, "Session::put_back");
+}
+
+Result<bool> Session::is_out(const std::string& object) const {
+  const auto found = std::find(parts_->objects.begin(), parts_->objects.end(), object);
+  if (found == parts_->objects.end()) return parts_->find_object(object).error();
+  return parts_->taken_out[static_cast<std::size_t>(found - parts_->objects.begin())] != 0;
 }
 
 Status Session::push(const std::string& body, dvec3 impulse, dvec3 angular_impulse) {

@@ -7,6 +7,7 @@
 
 #include "components/soft_body.h"
 #include "engine/choice/model_choice.h"
+#include "engine/driver_limits.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "systems/device/devices.h"
@@ -92,6 +93,10 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   clock.reset();
   soft.reset();
   world = std::move(spawned).value();
+  ticks = overruns = 0;
+  history = {};
+  history.begun = settings;
+  edits = std::make_unique<Ring<Edit>>(kMostEdits);
   places.clear();
   for (const Entity held : pliant::hands(world)) {
     SessionEffector made;
@@ -129,11 +134,9 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
 
   schedule.emplace(touch_schedule());
   soft = std::make_unique<SoftClock>(world);
-  ticks = overruns = 0;
   after_pause = false;
   shown = true;
   time = 0.0;
-  edits = std::make_unique<Ring<Edit>>(kMostEdits);
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
   shapes.clear();
@@ -242,10 +245,11 @@ void Session::Parts::begin(SessionEffector& effector) {
   effector.link.begin(device, effector.placed_rotation, effector.placed_position);
   begin_anew(world, effector.entity);
   effector.renewed = ticks > 0;  // before the first tick there is nothing to lose
-  if (ticks == 0) return;
-  Edit edit;  // for a recording alone
+  Edit edit;                     // for a recording alone
   edit.kind = EventKind::kNewSource;
-  edit.number = note_event({0, EventKind::kNewSource, effector.name, {}, 0, {}});
+  std::string limits;
+  for (const std::string& setting : driver_settings(effector.name, device)) limits += setting + "\n";
+  edit.number = note_event({0, EventKind::kNewSource, effector.name, limits, 0, {}});
   if (edit.number > 0) edits->push(edit);
 }
 

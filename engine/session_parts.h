@@ -17,6 +17,7 @@
 #include "engine/driver_link.h"
 #include "engine/object_shape.h"
 #include "engine/recording.h"
+#include "engine/session_history.h"
 #include "engine/session_view.h"
 #include "engine/soft_clock.h"
 #include "engine/source_place.h"
@@ -56,6 +57,7 @@ struct SessionEffector {
   bool placed = false;
   double heard_at = 0.0, lasts = 1e-3;  // [s] when that came, and how long the way to it takes
   PrescribedPose from, now;
+  PrescribedPose set;  // owner's: the last that was given
 };
 
 // A reading, and where on the collision mesh its contacts press.
@@ -103,7 +105,7 @@ class SessionRecorder {
   };
   void write_events(std::uint64_t until);
   Recorder<Stamp> stamps_;
-  std::mutex events_mutex_;             // between the owner and the thread that writes
+  std::mutex events_mutex_;              // between the owner and the thread that writes
   std::deque<RecordedEvent> announced_;  // by number, from first_announced_ on
   std::uint32_t first_announced_ = 1, next_announced_ = 1;
   std::vector<Stamp> stamped_;  // in order, not yet written
@@ -118,7 +120,8 @@ struct Edit {
   Motion motion;  // that a surface has from then on
   EventKind kind = EventKind::kSet;
   std::uint32_t number = 0;   // of its event in the recording under way; 0: none
-  dvec3 force{0}, torque{0};  // of kHandForce
+  dvec3 force{0}, torque{0};  // of kHandForce; of kPlace, force is the position [m]
+  dquat rotation{1, 0, 0, 0};
 };
 
 struct Session::Parts {
@@ -164,6 +167,8 @@ struct Session::Parts {
   std::vector<RecordedEvent> standing;  // forces that are constant until they change, what is taken out
   std::vector<std::uint8_t> taken_out;  // of each object
   std::size_t replayed_events = 0;      // of the recording: done
+  SessionHistory history;               // since time 0 (session_state.cpp)
+  bool restoring = false;               // the history runs again: no driver is written
 
   explicit Parts(const Scene& from) : scene(from) {}
   ~Parts();
@@ -197,7 +202,7 @@ struct Session::Parts {
   const LevelMesh* given_mesh(const std::string& object) const;  // null: its surface was not given as triangles
   Geometry body_geometry(Entity entity, const std::string& object);
   ContactSide side(const ContactPlace& place);
-  void name_contacts(EffectorRow& row);                                 // their triangles and vertices
+  void name_contacts(EffectorRow& row);                                         // their triangles and vertices
   void place_vertices(Entity object, bool rest, std::vector<vec3>& out) const;  // of the view
   void size_kept();
   // Checks, sends to the clocks, and notes for whatever is recorded.
@@ -211,8 +216,18 @@ struct Session::Parts {
   // On the touch clock, or the caller's thread in lockstep.
   void before(Tick tick);
   void begin_replay(Recording recording);
+  Status send_to_object(const RecordedEvent& event, const char* what);  // kPlace, kPresent
+  Status check_place(Entity object, const RecordedEvent& event) const;
+  Status go_back(Session& session, SavedState state);
+  Status perform(Session& session, const RecordedEvent& event);
+  Status take_settings(const std::map<std::string, std::string>& begun);  // that the next world begins with
+  void note_history(Tick tick);
+  SavedState saved_state() const;
+  Status run_again(Session& session, SavedState state);  // from time 0, in a new world
+  void go_on(const SavedState& state, std::vector<EffectorSource>& sources, std::vector<DriverLink>& links,
+             std::vector<HapticDevice>& devices_before);
   void replay_events(Session& session, std::uint64_t tick);  // those that take effect before it
-  Tick replayed_tick();  // its poses are the devices' then
+  Tick replayed_tick();                                      // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
   Status start_drivers();  // of real time; those that did are halted where one does not
   void halt_drivers() noexcept;

@@ -1,5 +1,5 @@
-// What a Session answers about geometry (pliant/query.h): triangles, the closest point, rays, bounds, and where among an
-// object's own triangles a contact lies. On the owner's thread, by what the clocks have shown.
+// What a Session answers about geometry (pliant/query.h): triangles, the closest point, rays, bounds, and where among
+// an object's own triangles a contact lies. On the owner's thread, by what the clocks have shown.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,7 +27,8 @@ dvec3 outward_normal(const TriangleBoxes& boxes, std::uint32_t t) {
 }
 
 SurfaceHit hit_of(const TriangleBoxes& boxes, std::uint32_t object, const TrianglePlace& place) {
-  SurfaceHit hit{object, place.triangle, place.weights, dvec3(0), outward_normal(boxes, place.triangle), place.distance};
+  SurfaceHit hit{object,        place.triangle, place.weights, dvec3(0), outward_normal(boxes, place.triangle),
+                 place.distance};
   for (int k = 0; k < 3; ++k) hit.position += place.weights[k] * boxes.corner(place.triangle, k);
   return hit;
 }
@@ -37,7 +38,7 @@ Result<std::vector<std::size_t>> asked(const Session::Parts& p, const QueryOptio
   if (!(options.within >= 0.0)) return Error{what, "`within` is negative or no number; give 0 m or more"};
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < p.objects.size(); ++i)
-    if (options.object.empty() || p.objects[i] == options.object) out.push_back(i);
+    if (options.object.empty() ? !p.taken_out[i] : p.objects[i] == options.object) out.push_back(i);
   if (!options.object.empty() && out.empty()) return p.find_object(options.object).error();
   return out;
 }
@@ -73,8 +74,8 @@ const LevelMesh* Session::Parts::given_mesh(const std::string& object) const {
 
 ObjectShape& Session::Parts::shape(std::size_t object) {
   if (!shapes[object])
-    shapes[object] = std::make_unique<ObjectShape>(*collision_mesh_of(world, object_entities[object]),
-                                                   given_mesh(objects[object]));
+    shapes[object] =
+        std::make_unique<ObjectShape>(*collision_mesh_of(world, object_entities[object]), given_mesh(objects[object]));
   return *shapes[object];
 }
 

@@ -19,7 +19,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kMostStamps = 4096;  // events that may wait to be written
-constexpr std::size_t kRoom = 8192;  // ticks that may wait to be written
+constexpr std::size_t kRoom = 8192;        // ticks that may wait to be written
 constexpr auto kDrainEvery = std::chrono::milliseconds(20);
 
 std::size_t room_for(std::size_t effectors) {

@@ -9,6 +9,7 @@
 #include "systems/safety/safety.h"
 #include "systems/touch/contacts_of.h"
 #include "systems/touch/local_model.h"
+#include "systems/touch/presence.h"
 
 namespace pliant {
 namespace {
@@ -42,7 +43,7 @@ void Session::Parts::after(Tick tick) {
     HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
     const SafetyState* const safety = safety_of(world, effector.entity);
     const bool felt = !safety || safety->felt;
-    if (replayed && !felt) device.force_sent = device.torque_sent = dvec3(0);
+    if ((replayed || restoring) && !felt) device.force_sent = device.torque_sent = dvec3(0);
     const DeviceWrench wrench{device.force_sent, device.torque_sent};
     EffectorRow& row = out[i];
     const ProbeReading read = pliant::reading(world, effector.entity);
@@ -106,6 +107,10 @@ Status check_edit(const std::string& name, const Deformable& surface, const Mesh
 
 void apply_edit(World& world, const Edit& edit) {
   if (edit.kind == EventKind::kHandForce) return set_hand_force(world, edit.entity, edit.force, edit.torque);
+  if (edit.kind == EventKind::kPlace && world.registry.has<Deformable>(edit.entity))
+    return place_surface(world, edit.entity, {edit.force, edit.rotation});
+  if (edit.kind == EventKind::kPresent && edit.value != 0.0) return put_back_surface(world, edit.entity);
+  if (edit.kind == EventKind::kPresent) return take_out_surface(world, edit.entity);
   if (edit.kind != EventKind::kSet) return;  // the soft clock's, and only stamped here
   const LiveKey& key = live_keys()[edit.key];
   if (key.device) {

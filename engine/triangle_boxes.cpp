@@ -72,7 +72,8 @@ void TriangleBoxes::split(std::uint32_t node, std::uint32_t first, std::uint32_t
   }
   const auto begin = members_.begin() + first;
   dvec3 low = middle[*begin], high = low;
-  for (std::uint32_t i = 1; i < count; ++i) low = glm::min(low, middle[begin[i]]), high = glm::max(high, middle[begin[i]]);
+  for (std::uint32_t i = 1; i < count; ++i)
+    low = glm::min(low, middle[begin[i]]), high = glm::max(high, middle[begin[i]]);
   const dvec3 size = high - low;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const std::uint32_t half = count / 2;
@@ -144,8 +145,8 @@ TrianglePlace TriangleBoxes::first_along(dvec3 from, dvec3 way, double within) c
     if (!(entry_to_box(node.low, node.high, from, inverse, most) <= most)) continue;
     if (node.count == 0) {
       const Node &a = nodes_[node.first], &b = nodes_[node.first + 1];
-      const bool swap = entry_to_box(a.low, a.high, from, inverse, most) <
-                        entry_to_box(b.low, b.high, from, inverse, most);
+      const bool swap =
+          entry_to_box(a.low, a.high, from, inverse, most) < entry_to_box(b.low, b.high, from, inverse, most);
       stack[top++] = node.first + (swap ? 1 : 0);
       stack[top++] = node.first + (swap ? 0 : 1);
       continue;

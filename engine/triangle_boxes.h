@@ -32,7 +32,7 @@ class TriangleBoxes {
   TrianglePlace first_along(dvec3 from, dvec3 way, double within) const;
 
   bool empty() const { return members_.empty(); }
-  dvec3 low() const { return nodes_.front().low; }    // of all members; not where it is empty
+  dvec3 low() const { return nodes_.front().low; }  // of all members; not where it is empty
   dvec3 high() const { return nodes_.front().high; }
   dvec3 corner(std::uint32_t triangle, int i) const { return positions_[triangles_[triangle][i]]; }
   const std::vector<uvec3>& triangles() const { return triangles_; }

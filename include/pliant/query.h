@@ -13,7 +13,7 @@ namespace pliant {
 
 // Which geometry is asked, and how far.
 struct QueryOptions {
-  std::string object;  // of Session::objects(); empty: all of them
+  std::string object;  // of Session::objects(); empty: all that are not taken out
   // True: the undeformed shape. A surface's where its object is now, a rigid body's and a tool's too; a soft body's
   // without a handle where the scene put it.
   bool rest = false;

@@ -185,8 +185,8 @@ class Session {
   // by their barycentric coordinates. Of deformable surfaces.
   Status vertex_forces(const std::string& object, std::vector<vec3>& out);
   // What a renderer of one's own draws: geometry once, the stream (nx, ny, nz, h) every frame, to_world every frame.
-  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of deformable surfaces; of a soft or rigid body
-  // only the rest shape, whose `stream_vertex` counts the body's own vertices (Session::vertices).
+  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of deformable surfaces; of a soft or rigid
+  // body only the rest shape, whose `stream_vertex` counts the body's own vertices (Session::vertices).
   Result<Geometry> geometry(const std::string& object) const;
   Status stream(const std::string& object, std::vector<vec4>& out);
   Result<mat4> to_world(const std::string& object);
@@ -194,8 +194,8 @@ class Session {
   // --- Forces of the program's own, constant until they change; zero takes them away. From the next tick, or of bodies
   // the next soft step, on, in lockstep and in real time; recordings hold them. They hold beyond restart().
   // On the hand that holds a probe or tool, beside what it touches: [N], [N m] world, a torque on tools alone. It goes
-  // through the same safety: clipped, slewed, withheld where the hand would get more energy than it gave. While the gate
-  // is closed it is nothing; behind it, it comes in over half a second.
+  // through the same safety: clipped, slewed, withheld where the hand would get more energy than it gave. While the
+  // gate is closed it is nothing; behind it, it comes in over half a second.
   Status set_hand_force(const std::string& effector, dvec3 force, dvec3 torque = dvec3(0));
   // On a soft or rigid body that moves and no hand holds: at its centre of mass [N], and a torque [N m], world; a soft
   // body's nodes take them by their mass. At a vertex of its own (Session::vertices), that goes with it: [N] world.
@@ -204,6 +204,32 @@ class Session {
   // The same as impulses, once, in the next soft step: [N s], [N m s].
   Status push(const std::string& body, dvec3 impulse, dvec3 angular_impulse = dvec3(0));
   Status push_at(const std::string& body, std::uint32_t vertex, dvec3 impulse);
+
+  // --- Objects, between ticks, in lockstep and in real time; recordings hold what is done. Not of tools, which a hand
+  // holds.
+  // To another place of its frame, at rest: a rigid body; a soft one, undeformed; a surface that no bodies may press
+  // and no motion carries, whose contacts end. [m] world. restart() puts it back to where the scene has it.
+  Status place(const std::string& object, dvec3 position, dquat rotation = {1, 0, 0, 0});
+  // Out of the world: nothing meets it, what pressed it lets go, and it stands still where it is (it is drawn on). Back
+  // into it: at rest, where it was, whatever has come there. Everything else goes on as it is. Beyond restart().
+  Status take_out(const std::string& object);
+  Status put_back(const std::string& object);
+  Result<bool> is_out(const std::string& object) const;
+  // The objects of another scene, no probes or tools, named otherwise than those that are there. In lockstep:
+  // everything there goes on where it is, as after restore_state(), whose time it takes and whose limits it has. For
+  // real time, open a session with them and take them out before start(). To be rid of one, take it out.
+  Status add(const Scene& more);
+
+  // --- States, of lockstep runs: to go back to, in this session or in another one of the same scene.
+  // A state is what the session was given since its time 0 - poses, forces, pushes, parameters - up to the next tick;
+  // some 70 bytes a tick for each probe that moves. Not of a run in real time, nor of a replay.
+  Result<std::vector<std::uint8_t>> save_state() const;
+  // From here on every tick has the bits that it would have had there, given the same poses. What was given is run
+  // again in a new world, without a word to any driver: it takes as long as those ticks take to run, and restart()
+  // beside. A pose that was set and a path that is followed go on; a device of a driver comes back through its gate, as
+  // after any jump. Not while something is recorded. Bytes are checked; they may come from anywhere. Where it fails
+  // before it began, nothing has changed.
+  Status restore_state(const std::vector<std::uint8_t>& state);
 
   // --- Geometry, as the program or the file has given it, of every kind of object; in real time of the newest state
   // that the clocks have shown. Answers come from a tree that follows the vertices; they are those of trying every

@@ -130,9 +130,9 @@ struct SafetyLimits {
   double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
 };
 
-// `pressed` [N] with the program's own part (SafetyState::added). The gate judges what is touched: while it is closed the
-// part is zero, and behind it comes in over kWeightTime; whenever it changes, within the slew limit. In the safety layer
-// it then counts like any other force.
+// `pressed` [N] with the program's own part (SafetyState::added). The gate judges what is touched: while it is closed
+// the part is zero, and behind it comes in over kWeightTime; whenever it changes, within the slew limit. In the safety
+// layer it then counts like any other force.
 dvec3 with_own(SafetyState& state, SafetyLimits& limits, dvec3 pressed, double dt);
 
 // Of the level and of the driver, the smaller. What is not rendered has the limit 0.

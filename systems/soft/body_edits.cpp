@@ -65,8 +65,8 @@ void take_body_edits(World& world) {
 
 void take_loads(Body& body, double T) {
   BodyLoads& loads = body.loads;
-  const bool whole = loads.force != dvec3(0) || loads.torque != dvec3(0) || loads.impulse != dvec3(0) ||
-                     loads.turn != dvec3(0);
+  const bool whole =
+      loads.force != dvec3(0) || loads.torque != dvec3(0) || loads.impulse != dvec3(0) || loads.turn != dvec3(0);
   if (body.size() == 0 || (!whole && loads.forces.empty() && loads.pushes.empty())) return;
   Rows column = Rows::Zero(body.size(), 1);
   if (whole) body.load(T * loads.force + loads.impulse, T * loads.torque + loads.turn, column);

@@ -68,8 +68,8 @@ class Body {
   std::vector<dvec3> surface_velocity;   // [m/s] world, of the free motion after free_step(); for predicting contacts
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   BodyKind kind = BodyKind::kBody;
-  bool absent = false;         // meets nothing: nobody knows yet where it is
-  bool taken_out = false;      // whoever owns the run has taken it out: it meets nothing, and is not stepped
+  bool absent = false;     // meets nothing: nobody knows yet where it is
+  bool taken_out = false;  // whoever owns the run has taken it out: it meets nothing, and is not stepped
   BodyLoads loads;
   bool self_collides = false;  // its collision mesh can touch itself
 
