@@ -96,6 +96,10 @@ echo "$said" | grep -q 'closed; the last force was 0.000 N' || { echo "the last 
 said=$("$work/build/own_law")
 echo "$said"
 echo "$said" | grep -q 'softening  4.0 mm deep: 1.140 N' || { echo "300 N/m * 10 mm * tanh(0.4) is 1.140 N"; exit 1; }
+said=$("$work/build/reset_loop")
+echo "$said"
+[[ $(echo "$said" | sed -n 2p) == "$(echo "$said" | sed -n 3p)" ]] || { echo "the same state and force must give the same"; exit 1; }
+echo "$said" | grep -q '0.2 N: the cube went  0.0 mm; the table carries 0.98 N; beside it is `table`' || { echo "friction holds it"; exit 1; }
 said=$("$work/build/headless_sweep" "$work/installed/share/pliant/content/levels/minimal.gltf" 2>&1)
 [[ $(echo "$said" | wc -l) -gt 100 ]] || { echo "$said" | head; echo "the sweep is too short"; exit 1; }
 if [[ -x $work/build/own_renderer ]] && command -v xvfb-run >/dev/null; then
