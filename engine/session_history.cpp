@@ -3,9 +3,11 @@
 // many ticks all effectors stand still, then a pose for each. Last a u64 hash of all before it.
 #include "engine/session_history.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "content/files/limits.h"
 #include "runtime/hash.h"
 
 namespace pliant {
@@ -14,7 +16,6 @@ namespace {
 constexpr char kStateMagic[8] = {'p', 'l', 'i', 'a', 'n', 't', 's', 't'};
 constexpr std::uint32_t kStateVersion = 1;
 constexpr std::uint32_t kMostTexts = 65536, kMostText = 65536;
-constexpr std::uint64_t kMostPoses = 64u << 20;  // what unpacked poses may take
 
 class Packer {
  public:
@@ -161,8 +162,8 @@ void put_poses(Packer& out, const SavedState& state) {
 
 void get_poses(Unpacker& in, SavedState& state) {
   const std::size_t n = state.effectors.size();
+  if (state.ticks > most(limits::kJournal) / (sizeof(HistoryPose) * std::max<std::size_t>(1, n))) in.ok = false;
   if (n == 0) return;
-  if (state.ticks > kMostPoses / (sizeof(HistoryPose) * n)) in.ok = false;
   std::vector<HistoryPose> row(n);
   for (std::uint64_t tick = 0; tick < state.ticks && in.ok;) {
     const auto run = in.get<std::uint32_t>();

@@ -130,7 +130,9 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
   p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
-  for (RecordedEvent event : p.standing) {  // what holds from before
+  // What holds from before. Parameters and drivers are in the header.
+  for (RecordedEvent event : p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing) {
+    if (event.kind == EventKind::kSet || event.kind == EventKind::kNewSource) continue;
     event.tick = p.ticks;
     p.recorder->write_now(event);
   }

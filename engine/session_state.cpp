@@ -1,6 +1,7 @@
 // States of lockstep runs (Session::save_state): a session notes what it is given, and runs that again.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -79,8 +80,9 @@ void Session::Parts::note_history(Tick tick) {
     history.lacking = "its poses are a recording's; replay that again instead";
     return;
   }
-  if ((history.poses.size() + effectors.size()) * sizeof(HistoryPose) + history.events.size() * sizeof(RecordedEvent) >
-      most(limits::kJournal)) {
+  const std::size_t bytes = (ticks + 1) * std::max<std::size_t>(1, effectors.size()) * sizeof(HistoryPose) +
+                            history.events.size() * sizeof(RecordedEvent);
+  if (bytes > most(limits::kJournal)) {
     history = {};
     history.lacking = "it has run for too long since its time 0 to be run again; call Session::restart() now and then";
     return;

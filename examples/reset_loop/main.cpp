@@ -2,6 +2,7 @@
 // is looked at, and each trial begins in the same saved state.
 #include <pliant/pliant.h>
 
+#include <cmath>
 #include <cstdio>
 
 static int fail(const pliant::Error& error) {
@@ -40,6 +41,6 @@ int main() {
     const auto below = session->ray({0.25, 1, 0}, {0, -1, 0});
     if (!below) return fail(below.error());
     std::printf("%.1f N: the cube went %4.1f mm; the table carries %.2f N; beside it is `%s`\n", force,
-                1e3 * (bounds->min.x + 0.02), weight, session->objects()[below->object].c_str());
+                1e3 * std::abs(bounds->min.x + 0.02), weight, session->objects()[below->object].c_str());
   }
 }

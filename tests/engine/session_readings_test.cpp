@@ -70,7 +70,7 @@ TEST(SessionReadings, RealTimeShowsAllTicksToAHostThatLooksTwentyTimesASecond) {
   all.insert(all.end(), some.begin(), some.end());
   EXPECT_EQ(lost, 0u);
   for (std::size_t i = 1; i < all.size(); ++i) EXPECT_GT(all[i].tick, all[i - 1].tick);
-  EXPECT_EQ(all.size() + lost + session.figures().overruns >= all.back().tick + 1, true);
+  if (session.figures().overruns == 0) EXPECT_EQ(all.size(), all.back().tick + 1);
   EXPECT_EQ(all.back().force, dvec3(0)) << "the last force is zero";
 }
 
