@@ -12,8 +12,8 @@ static int fail(const pliant::Error& error) {
 static pliant::MeshData box(float x, float y, float z) {
   pliant::MeshData mesh;
   for (int i = 0; i < 8; ++i) mesh.position.push_back({i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z});
-  mesh.index = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 1, 3, 0, 3, 2,
-                4, 6, 7, 4, 7, 5, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
+  mesh.index = {0, 5, 4, 0, 1, 5, 2, 7, 3, 2, 6, 7, 0, 3, 1, 0, 2, 3,
+                4, 7, 6, 4, 5, 7, 0, 6, 2, 0, 4, 6, 1, 7, 5, 1, 3, 7};
   return mesh;
 }
 

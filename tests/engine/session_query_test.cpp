@@ -7,15 +7,22 @@
 namespace pliant {
 namespace {
 
+// Its triangles face outwards.
+MeshData cube() {
+  MeshData mesh = box(0.02f);
+  for (std::size_t i = 0; i < mesh.index.size(); i += 3) std::swap(mesh.index[i + 1], mesh.index[i + 2]);
+  return mesh;
+}
+
 // A soft cube on a fixed floor, a rigid one beside it, both a little above; a pressed sheet far to the left.
 Scene bodies() {
   Scene scene("bodies");
   scene.simulation().soft_step = 0.005;
   scene.add_surface("tissue", sheet(), {.stiffness = 300.0}, {.position = {-0.5, 0, 0}});
   scene.add_rigid_body("floor", sheet(0.2, 8), {.fixed = true});
-  scene.add_soft_body("liver", box(0.02f), {.young = 2e4, .rayleigh = {2.0, 0.002}, .cell = 0.02},
+  scene.add_soft_body("liver", cube(), {.young = 2e4, .rayleigh = {2.0, 0.002}, .cell = 0.02},
                       {.position = {-0.05, 0.021, 0}});
-  scene.add_rigid_body("box", box(0.02f), {}, {.position = {0.05, 0.021, 0}});
+  scene.add_rigid_body("box", cube(), {}, {.position = {0.05, 0.021, 0}});
   scene.add_probe("finger", {.radius = 0.005}, {}, {.position = {-0.05, 0.06, 0}});
   return scene;
 }
@@ -84,7 +91,7 @@ TEST(SessionQuery, BodiesGiveTheirTrianglesInTheOrderOfWhatWasGiven) {
   Session session = settled();
   for (const std::string name : {"liver", "box"}) {
     const Soup soup = soup_of(session, name);
-    EXPECT_EQ(soup.index, box(0.02f).index) << name;
+    EXPECT_EQ(soup.index, cube().index) << name;
     ASSERT_EQ(soup.vertices.size(), 8u) << name;
     double volume = 0.0;  // positive: they face outwards
     for (std::size_t i = 0; i < soup.index.size(); i += 3)
@@ -93,17 +100,15 @@ TEST(SessionQuery, BodiesGiveTheirTrianglesInTheOrderOfWhatWasGiven) {
     const auto geometry = session.geometry(name);
     ASSERT_TRUE(geometry) << geometry.error().message();
     EXPECT_EQ(geometry->index, soup.index);
-    EXPECT_EQ(geometry->position, box(0.02f).position);
+    EXPECT_EQ(geometry->position, cube().position);
   }
   EXPECT_EQ(soup_of(session, "tissue").index, sheet().index);
   EXPECT_FALSE(session.geometry("finger"));
 }
 
 TEST(SessionQuery, TrianglesThatAreGivenInsideOutAreTurned) {
-  MeshData mesh = box(0.02f);
-  for (std::size_t i = 0; i < mesh.index.size(); i += 3) std::swap(mesh.index[i + 1], mesh.index[i + 2]);
   Scene scene("turned");
-  scene.add_rigid_body("box", mesh);
+  scene.add_rigid_body("box", box(0.02f));
   Session session = opened(scene);
   const auto hit = session.closest_point({0, 1, 0});
   ASSERT_TRUE(hit && hit->found());
