@@ -81,7 +81,7 @@ double along_ray(dvec3 from, dvec3 way, dvec3 a, dvec3 b, dvec3 c) {
 Session settled() {
   Session session = opened(bodies());
   for (int i = 0; i < 300; ++i) {
-    EXPECT_TRUE(session.move("finger", {-0.05, 0.06 - 5e-5 * i, 0}));
+    EXPECT_TRUE(session.move("finger", {-0.05, 0.06 - 7e-5 * i, 0}));
     EXPECT_TRUE(session.step());
   }
   return session;
