@@ -21,11 +21,20 @@ struct SoftObjectSnapshot {
   std::vector<vec3> nodes;     // [m] world, of the tetrahedra; empty for rigid bodies
 };
 
+// One side of a contact: a place of a collision mesh.
+struct ContactPlace {
+  Entity entity;
+  std::uint32_t triangle = 0;
+  vec3 barycentric{1, 0, 0};  // [1]
+};
+
 struct ContactMark {
   vec3 position{0};  // [m] world
   vec3 normal{0};    // [1] world, from body b towards body a
   vec3 force{0};     // [N] world, on body a
   bool sliding = false;
+  float depth = 0.0f;  // [m] of a in b where the step began; below 0: still apart
+  ContactPlace a, b;
 };
 
 // A tool, as the soft clock has it.

@@ -1,6 +1,8 @@
 // Parameters that come in between two ticks. On the touch clock: nothing here allocates.
 #include "engine/session_parts.h"
+#include "systems/device/devices.h"
 #include "systems/tool/tool_touch_state.h"
+#include "systems/touch/presence.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
@@ -55,6 +57,17 @@ void take(World& world, Entity entity, const CouplingSetting& now) {
 void take(World& world, Entity entity, const WeightSetting& setting) {
   for (const auto& tool : world.tools->tools)
     if (tool->entity == entity) tool->weight = setting.weight;
+}
+
+void take(World& world, Entity entity, const EventEdit& event) {
+  const bool surface = world.registry.has<Deformable>(entity);
+  if (event.kind == EventKind::kHandForce) set_hand_force(world, entity, event.force, event.torque);
+  if (event.kind == EventKind::kPlace && surface) place_surface(world, entity, {event.force, event.rotation});
+  if (event.kind != EventKind::kPresent) return;
+  if (event.value != 0.0)
+    put_back_surface(world, entity);
+  else
+    take_out_surface(world, entity);
 }
 
 }  // namespace

@@ -16,8 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kMagic[8] = {'p', 'l', 'i', 'a', 'n', 't', 'r', 'c'};
-constexpr std::uint32_t kVersion = 3, kOfSettings = 2;  // kOfSettings: the first that has them
+constexpr std::uint32_t kVersion = 4, kOfSettings = 2, kOfScene = 3, kOfEvents = 4;  // the first that has them
 constexpr std::uint32_t kMaxProbes = 4096, kMaxName = 4096, kMaxSettings = 4096;
+constexpr std::uint8_t kEnd = 0, kTick = 1, kEvent = 2;
 constexpr std::size_t kPoseBytes = 7 * sizeof(double) + 1;
 
 // Takes values off untrusted bytes; after a short read everything is zero and `ok` false.
@@ -74,6 +75,74 @@ bool sound(const RecordedPose& pose) {
          std::abs(norm - 1.0) < 1e-3;  // false for NaN
 }
 
+Error too_short(const std::string& name) {
+  return {name, "ends too early or is damaged; record it again"};
+}
+
+Status read_poses(const std::string& name, HashingReader& in, std::uint32_t probes, std::uint64_t index,
+                  Recording& recording) {
+  recording.ticks.push_back(index);
+  for (std::uint32_t i = 0; i < probes; ++i) {
+    RecordedPose pose;
+    for (double* value : {&pose.position.x, &pose.position.y, &pose.position.z, &pose.rotation.w, &pose.rotation.x,
+                          &pose.rotation.y, &pose.rotation.z})
+      *value = in.get<double>();
+    const auto state = in.get<std::uint8_t>();
+    pose.ready = state == 1 || state == 2;
+    pose.felt = state != 2;
+    if (!in.ok) return too_short(name);
+    if (!sound(pose))
+      return Error{name, "has a pose at tick " + std::to_string(index) +
+                             " that is not finite or not a unit quaternion; record it again"};
+    recording.poses.push_back(pose);
+  }
+  return Done{};
+}
+
+Status read_event(const std::string& name, HashingReader& in, Recording& recording) {
+  RecordedEvent event;
+  event.tick = in.get<std::uint64_t>();
+  const auto kind = in.get<std::uint8_t>();
+  event.name = in.text();
+  event.key = in.text();
+  event.vertex = in.get<std::uint32_t>();
+  bool finite = true;
+  for (double& value : event.values) {
+    value = in.get<double>();
+    finite = finite && std::isfinite(value);
+  }
+  if (!in.ok) return too_short(name);
+  const bool in_order = recording.events.empty() || recording.events.back().tick <= event.tick;
+  if (kind < 1 || kind > static_cast<std::uint8_t>(kLastEvent) || !finite || !in_order)
+    return Error{name, "has an event before tick " + std::to_string(event.tick) +
+                           " that is of no known kind, not finite or out of order; record it again"};
+  event.kind = static_cast<EventKind>(kind);
+  recording.events.push_back(std::move(event));
+  return Done{};
+}
+
+Status read_records(const std::string& name, HashingReader& in, std::uint32_t probes, Recording& recording) {
+  for (;;) {
+    const auto what = static_cast<Reader&>(in).get<std::uint8_t>();
+    if (!in.ok || what > kEvent) return too_short(name);
+    if (what == kEnd) break;
+    in.hash.add(what);
+    if (what == kEvent) {
+      if (const Status read = read_event(name, in, recording); !read) return read;
+      continue;
+    }
+    const auto index = in.get<std::uint64_t>();
+    if (!in.ok) return too_short(name);
+    if (!recording.ticks.empty() && index <= recording.ticks.back())
+      return Error{name, "has ticks out of order; record it again"};
+    if (const Status read = read_poses(name, in, probes, index, recording); !read) return read;
+  }
+  const std::uint64_t expected = in.hash.value();
+  if (static_cast<Reader&>(in).get<std::uint64_t>() != expected || in.at != in.bytes.size()) return too_short(name);
+  if (recording.ticks.empty()) return Error{name, "holds no tick; record it again"};
+  return Done{};
+}
+
 }  // namespace
 
 Result<Recording> parse_recording(const std::string& name, const std::string& bytes) {
@@ -85,7 +154,7 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
     return Error{name, "has format version " + std::to_string(version) + ", this is " + std::to_string(kVersion) +
                            "; record it again"};
 
-  const Error short_file{name, "ends too early or is damaged; record it again"};
+  const Error short_file = too_short(name);
   Recording recording;
   const std::uint32_t probes = in.get<std::uint32_t>();
   recording.header.rate = in.get<double>();
@@ -95,13 +164,17 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
   for (std::uint32_t i = 0; i < probes && in.ok; ++i) recording.header.probes.push_back(in.text());
   if (version >= kOfSettings) {
     const std::uint64_t scene = in.get<std::uint64_t>();
-    if (version == kVersion) recording.header.scene = scene;
+    if (version >= kOfScene) recording.header.scene = scene;
     const std::uint32_t settings = in.get<std::uint32_t>();
     if (settings > kMaxSettings) return short_file;
     for (std::uint32_t i = 0; i < settings && in.ok; ++i) recording.header.settings.push_back(in.text());
   }
   if (!in.ok || bytes.size() - in.at < sizeof(std::uint64_t)) return short_file;
 
+  if (version >= kOfEvents) {
+    if (const Status read = read_records(name, in, probes, recording); !read) return read.error();
+    return recording;
+  }
   // What is left must be whole ticks and the hash.
   const std::size_t tick_bytes = sizeof(std::uint64_t) + probes * kPoseBytes;
   const std::size_t body = bytes.size() - in.at - sizeof(std::uint64_t);
@@ -114,20 +187,7 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
     const std::uint64_t index = in.get<std::uint64_t>();
     if (!recording.ticks.empty() && index <= recording.ticks.back())
       return Error{name, "has ticks out of order; record it again"};
-    recording.ticks.push_back(index);
-    for (std::uint32_t i = 0; i < probes; ++i) {
-      RecordedPose pose;
-      for (double* value : {&pose.position.x, &pose.position.y, &pose.position.z, &pose.rotation.w, &pose.rotation.x,
-                            &pose.rotation.y, &pose.rotation.z})
-        *value = in.get<double>();
-      const auto state = in.get<std::uint8_t>();
-      pose.ready = state == 1 || state == 2;
-      pose.felt = state != 2;
-      if (!sound(pose))
-        return Error{name, "has a pose at tick " + std::to_string(index) +
-                               " that is not finite or not a unit quaternion; record it again"};
-      recording.poses.push_back(pose);
-    }
+    if (const Status read = read_poses(name, in, probes, index, recording); !read) return read.error();
   }
   const std::uint64_t expected = in.hash.value();
   if (static_cast<Reader&>(in).get<std::uint64_t>() != expected) return short_file;
@@ -215,6 +275,7 @@ void RecordingWriter::add_record() {
 
 void RecordingWriter::tick(std::uint64_t index) {
   ++ticks_;
+  put(kTick);
   put(index);
   if (probes_ == 0) add_record();
 }
@@ -227,6 +288,17 @@ void RecordingWriter::pose(const RecordedPose& pose) {
   if (++poses_ == probes_) add_record();
 }
 
+void RecordingWriter::event(const RecordedEvent& event) {
+  put(kEvent);
+  put(event.tick);
+  put(static_cast<std::uint8_t>(event.kind));
+  put_text(event.name.substr(0, kMaxName));
+  put_text(event.key.substr(0, kMaxName));
+  put(event.vertex);
+  for (const double value : event.values) put(value);
+  add_record();
+}
+
 Status RecordingWriter::finish() {
   if (ticks_ == 0) {
     std::error_code ignored;
@@ -235,7 +307,8 @@ Status RecordingWriter::finish() {
     return Error{file_.string(), "is not written, because no tick was recorded; run for longer"};
   }
   const auto bytes_of = [](const std::uint64_t& hash) {
-    return std::string_view(reinterpret_cast<const char*>(&hash), sizeof hash);
+    std::string bytes(1, static_cast<char>(kEnd));
+    return bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
   };
   if (!failure()) {
     const std::uint64_t hash = hash_.value();
@@ -245,7 +318,7 @@ Status RecordingWriter::finish() {
   std::optional<Error> failure = out_->failure();
   bool whole = true;
   if (failure) {
-    // The room of one tick is the hash's.
+    // The room of one record is the end's.
     const std::size_t kept = std::min(out_->kept_since_flush(), hashes_.size() - 1), dropped = kept > 0 ? 1 : 0;
     whole = out_->end_instead(out_->kept_since_flush() - kept + dropped, bytes_of(hashes_[kept - dropped]));
     failure = Error{file_.string(), failure->what + (whole ? " (it has what was recorded until then)" : "")};

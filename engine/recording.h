@@ -2,11 +2,14 @@
 //
 // The file, little-endian: 8 bytes "pliantrc", u32 version, u32 probes, f64 rate [Hz], level name, a name per probe
 // (u32 length and bytes each), u64 scene_hash() of the scene it was made with, u32 settings and a text for each; then
-// per tick u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the device was ready; 2: it was,
-// and its guard let nothing leave); last a u64 hash of all before it. Older formats are read as well: 1 has neither
-// scene nor settings, the hash of 2 saw less of a scene and is passed over.
+// records, each with a u8 in front. 1, a tick: u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8
+// (1: the device was ready; 2: it was, and its guard let nothing leave). 2, an event of the tick that follows: u64
+// index, u8 kind, name, key (u32 length and bytes each), u32 vertex, 7 f64. 0, the end: a u64 hash of all before it.
+// Older formats are read as well: 3 has ticks alone, without the u8, 1 neither scene nor settings; the hash of 2 saw
+// less of a scene and is passed over.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -27,6 +30,32 @@ struct RecordedPose {
   bool felt = true;  // false: its guard let nothing leave
 };
 
+// What a program does to a session between two ticks, beside moving its probes (Session::set, set_hand_force...).
+// World frame; `name`: of an object, a probe or a tool.
+enum class EventKind : std::uint8_t {
+  kSet = 1,     // key: EXT.KEY=VALUE
+  kHandForce,   // force, torque
+  kBodyForce,   // force, torque
+  kPointForce,  // force, at `vertex`
+  kPush,        // impulse, angular impulse
+  kPointPush,   // impulse, at `vertex`
+  kPlace,       // position, rotation w x y z
+  kPresent,     // values[0]: 1 or 0
+  kNewSource    // another source moves the probe; key: limits of its driver, a line each (engine/driver_limits.h)
+};
+inline constexpr EventKind kLastEvent = EventKind::kNewSource;
+
+struct RecordedEvent {
+  std::uint64_t tick = 0;  // takes effect before it
+  EventKind kind = EventKind::kSet;
+  std::string name, key;
+  std::uint32_t vertex = 0;  // of the object's own vertices
+  std::array<double, 7> values{};
+
+  dvec3 first() const { return {values[0], values[1], values[2]}; }
+  dvec3 second() const { return {values[3], values[4], values[5]}; }
+};
+
 struct RecordingHeader {
   std::string level;
   double rate = 1000.0;  // [Hz]
@@ -43,8 +72,9 @@ inline constexpr const char* kUnknownScene =
 
 struct Recording {
   RecordingHeader header;
-  std::vector<std::uint64_t> ticks;  // indices, ascending
-  std::vector<RecordedPose> poses;   // [tick][probe]
+  std::vector<std::uint64_t> ticks;   // indices, ascending
+  std::vector<RecordedPose> poses;    // [tick][probe]
+  std::vector<RecordedEvent> events;  // by tick, in the order in which they happened
 };
 
 // Untrusted bytes. The error's `where` is `name`.
@@ -61,6 +91,7 @@ class RecordingWriter {
   ~RecordingWriter();
   void tick(std::uint64_t index);  // then one pose for each probe, in order
   void pose(const RecordedPose& pose);
+  void event(const RecordedEvent& event);  // before the tick that it takes effect in
   const std::optional<Error>& failure() const { return out_->failure(); }
   std::uint64_t ticks() const { return ticks_; }                 // so far
   const std::filesystem::path& aside() const { return aside_; }  // where it is until finish()

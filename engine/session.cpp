@@ -66,7 +66,7 @@ Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
       return Error{"Session::move `" + name + "`", "it had no pose before start(); give it one first"};
     if (Status s = parts_->give(*effector, EffectorSource::kPose); !s) return s;
   }
-  effector->prescribed->write() = {position, rotation / glm::length(rotation), effector->hold};
+  effector->set = effector->prescribed->write() = {position, rotation / glm::length(rotation), effector->hold};
   effector->prescribed->publish();
   return Done{};
 }
@@ -145,10 +145,12 @@ Status Session::step(std::uint64_t ticks) {
         break;
       }
       const Tick tick = p.replayed ? p.replayed_tick() : Tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
+      if (p.replayed) p.replay_events(tick.index);
       p.soft->reach(tick.time);
       p.before(tick);
       p.schedule->run(p.world, tick);
       p.after(tick);
+      p.note_history(tick);
       if (p.recorder && p.ticks % (p.recorder->room() / 2) == 0) p.recorder->drain();
       ++p.ticks;
       p.time = tick.time + dt;
@@ -175,6 +177,8 @@ Status Session::start() {
   limit_tool_ticks(p.world);
   if (Status s = p.start_drivers(); !s) return s;
   p.ended = "it has run in real time";
+  p.history = {};
+  p.history.lacking = "it has run in real time, whose steps fall otherwise every time";
   TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
                    [&p] { p.clock_ended(); }};
   p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,

@@ -11,22 +11,15 @@ namespace {
 
 constexpr const char* kNoSurface = "is not deformable (it has no PLIANT_deformable); ask Session::vertices()";
 
-// The mesh that is touched, whatever kind of object.
-const Mesh* mesh_of(const World& world, Entity entity) {
-  const Registry& all = world.registry;
-  if (const Deformable* surface = all.find<Deformable>(entity)) return &world.meshes[surface->mesh];
-  if (const SoftBody* body = all.find<SoftBody>(entity)) return &world.meshes[body->collision_mesh];
-  if (const RigidBody* body = all.find<RigidBody>(entity)) return &world.meshes[body->collision_mesh];
-  return nullptr;
-}
-
 }  // namespace
 
 Result<Reading> Session::reading(const std::string& name) const {
   const SessionEffector* const effector = parts_->find_effector(name);
   if (!effector) return parts_->unknown_effector(name);
   if (parts_->clock) parts_->rows.acquire();
-  return parts_->rows.read()[static_cast<std::size_t>(effector - parts_->effectors.data())].reading;
+  EffectorRow row = parts_->rows.read()[static_cast<std::size_t>(effector - parts_->effectors.data())];
+  parts_->name_contacts(row);
+  return row.reading;
 }
 
 SessionFigures Session::figures() const {
@@ -72,7 +65,8 @@ Status Session::body_contacts(std::vector<BodyContact>& out) {
   p.look();
   out.clear();
   for (const ContactMark& mark : p.view.contacts())
-    out.push_back({dvec3(mark.position), dvec3(mark.normal), dvec3(mark.force), mark.sliding});
+    out.push_back({dvec3(mark.position), dvec3(mark.normal), dvec3(mark.force), mark.sliding,
+                   static_cast<double>(mark.depth), p.side(mark.a), p.side(mark.b)});
   return Done{};
 }
 
@@ -93,24 +87,7 @@ Status Session::vertices(const std::string& object, std::vector<vec3>& out) {
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   p.look();
-  const Mesh& mesh = *mesh_of(p.world, *entity);
-  const std::vector<vec4>* const stream = p.view.stream(*entity);
-  const SoftObjectSnapshot* const soft = p.view.soft(*entity);
-  const mat4 to_world = p.view.to_world(p.world, *entity);
-  out.assign(mesh.of_source.size(), vec3(0));
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::uint32_t v = mesh.of_source[i];
-    if (v == kBorder) {  // no triangle uses it
-      out[i] = vec3(to_world[3]);
-      continue;
-    }
-    if (soft && !soft->position.empty()) {
-      out[i] = soft->position[v];
-    } else {
-      const float height = stream ? (*stream)[v].w : 0.0f;
-      out[i] = vec3(to_world * vec4(mesh.position(v) + height * mesh.normal(v), 1.0f));
-    }
-  }
+  p.place_vertices(*entity, false, out);
   return Done{};
 }
 
@@ -120,7 +97,7 @@ Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out)
   if (!entity) return entity.error();
   if (!p.world.registry.has<Deformable>(*entity)) return Error{"`" + object + "`", kNoSurface};
   if (p.clock) p.rows.acquire();
-  const Mesh& mesh = *mesh_of(p.world, *entity);
+  const Mesh& mesh = *collision_mesh_of(p.world, *entity);
   std::vector<vec3> on_vertex(mesh.vertex_count, vec3(0));
   std::vector<float> copies(mesh.vertex_count, 0.0f);
   for (const EffectorRow& row : p.rows.read())
@@ -163,10 +140,10 @@ Result<Geometry> Session::geometry(const std::string& object) const {
   const Parts& p = *parts_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
-  if (!p.world.registry.has<Deformable>(*entity)) return Error{"`" + object + "`", kNoSurface};
+  if (!p.world.registry.has<Deformable>(*entity)) return parts_->body_geometry(*entity, object);
   const Drawable* const drawable = p.world.registry.find<Drawable>(*entity);
   if (!drawable) return Error{"`" + object + "`", "is not drawn; it has no mesh"};
-  const Mesh& mesh = *mesh_of(p.world, *entity);
+  const Mesh& mesh = *collision_mesh_of(p.world, *entity);
   const DrawMesh& draw = p.world.draw_meshes[drawable->mesh];
   Geometry out;
   for (const DrawVertex& vertex : draw.vertices) {

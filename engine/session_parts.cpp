@@ -7,6 +7,7 @@
 
 #include "components/soft_body.h"
 #include "engine/choice/model_choice.h"
+#include "engine/driver_limits.h"
 #include "engine/scene_check.h"
 #include "engine/sources.h"
 #include "runtime/long_work.h"
@@ -102,6 +103,10 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   clock.reset();
   soft.reset();
   world = std::move(spawned).value();
+  ticks = overruns = 0;
+  history = {};
+  history.begun = settings;
+  edits = std::make_unique<Ring<Edit>>(kMostEdits);
   places.clear();
   for (const Entity held : pliant::hands(world)) {
     SessionEffector made;
@@ -145,13 +150,16 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
 
   schedule.emplace(touch_schedule());
   soft = std::make_unique<SoftClock>(world);
-  ticks = overruns = 0;
   after_pause = false;
   shown = true;
   time = 0.0;
-  edits = std::make_unique<Ring<Edit>>(kMostEdits);
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
+  shapes.clear();
+  shapes.resize(objects.size());
+  looked = 0;
+  size_kept();
+  taken_out.assign(objects.size(), 0);
   run = std::make_shared<int>();
   for (SessionEffector& old : before) {
     SessionEffector* const effector = find_effector(old.name);
@@ -166,6 +174,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     effector->source = EffectorSource::kNone;
     if (Status s = give(*effector, old.source); !s) return s;
   }
+  if (Status s = send_standing(); !s) return s;
   return Done{};
 }
 
@@ -252,6 +261,10 @@ void Session::Parts::begin(SessionEffector& effector) {
   effector.link.begin(device, effector.placed_rotation, effector.placed_position);
   begin_anew(world, effector.entity);
   effector.renewed = ticks > 0;  // before the first tick there is nothing to lose
+  std::string limits;
+  for (const std::string& setting : driver_settings(effector.name, device)) limits += setting + "\n";
+  const std::uint32_t number = note_event({0, EventKind::kNewSource, effector.name, limits, 0, {}});
+  if (number > 0) edits->push({effector.entity, EventEdit{EventKind::kNewSource, 0.0, {}, {}, {}}, number});
 }
 
 void Session::Parts::zero_drivers() noexcept {
@@ -283,6 +296,7 @@ void Session::Parts::show_let_go() noexcept {
     row = {};
     row.reading.tick = last.index;
     row.reading.time = last.time;
+    if (keeps > 0) kept[static_cast<std::size_t>(&row - rows.write().data())]->record(row);
   }
   rows.publish();
 }
@@ -319,7 +333,10 @@ void Session::Parts::before(Tick tick) {
   last = tick;
   shown = false;
   Edit edit;
-  while (edits->pop(edit)) apply_edit(world, edit);
+  while (edits->pop(edit)) {
+    apply_edit(world, edit);
+    if (recorder && edit.number > 0) recorder->stamp(edit.number, tick.index);
+  }
   for (SessionEffector& effector : effectors) {
     HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
     if (after_pause) forget(effector);

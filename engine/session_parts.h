@@ -2,9 +2,11 @@
 // one runs; what the owner's thread and the clock exchange goes through exchanges.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -14,7 +16,9 @@
 #include "components/world.h"
 #include "content/level/level.h"
 #include "engine/driver_link.h"
+#include "engine/object_shape.h"
 #include "engine/recording.h"
+#include "engine/session_history.h"
 #include "engine/session_view.h"
 #include "engine/soft_clock.h"
 #include "engine/source_place.h"
@@ -58,6 +62,7 @@ struct SessionEffector {
   bool placed = false;
   double heard_at = 0.0, lasts = 1e-3;  // [s] when that came, and how long the way to it takes
   PrescribedPose from, now;
+  PrescribedPose set;  // owner's: the last that was given
 };
 
 // A reading, and where on the collision mesh its contacts press.
@@ -82,6 +87,10 @@ class SessionRecorder {
   // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh.
   // `felt`: its guard let the force leave.
   void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready, bool felt);
+  // Owner: an event on its way to the touch clock; its number. Touch clock: the tick that it takes effect in.
+  std::uint32_t announce(const RecordedEvent& event);
+  void stamp(std::uint32_t number, std::uint64_t tick) { stamps_.record({number, tick}); }
+  void write_now(const RecordedEvent& event) { writer_.event(event); }  // before the first tick
   void drain();
   std::size_t room() const { return room_; }  // [ticks] that may wait
   void start();                               // a thread drains from now on
@@ -95,6 +104,16 @@ class SessionRecorder {
   std::uint64_t pending_tick_ = 0;
   Recorder<PoseRow> rows_;
   std::vector<PoseRow> taken_;
+  struct Stamp {
+    std::uint32_t number = 0;
+    std::uint64_t tick = 0;
+  };
+  void write_events(std::uint64_t until);
+  Recorder<Stamp> stamps_;
+  std::mutex events_mutex_;              // between the owner and the thread that writes
+  std::deque<RecordedEvent> announced_;  // by number, from first_announced_ on
+  std::uint32_t first_announced_ = 1, next_announced_ = 1;
+  std::vector<Stamp> stamped_;  // in order, not yet written
   std::jthread thread_;
 };
 
@@ -110,9 +129,18 @@ struct ProbeSetting {
 struct WeightSetting {
   dvec3 weight{0};  // [N] of a tool that nothing carries
 };
+// What the owner does to hands and objects, beside parameters.
+struct EventEdit {
+  EventKind kind = EventKind::kSet;  // kSet, and the soft clock's: only stamped here
+  double value = 0.0;
+  dvec3 force{0}, torque{0};  // of kHandForce; of kPlace, force is the position [m]
+  dquat rotation{1, 0, 0, 0};
+};
+// On its way to the touch clock, which says in which tick it took it.
 struct Edit {
   Entity entity;
-  std::variant<SurfaceSetting, DeviceParameters, ProbeSetting, CouplingSetting, WeightSetting> now;
+  std::variant<EventEdit, SurfaceSetting, DeviceParameters, ProbeSetting, CouplingSetting, WeightSetting> now;
+  std::uint32_t number = 0;  // of its event in the recording under way; 0: none
 };
 
 Error work_stopped();
@@ -149,6 +177,21 @@ struct Session::Parts {
   std::function<void(Tick)> noted;              // touch clock's: last of every tick; must not allocate, wait or throw
   std::map<std::string, std::map<std::uint32_t, SourcePlace>> places;  // by object, of vertices that were pressed
 
+  // Questions about geometry (session_queries.cpp). Owner's.
+  std::vector<std::unique_ptr<ObjectShape>> shapes;  // of each object; made when it is first asked about
+  std::uint64_t looked = 0;                          // [ticks] + 1 of the state that look() has taken, in lockstep
+  // Every tick's rows, of each effector (session_readings.cpp).
+  std::size_t keeps = 0;  // [ticks]
+  std::vector<std::unique_ptr<Recorder<EffectorRow>>> kept;
+  std::vector<std::uint64_t> lost_told;  // of each: rows that the owner knows to be lost
+
+  // What the program does beside moving its probes (session_events.cpp). Owner's.
+  std::vector<RecordedEvent> standing;  // forces that are constant until they change, what is taken out
+  std::vector<std::uint8_t> taken_out;  // of each object
+  std::size_t replayed_events = 0;      // of the recording: done
+  SessionHistory history;               // since time 0 (session_state.cpp)
+  bool restoring = false;               // the history runs again: no driver is written
+
   explicit Parts(const Scene& from) : scene(from) {}
   ~Parts();
 
@@ -178,11 +221,41 @@ struct Session::Parts {
   // A force on a vertex of a refined mesh, shared by the source vertices around it.
   void share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force, std::vector<vec3>& out);
   void look();  // the newest that the clocks show
+  void see();   // the same, once a state
+  ObjectShape& shape(std::size_t object);
+  const LevelMesh* given_mesh(const std::string& object) const;  // null: its surface was not given as triangles
+  Geometry body_geometry(Entity entity, const std::string& object);
+  ContactSide side(const ContactPlace& place);
+  void name_contacts(EffectorRow& row);                                         // their triangles and vertices
+  void place_vertices(Entity object, bool rest, std::vector<vec3>& out) const;  // of the view
+  void size_kept();
+  // Checks, sends to the clocks, and notes for whatever is recorded.
+  Status send(RecordedEvent event, const char* what);
+  Status send_to_hand(const RecordedEvent& event, const char* what);
+  Status send_to_body(const RecordedEvent& event, const char* what);
+  std::uint32_t note_event(const RecordedEvent& event);  // its number in the recording
+  void keep_standing(const RecordedEvent& event);
+  Status send_standing();  // to a new world
 
   // On the touch clock, or the caller's thread in lockstep.
   void before(Tick tick);
   void begin_replay(Recording recording);
-  Tick replayed_tick();  // its poses are the devices' then
+  Status send_to_object(const RecordedEvent& event, const char* what);  // kPlace, kPresent
+  Status check_place(Entity object, const RecordedEvent& event) const;
+  Status go_back(SavedState state);
+  Status perform(const RecordedEvent& event);
+  // NODE.EXT.KEY=VALUE, of the keys that a session can change. kKeep: for the next world to begin with.
+  enum class Setting : std::uint8_t { kSend, kKeep };
+  Status apply_setting(const std::string& setting, Setting how);
+  // In an order in which they hold: a coefficient of sliding friction is below that of static friction. Those refused.
+  std::vector<Error> apply_settings(std::vector<std::string> settings, Setting how);
+  void note_history(Tick tick);
+  SavedState saved_state() const;
+  Status run_again(SavedState state);  // from time 0, in a new world
+  void go_on(const SavedState& state, std::vector<EffectorSource>& sources, std::vector<DriverLink>& links,
+             std::vector<HapticDevice>& devices_before);
+  void replay_events(std::uint64_t tick);  // those that take effect before it
+  Tick replayed_tick();                                      // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
   Status start_drivers();  // of real time; those that did are halted where one does not
   void halt_drivers() noexcept;

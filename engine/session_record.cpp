@@ -8,7 +8,6 @@
 #include <span>
 
 #include "content/files/file_io.h"
-#include "content/keys/extension_table.h"
 #include "engine/driver_limits.h"
 #include "engine/scene_hash.h"
 #include "engine/session_parts.h"
@@ -19,53 +18,22 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kRoom = 8192;  // ticks that may wait to be written
+constexpr std::size_t kMostStamps = 4096;  // events that may wait to be written
+constexpr std::size_t kRoom = 8192;        // ticks that may wait to be written
 constexpr auto kDrainEvery = std::chrono::milliseconds(20);
 
 std::size_t room_for(std::size_t effectors) {
   return std::clamp<std::size_t>(most(limits::kJournal) / (sizeof(PoseRow) * effectors), 2, kRoom);
 }
 
-// NODE.EXT.KEY=VALUE, of the keys that a session can change.
-Status apply_setting(Session& session, const std::string& setting) {
-  const std::size_t equals = setting.rfind('=');
-  const std::string path = setting.substr(0, equals),
-                    text = equals == std::string::npos ? "" : setting.substr(equals + 1);
-  for (const Extension& extension : extension_table())
-    for (const Key& key : extension.keys) {
-      const std::string end = "." + extension.name + "." + key.name;
-      if (extension.on_scene || path.size() <= end.size() || !path.ends_with(end)) continue;
-      const std::string object = path.substr(0, path.size() - end.size());
-      const Json value = Json::parse(text, nullptr, false);
-      if (value.is_number()) return session.set(object, key.name, value.get<double>());
-      if (key.type == KeyType::kPair && !check_value(key, value).empty()) break;
-      if (key.type == KeyType::kPair) return session.set(object, key.name, value.get<std::vector<double>>());
-      return session.set(object, key.name, text);
-    }
-  return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
-}
-
-// Some hold only beside others: a coefficient of sliding friction below that of static friction.
-std::vector<Error> apply_settings(Session& session, std::vector<std::string> settings) {
-  std::vector<Error> refused;
-  for (std::size_t before = settings.size() + 1; settings.size() < before;) {
-    before = settings.size();
-    refused.clear();
-    std::vector<std::string> again;
-    for (const std::string& setting : settings)
-      if (Status applied = apply_setting(session, setting); !applied) {
-        refused.push_back(applied.error());
-        again.push_back(setting);
-      }
-    settings = std::move(again);
-  }
-  return refused;
-}
-
 }  // namespace
 
 SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
-    : writer_(std::move(writer)), room_(room_for(effectors)), last_(effectors), rows_(room_ * effectors) {}
+    : writer_(std::move(writer)),
+      room_(room_for(effectors)),
+      last_(effectors),
+      rows_(room_ * effectors),
+      stamps_(kMostStamps) {}
 
 void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready,
                            bool felt) {
@@ -77,10 +45,31 @@ void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const Hap
   rows_.record({tick, effector, last});
 }
 
+std::uint32_t SessionRecorder::announce(const RecordedEvent& event) {
+  const std::lock_guard lock(events_mutex_);
+  announced_.push_back(event);
+  return next_announced_++;
+}
+
+// Stamps are drained after the rows: those of the rows' ticks and of earlier ones are there.
+void SessionRecorder::write_events(std::uint64_t until) {
+  const std::lock_guard lock(events_mutex_);
+  std::size_t done = 0;
+  for (; done < stamped_.size() && stamped_[done].tick <= until; ++done) {
+    while (first_announced_ < stamped_[done].number) announced_.pop_front(), ++first_announced_;
+    RecordedEvent event = announced_.front();
+    announced_.pop_front(), ++first_announced_;
+    event.tick = stamped_[done].tick;
+    writer_.event(event);
+  }
+  stamped_.erase(stamped_.begin(), stamped_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
 // A full ring, or a tick that ended in its middle, leaves a part of a tick: it is left out.
 void SessionRecorder::drain() {
   taken_.clear();
   rows_.drain(taken_);
+  stamps_.drain(stamped_);
   for (const PoseRow& row : taken_) {
     if (row.effector == 0) {
       pending_.clear();
@@ -89,6 +78,7 @@ void SessionRecorder::drain() {
     if (row.tick != pending_tick_ || row.effector != pending_.size()) continue;
     pending_.push_back(row.pose);
     if (pending_.size() < last_.size()) continue;
+    write_events(row.tick);
     writer_.tick(row.tick);
     for (const RecordedPose& pose : pending_) writer_.pose(pose);
   }
@@ -127,6 +117,12 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
   p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
+  // What holds from before. Parameters and drivers are in the header.
+  for (RecordedEvent event : p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing) {
+    if (event.kind == EventKind::kSet || event.kind == EventKind::kNewSource) continue;
+    event.tick = p.ticks;
+    p.recorder->write_now(event);
+  }
   return Done{};
 }
 
@@ -160,7 +156,7 @@ Status Session::replay(const std::filesystem::path& file) {
                                   recording->ticks.front()));
   std::vector<std::string> own = header.settings;
   std::erase_if(own, is_driver_setting);
-  for (const Error& refused : apply_settings(*this, own))
+  for (const Error& refused : p.apply_settings(own, Parts::Setting::kSend))
     p.notes.push_back(file.string() + ": its setting " + refused.message());
   const std::vector<std::string> settings = header.settings;
   p.begin_replay(std::move(recording).value());
@@ -175,6 +171,7 @@ void Session::Parts::begin_replay(Recording recording) {
     world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
   }
   replayed = std::move(recording);
+  replayed_events = 0;
 }
 
 Tick Session::Parts::replayed_tick() {

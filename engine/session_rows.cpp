@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "engine/session_parts.h"
+#include "systems/device/devices.h"
 #include "systems/device/reading.h"
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
@@ -39,7 +40,7 @@ void Session::Parts::after(Tick tick) {
     HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
     const SafetyState* const safety = safety_of(world, effector.entity);
     const bool felt = !safety || safety->felt;
-    if (replayed && !felt) device.force_sent = device.torque_sent = dvec3(0);
+    if ((replayed || restoring) && !felt) device.force_sent = device.torque_sent = dvec3(0);
     const DeviceWrench wrench{device.force_sent, device.torque_sent};
     EffectorRow& row = out[i];
     const ProbeReading read = pliant::reading(world, effector.entity);
@@ -59,6 +60,7 @@ void Session::Parts::after(Tick tick) {
     if (world.registry.has<Probe>(effector.entity))
       for_contacts_of(world, effector.entity,
                       [&](const Contact& contact) { add_contact(world, object_entities, contact, row); });
+    if (keeps > 0) kept[i]->record(row);
   }
   after_pause = false;
   rows.publish();

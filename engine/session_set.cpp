@@ -125,7 +125,7 @@ Result<SessionChange> change_surface(Session::Parts& p, const std::string& name,
   if (Status s = check(now, "`" + name + "`"); !s) return s.error();
   SessionChange change;
   change.entity = *p.find_object(name);
-  change.touch.push_back({change.entity, *setting});
+  change.touch.push_back({change.entity, *setting, 0});
   change.soft.push_back({change.entity, setting->now});
   return change;
 }
@@ -141,7 +141,7 @@ Result<SessionChange> change_rigid(Session::Parts& p, const std::string& name, c
     if (!mass) return mass.error();
     now.mass = *mass;
     if (node.handle && !node.handle->carried)
-      change.touch.push_back({change.entity, WeightSetting{now.mass.mass * p.world.simulation.gravity}});
+      change.touch.push_back({change.entity, WeightSetting{now.mass.mass * p.world.simulation.gravity}, 0});
   }
   change.soft.push_back({change.entity, now});
   return change;
@@ -164,7 +164,7 @@ Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, c
     HapticDevice device;
     static_cast<DeviceParameters&>(device) = p.devices.at(name);
     const HandleParameters handle = probe_handle(now, device);
-    change.touch.push_back({change.entity, coupling_of(handle)});
+    change.touch.push_back({change.entity, coupling_of(handle), 0});
     change.soft.push_back({change.entity, coupling_of(handle)});
     return change;
   }
@@ -176,14 +176,14 @@ Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, c
   if (p.world.soft && now.meets != ProbeMeets::kSurfaces)
     return Error{where, std::string("its shape among soft and rigid bodies is made with it") + kAgain +
                             ", or let it meet surfaces alone"};
-  change.touch.push_back({change.entity, ProbeSetting{now.radius}});
+  change.touch.push_back({change.entity, ProbeSetting{now.radius}, 0});
   return change;
 }
 
 SessionChange change_handle(Session::Parts& p, const std::string& name, const Handle6& handle) {
   SessionChange change;
   change.entity = p.find_effector(name)->entity;
-  change.touch.push_back({change.entity, coupling_of(handle)});
+  change.touch.push_back({change.entity, coupling_of(handle), 0});
   change.soft.push_back({change.entity, coupling_of(handle)});
   return change;
 }
@@ -199,7 +199,7 @@ Result<SessionChange> change_of(Session::Parts& p, const std::string& name, cons
   if (Status s = check_device(name, *node.device); !s) return s.error();
   SessionChange change;
   change.entity = p.find_effector(name)->device;
-  change.touch.push_back({change.entity, static_cast<const DeviceParameters&>(*node.device)});
+  change.touch.push_back({change.entity, static_cast<const DeviceParameters&>(*node.device), 0});
   return change;
 }
 
@@ -228,7 +228,31 @@ void note_settings(Session::Parts& p, const std::string& name, const Extension& 
   }
 }
 
-Status set_value(Session::Parts& p, const std::string& name, const std::string& key_name, const Json& value) {
+// `note`: of what is recorded, once there is room for it.
+template <class Note>
+Status send(Session::Parts& p, SessionChange& change, const Note& note) {
+  const bool soft = p.world.soft && !change.soft.empty();
+  if (!p.edits->has_room() || (soft && !p.world.soft->parameter_edits.has_room()))
+    return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
+  if (change.touch.empty()) change.touch.push_back({change.entity, EventEdit{}, 0, 0});
+  change.touch.front().number = note();
+  for (const Edit& edit : change.touch) p.edits->push(edit);
+  if (soft)
+    for (const ParameterEdit& edit : change.soft) p.world.soft->parameter_edits.push(edit);
+  return Done{};
+}
+
+// Value of `key`, for the recording: KEY=VALUE, the extension with it.
+std::uint32_t note_set(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
+                       const Json& value) {
+  return p.note_event({0, EventKind::kSet, name,
+                       extension.name + "." + key.name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()),
+                       0, {}});
+}
+
+// Not `sent`: a world is made next, and begins with it.
+Status set_value(Session::Parts& p, const std::string& name, const std::string& key_name, const Json& value,
+                 bool sent = true) {
   Result<Named> named = find_named(p, name);
   if (!named) return named.error();
   const Result<Found> found = find_named_key(*named, name, key_name, true);
@@ -241,20 +265,51 @@ Status set_value(Session::Parts& p, const std::string& name, const std::string& 
     return Error{where, "follows from its Young's modulus; set `young` instead"};
   key->set(&named->node, value);
   if (const std::string fault = extension->settle(&named->node); !fault.empty()) return Error{where, fault};
-  const Result<SessionChange> change = change_of(p, name, where, *extension, named->node);
+  Result<SessionChange> change = change_of(p, name, where, *extension, named->node);
   if (!change) return change.error();
-  const bool soft = p.world.soft && !change->soft.empty();
-  if (!p.edits->has_room() || (soft && !p.world.soft->parameter_edits.has_room()))
-    return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
-  for (const Edit& edit : change->touch) p.edits->push(edit);
-  if (soft)
-    for (const ParameterEdit& edit : change->soft) p.world.soft->parameter_edits.push(edit);
+  if (sent)
+    if (Status s = send(p, *change, [&] { return note_set(p, name, *extension, *key, value); }); !s) return s;
   keep(p, name, *extension, named->node);
   note_settings(p, name, *extension, *key, before, named->node);
   return Done{};
 }
 
 }  // namespace
+
+Status Session::Parts::apply_setting(const std::string& setting, Setting how) {
+  const bool sent = how == Setting::kSend;
+  const std::size_t equals = setting.rfind('=');
+  const std::string path = setting.substr(0, equals),
+                    text = equals == std::string::npos ? "" : setting.substr(equals + 1);
+  for (const Extension& extension : extension_table())
+    for (const Key& key : extension.keys) {
+      const std::string end = "." + extension.name + "." + key.name;
+      if (extension.on_scene || path.size() <= end.size() || !path.ends_with(end)) continue;
+      const std::string object = path.substr(0, path.size() - end.size());
+      const Json value = Json::parse(text, nullptr, false);
+      if (value.is_number() && !std::isfinite(value.get<double>())) break;
+      if (value.is_number()) return set_value(*this, object, key.name, value, sent);
+      if (key.type == KeyType::kPair && !check_value(key, value).empty()) break;
+      return set_value(*this, object, key.name, key.type == KeyType::kPair ? value : Json(text), sent);
+    }
+  return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
+}
+
+std::vector<Error> Session::Parts::apply_settings(std::vector<std::string> settings, Setting how) {
+  std::vector<Error> refused;
+  for (std::size_t before = settings.size() + 1; settings.size() < before;) {
+    before = settings.size();
+    refused.clear();
+    std::vector<std::string> again;
+    for (const std::string& setting : settings)
+      if (Status applied = apply_setting(setting, how); !applied) {
+        refused.push_back(applied.error());
+        again.push_back(setting);
+      }
+    settings = std::move(again);
+  }
+  return refused;
+}
 
 void Session::Parts::keep_bodies() {
   bodies.clear();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/soft_body.h"
 #include "systems/touch/publish.h"
 
 namespace pliant {
@@ -13,6 +14,7 @@ void SessionView::reset(const World& world) {
   handles_.clear();
   seen = {};
   soft_seen = {};
+  ++version_;
   for (auto [entity, pose] : world.registry.view<const Pose>()) {
     Shown shown{entity, pose.matrix(), {}};
     if (const Deformable* surface = world.registry.find<Deformable>(entity))
@@ -40,10 +42,12 @@ void SessionView::add(const Snapshot& snapshot) {
 
 void SessionView::take(World& world) {
   while (world.snapshots->acquire()) {
+    ++version_;
     add(world.snapshots->read());
     if (seen) seen(world.snapshots->read());
   }
   if (!world.soft_snapshots || !world.soft_snapshots->acquire()) return;
+  ++version_;
   soft_ = world.soft_snapshots->read().objects;
   contacts_ = world.soft_snapshots->read().contacts;
   handles_ = world.soft_snapshots->read().handles;
@@ -68,6 +72,13 @@ const SoftObjectSnapshot* SessionView::soft(Entity object) const {
   for (const SoftObjectSnapshot& shown : soft_)
     if (shown.object == object) return &shown;
   return nullptr;
+}
+
+mat4 SessionView::rest_to_world(const World& world, Entity object) const {
+  if (!world.registry.has<SoftBody>(object) || world.registry.has<Handle6>(object)) return to_world(world, object);
+  for (const Shown& shown : shown_)
+    if (shown.object == object) return shown.to_world;
+  return world.registry.get<WorldTransform>(object).matrix;
 }
 
 mat4 SessionView::to_world(const World& world, Entity object) const {

@@ -20,6 +20,9 @@ class SessionView {
   const std::vector<vec4>* stream(Entity object) const;  // null: no deformable surface
   const SoftObjectSnapshot* soft(Entity object) const;   // null: nothing that moves, or not seen yet
   mat4 to_world(const World& world, Entity object) const;
+  // Of a soft body without a handle: where the scene put it, which is where its rest shape is. Else to_world().
+  mat4 rest_to_world(const World& world, Entity object) const;
+  std::uint64_t version() const { return version_; }  // another one: something new was taken
   const std::vector<ContactMark>& contacts() const { return contacts_; }
   const std::vector<HandleMark>& handles() const { return handles_; }
 
@@ -38,6 +41,7 @@ class SessionView {
   std::vector<SoftObjectSnapshot> soft_;
   std::vector<ContactMark> contacts_;
   std::vector<HandleMark> handles_;
+  std::uint64_t version_ = 1;
 };
 
 }  // namespace pliant

@@ -4,9 +4,7 @@
 #include <limits>
 
 namespace pliant {
-namespace {
 
-// Barycentric coordinates of the point of a triangle that is nearest to x.
 dvec3 nearest_weights(dvec3 a, dvec3 b, dvec3 c, dvec3 x) {
   const dvec3 normal = cross(b - a, c - a);
   const double area = dot(normal, normal);
@@ -31,8 +29,6 @@ dvec3 nearest_weights(dvec3 a, dvec3 b, dvec3 c, dvec3 x) {
   }
   return best;
 }
-
-}  // namespace
 
 SourcePlace nearest_source(const std::vector<dvec3>& source, const std::vector<uvec3>& triangles, dvec3 x) {
   SourcePlace best;

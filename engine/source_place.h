@@ -16,6 +16,9 @@ struct SourcePlace {
   dvec3 weights{1, 0, 0};  // [1] barycentric
 };
 
+// Barycentric coordinates of the point of a triangle that is nearest to x.
+dvec3 nearest_weights(dvec3 a, dvec3 b, dvec3 c, dvec3 x);
+
 // The nearest point of the source triangles to x. `source`: their vertices, as `triangles` number them, in x's frame.
 SourcePlace nearest_source(const std::vector<dvec3>& source, const std::vector<uvec3>& triangles, dvec3 x);
 

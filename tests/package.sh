@@ -194,6 +194,10 @@ echo "$said" | grep -q 'closed; the last force was 0.000 N' || fail "the last fo
 said=$("$run/own_law")
 echo "$said"
 echo "$said" | grep -q 'softening  4.0 mm deep: 1.140 N' || fail "300 N/m * 10 mm * tanh(0.4) is 1.140 N"
+said=$("$run/reset_loop")
+echo "$said"
+[[ $(echo "$said" | sed -n 2p) == "$(echo "$said" | sed -n 3p)" ]] || fail "the same state and force must give the same"
+echo "$said" | grep -q '0.2 N: the cube went  0.0 mm; the table carries 0.98 N; beside it is `table`' || fail "friction holds it"
 said=$("$run/headless_sweep" "$work/installed/share/pliant/content/levels/minimal.gltf" 2>&1)
 [[ $(echo "$said" | wc -l) -gt 100 ]] || { echo "$said" | head; fail "the sweep is too short"; }
 if [[ -x $run/own_renderer ]] && command -v xvfb-run >/dev/null; then

@@ -87,6 +87,21 @@ bool meet(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
 }
 
+// Mesh::of_source of the given primitives, of which what is touched was made: the vertices of each are the first of its
+// finer one; those of a primitive that was left out as a whole are in no triangle.
+std::vector<std::uint32_t> given_sources(const std::vector<Primitive>& given, const std::vector<Primitive>& touched,
+                                         const std::vector<std::uint32_t>& of_touched) {
+  std::vector<std::uint32_t> out;
+  std::size_t next = 0, first = 0;
+  for (const Primitive& p : given) {
+    const bool kept = next < touched.size() && touched[next].position.size() >= p.position.size() &&
+                      std::equal(p.position.begin(), p.position.end(), touched[next].position.begin());
+    for (std::size_t i = 0; i < p.position.size(); ++i) out.push_back(kept ? of_touched[first + i] : kBorder);
+    if (kept) first += touched[next++].position.size();
+  }
+  return out;
+}
+
 Primitive boundary_primitive(const TetMesh& mesh) {
   Primitive p;
   p.position.assign(mesh.nodes.begin(), mesh.nodes.end());
@@ -199,8 +214,11 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     const double longest = kLongestEdge * (focus ? kEdgeOverCell * parts.tets.report.cell : mean_edge(parts.tets));
     const bool finer =
         refine(touched, to_object, [&](dvec3 at) { return focus ? longest * focus->width_at(at) : longest; });
-    if (outer || finer)
+    if (outer || finer) {
       if (Status s = build(touched, to_object); !s) return s.error();
+      Mesh& surface = parts.surface.mesh;
+      surface.of_source = given_sources(mesh->primitives, touched, surface.of_source);
+    }
   }
   parts.tets.embedding = embed(parts.surface.mesh, parts.tets.nodes, parts.tets.tets);
   put_in_order(parts.tets, group);

@@ -30,6 +30,7 @@
 #include "pliant/device_state.h"
 #include "pliant/driver.h"
 #include "pliant/progress.h"
+#include "pliant/query.h"
 #include "pliant/scene.h"
 
 namespace pliant {
@@ -41,14 +42,28 @@ struct ContactReading {
   double depth = 0.0;  // [m] below the undeformed surface
   bool sliding = false;
   std::uint32_t object = 0;  // into Session::objects()
+  // Of the object, as Session::triangles numbers them: where `position` lies, and the corner that is nearest to it.
+  std::uint32_t triangle = 0xffffffff, vertex = 0xffffffff;
 };
 
-// Where soft and rigid bodies, tools among them, press on each other and on surfaces.
+// One of the two that touch.
+struct ContactSide {
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint32_t object = kNone;    // into Session::objects(); kNone: a probe
+  std::uint32_t effector = kNone;  // into Session::effectors(); kNone: neither a probe nor a tool
+  // Of the object, as Session::triangles numbers them: where it is touched, and the corner that is nearest; kNone: of a
+  // probe.
+  std::uint32_t triangle = kNone, vertex = kNone;
+};
+
+// Where soft and rigid bodies, tools and probes among them, press on each other and on surfaces.
 struct BodyContact {
   dvec3 position{0};  // [m] world
   dvec3 normal{0};    // [1] world, unit, towards the body that `force` is on
-  dvec3 force{0};     // [N] world, with friction; its reaction is on the other body
+  dvec3 force{0};     // [N] world, on `a`, with friction; its reaction is on `b`
   bool sliding = false;
+  double depth = 0.0;  // [m] of `a` in `b` along the normal, at the step's begin; below 0: they are still so far apart
+  ContactSide a, b;    // the same object twice: it folds onto itself
 };
 // What tissue and contacts did to a tool's handle in a soft step.
 struct HandleReading {
@@ -180,10 +195,70 @@ class Session {
   // by their barycentric coordinates. Of deformable surfaces.
   Status vertex_forces(const std::string& object, std::vector<vec3>& out);
   // What a renderer of one's own draws: geometry once, the stream (nx, ny, nz, h) every frame, to_world every frame.
-  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of deformable surfaces.
+  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of deformable surfaces; of a soft or rigid
+  // body only the rest shape, whose `stream_vertex` counts the body's own vertices (Session::vertices).
   Result<Geometry> geometry(const std::string& object) const;
   Status stream(const std::string& object, std::vector<vec4>& out);
   Result<mat4> to_world(const std::string& object);
+
+  // --- Forces of the program's own, constant until they change; zero takes them away. From the next tick, or of bodies
+  // the next soft step, on, in lockstep and in real time; recordings hold them. They hold beyond restart().
+  // On the hand that holds a probe or tool, beside what it touches: [N], [N m] world, a torque on tools alone. It goes
+  // through the same safety: clipped, slewed, withheld where the hand would get more energy than it gave. While the
+  // gate is closed it is nothing; behind it, it comes in over half a second.
+  Status set_hand_force(const std::string& effector, dvec3 force, dvec3 torque = dvec3(0));
+  // On a soft or rigid body that moves and no hand holds: at its centre of mass [N], and a torque [N m], world; a soft
+  // body's nodes take them by their mass. At a vertex of its own (Session::vertices), that goes with it: [N] world.
+  Status set_body_force(const std::string& body, dvec3 force, dvec3 torque = dvec3(0));
+  Status set_point_force(const std::string& body, std::uint32_t vertex, dvec3 force);
+  // The same as impulses, once, in the next soft step: [N s], [N m s].
+  Status push(const std::string& body, dvec3 impulse, dvec3 angular_impulse = dvec3(0));
+  Status push_at(const std::string& body, std::uint32_t vertex, dvec3 impulse);
+
+  // --- Objects, between ticks, in lockstep and in real time; recordings hold what is done. Not of tools, which a hand
+  // holds.
+  // To another place of its frame, at rest: a rigid body; a soft one, undeformed; a surface that no bodies may press
+  // and no motion carries, whose contacts end. [m] world. restart() puts it back to where the scene has it.
+  Status place(const std::string& object, dvec3 position, dquat rotation = {1, 0, 0, 0});
+  // Out of the world: nothing meets it, what pressed it lets go, and it stands still where it is (it is drawn on). Back
+  // into it: at rest, where it was, whatever has come there. Everything else goes on as it is. Beyond restart().
+  Status take_out(const std::string& object);
+  Status put_back(const std::string& object);
+  Result<bool> is_out(const std::string& object) const;
+  // The objects of another scene, no probes or tools, named otherwise than those that are there. In lockstep:
+  // everything there goes on where it is, as after restore_state(), whose time it takes and whose limits it has. For
+  // real time, open a session with them and take them out before start(). To be rid of one, take it out.
+  Status add(const Scene& more);
+
+  // --- States, of lockstep runs: to go back to, in this session or in another one of the same scene.
+  // A state is what the session was given since its time 0 - poses, forces, pushes, parameters - up to the next tick;
+  // some 70 bytes a tick for each probe that moves. Not of a run in real time, nor of a replay.
+  Result<std::vector<std::uint8_t>> save_state() const;
+  // From here on every tick has the bits that it would have had there, given the same poses. What was given is run
+  // again in a new world, without a word to any driver: it takes as long as those ticks take to run, and restart()
+  // beside. A pose that was set and a path that is followed go on; a device of a driver comes back through its gate, as
+  // after any jump. Not while something is recorded. Bytes are checked; they may come from anywhere. Where it fails
+  // before it began, nothing has changed.
+  Status restore_state(const std::vector<std::uint8_t>& state);
+
+  // --- Geometry, as the program or the file has given it, of every kind of object; in real time of the newest state
+  // that the clocks have shown. Answers come from a tree that follows the vertices; they are those of trying every
+  // triangle of triangles() at vertices().
+  // Three vertices of vertices() a triangle, in the order of the object's own triangles, counter-clockwise seen from
+  // outside: one that is given the other way round is turned.
+  Status triangles(const std::string& object, std::vector<std::uint32_t>& out) const;
+  // The nearest point to `point`; nothing is found beyond `within`.
+  Result<SurfaceHit> closest_point(dvec3 point, const QueryOptions& options = {});
+  // The first point that a ray meets, from either side. `direction` [1] need not be of unit length.
+  Result<SurfaceHit> ray(dvec3 from, dvec3 direction, const QueryOptions& options = {});
+  // Of all vertices that a triangle uses. `within` is not asked.
+  Result<Bounds> bounds(const QueryOptions& options = {});
+
+  // --- Every tick's readings, in lockstep and in real time. The last `ticks` of each probe and tool wait to be taken
+  // from the next tick on; what finds no room is lost. 0: none. Not while the clocks run. It holds beyond restart().
+  Status keep_readings(std::size_t ticks);
+  // Those that wait, oldest first; says how many were lost since the last call.
+  Result<std::uint64_t> take_readings(const std::string& effector, std::vector<Reading>& out);
 
   struct Parts;  // engine/session_parts.h; not part of the public interface
 

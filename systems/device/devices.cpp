@@ -45,9 +45,14 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
                                    jumps(tool.torque_safety, device, turning, tool.turned, tick.dt);
   tool.force_safety.work = tool.torque_safety.work;
   const dvec3 push =
-      known ? rendered(tool.force_safety.share * linear(tool.device_wrench), device.can.renders_force) : unknown;
-  const dvec3 turn =
-      known ? rendered(tool.force_safety.share * angular(tool.device_wrench), device.can.renders_torque) : unknown;
+      known
+          ? rendered(with_own(tool.force_safety, limits, tool.force_safety.share * linear(tool.device_wrench), tick.dt),
+                     device.can.renders_force)
+          : unknown;
+  const dvec3 turn = known ? rendered(with_own(tool.torque_safety, turning,
+                                               tool.force_safety.share * angular(tool.device_wrench), tick.dt),
+                                      device.can.renders_torque)
+                           : unknown;
   const SafetyResult force = make_safe(tool.force_safety, device, limits, push, device.position, tick.time, tick.dt);
   tool.torque_safety.work = tool.force_safety.work;
   const SafetyResult torque = make_safe(tool.torque_safety, device, turning, turn, tool.turned, tick.time, tick.dt);
@@ -108,8 +113,9 @@ void write_devices(World& world, Tick tick) {
     SafetyLimits limits = force_limits(device);
     limits.carried = surface_displacement(world, state.entity, tick.elapsed());
     const ToolTouchState* const among_bodies = find_tool(world, state.entity);
-    const dvec3 pressed =
-        state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0)));
+    const dvec3 pressed = with_own(
+        state.safety, limits,
+        state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);
     const dvec3 wanted = plausible_rotation(device.rotation) ? rendered(pressed, device.can.renders_force)
                                                              : dvec3(std::numeric_limits<double>::quiet_NaN());
     const SafetyResult safe = make_safe(state.safety, device, limits, wanted, device.position, tick.time, tick.dt);
@@ -123,11 +129,21 @@ void write_devices(World& world, Tick tick) {
     if (!tool->is_probe) write_tool(world, *tool, tick);
 }
 
+void set_hand_force(World& world, Entity hand, dvec3 force, dvec3 torque) {
+  for (ProbeState& state : world.touch->probes)
+    if (state.entity == hand) state.safety.added = force;
+  ToolTouchState* const tool = find_tool(world, hand);
+  if (!tool) return;
+  tool->force_safety.added = force;
+  tool->torque_safety.added = torque;
+}
+
 void begin_anew(World& world, Entity hand) {
   const auto anew = [](SafetyState& safety) {
     SafetyState next;
     next.tally = safety.tally;
     next.least_share = safety.least_share;
+    next.added = safety.added;
     safety = next;
   };
   for (ProbeState& state : world.touch->probes)

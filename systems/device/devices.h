@@ -18,4 +18,8 @@ dvec3 surface_displacement(const World& world, Entity probe, double dt);
 // closed, its force begins at zero, and it has given no energy yet. What was counted stays.
 void begin_anew(World& world, Entity hand);
 
+// The program's own part of what this probe or tool wants of its device from now on (SafetyState::added). [N], [N m]
+// world; a probe's device gets no torque. Does not allocate.
+void set_hand_force(World& world, Entity hand, dvec3 force, dvec3 torque);
+
 }  // namespace pliant

@@ -141,6 +141,16 @@ SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& h
   return limits;
 }
 
+dvec3 with_own(SafetyState& state, SafetyLimits& limits, dvec3 pressed, double dt) {
+  if (state.added == dvec3(0) && state.own == dvec3(0)) return pressed;
+  state.added_share = state.engaged ? std::min(1.0, state.added_share + dt / kWeightTime) : 0.0;
+  const dvec3 way = state.added_share * state.added - state.own;
+  const dvec3 step = state.engaged ? clamp_norm(way, limits.slew * dt) : way;
+  limits.own_rise = length(step);
+  state.own += step;
+  return pressed + state.own;
+}
+
 void SafetyTally::add(SafetyLimit limit, double share) {
   LimitCount& count = counts[static_cast<std::size_t>(limit)];
   ++count.ticks;
@@ -199,7 +209,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     if (limits.stiffness > 0) {
       // The force may grow no faster with displacement than the device can render stably; it may always fall. What
       // comes in of a weight is no answer to displacement.
-      const double rise = limits.stiffness * length(dx) + length(weight - state.weight);
+      const double rise = limits.stiffness * length(dx) + length(weight - state.weight) + limits.own_rise;
       if (length(passive) > length(state.force)) most = std::min(most, rise);
     }
     dvec3 last = state.force;
@@ -222,7 +232,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
   state.engaged = false;
   state.placed = false;
   state.eased = 1.0;
-  state.force = state.weight = state.wanted = dvec3(0);
+  state.force = state.weight = state.wanted = state.own = dvec3(0);
   return result;
 }
 

@@ -108,6 +108,9 @@ struct SafetyState {
   double sensed_at = 0.0;    // [s] last tick's pose's
   dvec3 position{0};         // [m] last tick's, in the hand's metres
   dvec3 force{0};            // [N] last tick's, as sent
+  dvec3 added{0};            // [N] world: the program's own, wanted beside what is touched
+  double added_share = 0.0;  // [1] of it that may have come in, once the gate is open
+  dvec3 own{0};              // [N] as much of it as is wanted now
   dvec3 wanted{0};           // [N] last tick's beside the weight, clamped to the device's limit
   double work = 0.0;         // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
   double stored = 0.0;       // [J] the largest that -work has been
@@ -138,7 +141,13 @@ struct SafetyLimits {
   bool jumped = false;            // whatever `position` says: the device is somewhere else
   double fall = kLeastFall;       // [N/s] force that is no longer wanted falls so fast where `slew` is lower
   double scale = 1.0;             // [1] world metres per metre of the hand
+  double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
 };
+
+// `pressed` [N] with the program's own part (SafetyState::added). The gate judges what is touched: while it is closed
+// the part is zero, and behind it comes in over kWeightTime; whenever it changes, within the slew limit. In the safety
+// layer it then counts like any other force.
+dvec3 with_own(SafetyState& state, SafetyLimits& limits, dvec3 pressed, double dt);
 
 // Of the level and of the driver, the smaller. What is not rendered has the limit 0.
 SafetyLimits force_limits(const HapticDevice& device);

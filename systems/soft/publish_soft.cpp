@@ -1,5 +1,7 @@
 #include "systems/soft/publish_soft.h"
 
+#include <algorithm>
+
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/soft/soft_state.h"
@@ -8,9 +10,18 @@
 namespace pliant {
 namespace {
 
-ContactMark mark(const ContactPoint& contact, double T) {
-  return {vec3(0.5 * (contact.a.position + contact.b.position)), vec3(contact.normal),
-          vec3(contact.axes * contact.impulse / T), contact.sliding};
+ContactPlace place(const SoftState& soft, std::uint32_t body, const SurfacePoint& point) {
+  return {soft.bodies[body]->entity, point.triangle, vec3(point.barycentric)};
+}
+
+ContactMark mark(const SoftState& soft, const ContactPoint& contact, double T) {
+  return {vec3(0.5 * (contact.a.position + contact.b.position)),
+          vec3(contact.normal),
+          vec3(contact.axes * contact.impulse / T),
+          contact.sliding,
+          static_cast<float>(contact.depth > 0.0 ? contact.depth : -std::max(contact.gap, 0.0)),
+          place(soft, contact.body_a, contact.a),
+          place(soft, contact.body_b, contact.b)};
 }
 
 void show_bodies(const SoftState& soft, SoftSnapshot& out) {
@@ -37,7 +48,7 @@ void show_contacts(const SoftState& soft, double T, SoftSnapshot& out) {
   for (const bool pushing : {true, false})
     for (const ContactPoint& contact : soft.contacts)
       if ((contact.impulse.x > 0.0) == pushing && out.contacts.size() < kMaxShownContacts)
-        out.contacts.push_back(mark(contact, T));
+        out.contacts.push_back(mark(soft, contact, T));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "systems/soft/body/rigid_state.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/soft/body/yielding_body.h"
+#include "systems/soft/body_edits.h"
 #include "systems/soft/contact/contact_point.h"
 #include "systems/soft/contact/contact_problem.h"
 #include "systems/soft/contact/delassus.h"
@@ -78,6 +79,7 @@ struct SoftState {
   std::uint64_t began = 0;                                   // [ns] of the step under way
   std::uint32_t dropped = 0;                                 // DroppedBit, the soft clock's own
   Ring<ParameterEdit> parameter_edits{kMostParameterEdits};  // who owns the run -> soft clock
+  Ring<BodyEdit> body_edits{kMostBodyEdits};                 // the same
 
   // [1] Of a penetration, in a part of T [s]: pushed out as fast in many parts as in one.
   double undone_in(double T) const { return kPenetrationShare * std::min(1.0, T / step); }

@@ -84,6 +84,7 @@ void take_edits(World& world, Tick) {
   for (ParameterEdit edit; soft.parameter_edits.pop(edit);)
     for (const std::unique_ptr<Body>& body : soft.bodies)
       if (body->entity == edit.body) std::visit([&](const auto& now) { change(*body, now); }, edit.now);
+  take_body_edits(world);
 }
 
 void free_motion(World& world, Tick tick) {
@@ -91,8 +92,12 @@ void free_motion(World& world, Tick tick) {
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
   for (const std::unique_ptr<Body>& body : soft.bodies) {
+    if (body->taken_out) continue;
     body->free_step(tick.dt, world.simulation.gravity);
-    if (body->solvable()) continue;
+    if (body->solvable()) {
+      take_loads(*body, tick.dt);
+      continue;
+    }
     soft.dropped |= kDroppedFactor;
     body->halt();
   }
@@ -136,7 +141,8 @@ void advance_bodies(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const double dt = soft.share * tick.dt;
-  for (const std::unique_ptr<Body>& body : soft.bodies) body->advance(dt);
+  for (const std::unique_ptr<Body>& body : soft.bodies)
+    if (!body->taken_out) body->advance(dt);
   for (const std::uint32_t i : soft.yielding) soft.surface(i).yield(soft.contacts, dt);
 }
 

@@ -54,14 +54,6 @@ struct Search {
   }
 };
 
-void drop(SourceState& source, Contact& contact) {
-  source.tracked = false;
-  contact.state = ContactState::kFree;
-  contact.probe = kNoEntity;
-  contact.load = contact.share = contact.normal_force = 0.0;
-  contact.force = dvec3(0);
-}
-
 void put(SourceState& source, Contact& contact, const FootBlend& place, dvec3 x) {
   source.x = x;
   source.place = place;
@@ -188,6 +180,7 @@ enum class AtSeam { kStays, kBetween, kCarried };
 AtSeam carry_over(const Search& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
   TouchState& touch = *s.world.touch;
   ObjectState& object = touch.objects[seam.object];
+  if (object.world_box.empty()) return AtSeam::kStays;  // it is taken out
   const ProbeTip tip{contact.probe, contact.tip, source.tip};
   const Deformable& deformable = s.world.registry.get<Deformable>(object.entity);
   const Search there{s.world, object, s.world.meshes[deformable.mesh], s.world.fields[deformable.field], s.tick};
@@ -216,7 +209,7 @@ AtSeam carry_over(const Search& s, const Seam& seam, SourceState& source, Contac
     after.load = before.load;
     hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, seam.object, *to);
   }
-  drop(source, contact);
+  drop_contact(source, contact);
   return AtSeam::kCarried;
 }
 
@@ -241,7 +234,7 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   if ((beyond && !(front && radius > 0)) ||
       std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
       foot.height > radius * (1 + 2 * kAhead))
-    return drop(source, contact);
+    return drop_contact(source, contact);
   put(source, contact, contact_place(s.object, s.mesh, foot, x), x);
   // A depth changes no faster than the tip moves, unless the minimum that was followed has gone and the foot went
   // downhill to another one. What it then is deeper than before was not pushed.
@@ -408,12 +401,20 @@ void merge(const Search& s) {
       Contact& b = s.world.registry.get<Contact>(s.object.sources[j].contact);
       if (a.probe == b.probe && a.tip == b.tip &&
           length(s.object.sources[i].place.p - s.object.sources[j].place.p) < same)
-        drop(s.object.sources[j], b);
+        drop_contact(s.object.sources[j], b);
     }
   }
 }
 
 }  // namespace
+
+void drop_contact(SourceState& source, Contact& contact) {
+  source.tracked = false;
+  contact.state = ContactState::kFree;
+  contact.probe = kNoEntity;
+  contact.load = contact.share = contact.normal_force = 0.0;
+  contact.force = dvec3(0);
+}
 
 dvec3 tip_position(const Probe& probe, const Tip& tip) {
   return probe.position + probe.rotation * tip.place;
@@ -454,6 +455,7 @@ void collision(World& world, Tick tick) {
       swept.add(vec3(glm::max(from, to) + dvec3(band)));
       touch.object_boxes.visit(swept, [&](std::uint32_t slot) {
         ObjectState& object = touch.objects[slot];
+        if (object.world_box.empty()) return;  // it is taken out
         const Deformable& deformable = registry.get<Deformable>(object.entity);
         const Search search{world, object, world.meshes[deformable.mesh], world.fields[deformable.field], tick};
         find(search, {state.entity, static_cast<std::uint8_t>(t), tip}, object.searched[state.first_tip + t],

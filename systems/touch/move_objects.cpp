@@ -1,5 +1,6 @@
 #include "systems/touch/move_objects.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "systems/touch/prepare.h"
@@ -34,6 +35,7 @@ void place_object(World& world, const MovingNode& node, double dt) {
   pose = now;
   if (node.object < 0) return;
   ObjectState& object = world.touch->objects[static_cast<std::size_t>(node.object)];
+  if (object.world_box.empty()) return;  // it is taken out
   object.world_box = touch_box(world.meshes[world.registry.get<Deformable>(node.entity).mesh], pose);
   world.touch->object_boxes.move(static_cast<std::uint32_t>(node.object), object.world_box);
 }
@@ -113,6 +115,11 @@ std::vector<MovedSnapshot> moved_snapshots(const World& world, const TouchState&
   std::vector<MovedSnapshot> moved;
   for (const MovingNode& node : touch.moving)
     if (node.drawn) moved.push_back({node.entity, mat4(node.world)});
+  for (const ObjectState& object : touch.objects) {  // a program may put it elsewhere
+    const auto listed = std::any_of(moved.begin(), moved.end(),
+                                    [&](const MovedSnapshot& other) { return other.object == object.entity; });
+    if (!listed && world.registry.has<Drawable>(object.entity)) moved.push_back({object.entity, mat4(1)});
+  }
   for (MovedSnapshot& object : moved)
     if (const Pose* pose = world.registry.find<Pose>(object.object)) object.to_world = pose->matrix();
   return moved;

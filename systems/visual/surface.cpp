@@ -224,8 +224,9 @@ void Surfaces::take(const SoftObjectSnapshot& object) {
 void Surfaces::take(const MovedSnapshot& object) {
   Item* item = find(object.object);
   if (!item || item->rides) return;
-  item->moved = item->moved || object.to_world != item->to_world;
-  item->moves = true;
+  const bool elsewhere = object.to_world != item->to_world;
+  item->moved = item->moved || elsewhere;
+  item->moves = item->moves || elsewhere;
   item->to_world = object.to_world;
   item->mirrored = glm::determinant(mat3(object.to_world)) < 0;
 }

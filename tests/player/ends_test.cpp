@@ -212,7 +212,7 @@ TEST_F(Ends, ARecordingThatDoesNotFitIsKeptAsFarAsItWent) {
     EXPECT_LT(tick, 10000u) << "noticed at the end only";
     const auto recording = read_recording(file);
     ASSERT_TRUE(recording.ok()) << recording.error().message();
-    EXPECT_GT(recording->ticks.size(), (limit - 300) / 122) << "ticks that were written are lost";
+    EXPECT_GT(recording->ticks.size(), (limit - 300) / 123) << "ticks that were written are lost";
     for (std::size_t i = 0; i < recording->ticks.size(); ++i) {
       ASSERT_EQ(recording->ticks[i], i);
       ASSERT_EQ(recording->poses[2 * i + 1].position.x, static_cast<double>(i));

@@ -9,6 +9,7 @@
 
 #include "components/mesh.h"
 #include "components/soft_snapshot.h"
+#include "components/transform.h"
 #include "runtime/entity.h"
 #include "systems/soft/fem/modal.h"
 #include "systems/soft/linear/block_matrix.h"
@@ -42,6 +43,19 @@ struct Compliance {
   Rows lever;            // rows x 6: what the handle's following adds; without a handle no columns
 };
 
+// What a program does to a body beside contacts (systems/soft/body_edits.h). World frame.
+struct VertexForce {
+  SurfacePoint at;  // a vertex; its position is that of the step
+  std::uint32_t vertex = 0;
+  dvec3 force{0};  // [N], or [N s]
+};
+struct BodyLoads {
+  dvec3 force{0}, torque{0};        // [N], [N m] at the centre of mass
+  dvec3 impulse{0}, turn{0};        // [N s], [N m s] of the next step alone
+  std::vector<VertexForce> forces;  // [N]
+  std::vector<VertexForce> pushes;  // [N s] of the next step alone
+};
+
 // Which bodies meet: all but what a probe presses by another law or passes through (probe_tool.h).
 enum class BodyKind : std::uint8_t { kBody, kSurface, kProbe };
 
@@ -50,7 +64,7 @@ class Body {
   virtual ~Body() = default;
 
   bool meets(const Body& other) const {
-    if (absent || other.absent || (size() == 0 && other.size() == 0)) return false;
+    if (absent || other.absent || taken_out || other.taken_out || (size() == 0 && other.size() == 0)) return false;
     if (kind == BodyKind::kProbe) return other.kind == BodyKind::kBody;
     return other.kind != BodyKind::kProbe || kind == BodyKind::kBody;
   }
@@ -61,7 +75,9 @@ class Body {
   std::vector<dvec3> surface_velocity;   // [m/s] world, of the free motion after free_step(); for predicting contacts
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   BodyKind kind = BodyKind::kBody;
-  bool absent = false;         // meets nothing: nobody knows yet where it is
+  bool absent = false;     // meets nothing: nobody knows yet where it is
+  bool taken_out = false;  // whoever owns the run has taken it out: it meets nothing, and is not stepped
+  BodyLoads loads;
   bool self_collides = false;  // its collision mesh can touch itself
 
   // Degrees of freedom; 0: contacts cannot move it.
@@ -93,6 +109,10 @@ class Body {
   // J A^-1 J^T of `contacts` contacts, three rows each. `sides`: theirs on this body, by ascending contact (both sides
   // of one that the body has with itself).
   virtual void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const;
+  // column += J^T of a force at the centre of mass and of a torque, spread over the whole body by its mass.
+  virtual void load(dvec3 force, dvec3 torque, Rows& column) const { (void)force, (void)torque, (void)column; }
+  // To this pose of its object frame, at rest and undeformed.
+  virtual void place(const Pose& pose) { (void)pose; }
   // v = v* + dv, dv = A^-1 J^T lambda (already solved).
   virtual void correct(const Vector& dv) = 0;
   // [m/s] Per collision mesh vertex, by velocity() as it is now.

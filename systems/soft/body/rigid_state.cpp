@@ -121,6 +121,17 @@ void RigidState::weigh(const Rows& x, Rows& out) const {
     out.row(3 + row) = turning[0][row] * x.row(3) + turning[1][row] * x.row(4) + turning[2][row] * x.row(5);
 }
 
+void RigidState::load(dvec3 force, dvec3 torque, Rows& column) const {
+  for (int k = 0; k < 3; ++k) column(k, 0) += force[k], column(3 + k, 0) += torque[k];
+}
+
+void RigidState::place(const Pose& pose) {
+  rotation_ = normalize(pose.rotation);
+  centre_ = pose.position + rotation_ * mass_.centre;
+  halt();
+  refresh_surface();
+}
+
 void RigidState::correct(const Vector& dv) {
   velocity_ += dv;
   angular_momentum_ += inertia(rotation_) * dvec3(dv[3], dv[4], dv[5]);
@@ -176,6 +187,11 @@ void FixedBody::advance(double T) {
 void FixedBody::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
   if (compliance <= 0.0) return;
   for (const Side& side : sides) w(3 * side.contact, 3 * side.contact) += compliance / (T * T);
+}
+
+void FixedBody::place(const Pose& pose) {
+  pose_ = {pose.position, normalize(pose.rotation)};
+  refresh_surface();
 }
 
 void FixedBody::refresh_surface() {

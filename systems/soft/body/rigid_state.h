@@ -21,6 +21,8 @@ class RigidState : public Body {
   void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override;
+  void load(dvec3 force, dvec3 torque, Rows& column) const override;
+  void place(const Pose& pose) override;
   void correct(const Vector& dv) override;
   void move_surface(std::vector<dvec3>& out) const override;
   void advance(double T) override;
@@ -68,6 +70,7 @@ class FixedBody : public ImmovableBody {
   void advance(double T) override;
   bool yields() const override { return compliance > 0.0; }
   void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
+  void place(const Pose& pose) override;
   void show(SoftObjectSnapshot& out) const override;
   const Pose& pose() const { return pose_; }
 

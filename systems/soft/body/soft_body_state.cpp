@@ -226,6 +226,34 @@ void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns
   });
 }
 
+// As a rigid body would take them: each node by its share of the mass, and by its share of the angular acceleration.
+void SoftBodyState::load(dvec3 force, dvec3 torque, Rows& column) const {
+  const std::vector<dvec3>& x = tissue_.position();
+  const std::vector<double>& mass = tissue_.mass();
+  double whole = 0.0;
+  dvec3 centre(0);
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i) whole += mass[i], centre += mass[i] * x[i];
+  if (!(whole > 0.0)) return;
+  centre /= whole;
+  dmat3 inertia(0);
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
+    const dvec3 r = x[i] - centre;
+    inertia += mass[i] * (dot(r, r) * dmat3(1) - glm::outerProduct(r, r));
+  }
+  const bool turns = torque != dvec3(0) && glm::determinant(inertia) > 0.0;
+  const dvec3 acceleration = force / whole, turning = turns ? glm::inverse(inertia) * torque : dvec3(0);
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
+    const dvec3 f = mass[i] * (acceleration + cross(turning, x[i] - centre));
+    for (int k = 0; k < 3; ++k) column(3 * i + k, 0) += f[k];
+  }
+}
+
+void SoftBodyState::place(const Pose& pose) {
+  for (std::size_t i = 0; i < tets_.nodes.size(); ++i) tissue_.position()[i] = pose.to_world(tets_.nodes[i]);
+  halt();
+  refresh_surface(tissue_.position(), surface_position);
+}
+
 // Half a solve instead of a whole one, and only where the contacts' nodes are (LinearSolver::solve_gram).
 void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
   pushed_.clear(tissue_.moving());

@@ -30,6 +30,8 @@ class SoftBodyState final : public ToolBody {
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override { solver_.solve(columns); }
   void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const override;
+  void load(dvec3 force, dvec3 torque, Rows& column) const override;
+  void place(const Pose& pose) override;
   void move_surface(std::vector<dvec3>& out) const override;
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;

@@ -46,6 +46,10 @@ void SideMemory::sort() {
   std::sort(sides_.begin(), sides_.end(), [](const KnownSide& x, const KnownSide& y) { return x.key < y.key; });
 }
 
+void SideMemory::forget(std::uint32_t body) {
+  std::erase_if(sides_, [&](const KnownSide& side) { return side.body_low == body || side.body_high == body; });
+}
+
 const KnownSide* SideMemory::find(std::uint64_t key) const {
   const auto it = std::lower_bound(sides_.begin(), sides_.end(), key,
                                    [](const KnownSide& x, std::uint64_t k) { return x.key < k; });

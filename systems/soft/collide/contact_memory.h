@@ -30,11 +30,13 @@ struct KnownSide {
   std::uint64_t key = 0;
   dvec3 normal{0};   // [1]
   double gap = 0.0;  // [m]
+  std::uint32_t body_low = 0, body_high = 0;
 };
 class SideMemory {
  public:
   void clear() { sides_.clear(); }
   void add(const KnownSide& side) { sides_.push_back(side); }
+  void forget(std::uint32_t body);
   void sort();                                     // once all are added, before find()
   const KnownSide* find(std::uint64_t key) const;  // null where they did not meet
 

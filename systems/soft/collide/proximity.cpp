@@ -188,11 +188,11 @@ struct Proximity::Parts {
     for (std::size_t i = 0; i < bodies.size(); ++i) collision_meshes[i].refit(*bodies[i], T, 0.0);
     const auto count = static_cast<std::uint32_t>(bodies.size());
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (bodies[i]->self_collides) find_between(bodies, i, i);
+      if (bodies[i]->self_collides && !bodies[i]->taken_out) find_between(bodies, i, i);
       for (std::uint32_t k = i + 1; k < count; ++k)
         if (bodies[i]->meets(*bodies[k])) find_between(bodies, i, k);
     }
-    for (std::uint32_t i = 0; i < count; ++i) seen[i] = seen[i] || !bodies[i]->absent;
+    for (std::uint32_t i = 0; i < count; ++i) seen[i] = seen[i] || !(bodies[i]->absent || bodies[i]->taken_out);
     sides.clear();
     remember_sides();
     out.clear();
@@ -214,13 +214,21 @@ struct Proximity::Parts {
     }
   }
 
+  void forget(std::uint32_t body) {
+    seen[body] = false;
+    sides.forget(body);
+    std::erase_if(touching, [&](const auto& pair) {
+      return static_cast<std::uint32_t>(pair.first >> 32) == body || static_cast<std::uint32_t>(pair.first) == body;
+    });
+  }
+
   double margin_between(std::uint32_t i, std::uint32_t k) const {
     return margin_given ? *margin_given : std::min(own_margin[i], own_margin[k]);
   }
 
   void remember_sides() {
     for (const Candidate& c : candidates)
-      sides.add({c.key, found[c.source].meeting.normal, found[c.source].meeting.gap});
+      sides.add({c.key, found[c.source].meeting.normal, found[c.source].meeting.gap, c.body_low, c.body_high});
     sides.sort();
   }
 
@@ -275,7 +283,7 @@ struct Proximity::Parts {
     const auto takes_part = [&](std::uint32_t i) { return bodies[i]->solvable() && !yields[i]; };
     for (std::uint32_t i = 0; i < count; ++i) {
       if (!takes_part(i)) continue;
-      if (bodies[i]->self_collides && may_miss(i, i)) collision_meshes[i].fit_swept(), find_between(bodies, i, i);
+      if (bodies[i]->self_collides && !bodies[i]->taken_out && may_miss(i, i)) collision_meshes[i].fit_swept(), find_between(bodies, i, i);
       for (std::uint32_t k = i + 1; k < count; ++k) {
         if (!bodies[i]->meets(*bodies[k]) || !takes_part(k) || !may_miss(i, k)) continue;
         collision_meshes[i].fit_swept(), collision_meshes[k].fit_swept();
@@ -291,6 +299,10 @@ struct Proximity::Parts {
     return crossings;
   }
 };
+
+void Proximity::forget(std::uint32_t body) {
+  parts_->forget(body);
+}
 
 Proximity::Proximity(const std::vector<std::unique_ptr<Body>>& bodies) : parts_(std::make_unique<Parts>()) {
   for (const auto& body : bodies) {

@@ -50,6 +50,8 @@ class Proximity {
  public:
   explicit Proximity(const std::vector<std::unique_ptr<Body>>& bodies);
   ~Proximity();
+  // What earlier steps knew of this body: it has been put elsewhere.
+  void forget(std::uint32_t body);
   // Every pair of bodies with the margin of its own size and edges (proximity.cpp: margin_of), so that no body changes
   // what others feel.
   void find(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& out);
