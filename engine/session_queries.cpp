@@ -26,9 +26,8 @@ dvec3 outward_normal(const TriangleBoxes& boxes, std::uint32_t t) {
   return size > 0.0 ? area / size : dvec3(0);
 }
 
-SurfaceHit hit_of(const TriangleBoxes& boxes, std::uint32_t object, const TrianglePlace& place) {
-  SurfaceHit hit{object,        place.triangle, place.weights, dvec3(0), outward_normal(boxes, place.triangle),
-                 place.distance};
+QueryHit hit_of(const TriangleBoxes& boxes, std::uint32_t object, const TrianglePlace& place) {
+  QueryHit hit{object, place.triangle, place.weights, dvec3(0), outward_normal(boxes, place.triangle), place.distance};
   for (int k = 0; k < 3; ++k) hit.position += place.weights[k] * boxes.corner(place.triangle, k);
   return hit;
 }
@@ -153,13 +152,13 @@ Status Session::triangles(const std::string& object, std::vector<std::uint32_t>&
   return Done{};
 }
 
-Result<SurfaceHit> Session::closest_point(dvec3 point, const QueryOptions& options) {
+Result<QueryHit> Session::closest_point(dvec3 point, const QueryOptions& options) {
   Parts& p = *parts_;
   if (!is_finite(point)) return Error{"Session::closest_point", "the point is no number; check it"};
   const auto objects = asked(p, options, "Session::closest_point");
   if (!objects) return objects.error();
   p.see();
-  SurfaceHit best;
+  QueryHit best;
   double within = options.within;
   for (const std::size_t object : *objects) {
     const std::optional<TriangleBoxes>& boxes = boxes_of(p, object, options.rest);
@@ -171,7 +170,7 @@ Result<SurfaceHit> Session::closest_point(dvec3 point, const QueryOptions& optio
   return best;
 }
 
-Result<SurfaceHit> Session::ray(dvec3 from, dvec3 direction, const QueryOptions& options) {
+Result<QueryHit> Session::ray(dvec3 from, dvec3 direction, const QueryOptions& options) {
   Parts& p = *parts_;
   const double size = length(direction);
   if (!is_finite(from) || !(size > 0.0) || !std::isfinite(size))
@@ -179,7 +178,7 @@ Result<SurfaceHit> Session::ray(dvec3 from, dvec3 direction, const QueryOptions&
   const auto objects = asked(p, options, "Session::ray");
   if (!objects) return objects.error();
   p.see();
-  SurfaceHit best;
+  QueryHit best;
   double within = options.within;
   for (const std::size_t object : *objects) {
     const std::optional<TriangleBoxes>& boxes = boxes_of(p, object, options.rest);

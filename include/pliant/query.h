@@ -21,7 +21,7 @@ struct QueryOptions {
 };
 
 // A point of a flat triangle.
-struct SurfaceHit {
+struct QueryHit {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::uint32_t object = kNone;    // into Session::objects(); kNone: nothing is there
   std::uint32_t triangle = kNone;  // into Session::triangles()

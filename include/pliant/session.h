@@ -248,9 +248,9 @@ class Session {
   // outside: one that is given the other way round is turned.
   Status triangles(const std::string& object, std::vector<std::uint32_t>& out) const;
   // The nearest point to `point`; nothing is found beyond `within`.
-  Result<SurfaceHit> closest_point(dvec3 point, const QueryOptions& options = {});
+  Result<QueryHit> closest_point(dvec3 point, const QueryOptions& options = {});
   // The first point that a ray meets, from either side. `direction` [1] need not be of unit length.
-  Result<SurfaceHit> ray(dvec3 from, dvec3 direction, const QueryOptions& options = {});
+  Result<QueryHit> ray(dvec3 from, dvec3 direction, const QueryOptions& options = {});
   // Of all vertices that a triangle uses. `within` is not asked.
   Result<Bounds> bounds(const QueryOptions& options = {});
 
