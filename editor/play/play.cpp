@@ -64,6 +64,7 @@ PlayOptions Play::options() {
                                                     std::make_shared<const Path>(path_of(*script->second)), 0.0});
   }
   made.mouse_probe = mouse_probe;
+  made.repeats = true;
   made.realtime = realtime;
   made.speed = speed;
   made.paused = paused_;

@@ -39,6 +39,7 @@ struct PlayOptions {
   std::vector<std::pair<std::string, PlaySource>> sources;  // by name; others have the level's
   bool mouse_probe = false;               // a probe `mouse` is added where nothing is moved by the mouse
   bool realtime = false, paused = false;  // where the level itself asks for a device, it is felt in real time
+  bool repeats = false;                   // scripts start over when they have ended, as in the window of a run
   double speed = 1.0;                     // [1] of the wall clock, in lockstep
   bool shown = false;                     // ticks wait until a picture has been made of it
   Viewpoint view;                         // that it is looked at from at first
