@@ -42,7 +42,7 @@ TEST_F(RealInputWindowTest, AClickOfOneSlowFrameIsAClickAndTwoAreADoubleOne) {
   if (std::system("command -v xdotool >/dev/null 2>&1") != 0) GTEST_SKIP() << "xdotool is missing; install it";
   // The row of the finger is the second of the tree.
   const Said said = by_hand(
-      "act mousemove --window $W 90 112 click 1 key Delete\n"
+      "act mousemove --window $W 90 127 click 1 key Delete\n"
       "act key ctrl+s\nact key ctrl+q\n");
   EXPECT_EQ(said.status, 0) << said.out;
   EXPECT_EQ(document("small.glb").state().find("finger"), nullptr) << said.out;
