@@ -121,7 +121,7 @@ void Window::connect(GLFWwindow* handle) {
   glfwSetWindowFocusCallback(
       handle, [](GLFWwindow* w, int focused) { window_of(w).add({.kind = InputKind::kFocus, .key = focused}); });
   glfwSetDropCallback(handle, [](GLFWwindow* w, int count, const char** files) {
-    if (count > 0) window_of(w).add({.kind = InputKind::kDrop, .file = files[0]});
+    if (count > 0) window_of(w).add({.kind = InputKind::kDrop, .file = files[0], .files = {files, files + count}});
   });
   glfwSetWindowCloseCallback(handle, [](GLFWwindow* w) { window_of(w).add({.kind = InputKind::kClose}); });
 }

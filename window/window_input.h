@@ -30,10 +30,11 @@ struct InputEvent {
   InputKind kind = InputKind::kMove;
   double x = 0, y = 0;  // [pixel] from the upper left corner; of a wheel, y: clicks, > 0 away from the hand
   MouseButton button = MouseButton::kLeft;
-  int key = 0;                 // as GLFW numbers them; of kText: the code point
-  bool repeated = false;       // of kKey: held down
-  std::uint8_t modifiers = 0;  // ModifierBit
-  std::string file;            // that was dropped; of kWidget, which only a script has: its address
+  int key = 0;                          // as GLFW numbers them; of kText: the code point
+  bool repeated = false;                // of kKey: held down
+  std::uint8_t modifiers = 0;           // ModifierBit
+  std::string file;                     // that was dropped first; of kWidget, which only a script has: its address
+  std::vector<std::string> files = {};  // all that were dropped
 };
 
 // Events from a file, for trying the window without a hand. Columns: time_s,event,args, where event and args are

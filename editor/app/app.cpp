@@ -6,12 +6,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <ctime>
+#include <thread>
 
 #include "content/files/image.h"
 #include "editor/app/files.h"
 #include "editor/tools/painting.h"
+#include "editor/ui/fonts.h"
+#include "editor/ui/seen.h"
 #include "editor/ui/widgets.h"
 #include "runtime/clock.h"
 #include "runtime/printable.h"
@@ -23,7 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr float kTop = 40, kBar = 26;  // [point]
 constexpr float kTopPad = 9;           // [point] above the buttons of the top bar
-constexpr float kLeastLeft = 160, kLeastRight = 300, kLeastBottom = 90, kLeastView = 200;  // [point]
+constexpr float kTopRow = 32;          // [point] of a second row of it
+constexpr float kLeastLeft = 160, kLeastRight = 300, kLeastBottom = 90, kLeastView = 200, kGoodView = 320;  // [point]
 constexpr double kToastSeconds = 6.0;
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
 constexpr float kClick = 4;                            // [point] a press that moves farther is a drag
@@ -107,11 +112,12 @@ Status App::run() {
   while (!closing_) {
     const bool busy = script_ || !settled() || editor.playing || dragging_view_;
     events.clear();
-    window_.poll(events, busy ? kBusyWait : kIdleWait);
+    window_.poll(events, host_->has_waiting() ? 0.0 : busy ? kBusyWait : kIdleWait);
     if (Window::lost()) {
       files_->save_what_can_be();
       return Window::loss();
     }
+    if (slow_ > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(slow_));
     const std::uint64_t now = now_ns();
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
@@ -122,10 +128,12 @@ Status App::run() {
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
+      at.slow = [this](double seconds) { slow_ = std::clamp(seconds, 0.0, 2.0); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),
                            [&](const Said& said) { return said.text.find(text) != std::string::npos; });
       };
+      if (host_->has_waiting()) at.under_way = "what was pressed before";
       if (Status s = script_->next(at, events); !s) {
         take_screenshot(fs::path(options_.out) / "failed.png");
         return s;
@@ -166,6 +174,7 @@ void App::take_tool(const std::string& name) {
   if (editor.tool == name) return;
   if (ViewTool* before = tool()) before->leave(editor);
   editor.tool = name;
+  if (name == "Paint") show_panel(name);  // its brush is there
 }
 
 Panel* App::panel(const std::string& name) {
@@ -229,10 +238,8 @@ void App::screenshot(const fs::path& file) {
 void App::keys(std::span<const InputEvent> events) {
   for (const InputEvent& event : events) {
     if (event.kind == InputKind::kClose) close();
-    if (event.kind == InputKind::kDrop) open(event.file);
+    if (event.kind == InputKind::kDrop) drop(event.files);
     if (event.kind != InputKind::kKey) continue;
-    ViewTool* const t = tool();
-    const bool typing = ImGui::GetIO().WantTextInput || (t && t->wants_keys());
     const std::string pressed = ui::keys_text(event.key, event.modifiers);
     const auto urgent = std::find_if(actions_.begin(), actions_.end(), [&](const Action& each) {
       return each.always && !pressed.empty() && keys_of(each) == pressed && each.enabled(editor);
@@ -245,20 +252,43 @@ void App::keys(std::span<const InputEvent> events) {
       if (!pressed.empty()) rebound = pressed;
       continue;
     }
+    const ViewTool* const t = tool();
+    if (event.key == GLFW_KEY_TAB && (event.modifiers & (kControl | kAlt)) == 0 && !(t && t->wants_keys())) {
+      ui::focus_next(event.modifiers & kShift);
+      continue;
+    }
     if (!questions_.empty() || after_leaving_) continue;  // they come first
     for (const Action& action : actions_) {
-      if (pressed.empty() || keys_of(action) != pressed || (typing && !action.while_typing)) continue;
-      if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") continue;
+      if (pressed.empty() || keys_of(action) != pressed || !shortcut_counts(action, event)) continue;
       if (action.enabled(editor)) action.run(editor);
       break;
     }
   }
 }
 
-void App::frame(std::span<const InputEvent> events, double dt) {
+// Keys belong to the field that is typed into first, then to the menu, the dialog or the widget that the keyboard has
+// reached, then to the program.
+bool App::shortcut_counts(const Action& action, const InputEvent& event) const {
+  const ViewTool* const t = const_cast<App*>(this)->tool();
+  if ((ImGui::GetIO().WantTextInput || (t && t->wants_keys())) && !action.while_typing) return false;
+  if (event.repeated && !action.repeats && action.id != "edit.undo" && action.id != "edit.redo") return false;
+  const bool plain = (event.modifiers & (kControl | kAlt)) == 0 && event.key < GLFW_KEY_F1;
+  if (plain && popup_was_open_) return false;
+  const bool dialog = std::any_of(panels_.begin(), panels_.end(), [&](const auto& each) {
+    return each->place() == Panel::Place::kOver && is_open(each->name());
+  });
+  if (plain && dialog) return false;
+  constexpr int kOfWidgets[] = {GLFW_KEY_SPACE, GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_LEFT,
+                                GLFW_KEY_RIGHT, GLFW_KEY_UP,    GLFW_KEY_DOWN};
+  return !(plain && ui::keyboard_leads() &&
+           std::find(std::begin(kOfWidgets), std::end(kOfWidgets), event.key) != std::end(kOfWidgets));
+}
+
+void App::frame(std::span<const InputEvent> arrived, double dt) {
   const std::uint64_t began = now_ns();
   const double computed_before = computed_ms();
-  host_->begin(events, dt);
+  popup_was_open_ = ui::popup_is_open();
+  const std::vector<InputEvent> events = host_->begin(arrived, editor.now, dt);
   editor.jobs.deliver(editor);
   editor.painting->update();
   files_->update();
@@ -266,6 +296,8 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   keys(events);
   if (editor.document.revision() != shown_revision_) {
     shown_revision_ = editor.document.revision();
+    for (const auto& each : editor.state().nodes) ui::draws(each->node.name);
+    ui::draws(editor.document.title());
     dirty_picture_ = true;
   }
   if (!(editor.view == shown_view_)) {
@@ -280,16 +312,19 @@ void App::frame(std::span<const InputEvent> events, double dt) {
   dirty_picture_ |= was_moving;
 
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float scale = ui::scale();
-  const auto within = [&](double& value, float least, float most) {
-    value = std::clamp(value, static_cast<double>(least), static_cast<double>(std::max(most, least)));
+  const float rows = top_has_two_rows() ? kTop + kTopRow : kTop;
+  const ImVec2 points(size.x / ui::scale(), size.y / ui::scale());
+  // What is wished for, and less of it in a small window: the viewport keeps its room.
+  const auto shown = [](double wish, float least, float most) {
+    return std::clamp(wish, static_cast<double>(least), static_cast<double>(std::max(most, least)));
   };
-  within(settings.left, kLeastLeft, size.x / scale - kLeastRight - kLeastView);
-  within(settings.right, kLeastRight, size.x / scale - static_cast<float>(settings.left) - kLeastView);
-  within(settings.bottom, kLeastBottom, size.y / scale - kTop - kBar - kLeastView);
-  const float left = ui::px(static_cast<float>(settings.left)),
-              right = size.x - ui::px(static_cast<float>(settings.right)), top = ui::px(kTop),
-              bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(settings.bottom)), seam = ui::px(3);
+  const float view = std::clamp(points.x - kLeastLeft - kLeastRight, kLeastView, kGoodView);
+  const double wide_right = shown(settings.right, kLeastRight, points.x - kLeastLeft - view),
+               wide_left = shown(settings.left, kLeastLeft, points.x - static_cast<float>(wide_right) - view),
+               high_bottom = shown(settings.bottom, kLeastBottom, points.y - rows - kBar - kLeastView);
+  const float left = ui::px(static_cast<float>(wide_left)), right = size.x - ui::px(static_cast<float>(wide_right)),
+              top = ui::px(rows), bar = size.y - ui::px(kBar), bottom = bar - ui::px(static_cast<float>(high_bottom)),
+              seam = ui::px(3);
 
   play_.update();
   rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
@@ -298,16 +333,19 @@ void App::frame(std::span<const InputEvent> events, double dt) {
     said_trouble_ = picture_.trouble;
     if (!said_trouble_.empty()) editor.say(said_trouble_, Severity::kError);
   }
+  for (auto it = editor.said.rbegin(); it != editor.said.rend() && it - editor.said.rbegin() < 8; ++it)
+    ui::draws(it->text);
+  if (const std::string news = ui::take_undrawable(); !news.empty()) editor.say(news, Severity::kWarning);
   editor.hovered = kNoNode;  // the tree and the viewport say what it is
-  draw_top();
+  draw_top(top);
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
   draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
   draw_side(Panel::Place::kBottom, {left, bottom + seam}, {right, bar});
   draw_viewport({left, top}, {right, bottom}, dt);
   draw_bottom_bar();
-  splitter("Left edge", settings.left, true, {left - seam, top}, {left, bar}, 1);
-  splitter("Right edge", settings.right, true, {right, top}, {right + seam, bar}, -1);
-  splitter("Bottom edge", settings.bottom, false, {left, bottom}, {right, bottom + seam}, -1);
+  splitter("Left edge", settings.left, wide_left, true, {left - seam, top}, {left, bar}, 1);
+  splitter("Right edge", settings.right, wide_right, true, {right, top}, {right + seam, bar}, -1);
+  splitter("Bottom edge", settings.bottom, high_bottom, false, {left, bottom}, {right, bottom + seam}, -1);
   for (const auto& each : panels_)
     if (each->place() == Panel::Place::kOver && open_[each->name()]) {
       const ui::Scope scope(each->name());
@@ -345,80 +383,90 @@ void App::say_figures(const std::string& name) {
   std::fflush(stdout);
 }
 
-void App::draw_top() {
+float App::tools_width(bool signs) const {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  float wide = 0;
+  for (const auto& each : tools_)
+    wide += ImGui::CalcTextSize(signs ? each->sign() : each->name()).x + 2 * style.FramePadding.x + ui::px(2);
+  return wide + ui::px(ui::kWide) + 5 * (ImGui::GetFrameHeight() + ui::px(8));  // buttons that play
+}
+
+bool App::top_has_two_rows() const {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  float wide = ImGui::CalcTextSize("SolidRendered").x + 4 * style.FramePadding.x + ui::px(2 * ui::kPad + 3 * ui::kWide);
+  std::string before;
+  for (const Action& action : actions_)
+    if (action.group != before)
+      wide += ImGui::CalcTextSize((before = action.group).c_str()).x + 2 * style.FramePadding.x + ui::px(2);
+  return wide + tools_width(false) > ImGui::GetIO().DisplaySize.x;
+}
+
+void App::draw_top(float high) {
   const ui::Palette& p = ui::palette();
+  const float all = ImGui::GetIO().DisplaySize.x;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(kTopPad)));
-  begin_fixed("top", {0, 0}, {ImGui::GetIO().DisplaySize.x, ui::px(kTop)}, ImGuiWindowFlags_NoScrollbar);
+  begin_fixed("top", {0, 0}, {all, high}, ImGuiWindowFlags_NoScrollbar);
   ImGui::PopStyleVar();
-  {
-    const ui::Scope scope("Menu");
-    std::vector<std::string> groups;
-    for (const Action& action : actions_)
-      if (std::find(groups.begin(), groups.end(), action.group) == groups.end()) groups.push_back(action.group);
-    for (const std::string& group : groups) {
-      if (group.empty()) continue;
-      const std::string popup = "menu " + group;
-      ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0, 0, 0, 0));
-      if (ui::button(group.c_str())) ImGui::OpenPopup(popup.c_str());
-      ImGui::PopStyleColor();
-      ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + ui::px(2)});
-      if (ImGui::BeginPopup(popup.c_str())) {
-        for (const Action& action : actions_) {
-          if (action.group != group) continue;
-          if (action.separator) ImGui::Separator();
-          if (ui::menu_item(action.label.c_str(), keys_of(action).c_str(), action.checked && action.checked(editor),
-                            action.enabled(editor)))
-            action.run(editor);
-        }
-        ImGui::EndPopup();
+  draw_menus();
+  float used = ImGui::GetCursorPosX();
+  const bool two_rows = top_has_two_rows();
+  const auto tools = [&] {
+    {
+      const ui::Scope scope("Tools");
+      const bool signs = tools_width(false) + ui::px(2 * ui::kPad) > all;
+      for (const auto& each : tools_) {
+        const std::string shown = std::string(signs ? each->sign() : each->name()) + "###" + each->name();
+        if (ui::choice_button(shown.c_str(), tool() == each.get(), each->hint(), each->usable(editor)))
+          take_tool(each->name());
+        ui::known_as(each->name());
+        ImGui::SameLine(0, ui::px(2));
       }
-      ImGui::SameLine(0, ui::px(2));
     }
+    ImGui::SameLine(0, ui::px(ui::kWide));
+    draw_play_buttons();
+  };
+  if (!two_rows) {  // what the mouse does in the viewport, after the menus
+    ImGui::SameLine(0, ui::px(ui::kWide));
+    tools();
+    ImGui::SameLine();
+    used = ImGui::GetCursorPosX();
   }
-  // What the mouse does in the viewport.
-  ImGui::SameLine(0, ui::px(ui::kWide));
-  {
-    const ui::Scope scope("Tools");
-    ImGui::PushID("Tools");  // the menu has a button of the same name
-    for (const auto& each : tools_) {
-      if (ui::choice_button(each->name(), tool() == each.get(), each->hint(), each->usable(editor)))
-        take_tool(each->name());
-      ImGui::SameLine(0, ui::px(2));
-    }
-    ImGui::PopID();
-  }
-  ImGui::SameLine(0, ui::px(ui::kWide));
-  draw_play_buttons();
-  // The document, in the middle of what is left; how it is shown at the right.
-  const std::string title = editor.document.title() + (files_->read_only() ? " (read-only)" : "") +
+  // The document in the middle of what is left; how it is shown at the right.
+  const float buttons =
+      ImGui::CalcTextSize("SolidRendered").x + 4 * ImGui::GetStyle().FramePadding.x + ui::px(2 + ui::kPad);
+  const std::string title = printable(editor.document.title()) + (files_->read_only() ? " (read-only)" : "") +
                             (editor.document.dirty() ? "  \u2022" : "");
-  const float wide = ImGui::CalcTextSize(title.c_str()).x, all = ImGui::GetIO().DisplaySize.x;
-  {
-    const ui::Scope scope("View mode");
-    const bool rendered = editor.view.shading == Shading::kRendered;
-    const float buttons = ImGui::CalcTextSize("SolidRendered").x + 4 * ImGui::GetStyle().FramePadding.x + ui::px(2);
-    ImGui::SameLine(all - buttons - ui::px(ui::kPad));
-    if (ui::choice_button("Solid", !rendered, "The level as it is edited, with painted values as colour")) {
-      editor.view.shading = Shading::kSolid;
-      dirty_picture_ = true;
-    }
-    ImGui::SameLine(0, ui::px(2));
-    if (ui::choice_button("Rendered", rendered, "The level as it is played: materials, surroundings, shadows")) {
-      editor.view.shading = Shading::kRendered;
-      dirty_picture_ = true;
-    }
-    const float room = all - buttons - ui::px(3 * ui::kWide) - wide;
-    ImGui::SetCursorPos({std::max(room, 0.0f), ui::px(kTopPad)});
-    if (room > ui::px(620)) {
-      ImGui::AlignTextToFramePadding();
-      ImGui::PushStyleColor(ImGuiCol_Text, editor.document.dirty() ? p.text : p.dim);
-      ImGui::TextUnformatted(title.c_str());
-      ImGui::PopStyleColor();
-      ui::hint(editor.document.file().empty() ? "This level has no file yet."
-                                              : editor.document.file().string().c_str());
-    }
+  const float room = all - buttons - ui::px(ui::kWide) - used;
+  if (ImGui::CalcTextSize(title.c_str()).x < room) {
+    ImGui::SameLine(all - buttons - ui::px(ui::kWide) - ImGui::CalcTextSize(title.c_str()).x);
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, editor.document.dirty() ? p.text : p.dim);
+    ImGui::TextUnformatted(title.c_str());
+    ImGui::PopStyleColor();
+    ui::hint(editor.document.file().empty() ? "This level has no file yet."
+                                            : printable(editor.document.file().string()).c_str());
+  }
+  ImGui::SameLine(all - buttons);
+  draw_view_mode();
+  if (two_rows) {
+    ImGui::SetCursorPos({ui::px(ui::kPad), ui::px(kTopPad + kTopRow)});
+    tools();
   }
   ImGui::End();
+}
+
+void App::draw_view_mode() {
+  const ui::Scope scope("View mode");
+  const bool rendered = editor.view.shading == Shading::kRendered;
+  if (ui::choice_button("Solid", !rendered, "The level as it is edited, with painted values as colour")) {
+    editor.view.shading = Shading::kSolid;
+    dirty_picture_ = true;
+  }
+  ImGui::SameLine(0, ui::px(2));
+  if (ui::choice_button("Rendered", rendered, "The level as it is played: materials, surroundings, shadows")) {
+    editor.view.shading = Shading::kRendered;
+    dirty_picture_ = true;
+  }
 }
 
 void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
@@ -475,7 +523,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
   ImGui::End();
 }
 
-void App::splitter(const char* name, double& place, bool vertical, ImVec2 low, ImVec2 high, double sign) {
+void App::splitter(const char* name, double& place, double shown, bool vertical, ImVec2 low, ImVec2 high, double sign) {
   begin_fixed(name, low, high, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground);
   ImGui::SetCursorScreenPos(low);
   ImGui::InvisibleButton("handle", {std::max(high.x - low.x, 1.0f), std::max(high.y - low.y, 1.0f)});
@@ -484,7 +532,8 @@ void App::splitter(const char* name, double& place, bool vertical, ImVec2 low, I
     ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
   if (ImGui::IsItemActive()) {
     const ImVec2 moved = ImGui::GetIO().MouseDelta;
-    place += sign * static_cast<double>((vertical ? moved.x : moved.y) / ui::scale());
+    const double by = sign * static_cast<double>((vertical ? moved.x : moved.y) / ui::scale());
+    if (by != 0.0) place = shown + by;
   }
   const ImVec4& line = ImGui::IsItemActive() || ImGui::IsItemHovered() ? ui::palette().accent : ui::palette().line;
   ImGui::GetWindowDrawList()->AddRectFilled(low, high, ui::color(line));
@@ -494,9 +543,14 @@ void App::splitter(const char* name, double& place, bool vertical, ImVec2 low, I
 void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   viewport_low_ = low;
   viewport_high_ = high;
+  if (editor.state().nodes.empty() && editor.document.file().empty()) {
+    dragging_view_ = pressed_in_view_ = false;
+    return draw_start(low, high);
+  }
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   begin_fixed("viewport", low, high,
-              ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
+              ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground |
+                  ImGuiWindowFlags_NoNavInputs);
   ImGui::PopStyleVar();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (picture_.texture != 0)
@@ -533,7 +587,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
       if (c >= 32 && c < 127) in.typed += static_cast<char>(c);
     const auto key = [](ImGuiKey_ k) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(k)); };
     in.enter = key(ImGuiKey_Enter) || key(ImGuiKey_KeyPadEnter);
-    in.escape = key(ImGuiKey_Escape);
+    in.escape = key(ImGuiKey_Escape) && !popup_was_open_;
     in.erase = key(ImGuiKey_Backspace);
   }
   in.under = picture_.picked.node;
@@ -547,11 +601,10 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   if (std::hypot(away.x, away.y) > ui::px(kClick)) moved_since_press_ = true;
 
   // The tool has the first word, then the camera, then selecting.
-  const bool start = editor.state().nodes.empty() && editor.document.file().empty();
   bool taken = false;
   const bool playing = play_.on();
-  if (!start && !in.alt && playing) taken = touch(in);
-  if (!start && !in.alt && !taken)
+  if (!in.alt && playing) taken = touch(in);
+  if (!in.alt && !taken)
     if (ViewTool* t = tool(); t && t->usable(editor)) taken = t->use(editor, in);
   const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
                                                                     (in.alt || moved_since_press_) && !in.shift));
@@ -587,26 +640,25 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   if (taken && (in.dx != 0 || in.dy != 0 || in.pressed || in.released)) dirty_picture_ = true;
 
   list.PushClipRect(low, high, true);
-  if (ViewTool* t = tool(); t && !start) t->overlay(editor, in, list);
-  if (!start) ViewBar::draw_over(editor, in, list);
+  if (ViewTool* t = tool()) t->overlay(editor, in, list);
+  ViewBar::draw_over(editor, in, list);
   draw_play_over(list, low, high);
   if (!picture_.trouble.empty())
     list.AddText({low.x + ui::px(ui::kPad), high.y - ui::px(28)}, ui::color(ui::palette().bad),
                  picture_.trouble.c_str());
   list.PopClipRect();
   ImGui::End();
-  if (start)
-    draw_start(low, high);
-  else
-    view_bar_.draw(editor, tool(), low, high);
+  view_bar_.draw(editor, tool(), low, high);
 }
 
 void App::draw_start(ImVec2 low, ImVec2 high) {
   Panel* const page = panel("Start");
   if (!page) return;
   begin_fixed("start", low, high);
-  const ui::Scope scope("Start");
-  page->draw(editor);
+  {
+    const ui::Scope scope("Start");
+    page->draw(editor);
+  }
   ImGui::End();
 }
 
@@ -719,14 +771,20 @@ void App::ask_to_leave() {
     return;
   ui::title("Save the changes?");
   ui::gap();
-  ImGui::TextUnformatted(fmt::format("{} has changes that are in no file.", editor.document.title()).c_str());
+  ImGui::TextUnformatted(
+      fmt::format("{} has changes that are in no file.", printable(editor.document.title())).c_str());
   ui::gap(ui::kPad);
   const auto go = [&] {
     auto then = std::exchange(after_leaving_, nullptr);
     ImGui::CloseCurrentPopup();
     then();
   };
-  if (ui::strong_button("Save", nullptr, true, 110)) {
+  const bool saves = ui::strong_button("Save", nullptr, true, 110);
+  if (ImGui::IsWindowAppearing()) {
+    ImGui::SetItemDefaultFocus();
+    ui::lead_by_keyboard();
+  }
+  if (saves) {
     if (editor.document.file().empty()) {
       auto then = std::exchange(after_leaving_, nullptr);
       ImGui::CloseCurrentPopup();
@@ -738,7 +796,7 @@ void App::ask_to_leave() {
   ImGui::SameLine();
   if (ui::button("Discard", "Undo could not bring them back.", true, 110)) go();
   ImGui::SameLine();
-  if (ui::button("Cancel", nullptr, true, 110)) {
+  if (ui::button("Cancel", "Esc", true, 110) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
     after_leaving_ = nullptr;
     ImGui::CloseCurrentPopup();
   }

@@ -57,6 +57,8 @@ class App {
   // The keys page waits for new keys of this action, and gets them as text in `rebound`.
   std::string rebinding, rebound;
 
+  // What was dropped on the window: files, folders, several at once (app/drop.cpp).
+  void drop(const std::vector<std::string>& files);
   // Opens a file, asking first where something is not saved.
   void open(const std::filesystem::path& file);
   void new_document();
@@ -71,9 +73,15 @@ class App {
   std::vector<ViewLine> extra_lines;                   // of panels, for the next picture; cleared every frame
 
  private:
-  void frame(std::span<const InputEvent> events, double dt);
+  void frame(std::span<const InputEvent> arrived, double dt);
+  bool shortcut_counts(const Action& action, const InputEvent& event) const;
   void keys(std::span<const InputEvent> events);
-  void draw_top();
+  void draw_top(float high);
+  void draw_menus();
+  void draw_menu(const std::string& group);
+  void draw_view_mode();
+  float tools_width(bool signs) const;  // [pixel] of the row of tools, and of the buttons that play
+  bool top_has_two_rows() const;
   void draw_bottom_bar();
   void draw_side(Panel::Place place, ImVec2 low, ImVec2 high);
   void draw_viewport(ImVec2 low, ImVec2 high, double dt);
@@ -86,7 +94,8 @@ class App {
   bool as_played() const;               // the picture is the renderer's
   double orthographic() const;          // [m]; the renderer has perspective alone
   void draw_toasts();
-  void splitter(const char* name, double& place, bool vertical, ImVec2 low, ImVec2 high, double sign);
+  // `shown` [point]: the size as it is drawn, which may be less than what is wished for; a drag goes on from it.
+  void splitter(const char* name, double& place, double shown, bool vertical, ImVec2 low, ImVec2 high, double sign);
   void order_picture();
   void ask_to_leave();
   void draw_question();
@@ -109,6 +118,9 @@ class App {
   std::optional<ui::Script> script_;
   std::map<std::string, bool> open_;   // dialogs
   std::set<std::string> wanted_tabs_;  // come to the front in the next frame
+  std::string wanted_menu_;            // opens in the next frame
+  bool menu_by_hover_ = false;         // the open menu was not pressed
+  bool popup_was_open_ = false;        // when this frame began: Esc is its own
   StagePicture picture_;
   std::string said_trouble_;  // of pictures
   std::uint64_t order_ = 0, question_ = 0;
@@ -141,6 +153,7 @@ class App {
   double frame_ms_ = 0.0;  // of the interface
   double most_computed_ms_ = 0.0;
   std::vector<double> frames_ms_;  // while a script runs
+  double slow_ = 0.0;              // [s] that a frame takes at least, as a script says
 };
 
 }  // namespace pliant

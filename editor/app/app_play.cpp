@@ -167,7 +167,7 @@ void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const ImVec2 corner(low.x + ui::px(ui::kPad), low.y + ui::px(ui::kPad));
   list.AddRectFilled({corner.x - ui::px(8), corner.y - ui::px(4)},
-                     {corner.x + size.x + ui::px(8), corner.y + size.y + ui::px(4)}, ui::color(p.window, 0.85f),
+                     {corner.x + size.x + ui::px(8), corner.y + size.y + ui::px(4)}, ui::color(p.window, 0.95f),
                      ui::px(4));
   list.AddText(corner, ui::color(color), text.c_str());
   ImGui::PopFont();
@@ -180,7 +180,7 @@ void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
         fmt::format("{}  {:.2f} N  {:.2f} mm", each.name, length(each.reading.force), 1e3 * each.reading.depth);
     const ImVec2 wide = ImGui::CalcTextSize(felt.c_str());
     list.AddRectFilled({corner.x - ui::px(8), y - ui::px(3)}, {corner.x + wide.x + ui::px(8), y + wide.y + ui::px(3)},
-                       ui::color(p.window, 0.7f), ui::px(4));
+                       ui::color(p.window, 0.95f), ui::px(4));
     list.AddText({corner.x, y}, ui::color(p.text), felt.c_str());
     y += wide.y + ui::px(8);
   }

@@ -1,5 +1,9 @@
 // The program's questions, and lines over the viewport.
+#include <algorithm>
+
 #include "editor/app/app.h"
+#include "editor/ui/fonts.h"
+#include "editor/ui/seen.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
@@ -24,7 +28,12 @@ void App::draw_question() {
   const Question& question = questions_.front();
   ui::title(printable(question.title).c_str());
   ui::gap(ui::kGap);
-  for (const std::string& line : question.lines) ImGui::TextUnformatted(printable(line).c_str());
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + std::min(ui::px(560), 0.7f * size.x));
+  for (const std::string& line : question.lines) {
+    ui::draws(line);
+    ImGui::TextUnformatted(printable(line).c_str());
+  }
+  ImGui::PopTextWrapPos();
   ui::gap(ui::kPad);
   const Answer* taken = nullptr;
   for (const Answer& answer : question.answers) {
@@ -33,6 +42,10 @@ void App::draw_question() {
     if (first ? ui::strong_button(answer.label.c_str(), answer.hint.c_str())
               : ui::button(answer.label.c_str(), answer.hint.c_str()))
       taken = &answer;
+    if (first && ImGui::IsWindowAppearing()) {  // Enter takes what is to be expected
+      ImGui::SetItemDefaultFocus();
+      ui::lead_by_keyboard();
+    }
   }
   if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) && question.answers.back().label == "Cancel")
     taken = &question.answers.back();
@@ -49,7 +62,11 @@ void App::draw_banners() {
   float y = viewport_low_.y + ui::px(ui::kPad);
   for (const auto& each : panels_) {
     if (each->place() != Panel::Place::kBanner || !each->shown(editor)) continue;
-    ImGui::SetNextWindowPos({0.5f * (viewport_low_.x + viewport_high_.x), y}, ImGuiCond_Always, {0.5f, 0.0f});
+    // Where there is little room, beside the cross at the right.
+    const bool narrow = viewport_high_.x - viewport_low_.x < ui::px(640);
+    ImGui::SetNextWindowPos(
+        {narrow ? viewport_low_.x + ui::px(ui::kPad) : 0.5f * (viewport_low_.x + viewport_high_.x), y},
+        ImGuiCond_Always, {narrow ? 0.0f : 0.5f, 0.0f});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ui::palette().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kPad), ui::px(ui::kSpace)));
     ImGui::Begin(each->name(), nullptr,

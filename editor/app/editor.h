@@ -67,6 +67,7 @@ class Editor {
   // --- Selection
   std::vector<NodeId> selected;  // the last is the active one
   NodeId hovered = kNoNode;
+  NodeId renaming = kNoNode;  // the tree takes a new name for it
   NodeId active() const { return selected.empty() ? kNoNode : selected.back(); }
   const DocumentNode* active_node() const { return document.state().find(active()); }
   bool is_selected(NodeId id) const;

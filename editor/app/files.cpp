@@ -101,8 +101,8 @@ void Files::chosen(const fs::path& file) {
 
 // --- Opening
 
-void Files::ask_open() {
-  FileWish wish{.title = "Open a level or a mesh", .folder = app_.editor.document.folder()};
+void Files::ask_open(const fs::path& folder) {
+  FileWish wish{.title = "Open a level or a mesh", .folder = folder.empty() ? app_.editor.document.folder() : folder};
   if (wish.folder.empty() && !app_.settings.recent.empty())
     wish.folder = fs::path(app_.settings.recent.front()).parent_path();
   choose(wish, [this](const fs::path& file) { open(file); });

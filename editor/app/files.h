@@ -24,7 +24,7 @@ class Files {
   Files(App& app, bool native);
   void update();  // once a frame
 
-  void ask_open();
+  void ask_open(const std::filesystem::path& folder = {});  // empty: where one is likely to look
   // Asks first where something is not saved, and where there are changes of a run that ended before they were saved.
   void open(const std::filesystem::path& file, double unit = 1.0);
   void recover(const RecoveryCopy& copy);

@@ -87,6 +87,7 @@ std::vector<Action> make_actions(App& app) {
        something});
   add({"edit.delete", "Edit", "Delete", "Delete", [](Editor& e) { e.apply("Delete", without(e.state(), e.selected)); },
        something});
+  add({"edit.rename", "Edit", "Rename", "F2", [](Editor& e) { e.renaming = e.active(); }, something});
   add({"edit.all", "Edit", "Select all", "Ctrl+A", [](Editor& e) {
          e.selected.clear();
          for (const auto& each : e.state().nodes) e.selected.push_back(each->id);

@@ -13,7 +13,8 @@ class Dialog {
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * all.x, 0.5f * all.y}, ImGuiCond_Always, {0.5f, 0.5f});
     ImGui::SetNextWindowSize(
-        {std::min(ui::px(size.x), all.x - ui::px(ui::kWide)), std::min(ui::px(size.y), all.y - ui::px(ui::kWide))});
+        {std::min(ui::px(size.x), all.x - ui::px(ui::kWide)),
+         std::min(ui::px(size.y), all.y - ui::px(60))});  // the line that says things stays in sight
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ui::palette().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kWide), ui::px(ui::kPad)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ui::px(1));
@@ -22,6 +23,7 @@ class Dialog {
     ImGui::PopStyleVar(2);
     ImGui::PopStyleColor();
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+    ui::keep_in_front();
     ui::title(title);
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ui::px(70));
     closed_ = ui::button("Close", "Esc", true, 70);

@@ -8,6 +8,8 @@
 #include "editor/app/files.h"
 #include "editor/panels/dialog.h"
 #include "editor/panels/panels.h"
+#include "editor/ui/fonts.h"
+#include "editor/ui/seen.h"
 #include "runtime/printable.h"
 
 namespace pliant {
@@ -96,6 +98,7 @@ class FileBrowser : public Panel {
     if (app_.files().wishes() != of_) {  // another question
       of_ = app_.files().wishes();
       name_ = wish.name;
+      begins_ = true;
       go(editor, wish.folder);
     }
     if (!(filter_ == read_)) read(editor);
@@ -108,11 +111,22 @@ class FileBrowser : public Panel {
     places(editor);
     ImGui::EndChild();
     ImGui::SameLine();
-    ImGui::BeginChild("entries", {0, -below});
+    // Arrow keys choose in it, letters seek a name.
+    ImGui::BeginChild("entries", {0, -below}, false, ImGuiWindowFlags_NoNavInputs);
+    if (begins_ && !wish.save) ImGui::SetWindowFocus();
+    if (ImGui::IsWindowFocused() && !ImGui::GetIO().WantTextInput) keys(editor);
     entries(editor, wish);
     ImGui::EndChild();
     ui::gap(2);
-    last_row(wish);
+    last_row(editor, wish);
+    begins_ = false;
+    // Enter does what the dialog is for, wherever its keys are.
+    const bool enter = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
+                       ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter), false);
+    const std::string& chosen = wish.save && !entered_folder_ ? name_ : selected_;
+    if (enter && !ImGui::IsAnyItemActive() && !ui::keyboard_leads() && !chosen.empty() &&
+        ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows))
+      accept(editor, folder_ / chosen);
   }
 
  private:
@@ -123,6 +137,7 @@ class FileBrowser : public Panel {
     typed_ = folder_.string();
     filter_.part.clear();
     selected_.clear();
+    entered_folder_ = false;
     read(editor);
   }
 
@@ -134,6 +149,46 @@ class FileBrowser : public Panel {
                         auto listing = std::make_shared<Listing>(read_folder(folder, filter, stop));
                         return [this, listing](Editor&) { listing_ = listing; };
                       });
+  }
+
+  void keys(Editor& editor) {
+    const auto pressed = [](ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
+    if (pressed(ImGuiKey_Backspace) && folder_.has_relative_path()) return go(editor, folder_.parent_path());
+    if (!listing_ || listing_->entries.empty()) return;
+    const auto& all = listing_->entries;
+    const auto here = std::find_if(all.begin(), all.end(), [&](const FolderEntry& e) { return e.name == selected_; });
+    const auto last = static_cast<std::ptrdiff_t>(all.size()) - 1;
+    std::ptrdiff_t to = here == all.end() ? -1 : here - all.begin();
+    const std::ptrdiff_t before = to;
+    if (pressed(ImGuiKey_DownArrow)) ++to;
+    if (pressed(ImGuiKey_UpArrow)) to = std::max<std::ptrdiff_t>(to - 1, 0);
+    if (pressed(ImGuiKey_PageDown)) to += 15;
+    if (pressed(ImGuiKey_PageUp)) to = std::max<std::ptrdiff_t>(to - 15, 0);
+    if (pressed(ImGuiKey_Home)) to = 0;
+    if (pressed(ImGuiKey_End)) to = last;
+    std::string letter;
+    for (const ImWchar c : ImGui::GetIO().InputQueueCharacters)
+      if (c > 32 && c < 127) letter = std::string(1, static_cast<char>(c));
+    if (!letter.empty())
+      for (std::ptrdiff_t i = 1; i <= last + 1; ++i) {
+        const std::ptrdiff_t at = (std::max<std::ptrdiff_t>(to, -1) + i) % (last + 1);
+        if (!lower_case(all[static_cast<std::size_t>(at)].name).starts_with(lower_case(letter))) continue;
+        to = at;
+        break;
+      }
+    to = std::min(to, last);
+    if (to == before || to < 0) return;
+    const FolderEntry& entry = all[static_cast<std::size_t>(to)];
+    selected_ = entry.name;
+    entered_folder_ = entry.folder;
+    if (app_.files().wish().save && !entry.folder) name_ = entry.name;
+    ImGui::SetScrollY(static_cast<float>(to) * ImGui::GetTextLineHeightWithSpacing() - 0.5f * ImGui::GetWindowHeight());
+  }
+
+  void accept(Editor& editor, const fs::path& path) {
+    std::error_code failed;
+    if (fs::is_directory(path, failed)) return go(editor, path);
+    choose(path);
   }
 
   void path_row(Editor& editor) {
@@ -190,6 +245,7 @@ class FileBrowser : public Panel {
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
         const FolderEntry& entry = listing_->entries[static_cast<std::size_t>(i)];
         ImGui::PushID(i);
+        ui::draws(entry.shown);
         const bool pressed =
             ImGui::Selectable("##entry", selected_ == entry.name,
                               ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_AllowItemOverlap);
@@ -208,6 +264,7 @@ class FileBrowser : public Panel {
           folder = folder_ / entry.name;
         } else {
           selected_ = entry.name;
+          entered_folder_ = false;
           if (wish.save) name_ = entry.name;
           if (ImGui::IsMouseDoubleClicked(0)) file = folder_ / entry.name;
         }
@@ -218,12 +275,15 @@ class FileBrowser : public Panel {
     if (file) choose(*file);
   }
 
-  void last_row(const FileWish& wish) {
+  void last_row(Editor& editor, const FileWish& wish) {
     if (wish.save) {
       ui::label("Name");
       ImGui::SameLine(ui::px(70));
-      if (ui::text_field("Name", name_, "name.level.glb", -1, ImGuiInputTextFlags_EnterReturnsTrue) && !name_.empty())
-        return choose(folder_ / name_);
+      if (begins_) ImGui::SetKeyboardFocusHere();
+      if (ui::text_field("Name", name_, "name.level.glb", -1,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll) &&
+          !name_.empty())
+        return accept(editor, folder_ / name_);
     }
     ui::text_field("Filter", filter_.part, "A part of the name", 180);
     ImGui::SameLine();
@@ -232,7 +292,7 @@ class FileBrowser : public Panel {
     ui::checkbox("Hidden", filter_.hidden, "Names that begin with a dot, too");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ui::px(110));
     const std::string chosen = wish.save ? name_ : selected_;
-    if (ui::strong_button(wish.save ? "Save" : "Open", nullptr, !chosen.empty(), 110)) choose(folder_ / chosen);
+    if (ui::strong_button(wish.save ? "Save" : "Open", nullptr, !chosen.empty(), 110)) accept(editor, folder_ / chosen);
   }
 
   void choose(const fs::path& file) {
@@ -245,6 +305,8 @@ class FileBrowser : public Panel {
   fs::path folder_;
   std::string typed_, name_, selected_;
   Filter filter_, read_;
+  bool begins_ = false;                     // just opened: the keys go where they are likely to be wanted
+  bool entered_folder_ = false;             // what is selected is a folder
   std::shared_ptr<const Listing> listing_;  // null: being read
 };
 

@@ -81,13 +81,15 @@ bool pick_device(Editor& editor, std::string& wish) {
     ui::hint("Kinds of device, and those that are here");
     return false;
   }
-  const ui::Scope scope("Pick device");
   bool picked = false;
-  for (const std::string& each : editor.device_wishes())
-    if (ui::selectable(each.c_str(), each == wish)) {
-      wish = each;
-      picked = true;
-    }
+  {
+    const ui::Scope scope("Pick device");
+    for (const std::string& each : editor.device_wishes())
+      if (ui::selectable(each.c_str(), each == wish)) {
+        wish = each;
+        picked = true;
+      }
+  }
   ImGui::EndCombo();
   return picked;
 }

@@ -1,6 +1,7 @@
 // The first page: what was not saved, files that were open before, and the levels that ship.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "editor/app/app.h"
@@ -36,6 +37,7 @@ class StartPage : public Panel {
 
  private:
   static constexpr double kLook = 2.0;  // [s] between two looks at what is on disk
+  static constexpr const char* kFirstLevel = "glass_heart";
   struct Recent {
     std::string file;
     bool there = true;
@@ -54,6 +56,7 @@ class StartPage : public Panel {
         if (copy.file.empty() || std::find(files.begin(), files.end(), copy.file.string()) == files.end())
           lost->push_back(std::move(copy));
       return [this, recent, lost](Editor&) {
+        looked_for_ = true;
         recent_ = *recent;
         lost_ = *lost;
       };
@@ -68,7 +71,7 @@ class StartPage : public Panel {
       app_.do_action("file.open");
     ui::gap(ui::kPad);
     unsaved();
-    if (recent_.empty()) return;
+    if (recent_.empty()) return first_steps();
     ui::dim("Recent files");
     for (const Recent& each : recent_) {
       const fs::path file = each.file;
@@ -88,6 +91,23 @@ class StartPage : public Panel {
         return;
       }
     }
+  }
+
+  // Nobody has opened anything here yet.
+  void first_steps() {
+    if (!looked_for_) return;
+    ui::dim("New here? Open an organ of your own, or drop its file on this window.");
+    const auto first = std::find_if(app_.shipped().begin(), app_.shipped().end(),
+                                    [](const fs::path& level) { return level.stem() == kFirstLevel; });
+    if (app_.shipped().empty()) return;
+    const fs::path level = first != app_.shipped().end() ? *first : app_.shipped().front();
+    ui::gap(ui::kGap);
+    ui::dim("Or try a level that is ready: open it, press Play, and press on it with the mouse.");
+    ui::gap(ui::kGap);
+    if (ui::button(fmt::format("Try {}###Try a level", level.stem().string()).c_str(), "Opens it; nothing is changed",
+                   true, 160))
+      app_.open(level);
+    ui::known_as("Try a level");
   }
 
   void unsaved() {
@@ -168,6 +188,7 @@ class StartPage : public Panel {
 
   App& app_;
   double looked_ = -1e9;  // [s]
+  bool looked_for_ = false;
   std::vector<Recent> recent_;
   std::vector<RecoveryCopy> lost_;
   fs::path sure_;

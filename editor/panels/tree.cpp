@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <set>
 
 #include "content/keys/extension_table.h"
 #include "editor/panels/panels.h"
+#include "editor/ui/fonts.h"
+#include "editor/ui/seen.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
@@ -33,10 +37,15 @@ class TreePanel : public Panel {
     ImGui::SameLine();
     ui::text_field("Search", search_, "Search nodes and components");
     ui::gap(2);
-    ImGui::BeginChild("nodes");
+    // Its arrow keys lead through the rows, as what is selected.
+    ImGui::BeginChild("nodes", {0, 0}, false, ImGuiWindowFlags_NoNavInputs);
     const State& state = editor.state();
+    follow_selection(editor);
+    if (ImGui::IsWindowFocused() && !ImGui::GetIO().WantTextInput && !ui::popup_is_open()) keys(editor);
     // Children by parent once a frame: a level may have thousands.
     below_.clear();
+    open_.clear();
+    parents_.clear();
     for (const auto& each : state.nodes) below_[each->parent].push_back(each.get());
     order_.clear();
     if (search_.empty())
@@ -56,9 +65,66 @@ class TreePanel : public Panel {
       editor.apply("Move in the tree", reparented(editor.state(), dropped_->first, dropped_->second));
       dropped_.reset();
     }
+    followed_ = editor.active();
   }
 
  private:
+  // What is selected elsewhere comes into sight, whatever is folded or scrolled.
+  void follow_selection(Editor& editor) {
+    if (editor.renaming != kNoNode && renaming_ != editor.renaming) {
+      const DocumentNode* const node = editor.state().find(editor.renaming);
+      if (!node) editor.renaming = kNoNode;
+      reveal_ = renaming_ = editor.renaming;
+      if (node) new_name_ = node->node.name;
+      starts_ = true;
+      search_.clear();
+    }
+    if (editor.active() != followed_ && editor.active() != kNoNode) reveal_ = editor.active();
+    if (reveal_ == kNoNode) return;
+    const DocumentNode* node = editor.state().find(reveal_);
+    for (NodeId above = node ? node->parent : kNoNode; above != kNoNode;) {
+      fold_[above] = true;
+      const DocumentNode* const parent = editor.state().find(above);
+      above = parent ? parent->parent : kNoNode;
+    }
+  }
+
+  void keys(Editor& editor) {
+    const auto pressed = [](ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
+    if (order_before_.empty()) return;
+    const auto here = std::find(order_before_.begin(), order_before_.end(), editor.active());
+    const bool any = here != order_before_.end();
+    const auto at = static_cast<std::ptrdiff_t>(here - order_before_.begin()),
+               last = static_cast<std::ptrdiff_t>(order_before_.size()) - 1;
+    const auto go = [&](std::ptrdiff_t to) {
+      const NodeId id = order_before_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(to, 0, last))];
+      if (ImGui::GetIO().KeyShift && any)
+        select_range(editor, id);
+      else
+        editor.select(id);
+      reveal_ = id;
+    };
+    const auto rows = static_cast<std::ptrdiff_t>(ImGui::GetWindowHeight() / ImGui::GetFrameHeightWithSpacing());
+    if (pressed(ImGuiKey_DownArrow)) go(any ? at + 1 : 0);
+    if (pressed(ImGuiKey_UpArrow)) go(any ? at - 1 : last);
+    if (pressed(ImGuiKey_PageDown)) go(any ? at + rows : last);
+    if (pressed(ImGuiKey_PageUp)) go(any ? at - rows : 0);
+    if (!any || !search_.empty()) return;
+    const DocumentNode* const node = editor.state().find(*here);
+    const bool parent = parents_.contains(*here), open = open_.contains(*here);
+    if (pressed(ImGuiKey_RightArrow) && parent) {
+      if (open)
+        go(at + 1);
+      else
+        fold_[*here] = true;
+    }
+    if (!pressed(ImGuiKey_LeftArrow)) return;
+    if (parent && open)
+      fold_[*here] = false;
+    else if (node && node->parent != kNoNode)
+      editor.select(reveal_ = node->parent);
+  }
+
   static std::string what(const LevelNode& node) {
     std::string text;
     const auto add = [&](const char* word) { text += (text.empty() ? "" : ", ") + std::string(word); };
@@ -85,6 +151,7 @@ class TreePanel : public Panel {
 
   bool draw_row(Editor& editor, const DocumentNode& node, bool leaf) {
     const std::string shown = printable(node.node.name);
+    ui::draws(shown);
     ImGui::PushID(static_cast<int>(node.id));
     const ui::Scope scope(node.node.name);
     order_.push_back(node.id);
@@ -93,12 +160,22 @@ class TreePanel : public Panel {
       starts_ = false;
       const bool done = ui::text_field("Name", new_name_, "", 0,
                                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-      if (done || ImGui::IsItemDeactivated()) {
-        if (done && new_name_ != node.node.name) editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
-        renaming_ = kNoNode;
+      if (reveal_ == node.id) ImGui::SetScrollHereY();
+      const bool left = ImGui::IsItemDeactivated(), given_up = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+      if (done || left) {
+        if (!given_up && !new_name_.empty() && new_name_ != node.node.name)
+          editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
+        renaming_ = editor.renaming = kNoNode;
+        ImGui::SetWindowFocus();  // the arrow keys go on from here
       }
+      if (reveal_ == node.id) reveal_ = kNoNode;
       ImGui::PopID();
       return false;
+    }
+    if (!leaf) parents_.insert(node.id);
+    if (const auto fold = fold_.find(node.id); fold != fold_.end()) {
+      ImGui::SetNextItemOpen(fold->second);
+      fold_.erase(fold);
     }
     ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth |
                                ImGuiTreeNodeFlags_FramePadding | ImGuiTreeNodeFlags_DefaultOpen;
@@ -108,6 +185,13 @@ class TreePanel : public Panel {
     const bool open = ImGui::TreeNodeEx("node", flags, "%s", shown.c_str());
     if (!node.node.in_scene) ImGui::PopStyleColor();
     ui::known_as("row");
+    if (open && !leaf) open_.insert(node.id);
+    if (reveal_ == node.id) {
+      if (!ImGui::IsItemVisible() || ImGui::GetItemRectMax().y > ImGui::GetWindowPos().y + ImGui::GetWindowHeight() ||
+          ImGui::GetItemRectMin().y < ImGui::GetWindowPos().y)
+        ImGui::SetScrollHereY();
+      reveal_ = kNoNode;
+    }
     const bool toggled = ImGui::IsItemToggledOpen();
     if (ImGui::IsItemHovered()) {
       editor.hovered = node.id;
@@ -153,11 +237,7 @@ class TreePanel : public Panel {
   }
 
   void row_menu(Editor& editor, const DocumentNode& node) {
-    if (ui::menu_item("Rename")) {
-      renaming_ = node.id;
-      new_name_ = node.node.name;
-      starts_ = true;
-    }
+    if (ui::menu_item("Rename", "F2")) editor.renaming = node.id;
     if (ui::menu_item("Duplicate")) {
       std::vector<NodeId> ids;
       if (editor.apply("Duplicate", duplicated(editor.state(), editor.selected, editor.document.next_id(), &ids)))
@@ -188,6 +268,9 @@ class TreePanel : public Panel {
 
   std::string search_, new_name_;
   NodeId renaming_ = kNoNode;
+  NodeId followed_ = kNoNode, reveal_ = kNoNode;  // what was selected when this was drawn last; what comes into sight
+  std::map<NodeId, bool> fold_;                   // rows that open or close in the next frame
+  std::set<NodeId> parents_, open_;               // of the rows drawn last
   bool starts_ = false;
   std::map<NodeId, std::vector<const DocumentNode*>> below_;
   std::vector<NodeId> order_, order_before_;

@@ -23,11 +23,14 @@ class UnitBanner : public Panel {
   }
 
   void draw(Editor& editor) override {
+    const bool narrow = ImGui::GetIO().DisplaySize.x < ui::px(1000);  // then its buttons stand below
     ImGui::AlignTextToFramePadding();
+    ImGui::PushTextWrapPos(narrow ? ui::px(190) : 0.0f);
     ImGui::TextUnformatted(
         fmt::format("This mesh is {:.3g} m across. What is one unit of it?", editor.scene_box().diagonal()).c_str());
+    ImGui::PopTextWrapPos();
     for (const auto& [name, metres] : {std::pair{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}}) {
-      ImGui::SameLine();
+      if (!narrow || metres != 1e-3) ImGui::SameLine();
       if (!ui::button(name, metres == 1.0 ? "It is as large as it says" : "Scales everything; undo takes it back"))
         continue;
       answered_ = editor.documents;

@@ -69,6 +69,7 @@ PlayOptions Play::options() {
     if (each->node.device && answers.allows(editor_.document.file(), each->node.device->id))
       made.allowed.insert(each->node.device->id);
   made.mouse_probe = mouse_probe;
+  made.repeats = true;
   made.realtime = realtime;
   made.speed = speed;
   made.paused = paused_;

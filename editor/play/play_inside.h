@@ -51,9 +51,10 @@ struct PlayRun::Inside {
   std::vector<PlaySource> sources;                                       // of each effector
   std::map<std::string, std::pair<std::string, std::string>> connected;  // by effector: a device's id and name
   std::vector<DeviceInfo> there;                                         // devices, as listed last
-  std::string moved;                                                     // by the mouse
-  std::string watched;                                                   // a tool that the mouse may take hold of
-  dquat held{1, 0, 0, 0};                                                // as which it is held
+  double period = 0.0;     // [s] after which all scripts start over, as in the window of a run
+  std::string moved;       // by the mouse
+  std::string watched;     // a tool that the mouse may take hold of
+  dquat held{1, 0, 0, 0};  // as which it is held
 
   void say(const std::string& note) { notes.push_back(note); }
   Level remember(const SessionEffector& effector) const;

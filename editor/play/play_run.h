@@ -41,6 +41,7 @@ struct PlayOptions {
   std::set<std::string> allowed;          // ids of the level that the user allows (content/level/device_request.h)
   bool mouse_probe = false;               // a probe `mouse` is added where nothing is moved by the mouse
   bool realtime = false, paused = false;  // where the level itself asks for a device, it is felt in real time
+  bool repeats = false;                   // scripts start over when they have ended, as in the window of a run
   double speed = 1.0;                     // [1] of the wall clock, in lockstep
   bool shown = false;                     // ticks wait until a picture has been made of it
   Viewpoint view;                         // that it is looked at from at first

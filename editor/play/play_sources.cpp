@@ -8,6 +8,7 @@
 #include "devices/choose.h"
 #include "devices/wrappers/chain.h"
 #include "editor/play/play_inside.h"
+#include "systems/device/repeat.h"
 
 namespace pliant {
 
@@ -96,9 +97,12 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
         done = path.error();
         break;
       }
+      Path again = run.options_.repeats && !path->rows.empty() && !path->repeats
+                       ? repeated(*path, std::max(period, period_of(*path)))
+                       : std::move(path).value();
       if (source.from > 0.0)
-        for (PathRow& row : path->rows) row.time += source.from;
-      done = session->follow(name, std::move(path).value());
+        for (PathRow& row : again.rows) row.time += source.from;
+      done = session->follow(name, std::move(again));
       break;
     }
     case PlaySource::Kind::kMouse: {
@@ -171,7 +175,19 @@ void PlayRun::Inside::apply_all() {
       if (name == effector.name) source = its;
     wanted.emplace_back(effector.name, source);
   }
-  for (const auto& [name, source] : wanted) apply(name, source);
+  // There is one mouse. What the user has chosen for it comes first, then the level's first.
+  std::stable_partition(wanted.begin(), wanted.end(),
+                        [](const auto& each) { return each.second.kind == PlaySource::Kind::kMouse; });
+  for (auto& [name, source] : wanted) {
+    const auto index = static_cast<std::size_t>(parts->find_effector(name) - parts->effectors.data());
+    const bool another = source.kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kMouse;
+    if (another && !moved.empty()) {
+      say(fmt::format("the mouse moves `{}`; nothing moves `{}`: choose the mouse for it under What moves the probes",
+                      moved, name));
+      source.kind = PlaySource::Kind::kNone;
+    }
+    apply(name, source);
+  }
   watch();
 }
 

@@ -10,6 +10,7 @@
 #include "editor/play/play_inside.h"
 #include "engine/sources.h"
 #include "runtime/clock.h"
+#include "systems/device/repeat.h"
 #include "systems/hash_state.h"
 #include "systems/touch/publish.h"
 #include "systems/touch/touch_state.h"
@@ -133,6 +134,10 @@ Status PlayRun::open(Inside& in) {
   in.realtime = options_.realtime && !options_.past;
   in.paused = options_.paused;
   in.speed = options_.speed;
+  if (options_.repeats) repeat_scripts(world);
+  for (auto [entity, device] : world.registry.view<const HapticDevice>())
+    if (device.driver == DriverKind::kScript && device.path.valid())
+      in.period = std::max(in.period, world.paths[device.path].rows.back().time);
   for (const SessionEffector& effector : in.parts->effectors) in.of_level.push_back(in.remember(effector));
   in.apply_all();
   if (!options_.past && !in.realtime && in.feels()) {

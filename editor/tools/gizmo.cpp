@@ -187,15 +187,15 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
 
 void GizmoTool::options(Editor& editor) {
   ui::checkbox("Snap", settings_.snap, "Moves in steps of this size. Ctrl while dragging turns it round.");
-  ImGui::SameLine();
+  ui::beside(ui::kSpace, "", 70);
   ui::number("Step", snap_step(), lengths() ? 1e-9 : 1e-3, lengths() ? 1e3 : 360, snap_unit(), true, 78);
   ui::hint("The size of a step");
-  ImGui::SameLine(0, ui::px(ui::kPad));
+  ui::beside(ui::kPad, "WorldLocal", 20);
   if (ui::choice_button("World", !settings_.local_axes, "Along the axes of the world")) settings_.local_axes = false;
   ImGui::SameLine(0, ui::px(2));
   if (ui::choice_button("Local", settings_.local_axes, "Along the own axes of the node that was selected last"))
     settings_.local_axes = true;
-  ImGui::SameLine(0, ui::px(ui::kPad));
+  ui::beside(ui::kPad, "MiddleOrigin", 20);
   if (ui::choice_button("Middle", pivot == Pivot::kMiddle, "About the middle of what is selected"))
     pivot = Pivot::kMiddle;
   ImGui::SameLine(0, ui::px(2));

@@ -75,7 +75,7 @@ class MoveTool : public GizmoTool {
   double& snap_step() override { return settings_.snap_move; }
   const char* snap_unit() const override { return "m"; }
   void more_options(Editor&) override {
-    ImGui::SameLine(0, ui::px(ui::kPad));
+    ui::beside(ui::kPad, "Lowest point", 20);
     ui::checkbox("Lowest point", lowest_,
                  "With Shift, what is held follows the surface with its lowest point instead of its origin.");
   }

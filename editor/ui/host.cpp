@@ -7,14 +7,19 @@
 
 #include <algorithm>
 
+#include "editor/ui/fonts.h"
+#include "editor/ui/seen.h"
+
 namespace pliant::ui {
 namespace {
 
+constexpr double kDoubleClick = 0.4;  // [s] between two presses, as they arrived
+
+// Tab is not among them: it goes through every widget (seen.h).
 constexpr struct {
   ImGuiKey_ ours;
   int theirs;
-} kKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
-             {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
+} kKeys[] = {{ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
              {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
              {ImGuiKey_UpArrow, GLFW_KEY_UP},
              {ImGuiKey_DownArrow, GLFW_KEY_DOWN},
@@ -48,6 +53,8 @@ Host::Host(Window& window) : window_(window) {
   io.IniFilename = nullptr;  // the layout is the editor's own
   io.LogFilename = nullptr;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  io.KeyMap[ImGuiKey_Tab] = -1;
   for (const auto& key : kKeys) io.KeyMap[key.ours] = key.theirs;
   io.ClipboardUserData = &window_;
   io.SetClipboardTextFn = [](void* w, const char* text) { static_cast<Window*>(w)->set_clipboard(text); };
@@ -70,62 +77,86 @@ void Host::set_theme(Theme theme, float scale) {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-void Host::begin(std::span<const InputEvent> events, double dt) {
+void Host::feed(const ArrivedInput& arrived) {
+  ImGuiIO& io = ImGui::GetIO();
+  const InputEvent& event = arrived.event;
+  const auto modifiers = [&] {
+    io.KeyShift = event.modifiers & kShift;
+    io.KeyCtrl = event.modifiers & kControl;
+    io.KeyAlt = event.modifiers & kAlt;
+    io.KeySuper = event.modifiers & kSuper;
+  };
+  switch (event.kind) {
+    case InputKind::kMove:
+      mouse_ = {static_cast<float>(event.x), static_cast<float>(event.y)};
+      break;
+    case InputKind::kPress: {
+      modifiers();
+      const std::size_t button = imgui_button(event.button);
+      io.MouseDown[button] = true;
+      // Twice is what the hand did twice, not what two slow frames saw.
+      const bool twice = pressed_[button] >= 0 && arrived.time - pressed_[button] < kDoubleClick;
+      io.MouseDoubleClickTime = twice ? 1e9f : 0.0f;
+      pressed_[button] = arrived.time;
+      break;
+    }
+    case InputKind::kRelease:
+      io.MouseDown[imgui_button(event.button)] = false;
+      break;
+    case InputKind::kWheel:
+      modifiers();
+      io.MouseWheel += static_cast<float>(event.y);
+      break;
+    case InputKind::kKey:
+    case InputKind::kKeyUp: {
+      modifiers();
+      const bool down = event.kind == InputKind::kKey;
+      if (event.key >= 0 && event.key < static_cast<int>(std::size(io.KeysDown))) io.KeysDown[event.key] = down;
+      // Dear ImGui presses a button by Space alone.
+      if ((event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER) &&
+          (!down || (keyboard_leads() && !keyboard_is_on_field())))
+        io.KeysDown[GLFW_KEY_SPACE] = down;
+      // GLFW says the state before a modifier's own key.
+      if (event.key == GLFW_KEY_LEFT_SHIFT || event.key == GLFW_KEY_RIGHT_SHIFT) io.KeyShift = down;
+      if (event.key == GLFW_KEY_LEFT_CONTROL || event.key == GLFW_KEY_RIGHT_CONTROL) io.KeyCtrl = down;
+      if (event.key == GLFW_KEY_LEFT_ALT || event.key == GLFW_KEY_RIGHT_ALT) io.KeyAlt = down;
+      break;
+    }
+    case InputKind::kText:
+      draws(static_cast<unsigned>(event.key));
+      io.AddInputCharacter(static_cast<unsigned>(event.key));
+      break;
+    case InputKind::kFocus:
+      if (!event.key) std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+      io.AddFocusEvent(event.key != 0);
+      break;
+    case InputKind::kDrop:
+    case InputKind::kClose:
+    case InputKind::kWidget:
+      break;
+  }
+}
+
+std::vector<InputEvent> Host::begin(std::span<const InputEvent> events, double now, double dt) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(window_.width()), static_cast<float>(window_.height())};
   io.DeltaTime = static_cast<float>(std::clamp(dt, 1e-4, 1.0));
   io.MouseWheel = 0;
-  for (bool& clicked : clicked_) clicked = false;
-  for (const InputEvent& event : events) {
-    const auto modifiers = [&] {
-      io.KeyShift = event.modifiers & kShift;
-      io.KeyCtrl = event.modifiers & kControl;
-      io.KeyAlt = event.modifiers & kAlt;
-      io.KeySuper = event.modifiers & kSuper;
-    };
-    switch (event.kind) {
-      case InputKind::kMove:
-        mouse_ = {static_cast<float>(event.x), static_cast<float>(event.y)};
-        break;
-      case InputKind::kPress:
-        modifiers();
-        down_[imgui_button(event.button)] = clicked_[imgui_button(event.button)] = true;
-        break;
-      case InputKind::kRelease:
-        down_[imgui_button(event.button)] = false;
-        break;
-      case InputKind::kWheel:
-        modifiers();
-        io.MouseWheel += static_cast<float>(event.y);
-        break;
-      case InputKind::kKey:
-      case InputKind::kKeyUp: {
-        modifiers();
-        const bool down = event.kind == InputKind::kKey;
-        if (event.key >= 0 && event.key < static_cast<int>(std::size(io.KeysDown))) io.KeysDown[event.key] = down;
-        // GLFW says the state before a modifier's own key.
-        if (event.key == GLFW_KEY_LEFT_SHIFT || event.key == GLFW_KEY_RIGHT_SHIFT) io.KeyShift = down;
-        if (event.key == GLFW_KEY_LEFT_CONTROL || event.key == GLFW_KEY_RIGHT_CONTROL) io.KeyCtrl = down;
-        if (event.key == GLFW_KEY_LEFT_ALT || event.key == GLFW_KEY_RIGHT_ALT) io.KeyAlt = down;
-        break;
-      }
-      case InputKind::kText:
-        io.AddInputCharacter(static_cast<unsigned>(event.key));
-        break;
-      case InputKind::kFocus:
-        if (!event.key) std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-        io.AddFocusEvent(event.key != 0);
-        break;
-      case InputKind::kDrop:
-      case InputKind::kClose:
-      case InputKind::kWidget:
-        break;
-    }
+  queue_.add(events, now);
+  std::vector<InputEvent> counts;
+  for (ArrivedInput& arrived : queue_.take(io.WantTextInput)) {
+    feed(arrived);
+    counts.push_back(std::move(arrived.event));
   }
   io.MousePos = mouse_;
-  for (int i = 0; i < 3; ++i) io.MouseDown[i] = down_[i] || clicked_[i];  // a click within a frame is one, too
+  if (fonts_lack_letters()) {
+    missing_ = load_fonts(scale());
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+  }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
+  return counts;
 }
 
 void Host::end() {

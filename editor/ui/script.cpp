@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <charconv>
@@ -10,6 +11,7 @@
 #include <sstream>
 
 #include "content/files/file_io.h"
+#include "editor/ui/seen.h"
 #include "editor/ui/widgets.h"
 
 namespace pliant::ui {
@@ -151,9 +153,10 @@ Result<Script> Script::load(const std::filesystem::path& file) {
     std::getline(words >> std::ws, step.rest);
     std::istringstream rest(step.rest);
     for (std::string word; rest >> word;) step.words.push_back(word);
-    constexpr const char* kVerbs[] = {"click", "drag",       "press", "move",    "release", "wheel",     "key",
-                                      "type",  "set",        "wait",  "await",   "expect",  "expect-no", "say",
-                                      "hear",  "screenshot", "drop",  "figures", "close"};
+    constexpr const char* kVerbs[] = {"click",     "drag",    "press", "move",       "release", "wheel",
+                                      "key",       "type",    "set",   "wait",       "await",   "expect",
+                                      "expect-no", "say",     "hear",  "screenshot", "drop",    "figures",
+                                      "close",     "at-once", "now",   "apart",      "slow"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
       return Error{fmt::format("{}:{}", script.file_, row),
                    "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
@@ -162,7 +165,7 @@ Result<Script> Script::load(const std::filesystem::path& file) {
   return script;
 }
 
-Result<std::pair<double, double>> Script::place(const std::string& text, bool& there) const {
+Result<std::pair<double, double>> Script::place(const std::string& text, bool& there, Need need) const {
   there = true;
   double fx = 0.5, fy = 0.5;
   std::string address = text;
@@ -189,12 +192,17 @@ Result<std::pair<double, double>> Script::place(const std::string& text, bool& t
   }
   const double x = static_cast<double>(found->low.x) + fx * static_cast<double>(found->high.x - found->low.x),
                y = static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y);
-  const auto within = [](double at, float low, float high) {
-    return at >= static_cast<double>(low) && at <= static_cast<double>(high);
-  };
-  if (within(fx, 0, 1) && within(fy, 0, 1) &&
-      (!within(x, found->seen_low.x, found->seen_high.x) || !within(y, found->seen_low.y, found->seen_high.y)))
-    return Error{"", "'" + address + "' is scrolled out of sight; turn the wheel over its panel first"};
+  if (fx < 0 || fx > 1 || fy < 0 || fy > 1 || need == Need::kThere) return std::pair{x, y};
+  const auto px = static_cast<float>(x), py = static_cast<float>(y);
+  // A panel that would have to be scrolled hides nothing.
+  const bool scrolled =
+      px < found->seen_low.x || px > found->seen_high.x || py < found->seen_low.y || py > found->seen_high.y;
+  if (need == Need::kUncovered && scrolled) return std::pair{x, y};
+  if (const std::string why = need == Need::kPress ? why_unpressable(*found, px, py) : why_unseen(*found, px, py);
+      !why.empty()) {
+    there = false;
+    return Error{"", why};
+  }
   return std::pair{x, y};
 }
 
@@ -219,7 +227,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   std::size_t i = 0;
   bool there = true;
   if (step.verb == "click" || step.verb == "press" || step.verb == "move" || step.verb == "drag") {
-    const auto from = place(address_of(step.words, i), there);
+    const auto from = place(address_of(step.words, i), there, step.verb == "move" ? Need::kUncovered : Need::kPress);
     waits = !from && rest_ < kLateFrames;
     if (waits) return Done{};
     if (!from) return wrong(from.error().what);
@@ -227,7 +235,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     if (step.verb == "drag") {
       if (i >= step.words.size() || step.words[i] != "to")
         return wrong("says no place to drag to; write `drag A to B`");
-      const auto target = place(address_of(step.words, ++i), there);
+      const auto target = place(address_of(step.words, ++i), there, Need::kThere);
       if (!target) return wrong(target.error().what);
       to = *target;
     }
@@ -235,7 +243,11 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     frames_.push_back({at(InputKind::kMove, from->first, from->second)});
     frames_.push_back({});
     if (step.verb == "move") return Done{};
-    for (int n = 0; n < (m.twice ? 2 : 1); ++n) {
+    if (m.twice) {  // as fast as a hand does it, however slow the frames are
+      const InputEvent down = at(InputKind::kPress, 0, 0, m.button, m.modifiers),
+                       up = at(InputKind::kRelease, 0, 0, m.button, m.modifiers);
+      frames_.push_back({down, up, down, up});
+    } else {
       frames_.push_back({at(InputKind::kPress, 0, 0, m.button, m.modifiers)});
       if (step.verb == "press") return Done{};
       if (step.verb == "drag") {
@@ -258,7 +270,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "wheel") {
     if (step.words.size() < 2) return wrong("says no clicks; write `wheel Viewport 3`");
     const auto clicks = number_of(step.words.back());
-    const auto from = place(step.rest.substr(0, step.rest.rfind(' ')), there);
+    const auto from = place(step.rest.substr(0, step.rest.rfind(' ')), there, Need::kUncovered);
     if (!clicks || !from) return wrong(from ? "says no clicks; write `wheel Viewport 3`" : from.error().what);
     frames_.push_back({at(InputKind::kMove, from->first, from->second)});
     frames_.push_back({at(InputKind::kWheel, 0, *clicks)});
@@ -283,7 +295,9 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
           break;
         }
       text = step.rest.substr(last + 1);
-      const auto from = place(step.rest.substr(0, last), there);
+      const auto from = place(step.rest.substr(0, last), there, Need::kPress);
+      waits = !from && rest_ < kLateFrames;
+      if (waits) return Done{};
       if (!from) return wrong(from.error().what);
       frames_.push_back({at(InputKind::kMove, from->first, from->second)});
       frames_.push_back({});
@@ -294,10 +308,12 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
       frames_.push_back({});
       key_events("Ctrl+A", false);
     }
-    for (const char c : text) {
+    for (const char* c = text.c_str(); *c != '\0';) {
+      unsigned code_point = 0;
+      c += std::max(1, ImTextCharFromUtf8(&code_point, c, nullptr));
       InputEvent event;
       event.kind = InputKind::kText;
-      event.key = static_cast<unsigned char>(c);
+      event.key = static_cast<int>(code_point);
       frames_.push_back({event});
     }
     if (step.verb == "set") key_events("Enter", false);
@@ -318,15 +334,15 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
         address.resize(last);
       }
     const auto found = find_widget(address);
-    waits = !found || !found->enabled;
-    if (waits && now.now - began_ > patience) {
-      const auto none = place(address, there);
-      return wrong(none ? "'" + address + "' stays off" : none.error().what);
-    }
+    const auto seen = place(address, there, Need::kUncovered);
+    waits = !seen || (found && !found->enabled);
+    if (waits && now.now - began_ > patience) return wrong(seen ? "'" + address + "' stays off" : seen.error().what);
     return Done{};
   }
   if (step.verb == "expect" || step.verb == "expect-no") {
-    const auto found = place(step.rest, there);
+    const auto found = place(step.rest, there, Need::kUncovered);
+    waits = (step.verb == "expect") != there && rest_ < kLateFrames;
+    if (waits) return Done{};
     if ((step.verb == "expect") != there)
       return wrong(found ? "'" + step.rest + "' is there, and should not be" : found.error().what);
     return Done{};
@@ -350,15 +366,31 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     frames_.push_back({});
     return Done{};
   }
+  if (step.verb == "apart") {
+    if (const std::string why = not_apart(); !why.empty()) return wrong(why);
+    return Done{};
+  }
+  if (step.verb == "slow") {
+    now.slow(number_of(step.rest).value_or(0.0));
+    return Done{};
+  }
+  if (step.verb == "at-once" || step.verb == "now") {
+    at_once_ = step.verb == "at-once";
+    return Done{};
+  }
   InputEvent event;
   event.kind = step.verb == "drop" ? InputKind::kDrop : InputKind::kClose;
-  event.file = step.rest;
+  std::istringstream files(step.rest);
+  for (std::string file; std::getline(files >> std::ws, file, '|');) {
+    while (file.ends_with(' ')) file.pop_back();
+    event.files.push_back(file);
+  }
   frames_.push_back({event});
   return Done{};
 }
 
 Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
-  if (!frames_.empty()) {
+  if (!frames_.empty() && !at_once_) {
     events.insert(events.end(), frames_.front().begin(), frames_.front().end());
     frames_.pop_front();
     rest_ = 0;
@@ -375,11 +407,19 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
                  "the editor did not come to rest within 60 s: " + now.under_way + " is under way"};
   }
   until_ = 0.0;
+  if (const std::string both = shared_identity(); !both.empty())
+    return Error{fmt::format("{}:{}", file_, steps_.front().line), both};
   bool waits = false;
   if (Status s = begin(steps_.front(), now, waits); !s) return s;
   if (waits) return Done{};
   began_ = -1.0;
+  const bool gathered = steps_.front().verb == "now";
   steps_.pop_front();
+  if (gathered) {
+    std::vector<InputEvent> all;
+    for (const std::vector<InputEvent>& each : frames_) all.insert(all.end(), each.begin(), each.end());
+    frames_.assign(1, std::move(all));
+  }
   return Done{};
 }
 

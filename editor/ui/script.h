@@ -1,24 +1,31 @@
 // A hand from a file: what it does is said by the names of widgets, so that a script survives a change of the layout.
 // Each step begins when the editor has come to rest after the one before: what was pressed has been answered, pictures
-// show the document as it stands.
+// show the document as it stands. What is not seen cannot be pressed: a step fails where another window covers the
+// place, where it is scrolled out of sight, off, of no size, or behind an open menu or question, and says which.
 //
 // One step a line; # begins a comment. PLACE is a widget's address (ui/widgets.h), with @X,Y a share of its width and
 // height (Viewport@0.5,0.5), or two numbers of pixels.
-//   click PLACE [right] [double] [shift] [control] [alt]     press and let go
+//   click PLACE [right] [double] [shift] [control] [alt]     press and let go; a PLACE of pixels is pressed as it is
 //   drag PLACE to PLACE [MODIFIER...] [in SECONDS]           with the left button; `right`, `middle`
 //   press PLACE / move PLACE / release                       the same in parts
 //   wheel PLACE CLICKS
 //   key Ctrl+Shift+S                                         pressed and let go
 //   type TEXT                                                the rest of the line
+//   at-once                                                  what the steps up to `now` do arrives in one frame,
+//   now                                                      as all that is done while a slow frame is drawn
+//   slow SECONDS                                             each frame takes at least so long
 //   set PLACE VALUE                                          types VALUE into a number or text field
 //   wait SECONDS
-//   await PLACE [SECONDS]                                    until a widget of that address is there and on
-//   expect PLACE / expect-no PLACE                           an error unless it is (not) there
+//   await PLACE [SECONDS]                                    until a widget of that address is there, on and uncovered
+//   expect PLACE / expect-no PLACE                           an error unless it is (not) there; covered is not there,
+//                                                            scrolled out of sight is
+//   apart                                                    an error where a widget overlaps another, is covered, or
+//                                                            cut off where nothing scrolls
 //   hear TEXT                                                until the console's text holds it
 //   say TEXT                                                 an error unless the console's text holds it
 //   screenshot FILE.png                                      into the folder of --out
 //   figures NAME                                             prints how long frames took since the last of these
-//   drop FILE
+//   drop FILE [| FILE...]
 //   close
 #pragma once
 
@@ -43,6 +50,7 @@ class Script {
     std::function<void(const std::string&)> screenshot;  // of the next frame
     std::function<bool(const std::string&)> has_said;
     std::function<void(const std::string&)> figures;
+    std::function<void(double)> slow;  // [s] each frame from now on takes at least
   };
   // Appends the events of the next frame. The error names the line.
   Status next(const Surroundings& at, std::vector<InputEvent>& events);
@@ -55,7 +63,8 @@ class Script {
     std::vector<std::string> words;
     std::string rest;
   };
-  Result<std::pair<double, double>> place(const std::string& text, bool& there) const;
+  enum class Need : std::uint8_t { kThere, kUncovered, kPress };
+  Result<std::pair<double, double>> place(const std::string& text, bool& there, Need need) const;
   Status begin(const Step& step, const Surroundings& at, bool& waits);
   void key_events(const std::string& keys, bool repeat_text);
 
@@ -64,6 +73,7 @@ class Script {
   std::deque<std::vector<InputEvent>> frames_;  // of the step under way
   double until_ = 0.0, began_ = -1.0;           // [s]
   int rest_ = 0;                                // frames since the last event
+  bool at_once_ = false;                        // steps gather in one frame
 };
 
 // "Ctrl+Shift+S" -> modifiers and key as GLFW numbers it; false: not understood.

@@ -1,8 +1,6 @@
 #include "editor/ui/theme.h"
 
-#include <array>
-#include <cmath>
-#include <filesystem>
+#include "editor/ui/fonts.h"
 
 namespace pliant::ui {
 namespace {
@@ -19,13 +17,13 @@ const Palette kDark{.window = rgb(0x17191d),
                     .field_hot = rgb(0x363d47),
                     .line = rgb(0x0f1114),
                     .text = rgb(0xe6e8eb),
-                    .dim = rgb(0xa3abb5),
-                    .faint = rgb(0x737c88),
-                    .accent = rgb(0xe8824a),
+                    .dim = rgb(0xb4bcc5),
+                    .faint = rgb(0xa6aeb8),
+                    .accent = rgb(0xec986b),
                     .accent_text = rgb(0x1a120d),
                     .good = rgb(0x74c69d),
                     .warning = rgb(0xe9c46a),
-                    .bad = rgb(0xf07167),
+                    .bad = rgb(0xf3928a),
                     .force = rgb(0xff9e57),
                     .depth = rgb(0x68beff),
                     .axis = {rgb(0xe5646b), rgb(0x7fc25c), rgb(0x5b9cf0)}};
@@ -36,67 +34,24 @@ const Palette kLight{.window = rgb(0xdfe2e6),
                      .field_hot = rgb(0xd5dae0),
                      .line = rgb(0xc6cbd2),
                      .text = rgb(0x1b1f24),
-                     .dim = rgb(0x4c5561),
-                     .faint = rgb(0x7b8592),
-                     .accent = rgb(0xc4561c),
+                     .dim = rgb(0x434b56),
+                     .faint = rgb(0x57606b),
+                     .accent = rgb(0x9b4416),
                      .accent_text = rgb(0xffffff),
-                     .good = rgb(0x1f7a4d),
-                     .warning = rgb(0x8a6100),
+                     .good = rgb(0x1b6b44),
+                     .warning = rgb(0x7c5700),
                      .bad = rgb(0xb3261e),
-                     .force = rgb(0xc4561c),
-                     .depth = rgb(0x1f6fb5),
+                     .force = rgb(0x9b4416),
+                     .depth = rgb(0x1b619d),
                      .axis = {rgb(0xc23b43), rgb(0x3e7f1e), rgb(0x2a66b8)}};
 
 const Palette* g_palette = &kDark;
-std::array<ImFont*, 4> g_fonts{};
 float g_scale = 1.0f;
-
-const char* load_fonts() {
-  ImGuiIO& io = ImGui::GetIO();
-  io.Fonts->Clear();
-  constexpr const char* kRegular[] = {"/usr/share/fonts/opentype/inter/Inter-Regular.otf",
-                                      "/usr/share/fonts/truetype/inter/Inter-Regular.ttf",
-                                      "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"};
-  constexpr const char* kStrong[] = {"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf",
-                                     "/usr/share/fonts/truetype/inter/Inter-SemiBold.ttf",
-                                     "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"};
-  // Latin, Greek for tau and zeta, punctuation, arrows, and the few signs that buttons wear.
-  static const ImWchar kRanges[] = {0x20,   0x17f,  0x370,  0x3ff,  0x2010, 0x2044, 0x2070,
-                                    0x209c, 0x2190, 0x21ff, 0x2200, 0x22ff, 0x2300, 0x23ff,
-                                    0x25a0, 0x25ff, 0x2600, 0x26ff, 0x2713, 0x2718, 0};
-  static const ImWchar kSigns[] = {0x2190, 0x21ff, 0x2300, 0x23ff, 0x25a0, 0x25ff, 0x2600, 0x26ff, 0x2713, 0x2718, 0};
-  bool missing = false;
-  const auto add = [&](const char* const(&files)[3], float size) -> ImFont* {
-    std::error_code gone;
-    for (const char* file : files) {
-      if (!std::filesystem::exists(file, gone)) continue;
-      ImFontConfig config;
-      config.OversampleH = 2;
-      config.PixelSnapH = true;
-      ImFont* const font = io.Fonts->AddFontFromFileTTF(file, std::round(size * g_scale), &config, kRanges);
-      if (!font) continue;
-      if (file != files[2] && std::filesystem::exists(files[2], gone)) {  // signs that Inter lacks
-        config.MergeMode = true;
-        io.Fonts->AddFontFromFileTTF(files[2], std::round(size * g_scale), &config, kSigns);
-      }
-      return font;
-    }
-    missing = true;
-    return io.Fonts->AddFontDefault();
-  };
-  g_fonts = {add(kRegular, 12), add(kRegular, 14), add(kStrong, 14), add(kStrong, 20)};
-  io.FontDefault = g_fonts[1];
-  return missing ? "no font was found; install fonts-inter or fonts-dejavu-core" : nullptr;
-}
 
 }  // namespace
 
 const Palette& palette() {
   return *g_palette;
-}
-
-ImFont* font(Type type) {
-  return g_fonts[static_cast<std::size_t>(type)];
 }
 
 float scale() {
@@ -131,6 +86,7 @@ const char* set_theme(Theme theme, float scale) {
   s.IndentSpacing = 14;
   s.ScrollbarSize = 12;
   s.GrabMinSize = 10;
+  s.DisabledAlpha = 0.7f;  // what is off is still read
   const auto set = [&](ImGuiCol which, const ImVec4& to) { s.Colors[which] = to; };
   const auto faded = [](ImVec4 c, float alpha) { return ImVec4(c.x, c.y, c.z, alpha); };
   set(ImGuiCol_Text, p.text);
@@ -141,16 +97,17 @@ const char* set_theme(Theme theme, float scale) {
   set(ImGuiCol_MenuBarBg, p.panel);
   set(ImGuiCol_Border, p.line);
   // Lighter or darker than what they lie on, be it a panel, a popup or a strip.
-  const float shade = theme == Theme::kDark ? 0.075f : 0.07f;
+  const float shade = theme == Theme::kDark ? 0.06f : 0.05f;
   set(ImGuiCol_FrameBg, faded(p.text, shade));
   set(ImGuiCol_FrameBgHovered, faded(p.text, 1.7f * shade));
   set(ImGuiCol_FrameBgActive, faded(p.text, 1.7f * shade));
   set(ImGuiCol_Button, faded(p.text, shade));
   set(ImGuiCol_ButtonHovered, faded(p.text, 1.8f * shade));
-  set(ImGuiCol_ButtonActive, p.accent);
-  set(ImGuiCol_Header, faded(p.accent, 0.32f));
-  set(ImGuiCol_HeaderHovered, faded(p.text, 0.08f));
-  set(ImGuiCol_HeaderActive, faded(p.accent, 0.45f));
+  set(ImGuiCol_ButtonActive, faded(p.text, 2.2f * shade));
+  const float chosen = theme == Theme::kDark ? 0.16f : 0.14f;
+  set(ImGuiCol_Header, faded(p.accent, chosen));
+  set(ImGuiCol_HeaderHovered, faded(p.text, 1.3f * shade));
+  set(ImGuiCol_HeaderActive, faded(p.accent, 1.3f * chosen));
   set(ImGuiCol_CheckMark, p.accent);
   set(ImGuiCol_SliderGrab, p.accent);
   set(ImGuiCol_SliderGrabActive, p.accent);
@@ -171,7 +128,7 @@ const char* set_theme(Theme theme, float scale) {
   set(ImGuiCol_TitleBgActive, p.panel);
   set(ImGuiCol_DragDropTarget, p.accent);
   s.ScaleAllSizes(scale);
-  return load_fonts();
+  return load_fonts(scale);
 }
 
 }  // namespace pliant::ui

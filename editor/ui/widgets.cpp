@@ -1,16 +1,20 @@
 #include "editor/ui/widgets.h"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "editor/ui/fonts.h"
 
 namespace pliant::ui {
 namespace {
 
 std::vector<std::string> g_scopes;
 std::vector<Place> g_now, g_before;
+float g_rows_end = 0.0f;  // [pixel]
 
 std::string address_of(std::string_view label) {
   std::string address;
@@ -21,10 +25,12 @@ std::string address_of(std::string_view label) {
 }  // namespace
 
 Scope::Scope(std::string name) {
+  ImGui::PushID(name.c_str());
   g_scopes.push_back(std::move(name));
 }
 Scope::~Scope() {
   g_scopes.pop_back();
+  ImGui::PopID();
 }
 
 void end_widgets() {
@@ -34,22 +40,45 @@ void end_widgets() {
   std::erase_if(g_before, [](const Place& each) { return each.low.x == each.high.x && each.low.y == each.high.y; });
 }
 
+void keep_in_front() {
+  const ImGuiContext& g = *ImGui::GetCurrentContext();
+  if (g.OpenPopupStack.Size > 0) return;
+  ImGuiWindow* const own = g.CurrentWindow->RootWindow;
+  for (int i = g.Windows.Size - 1; i >= 0; --i) {
+    ImGuiWindow* const window = g.Windows[i];
+    if (window->RootWindow == own) return;
+    if (!window->WasActive || (window->Flags & (ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_Popup))) continue;
+    ImGui::BringWindowToDisplayFront(own);
+    return;
+  }
+}
+
 void underline_item() {
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y - px(2)}, high, color(palette().accent));
 }
 
 void known_at(std::string_view label, ImVec2 low, ImVec2 high) {
-  g_now.push_back({address_of(label), low, high, low, high, true});
+  Place place{.address = address_of(label), .low = low, .high = high};
+  const ImGuiWindow& window = *ImGui::GetCurrentContext()->CurrentWindow;
+  place.window = window.ID;
+  const ImVec2 from = window.DrawList->GetClipRectMin(), to = window.DrawList->GetClipRectMax();
+  place.seen_low = {std::max(low.x, from.x), std::max(low.y, from.y)};
+  place.seen_high = {std::min(high.x, to.x), std::min(high.y, to.y)};
+  g_now.push_back(std::move(place));
 }
 
 void known_as(std::string_view label) {
-  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  known_at(label, low, high);
-  const ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 from = list.GetClipRectMin(), to = list.GetClipRectMax();
-  g_now.back().seen_low = {std::max(low.x, from.x), std::max(low.y, from.y)};
-  g_now.back().seen_high = {std::min(high.x, to.x), std::min(high.y, to.y)};
+  draws(label);
+  known_at(label, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  const ImGuiLastItemData& last = ImGui::GetCurrentContext()->LastItemData;
+  g_now.back().id = last.ID;
+  g_now.back().takes_text = (last.InFlags & ImGuiItemFlags_Inputable) != 0;
+  g_now.back().enabled = (last.InFlags & ImGuiItemFlags_Disabled) == 0;
+}
+
+void answers_through_popups() {
+  g_now.back().through_popups = true;
 }
 
 std::optional<Place> find_widget(std::string_view address) {
@@ -78,6 +107,7 @@ const std::vector<Place>& widgets() {
 void hint(const char* text) {
   if (!text || !*text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   if (ImGui::GetCurrentContext() && ImGui::GetIO().MouseDown[0]) return;
+  draws(text);
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(px(340));
   ImGui::TextUnformatted(text);
@@ -99,7 +129,7 @@ bool strong_button(const char* label, const char* hint_text, bool enabled, float
   const Palette& p = palette();
   ImGui::PushStyleColor(ImGuiCol_Button, enabled ? p.accent : p.field);
   ImGui::PushStyleColor(ImGuiCol_ButtonHovered, p.accent);
-  ImGui::PushStyleColor(ImGuiCol_Text, enabled ? p.accent_text : p.faint);
+  ImGui::PushStyleColor(ImGuiCol_Text, enabled ? p.accent_text : p.text);
   ImGui::PushFont(font(Type::kStrong));
   const bool pressed = button(label, nullptr, enabled, width);
   ImGui::PopFont();
@@ -180,6 +210,7 @@ bool checkbox(const char* label, bool& value, const char* hint_text) {
 
 bool text_field(const char* label, std::string& value, const char* placeholder, float width,
                 ImGuiInputTextFlags flags) {
+  draws(value);
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
   const bool changed = ImGui::InputTextWithHint(fmt::format("##{}", label).c_str(), placeholder, &value, flags);
   known_as(label);
@@ -198,17 +229,26 @@ bool slider(const char* label, double& value, double least, double most, const c
 bool combo(const char* label, std::string& value, const std::vector<std::string>& choices, float width) {
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
   bool changed = false;
+  draws(value);
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const float wide = ImGui::CalcItemWidth();
   const bool open = ImGui::BeginCombo(fmt::format("##{}", label).c_str(), value.c_str());
-  known_as(label);
-  if (!open) return false;
-  const Scope scope(label);
-  for (const std::string& each : choices) {
-    const bool same = each == value;
-    if (selectable(each.empty() ? "(none)" : each.c_str(), same)) {
-      changed = !same;
-      value = each;
+  if (!open) {
+    known_as(label);
+    return false;
+  }
+  known_at(label, low, {low.x + wide, low.y + ImGui::GetFrameHeight()});
+  g_now.back().window = ImGui::GetCurrentContext()->CurrentWindow->ParentWindow->ID;
+  {
+    const Scope scope(label);
+    for (const std::string& each : choices) {
+      const bool same = each == value;
+      if (selectable(each.empty() ? "(none)" : each.c_str(), same)) {
+        changed = !same;
+        value = each;
+      }
+      if (same) ImGui::SetItemDefaultFocus();
     }
-    if (same) ImGui::SetItemDefaultFocus();
   }
   ImGui::EndCombo();
   return changed;
@@ -251,6 +291,7 @@ bool section(const char* label, bool open_at_first) {
 }
 
 void label(const char* text, const char* hint_text) {
+  draws(text);
   ImGui::AlignTextToFramePadding();
   ImGui::PushStyleColor(ImGuiCol_Text, palette().dim);
   ImGui::TextUnformatted(text);
@@ -259,6 +300,7 @@ void label(const char* text, const char* hint_text) {
 }
 
 void dim(const char* text) {
+  draws(text);
   ImGui::PushStyleColor(ImGuiCol_Text, palette().dim);
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(text);
@@ -267,9 +309,20 @@ void dim(const char* text) {
 }
 
 void title(const char* text) {
+  draws(text);
   ImGui::PushFont(font(Type::kTitle));
   ImGui::TextUnformatted(text);
   ImGui::PopFont();
+}
+
+void rows_end_at(float x) {
+  g_rows_end = x;
+}
+
+void beside(float gap_points, const char* next, float more_points) {
+  const float wide = ImGui::CalcTextSize(next).x + 2 * ImGui::GetStyle().FramePadding.x + px(more_points);
+  if (g_rows_end <= 0 || ImGui::GetItemRectMax().x + px(gap_points) + wide <= g_rows_end)
+    ImGui::SameLine(0, px(gap_points));
 }
 
 void gap(float points) {

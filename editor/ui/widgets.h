@@ -23,17 +23,24 @@ struct Place {
   ImVec2 low{0, 0}, high{0, 0};            // [pixel]
   ImVec2 seen_low{0, 0}, seen_high{0, 0};  // what its panel shows of it
   bool enabled = true;
+  ImGuiID window = 0, id = 0;   // 0: drawn by hand
+  bool takes_text = false;      // a field that can be typed into
+  bool through_popups = false;  // answers though a menu is open
 };
-class Scope {  // names what is drawn while it lives
+// Names what is drawn while it lives, and gives it identities of its own: widgets of one label in two scopes are two.
+// It ends in the window that it began in.
+class Scope {
  public:
   explicit Scope(std::string name);
   ~Scope();
   Scope(const Scope&) = delete;
   Scope& operator=(const Scope&) = delete;
 };
+void keep_in_front();                                            // the window that is drawn, but for menus
 void end_widgets();                                              // of a frame
 void known_as(std::string_view label);                           // the item that was drawn last
 void known_at(std::string_view label, ImVec2 low, ImVec2 high);  // something that is drawn by hand
+void answers_through_popups();                                   // the one that was named last
 void underline_item();                                           // the same, in the accent: it is the open one
 // By its address, or by its label where only one has it.
 std::optional<Place> find_widget(std::string_view address);
@@ -70,5 +77,8 @@ void label(const char* text, const char* hint_text = nullptr);
 void dim(const char* text);  // wrapped, in the colour of what matters less
 void title(const char* text);
 void gap(float points = kSpace);
+// The next widget, labelled so, stands beside the last one, or below where there is no room up to rows_end_at().
+void beside(float gap_points, const char* next, float more_points = 0);
+void rows_end_at(float x);  // [pixel]; 0: nowhere
 
 }  // namespace pliant::ui

@@ -27,10 +27,10 @@ bool begin_over(const char* name, ImVec2 at, ImVec2 pivot, bool plain = false) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui::px(6));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, plain ? ImVec2(0, 0) : ImVec2(ui::px(6), ui::px(5)));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
-  const bool open =
-      ImGui::Begin(name, nullptr,
-                   ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  const bool open = ImGui::Begin(name, nullptr,
+                                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNavFocus);
   ImGui::PopStyleVar(3);
   ImGui::PopStyleColor();
   return open;
@@ -106,7 +106,7 @@ void draw_names(const Editor& editor, const ViewportInput& in, ImDrawList& list)
                      in.corner.y + static_cast<float>(at->y) - 0.5f * size.y);
     const bool selected = editor.is_selected(state.nodes[i]->id);
     list.AddRectFilled({low.x - ui::px(4), low.y - ui::px(1)}, {low.x + size.x + ui::px(4), low.y + size.y + ui::px(1)},
-                       ui::color(p.raised, 0.8f), ui::px(3));
+                       ui::color(p.raised, 0.95f), ui::px(3));
     text_at(list, low, ui::color(selected ? p.accent : p.text), text);
   }
 }
@@ -121,7 +121,7 @@ void ViewBar::draw_over(const Editor& editor, const ViewportInput& in, ImDrawLis
     const ImVec2 at(in.corner.x + ui::px(ui::kPad), in.corner.y + static_cast<float>(in.height) - ui::px(26));
     const ImVec2 size = size_of(text), around(ui::px(ui::kGap), ui::px(2));
     list.AddRectFilled({at.x - around.x, at.y - around.y}, {at.x + size.x + around.x, at.y + size.y + around.y},
-                       ui::color(p.panel, 0.8f), ui::px(4));  // legible over any picture
+                       ui::color(p.panel, 0.95f), ui::px(4));  // legible over any picture
     text_at(list, at, ui::color(p.dim), text);
   }
   if (editor.view.channel && editor.view.shading == Shading::kSolid && editor.tool != kPaintTool)
@@ -134,7 +134,12 @@ void ViewBar::draw(Editor& editor, ViewTool* tool, ImVec2 low, ImVec2 high) {
   if (tool && tool->has_options() && tool->usable(editor)) {
     if (begin_over("tool options", {low.x + pad, top}, {0, 0})) {
       const ui::Scope scope(tool->name());
+      // Beside it stand the overlays and the cross.
+      ui::rows_end_at(high.x - 2 * pad -
+                      std::max(ImGui::CalcTextSize("Overlays  \u25be").x + ui::px(2 * ui::kSpace + 12),
+                               2 * ui::px(kCross + kEnd + 2)));
       tool->options(editor);
+      ui::rows_end_at(0);
     }
     top += ImGui::GetWindowHeight() + ui::px(ui::kGap);
     ImGui::End();

@@ -179,6 +179,27 @@ void say_unmoved(bool windowed, Prepared& run) {
   }
 }
 
+// One mouse moves one probe, the one that --probe names or else the first: two would stand in one point.
+void keep_one_mouse(const std::vector<ProbeSource>& sources, Prepared& run) {
+  std::vector<std::pair<std::string, HapticDevice*>> moved;
+  for (const Entity hand : hands(run.world)) {
+    if (!find_device(run.world, hand)) continue;
+    HapticDevice& device = run.world.registry.get<HapticDevice>(device_of(run.world, hand));
+    const Name* name = run.world.registry.find<Name>(hand);
+    if (device.driver == DriverKind::kMouse) moved.emplace_back(name ? name->value : std::string(), &device);
+  }
+  std::stable_partition(moved.begin(), moved.end(), [&](const auto& each) {
+    return std::any_of(sources.begin(), sources.end(), [&](const ProbeSource& source) {
+      return source.driver == DriverKind::kMouse && source.name == each.first;
+    });
+  });
+  for (std::size_t i = 1; i < moved.size(); ++i) {
+    moved[i].second->driver = DriverKind::kExternal;
+    say(run, fmt::format("there is one mouse, and it moves `{}`; nothing moves `{}`; give it --probe {}=orbit",
+                         moved[0].first, moved[i].first, moved[i].first));
+  }
+}
+
 // Once, however many surfaces there are: which of them settle so slowly that they have another damping than their own.
 void say_creeping(Prepared& run) {
   std::size_t more = 0;
@@ -345,6 +366,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   run.hands = std::move(held).value();
   for (const std::string& sentence : run.hands.notes()) say(run, sentence);
   say_unmoved(windowed, run);
+  if (windowed) keep_one_mouse(sources, run);
   if (const auto unfelt = unfelt_bodies(run.world)) say(run, *unfelt);
   say_creeping(run);
   say_locking(run);

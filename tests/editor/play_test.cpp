@@ -127,6 +127,38 @@ TEST_F(PlayTest, LockstepHasTheHashThatAHeadlessRunOfTheSavedLevelHas) {
   }
 }
 
+TEST_F(PlayTest, ScriptsStartOverAsInTheWindowOfARun) {
+  Deformable law;
+  law.reach = 0.02;
+  PlayOptions options;
+  options.repeats = true;
+  options.sources = {{"tip", script(folder, "0,0,0.01,0\n0.5,0,-0.004,0\n")}};
+  const auto run = run_of(pressed_sheet(law), folder / "level.glb", options);
+  EXPECT_NEAR(after(*run, 500).effectors[0].reading.position.y, -0.004, 1e-4);
+  // It does not end as it begins: it is followed back.
+  EXPECT_NEAR(after(*run, 500).effectors[0].reading.position.y, 0.01, 1e-4);
+  EXPECT_NEAR(after(*run, 500).effectors[0].reading.position.y, -0.004, 1e-4);
+  EXPECT_TRUE(run->status().effectors[0].reading.touching);
+}
+
+TEST_F(PlayTest, OfTwoProbesOfTheMouseItMovesTheFirstAndTheOtherIsSaid) {
+  State state = pressed_sheet({});
+  Level level = level_of(state);
+  level.nodes[1].device->driver = DriverKind::kMouse;
+  LevelNode second = level.nodes[1];
+  second.name = second.probe_device = "second";
+  second.local.translation = {0.03f, 0.04f, 0};
+  level.nodes.push_back(second);
+  NodeId next = 1;
+  const auto run = run_of(state_of(std::move(level), next), folder / "level.glb");
+  const PlayStatus status = after(*run, 200);
+  EXPECT_THAT(status.notes, ::testing::Contains(::testing::HasSubstr("the mouse moves `tip`; nothing moves `second`")));
+  ASSERT_EQ(status.effectors.size(), 2u);
+  EXPECT_TRUE(status.effectors[0].reading.ready);
+  EXPECT_FALSE(status.effectors[1].reading.ready);
+  EXPECT_GT(length(status.effectors[0].reading.position - status.effectors[1].reading.position), 1e-3);
+}
+
 TEST_F(PlayTest, StiffnessThatIsTurnedWhileAProbePressesIsFollowedSmoothly) {
   Deformable law;
   law.stiffness = 300;
