@@ -234,7 +234,7 @@ Status send(Session::Parts& p, SessionChange& change, const Note& note) {
   const bool soft = p.world.soft && !change.soft.empty();
   if (!p.edits->has_room() || (soft && !p.world.soft->parameter_edits.has_room()))
     return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
-  if (change.touch.empty()) change.touch.push_back({change.entity, EventEdit{}, 0, 0});
+  if (change.touch.empty()) change.touch.push_back({change.entity, EventEdit{}, 0});
   change.touch.front().number = note();
   for (const Edit& edit : change.touch) p.edits->push(edit);
   if (soft)

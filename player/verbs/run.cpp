@@ -12,7 +12,6 @@
 
 #include "content/device_answers.h"
 #include "content/files/file_io.h"
-#include "devices/guard/last_resort.h"
 #include "editor/app/settings.h"
 #include "editor/ui/device_list.h"
 #include "engine/body_journal.h"
@@ -20,6 +19,7 @@
 #include "engine/journal.h"
 #include "engine/sources.h"
 #include "engine/touch_clock.h"
+#include "pliant/process.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
 #include "player/run/duration.h"
@@ -299,7 +299,7 @@ Outcome open_devices(RunOptions& options, bool windowed, Prepared& run, const In
   const auto stop = [&interrupt] { return interrupt.requested(); };
   const Status opened = devices.open(run.world, run.hands, windowed, stop, notes);
   if (devices.gave_up()) {  // a thread that nobody can end still opens it
-    make_all_safe();
+    make_devices_safe();
     ::_exit(fail(kFailed, opened.error()));
   }
   for (const std::string& sentence : notes) say(run, sentence);
