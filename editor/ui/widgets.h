@@ -59,11 +59,11 @@ bool checkbox(const char* label, bool& value, const char* hint_text = nullptr);
 bool text_field(const char* label, std::string& value, const char* placeholder = "", float width = 0,
                 ImGuiInputTextFlags flags = 0);
 // Dragged sideways, or typed with a double click: with a unit, as a sum (editor/ui/quantity.h); what cannot be read, or
-// is out of range, changes nothing. `unit` is shown; behind # it is only understood ("#m"). Steps follow the size of the
-// value; `logarithmic` for stiffnesses and the like. True while it changes; `finished` when a gesture has ended.
+// is out of range, changes nothing. `unit` is shown; behind # it is only understood ("#m"). Steps follow the size of
+// the value; `logarithmic` for stiffnesses and the like. True while it changes; `finished` when a gesture has ended.
 bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic = false,
             float width = 0, bool* finished = nullptr);
-std::optional<std::string> take_refused();         // why the text of a number was refused, once
+std::optional<std::string> take_refused();          // why the text of a number was refused, once
 bool color_field(const char* label, float rgb[3]);  // linear, a swatch and three numbers
 // Between two ends, dragged along its whole width.
 bool slider(const char* label, double& value, double least, double most, const char* hint_text = nullptr,
