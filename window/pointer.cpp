@@ -18,9 +18,9 @@ constexpr double kRejoinTime = 0.08;  // [s] of the cursor to the hand
 constexpr double kFromBehind = 0.5;   // [1] cosine between sight and normal beyond which a sheet's back is looked at
 // [1] Of a body's diagonal: what a surface's reach is to it. A body gives way as a whole, a surface's dent is local.
 constexpr double kBodyReach = 0.12;
-constexpr double kLeastAlong = 0.05;  // [1] cosine: rays that graze the plane more are not followed
-constexpr double kPushShare = 0.01;   // [1] of the scene's size: one click of the wheel, to or from the eye
-constexpr double kFirstAway = 0.55;   // [1] of the scene's size, from its middle: outside of everything
+constexpr double kLeastFacing = 0.05;  // [1] cosine: rays that graze the plane more are not followed
+constexpr double kPushShare = 0.01;    // [1] of the scene's size: one click of the wheel, to or from the eye
+constexpr double kFirstAway = 0.55;    // [1] of the scene's size, from its middle: outside of everything
 
 }  // namespace
 
@@ -104,7 +104,7 @@ void Pointer::follow(const ViewRay& ray, const Viewpoint& view) {
   if (!grip_) return;
   const dvec3 forward = normalize(view.target - view.eye);
   const double along = dot(ray.along, forward);
-  if (along >= kLeastAlong) grip_ = ray.from + dot(*grip_ - ray.from, forward) / along * ray.along;
+  if (along >= kLeastFacing) grip_ = ray.from + dot(*grip_ - ray.from, forward) / along * ray.along;
 }
 
 void Pointer::push(double clicks, const Viewpoint& view) {
