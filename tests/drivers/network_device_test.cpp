@@ -288,8 +288,10 @@ TEST(NetworkDevice, NobodyThereIsOneSentence) {
   NetworkDevice driver = bench.driver();
   const auto opened = driver.open("10.0.0.7:5000");
   ASSERT_FALSE(opened);
-  EXPECT_EQ(opened.error().message(),
-            "network device `10.0.0.7:5000`: does not answer; start the device, or give its own PORT or ADDRESS:PORT");
+  EXPECT_EQ(
+      opened.error().message(),
+      "network device `10.0.0.7:5000`: does not answer; start the device, give its own PORT or ADDRESS:PORT, and its "
+      "key if it has one (,key=FILE)");
   DeviceSample sample;
   EXPECT_FALSE(driver.read(sample));
   driver.write({});

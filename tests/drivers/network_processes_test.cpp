@@ -21,6 +21,7 @@ namespace {
 struct OtherProcess {
   pid_t id = -1;
   int port = 0;
+  int said = -1;  // what it prints; a pipe that nobody holds would end it
   explicit OtherProcess(const std::string& wanted_port, const std::string& key = {}) {
     int line[2];
     if (pipe2(line, O_CLOEXEC) != 0) return;
@@ -34,7 +35,7 @@ struct OtherProcess {
     ::close(line[1]);
     char text[64] = {};
     const ssize_t got = ::read(line[0], text, sizeof text - 1);
-    ::close(line[0]);
+    said = line[0];
     if (got > 0) std::sscanf(text, "listening on %d", &port);
   }
   void end() {
@@ -42,6 +43,7 @@ struct OtherProcess {
     kill(id, SIGKILL);
     waitpid(id, nullptr, 0);
     id = -1;
+    ::close(said);
   }
   ~OtherProcess() { end(); }
 };
@@ -108,6 +110,19 @@ struct KeyFile {
   ~KeyFile() { std::remove(path.c_str()); }
 };
 
+// An engine that goes on with its device while this thread waits for something else.
+struct Kept {
+  explicit Kept(NetworkDevice& driver)
+      : thread([&driver](const std::stop_token& stop) {
+          for (DeviceSample sample; !stop.stop_requested(); usleep(1000)) {
+            driver.read(sample);
+            driver.write({});
+          }
+        }) {}
+  void end() const { thread = {}; }
+  mutable std::jthread thread;
+};
+
 TEST(NetworkProcesses, AKeyLetsInWhoHasItAndNobodyElse) {
   const KeyFile key("key", "a secret of some length"), other("other", "another one, as long as it");
   OtherProcess device("0", key.path);
@@ -127,7 +142,9 @@ TEST(NetworkProcesses, AKeyLetsInWhoHasItAndNobodyElse) {
   EXPECT_EQ(right.dropped().damaged() + right.dropped().key, 0u);
   // A second one hears who has it, and with the key only.
   NetworkDevice second;
+  const Kept kept(right);
   const auto busy = second.open(port + ",key=" + key.path);
+  kept.end();
   ASSERT_FALSE(busy);
   EXPECT_NE(busy.error().message().find("is in use by the engine at 127.0.0.1:"), std::string::npos)
       << busy.error().message();
@@ -159,6 +176,7 @@ TEST(NetworkProcesses, ASecondEngineHearsWhoHasTheDevice) {
   ASSERT_GT(device.port, 0);
   NetworkDevice first, second;
   ASSERT_TRUE(first.open(std::to_string(device.port)));
+  const Kept kept(first);
   const auto busy = second.open(std::to_string(device.port));
   ASSERT_FALSE(busy);
   EXPECT_NE(busy.error().message().find("is in use by the engine at 127.0.0.1:"), std::string::npos)
