@@ -17,15 +17,15 @@ Scene table() {
   return scene;
 }
 
-struct Felt {
+struct StateFelt {
   std::vector<dvec3> force;
   std::vector<vec3> vertices;  // of all objects, in every tick
-  bool operator==(const Felt&) const = default;
+  bool operator==(const StateFelt&) const = default;
 };
 
 // From tick `first` on: into the tissue, along it and out, by steps that no other run of it repeats.
-Felt play(Session& session, int first, int ticks, double height) {
-  Felt out;
+StateFelt play(Session& session, int first, int ticks, double height) {
+  StateFelt out;
   std::vector<vec3> some;
   for (int i = first; i < first + ticks; ++i) {
     EXPECT_TRUE(session.move("finger", {1e-3 * std::sin(0.05 * i), height - 0.006 * std::sin(0.02 * i), 0}));
@@ -48,7 +48,7 @@ TEST(SessionState, GoesOnWithTheSameBitsOnASurface) {
   ASSERT_TRUE(session.set("tissue", "damping_ratio", 0.3));
   const auto state = session.save_state();
   ASSERT_TRUE(state) << state.error().message();
-  const Felt once = play(session, 170, 200, 0.002);
+  const StateFelt once = play(session, 170, 200, 0.002);
   double most = 0.0;
   for (const dvec3& force : once.force) most = std::max(most, length(force));
   EXPECT_GT(most, 0.2) << "something is felt";
@@ -65,7 +65,7 @@ TEST(SessionState, GoesOnWithTheSameBitsAmongBodiesAndInAnotherSession) {
   play(session, 0, 123, 0.046);
   const auto state = session.save_state();
   ASSERT_TRUE(state) << state.error().message();
-  const Felt once = play(session, 123, 100, 0.046);
+  const StateFelt once = play(session, 123, 100, 0.046);
   ASSERT_TRUE(session.restore_state(*state));
   EXPECT_TRUE(play(session, 123, 100, 0.046) == once);
   Session other = opened(table());
