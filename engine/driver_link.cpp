@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "devices/believable.h"
+#include "devices/servo/device_identity.h"
 #include "systems/device/device_model.h"
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
@@ -44,7 +45,7 @@ Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id
   Servo* servo = nullptr;
   try {
     // Before it is opened: a line that two programs ask at once answers neither.
-    if (!claimed.empty())
+    if (!claimed.empty() && device_identity(claimed) != "simulated")
       if (Status taken = claim.take(claimed); !taken) return taken;
     if (Status status = driver->open(id); !status) return status;
     opened = true;

@@ -15,7 +15,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kMostValue = 1e9;  // [N], [m]...: what is larger is a mistake of units
+constexpr std::size_t kMostStanding = 512;  // a new world takes them all before its first tick
+constexpr double kMostValue = 1e9;          // [N], [m]...: what is larger is a mistake of units
 
 bool sound(const RecordedEvent& event) {
   return std::all_of(event.values.begin(), event.values.end(), [](double v) { return std::abs(v) <= kMostValue; });
@@ -88,6 +89,11 @@ Status Session::Parts::send(RecordedEvent event, const char* what) {
   const std::string where = std::string(what) + " `" + event.name + "`";
   if (!sound(event)) return Error{where, "a value is no number, or beyond 1e9; use SI units"};
   if (!edits->has_room()) return Error{where, "too many changes wait for a tick; make fewer at a time"};
+  const bool once =
+      event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace;
+  if (!once && standing.size() >= kMostStanding &&
+      std::none_of(standing.begin(), standing.end(), [&](const RecordedEvent& it) { return replaces(event, it); }))
+    return Error{where, "512 forces and objects taken out hold already; end one first"};
   if (event.kind == EventKind::kPlace || event.kind == EventKind::kPresent) return send_to_object(event, what);
   return event.kind == EventKind::kHandForce ? send_to_hand(event, what) : send_to_body(event, what);
 }
@@ -150,7 +156,8 @@ Status Session::Parts::send_to_object(const RecordedEvent& event, const char* wh
   edit.kind = event.kind;
   edit.value = event.values[0];
   edit.force = event.first();
-  if (elsewhere) edit.rotation = glm::normalize(dquat(event.values[3], event.values[4], event.values[5], event.values[6]));
+  if (elsewhere)
+    edit.rotation = glm::normalize(dquat(event.values[3], event.values[4], event.values[5], event.values[6]));
   BodyEdit body;
   body.kind = elsewhere ? BodyEditKind::kPlace : present ? BodyEditKind::kPresent : BodyEditKind::kAbsent;
   body.body = *entity;

@@ -25,7 +25,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostEdits = 256;  // that wait for a tick
+constexpr std::size_t kMostEdits = 1024;  // that wait for a tick
 
 std::string name_of(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);

@@ -255,7 +255,7 @@ struct Session::Parts {
   void go_on(const SavedState& state, std::vector<EffectorSource>& sources, std::vector<DriverLink>& links,
              std::vector<HapticDevice>& devices_before);
   void replay_events(std::uint64_t tick);  // those that take effect before it
-  Tick replayed_tick();                                      // its poses are the devices' then
+  Tick replayed_tick();                    // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
   Status start_drivers();  // of real time; those that did are halted where one does not
   void halt_drivers() noexcept;

@@ -118,7 +118,13 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
   if (!writer) return writer.error();
   p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
   // What holds from before. Parameters and drivers are in the header.
-  for (RecordedEvent event : p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing) {
+  std::vector<RecordedEvent> holds = p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing;
+  if (p.ticks > 0)
+    for (const RecordedEvent& event : p.history.events)  // sent, and not yet taken
+      if (event.tick == p.ticks &&
+          (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace))
+        holds.push_back(event);
+  for (RecordedEvent event : holds) {
     if (event.kind == EventKind::kSet || event.kind == EventKind::kNewSource) continue;
     event.tick = p.ticks;
     p.recorder->write_now(event);

@@ -160,7 +160,7 @@ Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, c
   const Probe& before = *p.bodies.at(name).probe;
   SessionChange change;
   change.entity = p.find_effector(name)->entity;
-  if (now.coupling != before.coupling) {
+  if (now.coupling != before.coupling || now.radius == before.radius) {
     HapticDevice device;
     static_cast<DeviceParameters&>(device) = p.devices.at(name);
     const HandleParameters handle = probe_handle(now, device);
@@ -226,6 +226,12 @@ void note_settings(Session::Parts& p, const std::string& name, const Extension& 
                                                                     ? fmt::format("{}", value.get<double>())
                                                                     : value.dump();
   }
+  if (!now.deformable) return;
+  const std::string follows = name + ".deformable.stiffness";  // from `young`, where there is one
+  if (now.deformable->young > 0.0)
+    p.settings.erase(follows);
+  else if (before.deformable->young > 0.0 && key.name == "young")
+    p.settings[follows] = fmt::format("{}", now.deformable->stiffness);
 }
 
 // `note`: of what is recorded, once there is room for it.
@@ -245,9 +251,13 @@ Status send(Session::Parts& p, SessionChange& change, const Note& note) {
 // Value of `key`, for the recording: KEY=VALUE, the extension with it.
 std::uint32_t note_set(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
                        const Json& value) {
-  return p.note_event({0, EventKind::kSet, name,
-                       extension.name + "." + key.name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()),
-                       0, {}});
+  return p.note_event(
+      {0,
+       EventKind::kSet,
+       name,
+       extension.name + "." + key.name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()),
+       0,
+       {}});
 }
 
 // Not `sent`: a world is made next, and begins with it.

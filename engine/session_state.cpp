@@ -184,7 +184,7 @@ void Session::Parts::go_on(const SavedState& state, std::vector<EffectorSource>&
     }
     const bool goes_on = same_kind && effector.source != EffectorSource::kDriver &&
                          (effector.source != EffectorSource::kPath || hash_of(effector.path) == was.path);
-    if (!goes_on && ticks > 0) begin(effector);
+    if (!goes_on && (ticks > 0 || effector.source == EffectorSource::kDriver)) begin(effector);
   }
 }
 
@@ -215,6 +215,7 @@ Status Session::add(const Scene& more) {
   const char* const kAdd = "Session::add";
   if (p.clock) return Error{kAdd, "the clocks are running; open the session with it, and take it out before start()"};
   if (p.recorder) return Error{kAdd, "a recording is under way; call Session::end_recording() first"};
+  if (p.replayed) return Error{kAdd, "a recording is replayed; call Session::restart() first"};
   if (p.ended || p.history.lacking)
     return Error{kAdd, std::string("nothing can be added: ") + (p.history.lacking ? p.history.lacking : p.ended)};
   std::vector<std::string> names;
@@ -244,8 +245,11 @@ Status Session::Parts::go_back(SavedState state) {
     std::vector<std::string> begun;
     for (const auto& [key, value] : state.history.begun) begun.push_back(key + "=" + value);
     const std::vector<Error> refused = apply_settings(begun, Setting::kKeep);
-    if (!refused.empty())
-      return Error{kRestore, "a setting of the state is none of this scene's: " + refused.front().message() + "; save it again"};
+    if (!refused.empty()) {
+      end("a state could not be restored");
+      return Error{kRestore,
+                   "a setting of the state is none of this scene's: " + refused.front().message() + "; save it again"};
+    }
     if (Status s = prepare(); !s) return s;
   }
   std::vector<EffectorSource> sources;

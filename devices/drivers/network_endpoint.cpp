@@ -113,6 +113,9 @@ void NetworkEndpoint::accept(const NetworkFrame& frame, double now) {
       has_force_ = false;
     } else if (comes_after(frame.sequence, heard_sequence_)) {
       heard_sequence_ = frame.sequence;
+    } else {  // kept by somebody, or sent twice on the way
+      ++counts_.late;
+      return;
     }
     heard_at_ = now;
     return describe_to(frame, now);

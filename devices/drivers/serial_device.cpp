@@ -126,6 +126,11 @@ bool SerialDevice::talk() {
 void SerialDevice::run() {
   while (!talk()) {
     port_.reset();
+    // A lost line is not kept open: a device that is plugged in again would get another name.
+    if (const int none = safe_file_ >= 0 ? ::open("/dev/null", O_WRONLY | O_CLOEXEC) : -1; none >= 0) {
+      (void)::dup3(none, safe_file_, O_CLOEXEC);
+      ::close(none);
+    }
     while (!port_ && !thread_.stopping()) {
       DeviceThread::sleep(kSerialRetry);
       auto port = opener_(id_);

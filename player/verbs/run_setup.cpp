@@ -301,12 +301,14 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
     auto recording = read_recording(options.replay);
     if (!recording) return failed(recording.error());
     run.replay = std::move(recording).value();
-    const auto changes = std::count_if(run.replay->events.begin(), run.replay->events.end(),
-                                       [](const RecordedEvent& event) { return event.kind != EventKind::kNewSource; });
+    const auto changes =
+        std::count_if(run.replay->events.begin(), run.replay->events.end(),
+                      [](const RecordedEvent& event) { return event.kind != EventKind::kNewSource || event.tick > 0; });
     if (changes > 0)
-      say(run, fmt::format("{} holds {} changes that a program made in its run (parameters, forces, pushes, places), "
-                           "which are not repeated here: forces will differ; Session::replay repeats them",
-                           options.replay, changes));
+      say(run, fmt::format(
+                   "{} holds {} changes that a program made in its run (parameters, forces, pushes, places, sources), "
+                   "which are not repeated here: forces will differ; Session::replay repeats them",
+                   options.replay, changes));
   }
   const auto file = find_level(options.level);
   if (!file) return failed(file.error());

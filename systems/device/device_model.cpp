@@ -126,6 +126,8 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
     *slope *= pushing->share;
   slopes.wanted_force *= pushing->share;
   slopes.wanted_torque *= pushing->share;
+  slopes.wanted_force += pushing->own;
+  if (turning) slopes.wanted_torque += turning->own;
 
   const Passed push = passed(slopes.wanted_force, device.force_sent, *pushing, limits.force);
   const Passed turn =

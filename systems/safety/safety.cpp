@@ -92,6 +92,8 @@ double missed_before(SafetyState& state, double now, double dt) {
 void ease_in(SafetyState& state, const HapticDevice& device, dvec3 force, dvec3 weight, dvec3 dx, double missed) {
   const bool let_go = missed >= kUnknownWay || (missed >= kForceLasts && device.driver == DriverKind::kExternal);
   const double size = length(force), has = let_go ? 0.0 : length(state.force);
+  // A device that let go has nothing to fall from.
+  if (let_go && device.driver == DriverKind::kExternal) state.force = state.weight = dvec3(0);
   if (!let_go && !(size > has)) return;
   state.eased = size > has ? has / size : 0.0;
   state.easing = (1.0 - state.eased) / std::clamp(missed, kLeastEase, kMostEase);

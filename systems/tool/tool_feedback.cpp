@@ -219,7 +219,8 @@ void feel_pull(const World& world, ToolTouchState& tool, const HandleModel& mode
   const double since = std::clamp(tick.time - pull.time, 0.0, kStaleSteps * model.soft_step);
   const dvec3 stretch = pull.point + since * pull.velocity - tool.sensed.pose.position;
   const double most = world.registry.get<HapticDevice>(tool.device).max_force;
-  tool.device_wrench = join(pull_force(stretch, pull.share * settings.translation[0], most), dvec3(0));
+  const dvec3 force = pull_force(stretch, pull.share * settings.translation[0], most);
+  tool.device_wrench = join(trust(model, tick.time) * force, dvec3(0));
 }
 
 void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
@@ -277,8 +278,7 @@ void catch_up(ToolTouchState& tool, const HandleModel& model, const Handle6& set
     done += count;
     for (int k = 0; k < count; ++k) tool.path.push({part.time + (k + 1) * tick.dt, tool.handle.velocity});
   }
-  tool.sensed = on_the_way(before, now, elapsed, elapsed);
-  tool.sensed.pose = now.pose;
+  tool.sensed = now;  // at its mean velocity: what is extrapolated from one late tick to the next swings for ever
 }
 
 void feel(World& world, ToolTouchState& tool, Tick tick) {

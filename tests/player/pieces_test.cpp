@@ -134,7 +134,8 @@ TEST(Recording, OlderFormatsAreReadAndTheirSceneIsNotKnown) {
     EXPECT_EQ(read->header.settings.size(), version == 1 ? 0u : 1u) << version;
     EXPECT_EQ(read->poses.at(0).position.z, 0.3) << version;
   }
-  for (const std::uint32_t version : {0u, 4u, 5u}) EXPECT_FALSE(parse_recording("r", old_recording(version))) << version;
+  for (const std::uint32_t version : {0u, 4u, 5u})
+    EXPECT_FALSE(parse_recording("r", old_recording(version))) << version;
 }
 
 TEST(Recording, OneWithoutATickIsNotWrittenAndReplacesNothing) {

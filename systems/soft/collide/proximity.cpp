@@ -283,7 +283,8 @@ struct Proximity::Parts {
     const auto takes_part = [&](std::uint32_t i) { return bodies[i]->solvable() && !yields[i]; };
     for (std::uint32_t i = 0; i < count; ++i) {
       if (!takes_part(i)) continue;
-      if (bodies[i]->self_collides && !bodies[i]->taken_out && may_miss(i, i)) collision_meshes[i].fit_swept(), find_between(bodies, i, i);
+      if (bodies[i]->self_collides && !bodies[i]->taken_out && may_miss(i, i))
+        collision_meshes[i].fit_swept(), find_between(bodies, i, i);
       for (std::uint32_t k = i + 1; k < count; ++k) {
         if (!bodies[i]->meets(*bodies[k]) || !takes_part(k) || !may_miss(i, k)) continue;
         collision_meshes[i].fit_swept(), collision_meshes[k].fit_swept();
