@@ -15,7 +15,7 @@
 
 namespace pliant {
 
-inline constexpr double kForceHolds = kForceLasts;  // [s] that devices and their drivers' threads go on with a force
+inline constexpr double kForceHolds = 0.020;  // [s] that devices and their drivers' threads go on with a force
 
 class DriverLink {
  public:

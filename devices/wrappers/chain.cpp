@@ -21,7 +21,7 @@ namespace pliant {
 namespace {
 
 constexpr double kLargestGain = 1e3;
-constexpr std::size_t kMostWrappers = 8;
+constexpr std::size_t kMostWrappers = 12;
 
 // The words of one wrapper. Whoever asks for a value says what it must be; the first that is wrong is the error.
 struct Words {

@@ -89,14 +89,11 @@ double missed_before(SafetyState& state, double now, double dt) {
 
 // After `missed` [s]: `force` has risen meanwhile, and comes in from what the device still has. The way that the hand
 // has gone is counted as if the force had been there, so that it owes nothing for the rise.
-void ease_in(SafetyState& state, const HapticDevice& device, dvec3 force, dvec3 weight, dvec3 dx, double missed) {
-  const bool let_go = missed >= kUnknownWay || (missed >= kForceLasts && device.driver == DriverKind::kExternal);
-  const double size = length(force), has = let_go ? 0.0 : length(state.force);
-  // A device that let go has nothing to fall from.
-  if (let_go && device.driver == DriverKind::kExternal) state.force = state.weight = dvec3(0);
-  if (!let_go && !(size > has)) return;
-  state.eased = size > has ? has / size : 0.0;
-  state.easing = (1.0 - state.eased) / std::clamp(missed, kLeastEase, kMostEase);
+void ease_in(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx, double missed) {
+  const double size = length(force), has = length(state.force);
+  if (missed < kEasedFrom || !(size > has)) return;
+  state.eased = has / size;
+  state.easing = (1.0 - state.eased) / kEase;
   state.work += std::min(0.0, 0.5 * (1.0 - state.eased) * dot(force - weight, dx));
 }
 
@@ -197,7 +194,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     } else {
       count(state.tally, SafetyLimit::kGated, length(felt), length(felt));
     }
-    if (missed > 0.0) ease_in(state, device, force, weight, dx, missed);
+    if (missed > 0.0) ease_in(state, force, weight, dx, missed);
     if (state.eased < 1.0) {
       count(state.tally, SafetyLimit::kSlewed, (1.0 - state.eased) * length(force), length(force));
       force *= state.eased;

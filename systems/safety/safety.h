@@ -21,10 +21,8 @@
 // The slew limit is for what comes in. What of the last force is no longer wanted falls at kLeastFall at least: a limit
 // set low may not hold a hand, nor keep it from a lowered max_force.
 //
-// A tick that comes late has not had the time of those that it missed: its force may rise by one tick's slew, and what
-// rose meanwhile comes in over as long as was missed, from the force that the device still has. A hand's device that
-// was left without a force for kForceLasts has let go: there it comes in from zero. So does any after kUnknownWay, when
-// nobody knows how the device has come to where it is, nor how fast it is.
+// A tick that comes late has not had the time of those that it missed: its force may rise by one tick's slew, and after
+// kEasedFrom what rose meanwhile comes in over kEase, from the force that left last.
 //
 // A surface that a prescribed motion carries may push a hand, as an engine would: passivity and the limit on stiffness
 // hold for the hand's motion against that surface. Clamp and slew bound what the engine can do.
@@ -54,10 +52,8 @@ inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same of what turns
 
 inline constexpr double kLeastFall = 1000.0;  // [N/s] force that is no longer wanted falls as fast as this at least
 
-inline constexpr double kForceLasts = 0.020;  // [s] without a tick, then a hand's device has let go of its force
-inline constexpr double kUnknownWay = 0.045;  // [s] without a tick, then every force comes in from zero
-inline constexpr double kLeastEase = 0.010;   // [s] in which what rose while ticks were missed comes in at least,
-inline constexpr double kMostEase = 0.200;    // [s] and at most
+inline constexpr double kEasedFrom = 0.0085;  // [s] without a tick, then what rose meanwhile comes in slowly,
+inline constexpr double kEase = 0.015;        // [s] in this time
 
 inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
 

@@ -419,8 +419,8 @@ TEST_F(PlayTest, EditsReachTheRunAndSurviveItsEndAndTheRestIsSaidOnce) {
     });
   };
   EXPECT_EQ(said(), 0);
-  for (const double reach : {0.011, 0.012, 0.013})
-    EXPECT_TRUE(editor.apply("Wider", with_value(editor.state(), std::span(&sheet, 1), "deformable", "reach", reach)));
+  for (const double angle : {20.0, 30.0, 40.0})
+    EXPECT_TRUE(editor.apply("Wider", with_value(editor.state(), std::span(&sheet, 1), "deformable", "crease_angle", angle)));
   EXPECT_EQ(said(), 1);
   play.stop();
   EXPECT_FALSE(editor.playing);

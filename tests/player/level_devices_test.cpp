@@ -49,7 +49,7 @@ TEST_F(LevelDevices, FilesAreNeitherWrittenNorReadForALevel) {
     const Said refused = said(run());
     EXPECT_EQ(refused.status, 1) << id << '\n' << refused.err;
     EXPECT_NE(refused.err.find("asks for more than it may"), std::string::npos) << refused.err;
-    EXPECT_NE(refused.err.find("--probe 'stylus=device:simulated"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("--probe "), std::string::npos) << refused.err;
     EXPECT_FALSE(fs::exists(written)) << id;
     EXPECT_EQ(said({"validate", "level.gltf"}).status, 1) << id;
     EXPECT_NE(said({"inspect", "level.gltf"}).out.find("asks for more than a level may"), std::string::npos) << id;
@@ -97,7 +97,7 @@ TEST_F(LevelDevices, WrappersThatMultiplyAreRefusedFromTheUserToo) {
   for (int i = 0; i < 24; ++i) words += "|delay=1";
   const Said refused = said(run({"--probe", words}));
   EXPECT_NE(refused.status, 0);
-  EXPECT_NE(refused.err.find("a device has at most 8"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("a device has at most 12"), std::string::npos) << refused.err;
   words.resize(words.size() - 16 * std::string("|delay=1").size());
   EXPECT_EQ(said(run({"--probe", words})).status, 0);
   const Said slow = said(run({"--probe", "stylus=device:simulated:touch,clock=tick,rate=0.01"}));

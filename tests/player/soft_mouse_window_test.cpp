@@ -93,7 +93,7 @@ TEST_F(SoftMouseTest, PullsAPinnedBodyWhichSwingsBackWhenItIsLetGo) {
 
 TEST_F(SoftMouseTest, PullsABodyThatNothingHolds) {
   author("none");
-  const Said said = shown(kPull, {"--set", "simulation.gravity=0"});
+  const Said said = shown(kPull, {"--set", "*.simulation.gravity=0"});
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_GT(probe()["contact_ticks"], 300);
   EXPECT_GT(difference("screenshot-001.png", "screenshot-002.png"), 0.0);
