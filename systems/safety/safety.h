@@ -52,7 +52,7 @@ inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same of what turns
 
 inline constexpr double kLeastFall = 1000.0;  // [N/s] force that is no longer wanted falls as fast as this at least
 
-inline constexpr double kEasedFrom = 0.0085;  // [s] without a tick, then what rose meanwhile comes in slowly,
+inline constexpr double kEasedFrom = 0.0105;  // [s] without a tick, then what rose meanwhile comes in slowly,
 inline constexpr double kEase = 0.015;        // [s] in this time
 
 inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error

@@ -419,15 +419,16 @@ TEST_F(PlayTest, EditsReachTheRunAndSurviveItsEndAndTheRestIsSaidOnce) {
     });
   };
   EXPECT_EQ(said(), 0);
-  for (const double angle : {20.0, 30.0, 40.0})
-    EXPECT_TRUE(editor.apply("Wider", with_value(editor.state(), std::span(&sheet, 1), "deformable", "crease_angle", angle)));
+  for (const double budget : {0.011, 0.012, 0.013})
+    EXPECT_TRUE(
+        editor.apply("Budget", with_value(editor.state(), std::span(&sheet, 1), "deformable", "error", budget)));
   EXPECT_EQ(said(), 1);
   play.stop();
   EXPECT_FALSE(editor.playing);
   EXPECT_EQ(editor.state().find("sheet")->node.deformable->stiffness, 777.0);
-  EXPECT_EQ(editor.state().find("sheet")->node.deformable->reach, 0.013);
+  EXPECT_EQ(editor.state().find("sheet")->node.deformable->error, 0.013);
   editor.undo();
-  EXPECT_EQ(editor.state().find("sheet")->node.deformable->reach, 0.012);
+  EXPECT_EQ(editor.state().find("sheet")->node.deformable->error, 0.012);
 }
 
 TEST_F(PlayTest, ThePlayersPartGoesBackAndOnFromThere) {
