@@ -75,6 +75,7 @@ TEST_F(ShellWindowTest, ArrowKeysLeadThroughTheTreeAndF2Renames) {
   child.name = "child";
   child.parent = 0;
   level.nodes.push_back(child);
+  level.nodes[0].children = {2};
   ASSERT_TRUE(save_level(level, folder / "tree.glb").ok());
   expect_done(
       "tree.glb",
