@@ -154,7 +154,8 @@ TEST_F(ShellWindowTest, NamesInAnyScriptAreDrawnAsTheyAre) {
 TEST_F(ShellWindowTest, NothingOverlapsOrIsCutOffFrom800x600On) {
   std::string walk;
   for (const char* tool : {"Select", "Move", "Turn", "Scale", "Path", "Paint"})
-    walk += std::string("click Scene/sheet/row\nclick Tools/") + tool + "\napart\n";
+    walk += std::string(tool == std::string("Path") ? "click Scene/finger/row" : "click Scene/sheet/row") +
+            "\nclick Tools/" + tool + "\napart\n";
   walk += "click Tools/Select\n";
   for (const char* tab : {"Inspector", "Play", "Devices", "Tissue", "Path", "Paint", "History", "Findings", "Console",
                           "Plots", "Error budget"})
