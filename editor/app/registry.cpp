@@ -68,6 +68,7 @@ std::vector<Action> make_actions(App& app) {
   add({"file.settings", "File", "Settings\u2026", "Ctrl+,", [&app](Editor&) { app.show_panel("Settings"); }});
   all.back().separator = true;
   add({"file.quit", "File", "Quit", "Ctrl+Q", [&app](Editor&) { app.close(); }});
+  all.back().while_typing = true;
   all.back().separator = true;
 
   add({"edit.undo", "Edit", "Undo", "Ctrl+Z", [](Editor& e) { e.undo(); },

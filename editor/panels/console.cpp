@@ -58,7 +58,10 @@ class ConsolePanel : public Panel {
     ui::checkbox("Warnings", warnings_);
     ImGui::SameLine();
     ui::checkbox("Notes", notes_);
-    ImGui::SameLine(std::max(ImGui::GetWindowContentRegionMax().x - ui::px(148), ui::px(260)));
+    // In a small window they make a row of their own.
+    if (const float at = ImGui::GetWindowContentRegionMax().x - ui::px(148);
+        ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x <= at)
+      ImGui::SameLine(at);
     if (ui::button("Copy", "The lines that are shown, to the clipboard", !editor.said.empty(), 70)) {
       std::string all;
       for (const Said& said : editor.said)

@@ -110,7 +110,10 @@ class ErrorBudgetPanel : public Panel {
                           "Writes the key `error`: what the level does not say is chosen whenever it is opened")) {
       editor.apply("Set error", with_value(editor.state(), ids, extension, key.name, trial_));
     }
-    ImGui::SameLine();
+    // In a small window the row goes on below.
+    ui::rows_end_at(ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x);
+    ui::beside(ui::kSpace, "Measure again");
+    ui::rows_end_at(0);
     if (const auto progress = fits_.progress(editor)) {
       draw_progress(editor, *progress);
       return;
@@ -140,7 +143,9 @@ class ErrorBudgetPanel : public Panel {
                                  "no budget chooses them any more.";
     const bool may = !in_use_ && !stale_ && !another && !fit->keys.empty();
     if (may && of_all_bodies(fit->keys)) hint += " The soft step is that of all soft bodies.";
-    ImGui::SameLine();
+    ui::rows_end_at(ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x);
+    ui::beside(ui::kSpace, "Use it");
+    ui::rows_end_at(0);
     if (may ? ui::strong_button("Use it", hint.c_str()) : ui::button("Use it", hint.c_str(), false)) {
       fits_.use(editor, id);
       look(editor, id);

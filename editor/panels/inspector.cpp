@@ -201,8 +201,10 @@ class InspectorPanel : public Panel {
       return;
     ui::gap(2);
     const bool open = ui::section(words(extension.name).c_str());
+    ImGui::SetItemAllowOverlap();  // the cross on it is pressed for itself
     ui::hint(extension.doc.c_str());
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - ui::px(22));
+    const float cross = ImGui::CalcTextSize("\u00d7").x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - cross);
     ImGui::PushID(extension.name.c_str());
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0, 0, 0, 0));
     const bool remove = ImGui::SmallButton("\u00d7");

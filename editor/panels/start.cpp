@@ -63,11 +63,15 @@ class StartPage : public Panel {
     });
   }
 
+  // [point]; in a small window no wider than its column
+  static float button_width() { return std::min(160.0f, ImGui::GetContentRegionAvail().x / ui::scale()); }
+
   void files() {
     ui::title("Pliant");
     ui::dim("Bring an organ's mesh, make it soft, and touch it.");
     ui::gap(ui::kPad);
-    if (ui::strong_button("Open organ\u2026", "A level, or any mesh: glTF, OBJ, STL, PLY, OFF, tetrahedra", true, 160))
+    if (ui::strong_button("Open organ\u2026", "A level, or any mesh: glTF, OBJ, STL, PLY, OFF, tetrahedra", true,
+                          button_width()))
       app_.do_action("file.open");
     ui::gap(ui::kPad);
     unsaved();
@@ -105,7 +109,7 @@ class StartPage : public Panel {
     ui::dim("Or try a level that is ready: open it, press Play, and press on it with the mouse.");
     ui::gap(ui::kGap);
     if (ui::button(fmt::format("Try {}###Try a level", level.stem().string()).c_str(), "Opens it; nothing is changed",
-                   true, 160))
+                   true, button_width()))
       app_.open(level);
     ui::known_as("Try a level");
   }

@@ -97,9 +97,23 @@ const ImWchar* ranges_of(const std::set<unsigned>& letters, std::deque<std::vect
   return ranges.data();
 }
 
+// Of four bytes of UTF-8: Dear ImGui reads no such letter. 0: none stands here.
+unsigned high_letter(const char* c, const char* end) {
+  if (end - c < 4) return 0;
+  const auto byte = [c](int i) -> unsigned { return static_cast<unsigned char>(c[i]); };
+  if ((byte(0) & 0xf8u) != 0xf0u) return 0;
+  unsigned letter = byte(0) & 7u;
+  for (int i = 1; i < 4; ++i) {
+    if ((byte(i) & 0xc0u) != 0x80u) return 0;
+    letter = letter << 6 | (byte(i) & 0x3fu);
+  }
+  return letter > kLastLetter && letter <= 0x10ffff ? letter : 0;
+}
+
 // Which script a letter is of, and what brings it.
 const char* package_for(unsigned letter) {
-  if (letter >= 0x1f000) return "emoji are not drawn";
+  if (letter >= 0x1f000 && letter < 0x20000) return "emoji are not drawn";
+  if (letter > kLastLetter) return "letters above U+FFFF are not drawn";
   if (letter >= 0x2e80 && letter < 0xfe00) return "install fonts-droid-fallback or fonts-noto-cjk";
   return "install fonts-noto-core or fonts-dejavu-core";
 }
@@ -187,6 +201,11 @@ void draws(std::string_view text) {
   while (c < end) {
     if (static_cast<unsigned char>(*c) < 0x80) {
       ++c;
+      continue;
+    }
+    if (const unsigned high = high_letter(c, end); high != 0) {
+      draws(high);
+      c += 4;
       continue;
     }
     unsigned letter = 0;

@@ -163,6 +163,7 @@ bool number(const char* label, double& value, double least, double most, const c
 }
 
 bool color_field(const char* label, float rgb[3]) {
+  const float wide = (ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - px(12)) / 3.0f / scale();
   bool changed = false;
   const ImVec4 now(rgb[0], rgb[1], rgb[2], 1.0f);
   const std::string popup = fmt::format("pick {}", label);
@@ -174,7 +175,6 @@ bool color_field(const char* label, float rgb[3]) {
         "##picker", rgb, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoSidePreview);
     ImGui::EndPopup();
   }
-  const float wide = (ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - px(12)) / 3.0f / scale();
   const char* const parts[] = {"red", "green", "blue"};
   for (int i = 0; i < 3; ++i) {
     ImGui::SameLine(0, px(4));

@@ -110,7 +110,7 @@ std::string not_apart() {
     shown.seen.ClipWith(display);
     bool scrolls_x = false, scrolls_y = false;
     for (const ImGuiWindow* w = window; w; w = w->ParentWindow) {
-      scrolls_x |= w->ScrollMax.x > 0;
+      scrolls_x |= w->ScrollMax.x > 0 && (w->Flags & ImGuiWindowFlags_HorizontalScrollbar) != 0;
       scrolls_y |= w->ScrollMax.y > 0;
     }
     const bool cut_x = shown.seen.GetWidth() + kCut < shown.full.GetWidth(),
