@@ -170,8 +170,10 @@ void ViewBar::draw(Editor& editor, ViewTool* tool, ImVec2 low, ImVec2 high) {
                     ImGui::GetWindowPos().y + ImGui::GetWindowHeight() + ui::px(ui::kGap));
     ImGui::SetNextWindowPos(at, ImGuiCond_Always, {1, 0});
     if (ImGui::BeginPopup("overlays list")) {
-      const ui::Scope inner("Overlays");
-      draw_overlays(editor);
+      {
+        const ui::Scope inner("Overlays");
+        draw_overlays(editor);
+      }
       ImGui::EndPopup();
     }
   }
