@@ -55,7 +55,8 @@ std::string uri_of(const fs::path& relative) {
 void beside_the_level(App& app, const fs::path& file, const std::string& use,
                       const std::function<void(const std::string&)>& then) {
   std::error_code failed;
-  const fs::path folder = fs::absolute(app.editor.document.folder(), failed).lexically_normal();
+  const fs::path named = app.editor.document.folder();
+  const fs::path folder = fs::absolute(named.empty() ? fs::path(".") : named, failed).lexically_normal();
   const fs::path from = fs::absolute(file, failed).lexically_normal();
   const fs::path relative = from.lexically_relative(folder);
   if (!relative.empty() && *relative.begin() != "..") return then(uri_of(relative));

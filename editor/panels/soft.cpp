@@ -248,7 +248,9 @@ class SoftPanel : public Panel {
   void figure(const char* what, const std::string& value, bool bad = false) {
     ImGui::TextColored(ui::palette().dim, "%s", what);
     ImGui::SameLine(ui::px(140));
+    ImGui::PushTextWrapPos(0);
     ImGui::TextColored(bad ? ui::palette().warning : ui::palette().text, "%s", value.c_str());
+    ImGui::PopTextWrapPos();
   }
 
   // What a sentence's cure is, where there is a button for it.

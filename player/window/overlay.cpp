@@ -329,8 +329,10 @@ void Overlay::draw_devices(const OverlayState& state) {
   ImGui::Begin("devices", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  const ui::Scope scope("Devices");
-  ui::device_list(state.devices, state.stop_keys, orders_);
+  {
+    const ui::Scope scope("Devices");
+    ui::device_list(state.devices, state.stop_keys, orders_);
+  }
   ImGui::End();
 }
 
@@ -340,14 +342,16 @@ void Overlay::draw_question(const OverlayState& state) {
   ImGui::SetNextWindowSize({std::min(560 * scale_, 0.8f * size.x), 0}, ImGuiCond_Always);
   ImGui::Begin("question", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  const ui::Scope scope("Question");
   ImGui::PushTextWrapPos(0);
   for (const std::string& line : state.question) ImGui::TextUnformatted(line.c_str());
   ImGui::PopTextWrapPos();
   ImGui::Separator();
-  if (ui::button("Allow for this file", "It is remembered for this file and these words")) orders_.allow = true;
-  ImGui::SameLine();
-  if (ui::button("Not now", "Go on without that device")) orders_.decline = true;
+  {
+    const ui::Scope scope("Question");
+    if (ui::button("Allow for this file", "It is remembered for this file and these words")) orders_.allow = true;
+    ImGui::SameLine();
+    if (ui::button("Not now", "Go on without that device")) orders_.decline = true;
+  }
   ImGui::End();
 }
 

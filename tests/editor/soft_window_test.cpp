@@ -63,8 +63,8 @@ TEST_F(SoftWindowTest, AllPartsBecomeTissueItsSagIsShownAndTheMousePullsIt) {
       "key Space\nawait Play/Pause\nwait 2\nmove Viewport@0.5,0.45\nwait 1\nscreenshot rest.png\n"
       "press Viewport@0.5,0.45 control\nwait 0.5\nmove Viewport@0.6,0.3\nwait 2\nscreenshot pulled.png\nrelease\nwait "
       "2\n"
-      "move Viewport@0.5,0.45\nwait 1\npress Viewport@0.5,0.45\nwait 2\nscreenshot pressed.png\nrelease\nwait "
-      "1\nclose\n");
+      "move Viewport@0.5,0.45\nwait 1\npress Viewport@0.5,0.45\nwait 2\nscreenshot pressed.png\nrelease\nwait 1\n"
+      "close\nclick Unsaved/Discard\n");
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_GT(difference("rest.png", "pulled.png"), 0.5);
 }

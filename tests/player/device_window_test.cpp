@@ -1,5 +1,5 @@
 // Devices in the window: emulated ones behind the real drivers (emulated/emulated_pliant.cpp) move probes, are stopped
-// by the key, armed by the panel's button, unplugged and found again.
+// by the key, armed by the panel's button, unplugged and found again; what a level may not open is asked for.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ class DeviceWindowTest : public CommandTest {
     write_text(folder / "plate.obj", plate_obj());
   }
   // The smallest level with two probes, 4 cm apart, that ask for devices themselves.
-  void write_level() const {
+  void write_level(const std::string& first = "falcon; spacemouse") const {
     const fs::path from = fs::path(PLIANT_SOURCE_DIR) / "content/levels";
     fs::copy_file(from / "minimal.bin", folder / "minimal.bin");
     Json level = Json::parse(read_text(from / "minimal.gltf"));
@@ -29,7 +29,7 @@ class DeviceWindowTest : public CommandTest {
                    {{"PLIANT_probe", {{"radius", 0.002}, {"device", name}}},
                     {"PLIANT_haptic_device", {{"driver", "external"}, {"id", id}}}}}};
     };
-    level["nodes"][1] = probe("cap", -0.02, "falcon; spacemouse");
+    level["nodes"][1] = probe("cap", -0.02, first.c_str());
     level["nodes"][2] = probe("pad", 0.02, "any");
     level["scenes"][0]["nodes"] = {0, 1, 2};
     write_text(folder / "two.gltf", level.dump(2));
@@ -135,6 +135,23 @@ TEST_F(DeviceWindowTest, TheStopKeyTripsAServedDeviceInTheMiddleOfAPressAndNothi
   EXPECT_GT(largest(rows, 1.6, 3.0), 0.3);
   EXPECT_EQ(largest(rows, 3.6, 5.0), 0.0);
   EXPECT_NE(said.err.find("the emergency stop was pressed"), std::string::npos) << said.err;
+}
+
+TEST_F(DeviceWindowTest, WhatALevelMayNotOpenIsAskedForInTheWindow) {
+  write_level("network:192.0.2.7:5000");
+  const Said said = shown({}, "1.0,key,F12\n1.5,click,Question/Not now\n2.5,key,F12\n3.0,close,\n", {}, "two.gltf");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(said.err.find("which is not there"), std::string::npos) << said.err;
+  const auto asked = load_image(folder / "out" / "screenshot-001.png"),
+             answered = load_image(folder / "out" / "screenshot-002.png");
+  ASSERT_TRUE(asked && answered);
+  std::size_t differ = 0;
+  for (std::size_t y = 200; y < 300; ++y)
+    for (std::size_t x = 120; x < 440; ++x) {
+      const std::size_t i = 4 * (y * 760 + x);
+      differ += std::abs(int{asked->rgba[i]} - int{answered->rgba[i]}) > 40;
+    }
+  EXPECT_GT(differ, 300u) << "the question is not seen, or stays";
 }
 
 TEST_F(DeviceWindowTest, AScriptThatPressesWhatIsNotThereSaysSo) {
