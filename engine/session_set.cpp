@@ -267,7 +267,8 @@ Status set_value(Session::Parts& p, const std::string& name, const std::string& 
   if (!named) return named.error();
   const Result<Found> found = find_named_key(*named, name, key_name, true);
   if (!found) return found.error();
-  const auto [extension, key] = *found;
+  const Extension* const extension = found->extension;
+  const Key* const key = found->key;
   const std::string where = "`" + name + "`: " + key_name;
   if (const std::string fault = check_value(*key, value); !fault.empty()) return Error{where, fault};
   const LevelNode before = named->node;
