@@ -118,7 +118,7 @@ TEST_F(Bench, ACapIsListedOpenedAndMovesAPose) {
   EXPECT_EQ(found[0].id, "S42");
   EXPECT_EQ(found[0].missing, "");
   EXPECT_FALSE(found[0].can.renders_force);
-  const std::unique_ptr<Driver> driver = std::move(*make_driver("spacemouse"));
+  const std::unique_ptr<Driver> driver = *make_driver("spacemouse");
   const Status opened = driver->open("S42?control=position&dead_zone=0");
   ASSERT_TRUE(opened.ok()) << opened.error().message();
   const int other = umockdev_testbed_get_dev_fd(bed, "/dev/hidraw3");
@@ -135,7 +135,7 @@ TEST_F(Bench, ACapIsListedOpenedAndMovesAPose) {
 
 TEST_F(Bench, UnpluggedTheLineDiesAndThePluggedOneIsOpenedAnew) {
   plug(cap(1, "S1"));
-  const std::unique_ptr<Driver> driver = std::move(*make_driver("spacemouse"));
+  const std::unique_ptr<Driver> driver = *make_driver("spacemouse");
   ASSERT_TRUE(driver->open("").ok());
   DeviceSample sample;
   EXPECT_TRUE(driver->read(sample));
