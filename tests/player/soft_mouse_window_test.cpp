@@ -8,7 +8,7 @@
 namespace pliant::testing {
 namespace {
 
-class SoftMouseTest : public CommandTest {
+class SoftMouseWindowTest : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
@@ -72,7 +72,7 @@ const std::string kPull =
     "0.0,move,120 80\n1.0,press,control\n1.2,move,124 70\n1.4,move,128 60\n1.6,move,134 50\n1.8,move,140 45\n"
     "3.0,key,F12\n3.5,release,\n5.5,key,F12\n6.0,close,\n";
 
-TEST_F(SoftMouseTest, PressesAPinnedBodyAndFeelsIt) {
+TEST_F(SoftMouseWindowTest, PressesAPinnedBodyAndFeelsIt) {
   author("bottom");
   const Said said = shown("0.0,move,120 80\n1.0,press,\n3.0,release,\n3.5,close,\n");
   ASSERT_EQ(said.status, 0) << said.err;
@@ -81,7 +81,7 @@ TEST_F(SoftMouseTest, PressesAPinnedBodyAndFeelsIt) {
   EXPECT_LE(probe()["max_force_N"], 3.3 + 1e-9);
 }
 
-TEST_F(SoftMouseTest, PullsAPinnedBodyWhichSwingsBackWhenItIsLetGo) {
+TEST_F(SoftMouseWindowTest, PullsAPinnedBodyWhichSwingsBackWhenItIsLetGo) {
   author("bottom");
   const Said said = shown(kPull);
   ASSERT_EQ(said.status, 0) << said.err;
@@ -91,7 +91,7 @@ TEST_F(SoftMouseTest, PullsAPinnedBodyWhichSwingsBackWhenItIsLetGo) {
   EXPECT_GT(difference("screenshot-001.png", "screenshot-002.png"), 0.5) << "drawn out, and back again";
 }
 
-TEST_F(SoftMouseTest, PullsABodyThatNothingHolds) {
+TEST_F(SoftMouseWindowTest, PullsABodyThatNothingHolds) {
   author("none");
   const Said said = shown(kPull, {"--set", "*.simulation.gravity=0"});
   ASSERT_EQ(said.status, 0) << said.err;
