@@ -1,5 +1,5 @@
 // Recordings: whatever the bytes, whole ticks of sound poses, or one sentence.
-#include "engine/recording.h"
+#include "engine/run/recording.h"
 
 #include <cstddef>
 #include <cstdint>

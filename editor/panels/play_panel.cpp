@@ -9,7 +9,7 @@
 #include "editor/panels/panels.h"
 #include "editor/play/record_path.h"
 #include "editor/ui/widgets.h"
-#include "engine/limits.h"
+#include "engine/run/limits.h"
 #include "pliant/driver.h"
 #include "runtime/printable.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "editor/play/play_run.h"
-#include "engine/journal.h"
-#include "engine/session_inside.h"
+#include "engine/run/journal.h"
+#include "engine/session/session_inside.h"
 
 namespace pliant {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "components/probe.h"
-#include "engine/recording.h"
+#include "engine/run/recording.h"
 
 namespace pliant {
 

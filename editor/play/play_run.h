@@ -20,8 +20,8 @@
 #include "content/level/level.h"
 #include "editor/play/play_hand.h"
 #include "editor/play/play_past.h"
-#include "engine/device_view.h"
-#include "engine/soft_clock.h"
+#include "engine/run/device_view.h"
+#include "engine/run/soft_clock.h"
 #include "pliant/session.h"
 
 namespace pliant {

@@ -8,7 +8,7 @@
 #include "content/files/exr.h"
 #include "content/safety_cap.h"
 #include "editor/play/play_inside.h"
-#include "engine/sources.h"
+#include "engine/run/sources.h"
 #include "runtime/clock.h"
 #include "systems/device/repeat.h"
 #include "systems/hash_state.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "engine/device_view.h"
+#include "engine/run/device_view.h"
 
 namespace pliant::ui {
 

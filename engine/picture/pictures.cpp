@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "engine/session_parts.h"
+#include "engine/session/session_parts.h"
 #include "pliant/picture.h"
 #include "systems/visual/gpu/context.h"
 #include "systems/visual/renderer.h"

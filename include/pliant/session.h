@@ -260,11 +260,11 @@ class Session {
   // Those that wait, oldest first; says how many were lost since the last call.
   Result<std::uint64_t> take_readings(const std::string& effector, std::vector<Reading>& out);
 
-  struct Parts;  // engine/session_parts.h; not part of the public interface
+  struct Parts;  // engine/session/session_parts.h; not part of the public interface
 
  private:
   friend class Pictures;
-  friend struct SessionInside;  // engine/session_inside.h; not part of the public interface
+  friend struct SessionInside;  // engine/session/session_inside.h; not part of the public interface
   explicit Session(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };

@@ -9,7 +9,7 @@
 
 #include "components/world.h"
 #include "content/files/growing_file.h"
-#include "engine/body_journal.h"
+#include "engine/run/body_journal.h"
 #include "runtime/result.h"
 
 namespace pliant {

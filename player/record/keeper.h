@@ -9,8 +9,8 @@
 
 #include "components/world.h"
 #include "content/files/growing_file.h"
-#include "engine/journal.h"
-#include "engine/recording.h"
+#include "engine/run/journal.h"
+#include "engine/run/recording.h"
 #include "player/interrupt.h"
 #include "player/record/body_keeper.h"
 #include "player/record/trace.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "components/world.h"
-#include "engine/recording.h"
-#include "engine/simulated_hands.h"
+#include "engine/run/recording.h"
+#include "engine/run/simulated_hands.h"
 
 namespace pliant {
 

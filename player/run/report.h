@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "components/world.h"
-#include "engine/device_view.h"
-#include "engine/journal.h"
-#include "engine/soft_clock.h"
+#include "engine/run/device_view.h"
+#include "engine/run/journal.h"
+#include "engine/run/soft_clock.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
 #include "player/run/frames.h"

@@ -6,7 +6,7 @@
 
 #include "components/soft_body.h"
 #include "components/world.h"
-#include "engine/soft_clock.h"
+#include "engine/run/soft_clock.h"
 #include "player/record/keeper.h"
 
 namespace pliant {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "engine/touch_clock.h"
+#include "engine/run/touch_clock.h"
 #include "player/exit.h"
 #include "player/progress.h"
 #include "runtime/clock.h"

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "components/tet_mesh.h"
-#include "engine/session_inside.h"
+#include "engine/session/session_inside.h"
 #include "player/study/pareto.h"
 #include "player/study/processor_time.h"
 #include "player/study/study_fidelity.h"

@@ -9,7 +9,7 @@
 #include "content/files/file_io.h"
 #include "content/gltf/gltf_document.h"
 #include "content/keys/extension_table.h"
-#include "engine/sources.h"
+#include "engine/run/sources.h"
 #include "player/verbs/command_line.h"
 #include "player/verbs/content_folder.h"
 

@@ -8,8 +8,8 @@
 
 #include "components/world.h"
 #include "content/level/device_request.h"
-#include "engine/recording.h"
-#include "engine/simulated_hands.h"
+#include "engine/run/recording.h"
+#include "engine/run/simulated_hands.h"
 #include "player/exit.h"
 #include "player/verbs/verbs.h"
 #include "runtime/result.h"

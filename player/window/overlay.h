@@ -10,10 +10,10 @@
 
 #include "components/math.h"
 #include "editor/ui/widgets.h"
-#include "engine/device_view.h"
-#include "engine/journal.h"
-#include "engine/soft_clock.h"
-#include "engine/touch_clock.h"
+#include "engine/run/device_view.h"
+#include "engine/run/journal.h"
+#include "engine/run/soft_clock.h"
+#include "engine/run/touch_clock.h"
 #include "systems/visual/renderer.h"
 
 namespace pliant {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "components/world.h"
-#include "engine/journal.h"
-#include "engine/touch_clock.h"
+#include "engine/run/device_links.h"
+#include "engine/run/journal.h"
+#include "engine/run/touch_clock.h"
 #include "player/interrupt.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
-#include "player/run/device_links.h"
 #include "player/run/frames.h"
 #include "window/window.h"
 

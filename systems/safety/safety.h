@@ -96,7 +96,7 @@ constexpr std::uint8_t bit(SafetyLimit limit) {
 struct SafetyState {
   double share = 1.0;  // [1] of what is felt that may leave: its device renders no stiffer (systems/device/softening.h)
   double least_share = 1.0;  // [1] that it ever was
-  bool felt = true;          // false: the guard behind let nothing leave after this tick (engine/driver_link.h)
+  bool felt = true;          // false: the guard behind let nothing leave after this tick (engine/run/driver_link.h)
   bool engaged = false;      // gate: closed at start and after every loss, opens on a small computed force
   double hidden = 0.0;       // [1] share of the weight that is not felt yet
   dvec3 weight{0};           // [N] last tick's, as felt

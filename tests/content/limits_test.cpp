@@ -15,7 +15,7 @@
 #include "content/mesh/mesh_build.h"
 #include "content/tets/lattice.h"
 #include "content/tets/tet_file.h"
-#include "engine/journal.h"
+#include "engine/run/journal.h"
 #include "pliant/content.h"
 #include "tests/content/gltf_builder.h"
 #include "tests/content/lowered.h"

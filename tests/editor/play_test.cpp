@@ -16,7 +16,7 @@
 #include "content/level_file.h"
 #include "editor/play/law_curve.h"
 #include "editor/play/live_edits.h"
-#include "engine/sources.h"
+#include "engine/run/sources.h"
 #include "pliant/driver.h"
 #include "tests/scenes/scenes.h"
 

@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "content/level_file.h"
-#include "engine/soft_clock.h"
-#include "engine/sources.h"
+#include "engine/run/soft_clock.h"
+#include "engine/run/sources.h"
 #include "systems/device/hands.h"
 #include "systems/schedule.h"
 #include "systems/soft/prepare_soft.h"

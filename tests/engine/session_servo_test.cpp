@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "devices/servo/local_force.h"
-#include "engine/session_inside.h"
+#include "engine/session/session_inside.h"
 #include "systems/device/device_model.h"
 #include "tests/engine/session_rig.h"
 

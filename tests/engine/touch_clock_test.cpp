@@ -1,5 +1,5 @@
 // The touch clock in real time: a pause and a failure are seen in the rows, as zero force.
-#include "engine/touch_clock.h"
+#include "engine/run/touch_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <thread>
 
-#include "engine/recording.h"
+#include "engine/run/recording.h"
 #include "player/interrupt.h"
 #include "tests/player/command.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "engine/simulated_hands.h"
+#include "engine/run/simulated_hands.h"
 #include "player/study/study_hand.h"
 #include "player/study/study_walls.h"
 #include "tests/player/command.h"

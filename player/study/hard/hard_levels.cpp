@@ -6,9 +6,9 @@
 #include <set>
 
 #include "content/level_file.h"
-#include "engine/limits.h"
-#include "engine/session_inside.h"
-#include "engine/sources.h"
+#include "engine/run/limits.h"
+#include "engine/run/sources.h"
+#include "engine/session/session_inside.h"
 #include "player/study/hard/hard_case.h"
 #include "player/verbs/content_folder.h"
 #include "systems/device/reading.h"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "content/keys/extension_table.h"
-#include "engine/session_parts.h"
+#include "engine/session/session_parts.h"
 #include "player/study/hard/hard_case.h"
 #include "systems/touch/local_model.h"
 #include "tests/scenes/touch_laws.h"

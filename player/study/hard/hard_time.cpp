@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "engine/session_inside.h"
+#include "engine/session/session_inside.h"
 #include "player/study/hard/hard_case.h"
 #include "runtime/clock.h"
 #include "tests/scenes/touch_laws.h"

@@ -1,0 +1,275 @@
+#include "engine/run/device_links.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <thread>
+
+#include "devices/choose.h"
+#include "devices/wrappers/chain.h"
+#include "engine/run/sources.h"
+#include "engine/run/stiffness_note.h"
+#include "pliant/drivers.h"
+#include "systems/device/devices.h"
+#include "systems/device/hands.h"
+
+namespace pliant {
+
+namespace {
+
+std::string name_in(const World& world, Entity hand) {
+  const Name* const named = world.registry.find<Name>(hand);
+  return named ? named->value : std::string();
+}
+
+// A device that is being opened, of a thread that may outlive whoever waits for it.
+struct Opening {
+  std::vector<DeviceInfo> there;
+  Result<DeviceChoice> chosen = Error{};
+  Result<DeviceChain> made = Error{};
+  DriverLink link;
+  Status done = Done{};
+};
+
+// Does `work` on a thread of its own. False: `stop` became true before it was done.
+bool does(const std::function<void()>& work, const std::function<bool()>& stop) {
+  std::packaged_task<void()> task(work);
+  std::future<void> done = task.get_future();
+  std::thread(std::move(task)).detach();
+  while (done.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+    if (stop()) return false;
+  done.get();
+  return true;
+}
+
+void open_wish(Opening& opening, const std::string& wish, bool list) {
+  if (list) {
+    register_all_drivers();
+    opening.there = list_devices();
+  }
+  opening.chosen = choose_device(wish, opening.there);
+  if (!opening.chosen || opening.chosen->id.empty()) return;
+  const std::string& id = opening.chosen->id;
+  opening.made = make_device(id);
+  if (opening.made)
+    opening.done = opening.link.connect(std::move(opening.made->driver), opening.made->id, "device `" + id + "`", id);
+}
+
+}  // namespace
+
+void DeviceLinks::begin(World& world, Held opened, dvec3 middle, std::vector<std::string>& notes) {
+  HapticDevice& device = world.registry.get<HapticDevice>(opened.device);
+  device.path = {};
+  device.status = DeviceStatus::kLost;
+  opened.link.begin(device, device.rotation, middle);
+  begin_anew(world, opened.hand);
+  if (std::string sentence = stiffness_note(world, opened.hand, opened.name); !sentence.empty())
+    notes.push_back(std::move(sentence));
+  if (opened.link.servo() && !opened.link.servo()->note().empty())
+    notes.push_back(fmt::format("`{}`: {}", opened.name, opened.link.servo()->note()));
+  links_.push_back(std::move(opened));
+}
+
+Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, const std::function<bool()>& stop,
+                         std::vector<std::string>& notes) {
+  for (SimulatedHands::Held& one : held.held()) {
+    const Entity device = device_of(world, one.hand);
+    Held opened{name_in(world, one.hand), one.hand,  device, {}, world.registry.get<HapticDevice>(device).id,
+                "a simulated hand",       one.device};
+    if (Status s = opened.link.connect(std::move(one.driver), "", "--probe " + opened.name); !s) return s;
+    begin(world, std::move(opened), one.middle, notes);
+  }
+  std::vector<DeviceInfo> there;
+  bool listed = false;
+  for (const Entity hand : hands(world)) {
+    if (!find_device(world, hand) || held.moves(hand)) continue;
+    HapticDevice& device = world.registry.get<HapticDevice>(device_of(world, hand));
+    if (device.driver != DriverKind::kExternal || device.id.empty()) continue;
+    const std::string name = name_in(world, hand);
+    const auto opening = std::make_shared<Opening>();
+    opening->there = there;
+    if (!does([opening, wish = device.id, list = !listed] { open_wish(*opening, wish, list); }, stop)) {
+      gave_up_ = true;
+      return Error{"probe `" + name + "`", "its device was still being opened when the run was interrupted"};
+    }
+    there = opening->there;
+    listed = true;
+    const Result<DeviceChoice>& chosen = opening->chosen;
+    if (!chosen) return Error{"probe `" + name + "`", chosen.error().message()};
+    for (const std::string& sentence : chosen->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
+    if (chosen->id.empty()) {
+      if (!windowed)
+        return Error{"probe `" + name + "`",
+                     "the mouse would move it, and needs a window; set DISPLAY, or plug in a device"};
+      device.driver = DriverKind::kMouse;
+      continue;
+    }
+    const Result<DeviceChain>& made = opening->made;
+    if (!made) return made.error();
+    for (const std::string& sentence : made->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
+    if (!opening->done) return opening->done;
+    Held opened{name, hand, device_of(world, hand), std::move(opening->link), chosen->id, chosen->name, nullptr};
+    device.id = chosen->id;
+    begin(world, std::move(opened), place_of(world, hand), notes);
+  }
+  for (const Entity hand : hands(world)) {
+    const Name* const named = world.registry.find<Name>(hand);
+    if (!moves(hand)) others_.push_back({named ? named->value : std::string(), describe_source(world, hand)});
+  }
+  for (DeviceInfo& device : there)
+    if (!device.missing.empty()) unusable_.push_back(std::move(device));
+  return Done{};
+}
+
+bool DeviceLinks::any_real() const {
+  return std::any_of(links_.begin(), links_.end(), [](const Held& held) { return !held.simulated; });
+}
+
+void DeviceLinks::use_clock(DeviceClock clock) {
+  for (Held& held : links_)
+    if (held.simulated) held.simulated->use_clock(clock);
+}
+
+bool DeviceLinks::moves(Entity hand) const {
+  return std::any_of(links_.begin(), links_.end(), [&](const Held& held) { return held.hand == hand; });
+}
+
+Status DeviceLinks::may_step() const {
+  for (const Held& held : links_)
+    if (Status s = held.link.may_step(); !s) return s;
+  return Done{};
+}
+
+void DeviceLinks::before(World& world, Tick tick) {
+  for (Held& held : links_) held.link.read(world.registry.get<HapticDevice>(held.device), tick);
+}
+
+void DeviceLinks::after(World& world, Tick tick) {
+  for (Held& held : links_) held.link.write(world, held.hand, held.device, tick);
+}
+
+void DeviceLinks::hook(World& world, TouchHooks& hooks) {
+  if (!any()) return;
+  hooks.before = [this, &world, then = std::move(hooks.before)](Tick tick) {
+    before(world, tick);
+    if (then) then(tick);
+  };
+  hooks.after = [this, &world, then = std::move(hooks.after)](Tick tick) {
+    after(world, tick);
+    if (then) then(tick);
+  };
+  hooks.idle = [this, then = std::move(hooks.idle)](Tick tick) {
+    for (Held& held : links_) held.link.idle(), held.link.forget();
+    if (then) then(tick);
+  };
+  hooks.end = [this, then = std::move(hooks.end)] {
+    for (Held& held : links_) held.link.zero();
+    if (then) then();
+  };
+}
+
+Status DeviceLinks::start() {
+  for (Held& held : links_)
+    if (Status s = held.link.start(); !s) {
+      halt();
+      return s;
+    }
+  return Done{};
+}
+
+void DeviceLinks::halt() noexcept {
+  for (Held& held : links_) held.link.halt();
+}
+
+void DeviceLinks::view(DevicesView& out) {
+  out.devices.resize(links_.size());
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    out.devices[i] = {links_[i].name, links_[i].id, links_[i].called, links_[i].link.can(), links_[i].link.report()};
+  out.others = others_;
+  out.unusable = unusable_;
+}
+
+void DeviceLinks::order(const DeviceOrders& orders) {
+  const auto each = [&](const std::vector<std::string>& names, void (DriverLink::*what)()) {
+    for (Held& held : links_)
+      if (std::find(names.begin(), names.end(), held.name) != names.end()) (held.link.*what)();
+  };
+  each(orders.arm, &DriverLink::arm);
+  each(orders.disarm, &DriverLink::disarm);
+  each(orders.stop, &DriverLink::stop);
+  if (orders.stop_all) stop_all();
+}
+
+void DeviceLinks::stop_all() {
+  for (Held& held : links_) held.link.stop();
+}
+
+bool DeviceLinks::never_ready(Entity hand) {
+  for (Held& held : links_)
+    if (held.hand == hand && !held.simulated) {
+      const DeviceReport& report = held.link.report();
+      return report.figures.periods > 0 && report.figures.samples == report.dropped.not_ready;
+    }
+  return false;
+}
+
+namespace {
+
+// What came of a device that could not be used.
+void find_unused(const std::string& name, const DeviceReport& report, std::vector<std::string>& all) {
+  const std::uint64_t samples = report.figures.samples, not_ready = report.dropped.not_ready;
+  if (const std::string frames = describe(report.dropped); !frames.empty())
+    all.push_back(
+        fmt::format("device of `{}`: not everything that it sent could be used, but {} frames or lines were "
+                    "dropped: {}; {}",
+                    name, report.dropped.dropped(), frames, cure_for(report.dropped)));
+  if (samples > 0 && not_ready == samples)
+    all.push_back(
+        fmt::format("device of `{}`: it was not ready for the whole run ({} samples, and each says that its "
+                    "state is not known); calibrate or home it, release its emergency stop, let it cool",
+                    name, samples));
+  else if (not_ready > 0)
+    all.push_back(fmt::format("device of `{}`: {} of {} samples say that it is not ready; nothing was felt meanwhile",
+                              name, not_ready, samples));
+  if (samples == 0 && report.figures.periods > 0)
+    all.push_back(
+        fmt::format("device of `{}`: no sample came in the whole run; check that it is switched on and sends "
+                    "where it is",
+                    name));
+}
+
+}  // namespace
+
+std::vector<std::string> DeviceLinks::findings() {
+  std::vector<std::string> all;
+  for (Held& held : links_) {
+    if (std::string late = held.link.late_note(held.name); !late.empty()) all.push_back(std::move(late));
+    const DeviceReport& report = held.link.report();
+    if (!held.simulated) find_unused(held.name, report, all);
+    std::uint64_t worse = 0;
+    std::string last;
+    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(report.transitions, DeviceReport::kKept); ++i) {
+      const DeviceTransition& one = report.transition(i);
+      const bool lost = one.from == DeviceState::kActive && one.cause != DeviceCause::kLetGo &&
+                        one.cause != DeviceCause::kClosed && one.cause != DeviceCause::kDisarmed;
+      if (!lost && one.to != DeviceState::kTripped) continue;
+      ++worse;
+      last = describe(one);
+    }
+    if (worse == 1) all.push_back(fmt::format("device of `{}`: {}", held.name, last));
+    if (worse > 1)
+      all.push_back(
+          fmt::format("device of `{}`: its force was taken away {} times, the last time: {}", held.name, worse, last));
+    if (report.figures.missed > 0)
+      all.push_back(
+          fmt::format("device of `{}`: {} of {} periods of its servo began late ({:.0f} us at most); close other "
+                      "programs, or grant SCHED_FIFO (`ulimit -r`)",
+                      held.name, report.figures.missed, report.figures.periods, report.figures.period_max));
+  }
+  return all;
+}
+
+}  // namespace pliant

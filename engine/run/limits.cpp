@@ -1,0 +1,111 @@
+#include "engine/run/limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "components/soft_body.h"
+#include "engine/run/stiffness_note.h"
+#include "runtime/assert.h"
+#include "systems/device/hands.h"
+#include "systems/tool/tool_touch_state.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+// What a sentence needs of a force, or of a torque.
+struct Quantity {
+  const char* name;
+  const char* limit;    // key of its largest value
+  const char* unit;     // of that
+  double largest;       // [N] or [N m]
+  double slew;          // [N/s] or [N m/s]
+  double stiffness;     // [N/m] 0: none
+  const char* smaller;  // below which the gate opens
+};
+
+std::string sentence(SafetyLimit limit, const LimitCount& count, const std::string& who, const Quantity& q) {
+  const std::string ticks = fmt::format("{} tick{}", count.ticks, count.ticks == 1 ? "" : "s");
+  const std::string percent = fmt::format("{:.3g} %", 100 * count.largest_share);
+  switch (limit) {
+    case SafetyLimit::kClipped:
+      return fmt::format(
+          "{}: the {} was clipped at {} {:g} {} in {} (at most {} less than the law says); raise {} where the device "
+          "can render it",
+          who, q.name, q.limit, q.largest, q.unit, ticks, percent, q.limit);
+    case SafetyLimit::kWithheld:
+      return fmt::format(
+          "{}: the {} was damped in {} (by at most {} of what the law says), because the hand would have got more "
+          "energy than it gave; raise the rate, or refine and smooth the mesh where it is touched",
+          who, q.name, ticks, percent);
+    case SafetyLimit::kGated:
+      return fmt::format(
+          "{}: no {} was sent in {}: the safety gate opens once less than {} is computed; start outside the object",
+          who, q.name, ticks, q.smaller);
+    case SafetyLimit::kSlewed:
+      return fmt::format(
+          "{}: the {} changed faster than max_slew {:g} {}/s{} let it in {} (off by at most {}); move slower, or raise "
+          "max_slew where the device can render it",
+          who, q.name, q.slew, q.unit, q.stiffness > 0 ? fmt::format(" and max_stiffness {:g} N/m", q.stiffness) : "",
+          ticks, percent);
+  }
+  UNREACHABLE();
+}
+
+void explain(const SafetyTally& tally, const std::string& who, const Quantity& quantity,
+             std::vector<std::string>& sentences) {
+  for (std::size_t i = 0; i < kSafetyLimits; ++i)
+    if (tally.counts[i].ticks > 0)
+      sentences.push_back(sentence(static_cast<SafetyLimit>(i), tally.counts[i], who, quantity));
+}
+
+}  // namespace
+
+std::uint8_t HandSafety::now() const {
+  return static_cast<std::uint8_t>((force ? force->tally.now : 0) | (torque ? torque->tally.now : 0));
+}
+
+HandSafety find_safety(const World& world, Entity hand) {
+  if (world.touch)
+    for (const ProbeState& probe : world.touch->probes)
+      if (probe.entity == hand) return {&probe.safety, nullptr};
+  if (world.tools)
+    for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools)
+      if (tool->entity == hand) return {&tool->force_safety, &tool->torque_safety};
+  return {};
+}
+
+std::vector<std::string> explain_limits(const World& world, Entity hand, const std::string& name) {
+  std::vector<std::string> sentences;
+  const HandSafety safety = find_safety(world, hand);
+  const HapticDevice* device = find_device(world, hand);
+  if (!safety.force || !device) return sentences;
+  const SafetyLimits force = force_limits(*device);
+  const std::string who = (safety.torque ? "tool `" : "probe `") + name + "`";
+  explain(safety.force->tally, who,
+          {"force", "max_force", "N", force.force, force.slew, force.stiffness / force.scale, "0.2 N"}, sentences);
+  if (std::string softened = softened_note(world, hand, name, safety.force->least_share); !softened.empty())
+    sentences.push_back(std::move(softened));
+  if (!safety.torque) return sentences;
+  const SafetyLimits torque = torque_limits(*device, world.registry.get<Handle6>(hand));
+  explain(safety.torque->tally, who, {"torque", "max_torque", "N m", torque.force, torque.slew, 0.0, "0.2 N m"},
+          sentences);
+  return sentences;
+}
+
+const char* key_of(SafetyLimit limit) {
+  switch (limit) {
+    case SafetyLimit::kClipped:
+      return "clipped";
+    case SafetyLimit::kWithheld:
+      return "withheld";
+    case SafetyLimit::kGated:
+      return "gated";
+    case SafetyLimit::kSlewed:
+      return "slewed";
+  }
+  UNREACHABLE();
+}
+
+}  // namespace pliant

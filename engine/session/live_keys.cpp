@@ -1,0 +1,82 @@
+#include "engine/session/live_keys.h"
+
+#include "engine/session/session_parts.h"
+
+namespace pliant {
+namespace {
+
+constexpr const char* kOpenAgain = "; change it in the scene and open that again";
+
+struct Fixed {
+  const char* key;  // EXTENSION.KEY
+  const char* why;
+};
+constexpr Fixed kFixed[] = {
+    {"deformable.response", "the field of the surface is kept in another way"},
+    {"deformable.distance", "what finds it is laid out when the session opens"},
+    {"deformable.crease_angle", "the mesh is built with it"},
+    {"deformable.error", "the model is chosen by it when the session opens"},
+    {"deformable.carries", "what goes with it is laid out when the session opens"},
+    {"soft_body.carries", "what goes with it is laid out when the session opens"},
+    {"soft_body.under_gravity", "how the body begins is worked out when the session opens"},
+    {"soft_body.density", "the tissue's masses are laid out when the session opens"},
+    {"soft_body.cell", "the tetrahedra are made with it"},
+    {"soft_body.focus", "the tetrahedra are made with it"},
+    {"soft_body.fill", "the tetrahedra are made with it"},
+    {"soft_body.thickness", "the tetrahedra are made with it"},
+    {"soft_body.mesh", "the tetrahedra are read when the session opens"},
+    {"soft_body.pinned", "the tissue's unknowns are laid out when the session opens"},
+    {"soft_body.solver", "it is made when the session opens"},
+    {"soft_body.error", "the model is chosen by it when the session opens"},
+    {"rigid_body.fixed", "what moves is laid out when the session opens"},
+    {"probe.length", "its tips are laid out when the session opens"},
+    {"probe.points", "its tips are laid out when the session opens"},
+    {"probe.meets", "what it meets is laid out when the session opens"},
+    {"probe.color", "a session draws nothing"},
+    {"handle.box", "the tissue's unknowns are laid out when the session opens"},
+    {"handle.attachment", "the tissue's unknowns are laid out when the session opens"},
+    {"handle.carried", "the tool's weight is laid out when the session opens"},
+    {"handle.force", "its reduced model is laid out when the session opens"},
+    {"haptic_device.scale", "it goes with the driver, which is told its workspace when it is connected"},
+};
+
+}  // namespace
+
+std::string why_not_live(const Extension& extension, const Key& key) {
+  const std::string name = extension.name + "." + key.name;
+  for (const Fixed& each : kFixed)
+    if (name == each.key) return std::string("is read when the session opens: ") + each.why + kOpenAgain;
+  if (key.name == "device" || key.name == "driver" || key.name == "file" || key.name == "id")
+    return "is read when the session opens: it says what moves it; call Session::release() and then connect(), "
+           "follow() or move()";
+  return "";
+}
+
+const std::vector<LiveKey>& live_keys() {
+  using D = DeformableParameters;
+  using H = DeviceParameters;
+  static const std::vector<LiveKey> keys{
+      {"young", &D::young, nullptr},  // before what it sets
+      {"poisson", &D::poisson, nullptr},
+      {"thickness", &D::thickness, nullptr},
+      {"stiffness", &D::stiffness, nullptr},
+      {"cubic", &D::cubic, nullptr},
+      {"stiffening", &D::stiffening, nullptr},
+      {"relaxation.stiffness", &D::relaxation_stiffness, nullptr},
+      {"relaxation.time", &D::relaxation_time, nullptr},
+      {"damping_ratio", &D::damping_ratio, nullptr},
+      {"settling_time", &D::settling_time, nullptr},
+      {"contact_damping", &D::contact_damping, nullptr},
+      {"reach", &D::reach, nullptr},
+      {"volume", &D::volume, nullptr},
+      {"contact_radius", &D::contact_radius, nullptr},
+      {"friction_static", &D::friction_static, nullptr},
+      {"friction_sliding", &D::friction_sliding, nullptr},
+      {"max_force", nullptr, &H::max_force},
+      {"max_stiffness", nullptr, &H::max_stiffness},
+      {"max_slew", nullptr, &H::max_slew},
+  };
+  return keys;
+}
+
+}  // namespace pliant

@@ -1,0 +1,13 @@
+// The way into a Session for programs of this project that show and steer it (editor/play): on its owner's thread, and
+// by the rules of session_parts.h.
+#pragma once
+
+#include "engine/session/session_parts.h"
+
+namespace pliant {
+
+struct SessionInside {
+  static Session::Parts& of(Session& session) { return *session.parts_; }
+};
+
+}  // namespace pliant

@@ -1,0 +1,220 @@
+// Recording and replaying a Session (pliant/session.h).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <span>
+
+#include "content/files/file_io.h"
+#include "engine/run/driver_limits.h"
+#include "engine/scene_hash.h"
+#include "engine/session/session_parts.h"
+#include "runtime/printable.h"
+#include "systems/device/softening.h"
+#include "systems/safety/safety.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kMostStamps = 4096;  // events that may wait to be written
+constexpr std::size_t kRoom = 8192;        // ticks that may wait to be written
+constexpr auto kDrainEvery = std::chrono::milliseconds(20);
+
+std::size_t room_for(std::size_t effectors) {
+  return std::clamp<std::size_t>(most(limits::kJournal) / (sizeof(PoseRow) * effectors), 2, kRoom);
+}
+
+}  // namespace
+
+SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
+    : writer_(std::move(writer)),
+      room_(room_for(effectors)),
+      last_(effectors),
+      rows_(room_ * effectors),
+      stamps_(kMostStamps) {}
+
+void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready,
+                           bool felt) {
+  RecordedPose& last = last_[effector];
+  const bool sound = plausible_position(device.position) && plausible_rotation(device.rotation);
+  if (sound) last = {device.position, device.rotation / glm::length(device.rotation), ready};
+  last.ready = sound && ready;
+  last.felt = felt;
+  rows_.record({tick, effector, last});
+}
+
+std::uint32_t SessionRecorder::announce(const RecordedEvent& event) {
+  const std::lock_guard lock(events_mutex_);
+  announced_.push_back(event);
+  return next_announced_++;
+}
+
+// Stamps are drained after the rows: those of the rows' ticks and of earlier ones are there.
+void SessionRecorder::write_events(std::uint64_t until) {
+  const std::lock_guard lock(events_mutex_);
+  std::size_t done = 0;
+  for (; done < stamped_.size() && stamped_[done].tick <= until; ++done) {
+    while (first_announced_ < stamped_[done].number) announced_.pop_front(), ++first_announced_;
+    RecordedEvent event = announced_.front();
+    announced_.pop_front(), ++first_announced_;
+    event.tick = stamped_[done].tick;
+    writer_.event(event);
+  }
+  stamped_.erase(stamped_.begin(), stamped_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
+// A full ring, or a tick that ended in its middle, leaves a part of a tick: it is left out.
+void SessionRecorder::drain() {
+  taken_.clear();
+  rows_.drain(taken_);
+  stamps_.drain(stamped_);
+  for (const PoseRow& row : taken_) {
+    if (row.effector == 0) {
+      pending_.clear();
+      pending_tick_ = row.tick;
+    }
+    if (row.tick != pending_tick_ || row.effector != pending_.size()) continue;
+    pending_.push_back(row.pose);
+    if (pending_.size() < last_.size()) continue;
+    write_events(row.tick);
+    writer_.tick(row.tick);
+    for (const RecordedPose& pose : pending_) writer_.pose(pose);
+  }
+}
+
+void SessionRecorder::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      drain();
+      std::this_thread::sleep_for(kDrainEvery);
+    }
+  });
+}
+
+Status SessionRecorder::finish() {
+  if (thread_.joinable()) thread_.request_stop(), thread_.join();
+  drain();
+  if (Status written = writer_.finish(); !written) return written;
+  if (rows_.lost() > 0)
+    return Error{"recording",
+                 fmt::format("{} poses were lost because writing fell behind; use a faster disk", rows_.lost())};
+  return Done{};
+}
+
+Status Session::record(const std::filesystem::path& file, bool replace) {
+  Parts& p = *parts_;
+  if (Status s = p.stand_still("Session::record"); !s) return s;
+  if (p.recorder) return Error{"Session::record", "a recording is under way; call Session::end_recording() first"};
+  if (p.effectors.empty())
+    return Error{"Session::record", "the scene has no probe and no tool; there is nothing to record"};
+  RecordingHeader header{p.world.name, p.world.simulation.touch_rate, effectors(), scene_hash(p.scene.level()), {}};
+  for (const auto& [key, value] : p.settings) header.settings.push_back(key + "=" + value);
+  for (const SessionEffector& effector : p.effectors)  // a driver's limits are felt as well
+    for (std::string& setting : driver_settings(effector.name, p.world.registry.get<HapticDevice>(effector.device)))
+      header.settings.push_back(std::move(setting));
+  auto writer = RecordingWriter::create(file, header, replace);
+  if (!writer) return writer.error();
+  p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
+  // What holds from before. Parameters and drivers are in the header.
+  std::vector<RecordedEvent> holds = p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing;
+  if (p.ticks > 0)
+    for (const RecordedEvent& event : p.history.events)  // sent, and not yet taken
+      if (event.tick == p.ticks &&
+          (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace))
+        holds.push_back(event);
+  for (RecordedEvent event : holds) {
+    if (event.kind == EventKind::kSet || event.kind == EventKind::kNewSource) continue;
+    event.tick = p.ticks;
+    p.recorder->write_now(event);
+  }
+  return Done{};
+}
+
+Status Session::end_recording() {
+  Parts& p = *parts_;
+  if (Status s = p.stand_still("Session::end_recording"); !s) return s;
+  if (!p.recorder) return Error{"Session::end_recording", "nothing is recorded; call Session::record() first"};
+  const Status ended = p.recorder->finish();
+  p.recorder.reset();
+  return ended;
+}
+
+Status Session::replay(const std::filesystem::path& file) {
+  Parts& p = *parts_;
+  if (Status s = p.stand_still("Session::replay"); !s) return s;
+  if (p.ticks > 0) return Error{"Session::replay", "ticks have run already; call Session::restart() first"};
+  auto recording = read_recording(file);
+  if (!recording) return recording.error();
+  const RecordingHeader& header = recording->header;
+  if (header.rate != p.world.simulation.touch_rate)
+    return Error{file.string(), fmt::format("was made at {} Hz, the scene runs at {} Hz; set Scene::simulation()",
+                                            header.rate, p.world.simulation.touch_rate)};
+  if (header.probes != effectors())
+    return Error{file.string(), "was made with other probes and tools, or in another order; use its own scene"};
+  if (header.scene == 0)
+    p.notes.push_back(file.string() + kUnknownScene);
+  else if (header.scene != scene_hash(p.scene.level()))
+    p.notes.push_back(file.string() + " was recorded in another scene: forces will differ");
+  if (!recording->ticks.empty() && recording->ticks.front() != 0)
+    p.notes.push_back(fmt::format("{} begins at tick {}: what was felt before is not in it", file.string(),
+                                  recording->ticks.front()));
+  std::vector<std::string> own = header.settings;
+  std::erase_if(own, is_driver_setting);
+  for (const Error& refused : p.apply_settings(own, Parts::Setting::kSend))
+    p.notes.push_back(file.string() + ": its setting " + refused.message());
+  const std::vector<std::string> settings = header.settings;
+  p.begin_replay(std::move(recording).value());
+  if (Status applied = apply_driver_settings(p.world, settings); !applied)
+    p.notes.push_back(file.string() + ": its setting " + applied.error().message());
+  return Done{};
+}
+
+void Session::Parts::begin_replay(Recording recording) {
+  for (SessionEffector& effector : effectors) {
+    take_away(effector, EffectorSource::kNone);
+    world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
+  }
+  replayed = std::move(recording);
+  replayed_events = 0;
+}
+
+Tick Session::Parts::replayed_tick() {
+  const double dt = 1.0 / world.simulation.touch_rate;
+  const std::size_t n = static_cast<std::size_t>(ticks);
+  const std::uint64_t index = replayed->ticks[n], next = n > 0 ? replayed->ticks[n - 1] + 1 : index;
+  const Tick tick{index, dt, static_cast<double>(index) * dt,
+                  index > next ? static_cast<double>(index - next) * dt : 0.0};
+  for (std::size_t i = 0; i < effectors.size(); ++i) {
+    const RecordedPose& pose = replayed->poses[n * effectors.size() + i];
+    HapticDevice& device = world.registry.get<HapticDevice>(effectors[i].device);
+    device.position = pose.position;
+    device.rotation = pose.rotation;
+    device.status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
+    if (SafetyState* const safety = safety_of(world, effectors[i].entity)) safety->felt = pose.felt;
+    device.sensed_at = tick.time;
+  }
+  return tick;
+}
+
+Status export_recording(const std::filesystem::path& file, const std::filesystem::path& csv) {
+  const auto recording = read_recording(file);
+  if (!recording) return recording.error();
+  const std::vector<std::string>& probes = recording->header.probes;
+  std::string text = "tick,time_s,probe,x,y,z,qw,qx,qy,qz,ready\n";
+  for (std::size_t n = 0; n < recording->ticks.size(); ++n)
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+      const RecordedPose& pose = recording->poses[n * probes.size() + i];
+      std::string name;
+      for (const char c : printable(probes[i])) name += c == '"' ? std::string("\"\"") : std::string(1, c);
+      text += fmt::format("{},{:.9g},\"{}\",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", recording->ticks[n],
+                          static_cast<double>(recording->ticks[n]) / recording->header.rate, name, pose.position.x,
+                          pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x, pose.rotation.y,
+                          pose.rotation.z, pose.ready ? 1 : 0);
+    }
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+  return write_file(csv, std::span(bytes, text.size()), Existing::kRefuse);
+}
+
+}  // namespace pliant

@@ -1,0 +1,381 @@
+// Session::set and get: parameters between ticks. What is asked is checked here, on the owner's thread, by the level
+// format's own table of keys; the clocks get all parameters of a kind together (apply_edit.cpp,
+// systems/soft/soft_step.cpp).
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "components/soft_body.h"
+#include "engine/session/live_keys.h"
+#include "engine/session/scene_check.h"
+#include "engine/session/session_parts.h"
+#include "systems/soft/body/probe_tool.h"
+#include "systems/soft/prepare_soft.h"
+#include "systems/soft/soft_state.h"
+#include "systems/touch/force_field.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+namespace {
+
+// What the name of an object, probe or tool stands for: the extensions that it has, with the values that hold.
+struct Named {
+  LevelNode node;
+  std::vector<const Extension*> extensions;
+};
+
+const char* kind_of(const Named& named) {
+  if (named.node.deformable) return "a deformable surface";
+  if (named.node.probe) return "a probe";
+  if (named.node.handle) return "a tool";
+  return named.node.soft_body ? "a soft body" : "a rigid body";
+}
+
+Result<Named> find_named(const Session::Parts& p, const std::string& name) {
+  Named named;
+  if (const auto body = p.bodies.find(name); body != p.bodies.end()) named.node = body->second;
+  if (const auto surface = p.surfaces.find(name); surface != p.surfaces.end()) named.node.deformable = surface->second;
+  if (const auto device = p.devices.find(name); device != p.devices.end()) {
+    named.node.device.emplace();
+    static_cast<DeviceParameters&>(*named.node.device) = device->second;
+  }
+  for (const Extension& extension : extension_table())
+    if (!extension.on_scene && extension.present(&named.node)) named.extensions.push_back(&extension);
+  if (!named.extensions.empty()) return named;
+  std::vector<std::string> names = p.objects;
+  for (const SessionEffector& effector : p.effectors) names.push_back(effector.name);
+  return Error{"`" + name + "`", unknown("name", name, "the scene", "its objects, probes and tools", names)};
+}
+
+struct Found {
+  const Extension* extension = nullptr;
+  const Key* key = nullptr;
+};
+
+// `live`: an error says why a key that is there cannot change.
+Result<Found> find_named_key(const Named& named, const std::string& name, const std::string& key, bool live) {
+  const std::string where = "`" + name + "`: " + key;
+  std::vector<std::string> keys;
+  for (const Extension* extension : named.extensions) {
+    if (const Key* const found = find_key(*extension, key)) {
+      const std::string why = live ? why_not_live(*extension, *found) : std::string();
+      if (!why.empty()) return Error{where, why};
+      return Found{extension, found};
+    }
+    for (const Key& each : extension->keys)
+      if (why_not_live(*extension, each).empty()) keys.push_back(each.name);
+  }
+  std::string whose;
+  for (const Extension& extension : extension_table())
+    if (find_key(extension, key)) whose += (whose.empty() ? "" : " and ") + ("`" + extension.name + "`");
+  if (!whose.empty())
+    return Error{where, fmt::format("`{}` is {}, and this is a key of {}; its keys are: {}", name, kind_of(named),
+                                    whose, fmt::join(keys, ", "))};
+  const std::string near = suggestion(key, keys);
+  return Error{where, fmt::format("is no key of {}{}; keys are: {}", kind_of(named), near, fmt::join(keys, ", "))};
+}
+
+bool is_painted(const Mesh& mesh) {
+  return !mesh.stiffness_factor.empty() || !mesh.damping_factor.empty() || !mesh.relaxation_factor.empty();
+}
+
+// What paint_motion has made of it would have to be made anew.
+bool moves_otherwise(const Motion& a, const Motion& b) {
+  return a.mass != b.mass || a.damping != b.damping || a.arm_stiffness != b.arm_stiffness || a.arm_time != b.arm_time ||
+         a.law.kind != b.law.kind || a.law.cubic != b.law.cubic || a.law.stiffening != b.law.stiffening;
+}
+
+Result<SurfaceSetting> surface_setting(const Session::Parts& p, const std::string& where, const Deformable& before,
+                                       Deformable& now) {
+  const Mesh& mesh = p.world.meshes[before.mesh];
+  const bool arm = before.spring == SpringLaw::kStandardLinearSolid;
+  if (arm != (now.spring == SpringLaw::kStandardLinearSolid))
+    return Error{where,
+                 "the standard linear solid keeps a memory that is laid out when the session opens; change it in "
+                 "the scene and open that again"};
+  if (now.reach == 0.0) now.reach = default_reach(mesh);
+  const Motion motion_now = motion(now, p.world.touch->dt);
+  if (is_painted(mesh) && moves_otherwise(motion(before, p.world.touch->dt), motion_now))
+    return Error{where, "is painted on this surface, and is read when the session opens; change the scene instead"};
+  const double reach = std::max(now.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
+  return SurfaceSetting{now, motion_now,
+                        share_kernel(now.shape, reach, now.volume, contact_radius(now, reach) / reach)};
+}
+
+CouplingSetting coupling_of(const HandleParameters& handle) {
+  return {handle.translation, handle.rotation, handle.max_force, handle.max_torque};
+}
+
+}  // namespace
+
+// What goes to the clocks.
+struct SessionChange {
+  Entity entity;
+  std::vector<Edit> touch;
+  std::vector<ParameterEdit> soft;
+};
+
+namespace {
+
+Result<SessionChange> change_surface(Session::Parts& p, const std::string& name, const std::string& where,
+                                     Deformable& now) {
+  const Deformable& before = p.surfaces.at(name);
+  auto setting = surface_setting(p, where, before, now);
+  if (!setting) return setting.error();
+  if (Status s = check(now, "`" + name + "`"); !s) return s.error();
+  SessionChange change;
+  change.entity = *p.find_object(name);
+  change.touch.push_back({change.entity, *setting, 0});
+  change.soft.push_back({change.entity, setting->now});
+  return change;
+}
+
+Result<SessionChange> change_rigid(Session::Parts& p, const std::string& name, const LevelNode& node) {
+  SessionChange change;
+  change.entity = *p.find_object(name);
+  RigidBody body = *node.rigid_body;
+  body.collision_mesh = p.bodies.at(name).rigid_body->collision_mesh;
+  RigidSetting now{{}, body.friction_static, body.friction_sliding};
+  if (!body.fixed) {
+    const Result<RigidMass> mass = rigid_mass(p.world, change.entity, body);
+    if (!mass) return mass.error();
+    now.mass = *mass;
+    if (node.handle && !node.handle->carried)
+      change.touch.push_back({change.entity, WeightSetting{now.mass.mass * p.world.simulation.gravity}, 0});
+  }
+  change.soft.push_back({change.entity, now});
+  return change;
+}
+
+SessionChange change_soft(Session::Parts& p, const std::string& name, const SoftBody& body) {
+  SessionChange change;
+  change.entity = *p.find_object(name);
+  change.soft.push_back({change.entity, SoftSetting{body.young, body.poisson, body.rayleigh, body.friction_static,
+                                                    body.friction_sliding}});
+  return change;
+}
+
+Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, const std::string& where,
+                                   const Probe& now) {
+  const Probe& before = *p.bodies.at(name).probe;
+  SessionChange change;
+  change.entity = p.find_effector(name)->entity;
+  if (now.coupling != before.coupling || now.radius == before.radius) {
+    HapticDevice device;
+    static_cast<DeviceParameters&>(device) = p.devices.at(name);
+    const HandleParameters handle = probe_handle(now, device);
+    change.touch.push_back({change.entity, coupling_of(handle), 0});
+    change.soft.push_back({change.entity, coupling_of(handle)});
+    return change;
+  }
+  constexpr const char* kAgain = "; change it in the scene and open that again";
+  if (now.length > 0.0)
+    return Error{where, std::string("a capsule's tips are laid out by it when the session opens") + kAgain};
+  if ((now.radius > 0.0) != (before.radius > 0.0))
+    return Error{where, std::string("a point and a sphere have different places for contacts") + kAgain};
+  if (p.world.soft && now.meets != ProbeMeets::kSurfaces)
+    return Error{where, std::string("its shape among soft and rigid bodies is made with it") + kAgain +
+                            ", or let it meet surfaces alone"};
+  change.touch.push_back({change.entity, ProbeSetting{now.radius}, 0});
+  return change;
+}
+
+SessionChange change_handle(Session::Parts& p, const std::string& name, const Handle6& handle) {
+  SessionChange change;
+  change.entity = p.find_effector(name)->entity;
+  change.touch.push_back({change.entity, coupling_of(handle), 0});
+  change.soft.push_back({change.entity, coupling_of(handle)});
+  return change;
+}
+
+// `node`: with the new value.
+Result<SessionChange> change_of(Session::Parts& p, const std::string& name, const std::string& where,
+                                const Extension& extension, LevelNode& node) {
+  if (extension.name == "deformable") return change_surface(p, name, where, *node.deformable);
+  if (extension.name == "rigid_body") return change_rigid(p, name, node);
+  if (extension.name == "soft_body") return change_soft(p, name, *node.soft_body);
+  if (extension.name == "probe") return change_probe(p, name, where, *node.probe);
+  if (extension.name == "handle") return change_handle(p, name, *node.handle);
+  if (Status s = check_device(name, *node.device); !s) return s.error();
+  SessionChange change;
+  change.entity = p.find_effector(name)->device;
+  change.touch.push_back({change.entity, static_cast<const DeviceParameters&>(*node.device), 0});
+  return change;
+}
+
+void keep(Session::Parts& p, const std::string& name, const Extension& extension, const LevelNode& node) {
+  if (extension.name == "deformable")
+    p.surfaces[name] = *node.deformable;
+  else if (extension.name == "haptic_device")
+    p.devices[name] = *node.device;
+  else
+    extension.name == "soft_body"    ? void(p.bodies[name].soft_body = node.soft_body)
+    : extension.name == "rigid_body" ? void(p.bodies[name].rigid_body = node.rigid_body)
+    : extension.name == "probe"      ? void(p.bodies[name].probe = node.probe)
+                                     : void(p.bodies[name].handle = node.handle);
+}
+
+// For recordings: the key, or those that an alias has changed.
+void note_settings(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
+                   const LevelNode& before, const LevelNode& now) {
+  for (const Key& each : extension.keys) {
+    if (each.alias || (key.alias ? each.get(&before) == each.get(&now) : each.name != key.name)) continue;
+    const Json value = each.get(&now);
+    p.settings[name + "." + extension.name + "." + each.name] = value.is_string() ? value.get<std::string>()
+                                                                : value.is_number()
+                                                                    ? fmt::format("{}", value.get<double>())
+                                                                    : value.dump();
+  }
+  if (!now.deformable) return;
+  const std::string follows = name + ".deformable.stiffness";  // from `young`, where there is one
+  if (now.deformable->young > 0.0)
+    p.settings.erase(follows);
+  else if (before.deformable->young > 0.0 && key.name == "young")
+    p.settings[follows] = fmt::format("{}", now.deformable->stiffness);
+}
+
+// `note`: of what is recorded, once there is room for it.
+template <class Note>
+Status send(Session::Parts& p, SessionChange& change, const Note& note) {
+  const bool soft = p.world.soft && !change.soft.empty();
+  if (!p.edits->has_room() || (soft && !p.world.soft->parameter_edits.has_room()))
+    return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
+  if (change.touch.empty()) change.touch.push_back({change.entity, EventEdit{}, 0});
+  change.touch.front().number = note();
+  for (const Edit& edit : change.touch) p.edits->push(edit);
+  if (soft)
+    for (const ParameterEdit& edit : change.soft) p.world.soft->parameter_edits.push(edit);
+  return Done{};
+}
+
+// Value of `key`, for the recording: KEY=VALUE, the extension with it.
+std::uint32_t note_set(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
+                       const Json& value) {
+  return p.note_event(
+      {0,
+       EventKind::kSet,
+       name,
+       extension.name + "." + key.name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()),
+       0,
+       {}});
+}
+
+// Not `sent`: a world is made next, and begins with it.
+Status set_value(Session::Parts& p, const std::string& name, const std::string& key_name, const Json& value,
+                 bool sent = true) {
+  Result<Named> named = find_named(p, name);
+  if (!named) return named.error();
+  const Result<Found> found = find_named_key(*named, name, key_name, true);
+  if (!found) return found.error();
+  const Extension* const extension = found->extension;
+  const Key* const key = found->key;
+  const std::string where = "`" + name + "`: " + key_name;
+  if (const std::string fault = check_value(*key, value); !fault.empty()) return Error{where, fault};
+  const LevelNode before = named->node;
+  if (before.deformable && before.deformable->young > 0.0 && key->name == "stiffness")
+    return Error{where, "follows from its Young's modulus; set `young` instead"};
+  key->set(&named->node, value);
+  if (const std::string fault = extension->settle(&named->node); !fault.empty()) return Error{where, fault};
+  Result<SessionChange> change = change_of(p, name, where, *extension, named->node);
+  if (!change) return change.error();
+  if (sent)
+    if (Status s = send(p, *change, [&] { return note_set(p, name, *extension, *key, value); }); !s) return s;
+  keep(p, name, *extension, named->node);
+  note_settings(p, name, *extension, *key, before, named->node);
+  return Done{};
+}
+
+}  // namespace
+
+Status Session::Parts::apply_setting(const std::string& setting, Setting how) {
+  const bool sent = how == Setting::kSend;
+  const std::size_t equals = setting.rfind('=');
+  const std::string path = setting.substr(0, equals),
+                    text = equals == std::string::npos ? "" : setting.substr(equals + 1);
+  for (const Extension& extension : extension_table())
+    for (const Key& key : extension.keys) {
+      const std::string end = "." + extension.name + "." + key.name;
+      if (extension.on_scene || path.size() <= end.size() || !path.ends_with(end)) continue;
+      const std::string object = path.substr(0, path.size() - end.size());
+      const Json value = Json::parse(text, nullptr, false);
+      if (value.is_number() && !std::isfinite(value.get<double>())) break;
+      if (value.is_number()) return set_value(*this, object, key.name, value, sent);
+      if (key.type == KeyType::kPair && !check_value(key, value).empty()) break;
+      return set_value(*this, object, key.name, key.type == KeyType::kPair ? value : Json(text), sent);
+    }
+  return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
+}
+
+std::vector<Error> Session::Parts::apply_settings(std::vector<std::string> settings, Setting how) {
+  std::vector<Error> refused;
+  for (std::size_t before = settings.size() + 1; settings.size() < before;) {
+    before = settings.size();
+    refused.clear();
+    std::vector<std::string> again;
+    for (const std::string& setting : settings)
+      if (Status applied = apply_setting(setting, how); !applied) {
+        refused.push_back(applied.error());
+        again.push_back(setting);
+      }
+    settings = std::move(again);
+  }
+  return refused;
+}
+
+void Session::Parts::keep_bodies() {
+  bodies.clear();
+  const auto node_of = [&](Entity entity, const std::string& name) {
+    LevelNode& node = bodies[name];
+    if (const auto* it = world.registry.find<SoftBody>(entity)) node.soft_body = *it;
+    if (const auto* it = world.registry.find<RigidBody>(entity)) node.rigid_body = *it;
+    if (const auto* it = world.registry.find<Handle6>(entity)) node.handle = *it;
+    if (const auto* it = world.registry.find<Probe>(entity)) node.probe = *it;
+  };
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (!world.registry.has<Deformable>(object_entities[i])) node_of(object_entities[i], objects[i]);
+  for (const SessionEffector& effector : effectors) node_of(effector.entity, effector.name);
+}
+
+void Session::Parts::restore_bodies() {
+  const auto restore = [&](Entity entity, const LevelNode& node) {
+    Registry& all = world.registry;
+    if (node.soft_body && all.has<SoftBody>(entity))
+      static_cast<SoftBodyParameters&>(all.get<SoftBody>(entity)) = *node.soft_body;
+    if (node.rigid_body && all.has<RigidBody>(entity))
+      static_cast<RigidBodyParameters&>(all.get<RigidBody>(entity)) = *node.rigid_body;
+    if (node.handle && all.has<Handle6>(entity))
+      static_cast<HandleParameters&>(all.get<Handle6>(entity)) = *node.handle;
+    if (node.probe && all.has<Probe>(entity)) static_cast<ProbeParameters&>(all.get<Probe>(entity)) = *node.probe;
+  };
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (const auto found = bodies.find(objects[i]); found != bodies.end()) restore(object_entities[i], found->second);
+  for (const SessionEffector& effector : effectors)
+    if (const auto found = bodies.find(effector.name); found != bodies.end()) restore(effector.entity, found->second);
+}
+
+Status Session::set(const std::string& object, const std::string& key, double value) {
+  if (!std::isfinite(value)) return Error{"`" + object + "`: " + key, "is not a number"};
+  return set_value(*parts_, object, key, value);
+}
+
+Status Session::set(const std::string& object, const std::string& key, const std::string& word) {
+  return set_value(*parts_, object, key, word);
+}
+
+Status Session::set(const std::string& object, const std::string& key, const std::vector<double>& values) {
+  for (const double value : values)
+    if (!std::isfinite(value)) return Error{"`" + object + "`: " + key, "has a value that is not a number"};
+  return set_value(*parts_, object, key, values);
+}
+
+Result<double> Session::get(const std::string& object, const std::string& key) const {
+  const Result<Named> named = find_named(*parts_, object);
+  if (!named) return named.error();
+  const Result<Found> found = find_named_key(*named, object, key, false);
+  if (!found) return found.error();
+  const Json value = found->key->get(&named->node);
+  if (!value.is_number()) return Error{"`" + object + "`: " + key, "is no single number"};
+  return value.get<double>();
+}
+
+}  // namespace pliant
