@@ -60,7 +60,7 @@ void PlayRun::set(const std::string& object, const std::string& key, double valu
       in.say(done.error().message());
       return;
     }
-    const std::uint64_t at = in.realtime ? in.parts->clock->now() + 1 : in.parts->ticks;
+    const std::uint64_t at = in.realtime ? in.parts->clock()->now() + 1 : in.parts->ticks;
     in.past.edits.push_back({at, object, key, value});
   });
 }

@@ -97,12 +97,12 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
         done = path.error();
         break;
       }
-      Path again = run.options_.repeats && !path->rows.empty() && !path->repeats
-                       ? repeated(*path, std::max(period, period_of(*path)))
-                       : std::move(path).value();
+      Path followed = run.options_.repeats && !path->rows.empty() && !path->repeats
+                          ? repeated(*path, std::max(period, period_of(*path)))
+                          : std::move(path).value();
       if (source.from > 0.0)
-        for (PathRow& row : again.rows) row.time += source.from;
-      done = session->follow(name, std::move(again));
+        for (PathRow& row : followed.rows) row.time += source.from;
+      done = session->follow(name, std::move(followed));
       break;
     }
     case PlaySource::Kind::kMouse: {
@@ -220,6 +220,7 @@ void PlayRun::Inside::begin_past(const PlayPast& of, std::uint64_t to) {
 // The moment that was reached becomes the present.
 void PlayRun::Inside::end_past() {
   again = false;
+  parts->replay.reset();
   parts->replayed.reset();
   const std::vector<PlaySource> wanted = sources;
   moved.clear();

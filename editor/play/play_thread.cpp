@@ -197,7 +197,7 @@ void PlayRun::Inside::move_hand(double dt) {
   SessionEffector& effector = *parts->find_effector(moved);
   const ProbeHold hold = run.hand.probe_hold();
   if (!(hold == effector.hold) && !past_full) {
-    const std::uint64_t at = realtime && parts->clock ? parts->clock->now() + 1 : parts->ticks;
+    const std::uint64_t at = realtime && parts->clock() ? parts->clock()->now() + 1 : parts->ticks;
     past.holds.push_back({at, static_cast<std::uint32_t>(&effector - parts->effectors.data()), hold});
   }
   effector.hold = hold;
@@ -325,7 +325,7 @@ void PlayRun::show(Inside& in) {
     in.hash = fmt::format("{:016x}", hash.value());
     if (auto findings = in.session->findings()) in.findings = std::move(findings).value();
   }
-  const std::uint64_t tick = in.realtime && p.clock ? p.clock->now() + 1 : p.ticks;
+  const std::uint64_t tick = in.realtime && p.clock() ? p.clock()->now() + 1 : p.ticks;
   if (const double over = seconds_since(in.paced_ns); over > kPaceOver) {
     in.pace = static_cast<double>(tick - in.paced_tick) / p.world.simulation.touch_rate / over;
     in.paced_ns = now_ns();
@@ -346,7 +346,9 @@ void PlayRun::show(Inside& in) {
   DevicesView devices;
   in.view(devices);
   devices.late_ticks = next.figures.overruns;
-  const SoftFigures* const soft = !p.soft->any() ? nullptr : p.clock ? &in.parts->soft->latest() : &p.soft->figures();
+  const SoftFigures* const soft = !p.runner->soft().any() ? nullptr
+                                  : p.clock()             ? &in.parts->runner->soft().latest()
+                                                          : &p.runner->soft().figures();
   const std::lock_guard lock(mutex_);
   if (figures) status_.figures = next.figures;
   status_.effectors = std::move(next.effectors);

@@ -2,9 +2,6 @@
 
 #include "content/level_file.h"
 #include "editor/play/scene_view.h"
-#include "systems/soft/prepare_soft.h"
-#include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
 
 namespace pliant {
 
@@ -12,8 +9,7 @@ Result<std::shared_ptr<World>> world_of(const Level& level) {
   auto spawned = spawn(level);
   if (!spawned) return spawned.error();
   auto world = std::make_shared<World>(std::move(spawned).value());
-  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
-    if (const Status status = prepare_system(*world); !status) return status.error();
+  if (const Status status = prepare_world(*world); !status) return status.error();
   return world;
 }
 

@@ -10,15 +10,13 @@
 #include "engine/choice/alone.h"
 #include "runtime/clock.h"
 #include "systems/device/path.h"
+#include "systems/prepare_world.h"
 #include "systems/schedule.h"
 #include "systems/soft/body/coupling.h"
 #include "systems/soft/body/rotation_vector.h"
-#include "systems/soft/prepare_soft.h"
 #include "systems/soft/soft_state.h"
-#include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_step.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/prepare.h"
 
 namespace pliant {
 namespace {
@@ -77,9 +75,7 @@ std::size_t stride_of(std::size_t ticks, std::size_t length, std::size_t tetrahe
 }
 
 Status prepare_all(World& world) {
-  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
-    if (Status s = prepare_system(world); !s) return s;
-  return Done{};
+  return prepare_world(world);
 }
 
 ToolTouchState& tool_of(World& world) {

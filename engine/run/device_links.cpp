@@ -143,32 +143,23 @@ Status DeviceLinks::may_step() const {
   return Done{};
 }
 
-void DeviceLinks::before(World& world, Tick tick) {
-  for (Held& held : links_) held.link.read(world.registry.get<HapticDevice>(held.device), tick);
-}
-
-void DeviceLinks::after(World& world, Tick tick) {
-  for (Held& held : links_) held.link.write(world, held.hand, held.device, tick);
-}
-
-void DeviceLinks::hook(World& world, TouchHooks& hooks) {
-  if (!any()) return;
-  hooks.before = [this, &world, then = std::move(hooks.before)](Tick tick) {
-    before(world, tick);
-    if (then) then(tick);
+TickPart DeviceLinks::tick_part(World& world) {
+  TickPart made;
+  made.before = [this, &world](Tick tick) {
+    for (Held& held : links_) held.link.read(world.registry.get<HapticDevice>(held.device), tick);
   };
-  hooks.after = [this, &world, then = std::move(hooks.after)](Tick tick) {
-    after(world, tick);
-    if (then) then(tick);
+  made.after = [this, &world](Tick tick) {
+    for (Held& held : links_) held.link.write(world, held.hand, held.device, tick);
   };
-  hooks.idle = [this, then = std::move(hooks.idle)](Tick tick) {
+  made.idle = [this](Tick) {
     for (Held& held : links_) held.link.idle(), held.link.forget();
-    if (then) then(tick);
   };
-  hooks.end = [this, then = std::move(hooks.end)] {
+  made.end = [this] {
     for (Held& held : links_) held.link.zero();
-    if (then) then();
   };
+  made.start = [this] { return start(); };
+  made.halt = [this] { halt(); };
+  return made;
 }
 
 Status DeviceLinks::start() {

@@ -9,8 +9,8 @@
 #include "components/world.h"
 #include "engine/run/device_view.h"
 #include "engine/run/driver_link.h"
+#include "engine/run/runner.h"
 #include "engine/run/simulated_hands.h"
-#include "engine/run/touch_clock.h"
 
 namespace pliant {
 
@@ -33,12 +33,8 @@ class DeviceLinks {
   Status may_step() const;
 
   // --- Around a tick
-  void before(World& world, Tick tick);
-  void after(World& world, Tick tick);
-  // Real time: the hooks of a touch clock do both, and what else a loop does after them.
-  void hook(World& world, TouchHooks& hooks);
-  Status start();
-  void halt() noexcept;
+  // Samples come in before it, forces leave after it; paused devices are let go. Outlives the runner.
+  TickPart tick_part(World& world);
   // --- The thread's that started them
   // What is shown of each, and of the hands that none moves; `late_ticks` is left to the caller.
   void view(DevicesView& out);
@@ -57,6 +53,8 @@ class DeviceLinks {
     std::string id, called;                // "falcon:0|scale=2"; as people call it
     SimulatedDevice* simulated = nullptr;  // in a simulated hand
   };
+  Status start();
+  void halt() noexcept;
   void begin(World& world, Held opened, dvec3 middle, std::vector<std::string>& notes);
   std::vector<Held> links_;
   std::vector<DevicesView::Other> others_;

@@ -78,8 +78,6 @@ void Journal::note(const World& world, Tick tick) {
       row.device_position = device->position;
       row.device_rotation = device->rotation;
       row.torque = device->torque_sent;
-      row.device_ready = device->status == DeviceStatus::kReady;
-      row.device_felt = !safety_[i].force || safety_[i].force->felt;
     }
     row.limited = safety_[i].now();
     if (world.registry.has<Probe>(probes_[i])) note_probe(world, probes_[i], hands_[i], row);

@@ -22,14 +22,13 @@ struct TickRow {
   double time = 0.0;        // [s]
   std::uint32_t probe = 0;  // index into Journal::probes()
   ProbeReading reading;
-  dvec3 device_position{0};  // [m] world, as sensed: what a recording keeps
+  dvec3 device_position{0};  // [m] world, as sensed
   dquat device_rotation{1, 0, 0, 0};
   dvec3 torque{0};            // [N m] world, on the hand
   std::uint32_t objects = 0;  // touched; of a tool by the last soft step, itself left out
-  bool device_ready = false, device_felt = true;
-  std::uint8_t limited = 0;  // 1 << SafetyLimit: what kept the hand from what the law says (systems/safety/safety.h)
-  bool late = false;         // of a tool: its contacts were not solved within the tick's budget
-  bool stale = false;        // of a tool: its model is older than kStaleSteps soft steps
+  std::uint8_t limited = 0;   // 1 << SafetyLimit: what kept the hand from what the law says (systems/safety/safety.h)
+  bool late = false;          // of a tool: its contacts were not solved within the tick's budget
+  bool stale = false;         // of a tool: its model is older than kStaleSteps soft steps
 };
 
 struct AwakeStats {

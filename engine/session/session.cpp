@@ -13,7 +13,6 @@
 #include "runtime/long_work.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/soft_state.h"
-#include "systems/tool/prepare_tools.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
@@ -144,12 +143,9 @@ Status Session::step(std::uint64_t ticks) {
                                                   p.replayed->ticks.size())};
         break;
       }
-      const Tick tick = p.replayed ? p.replayed_tick() : Tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
-      if (p.replayed) p.replay_events(tick.index);
-      p.soft->reach(tick.time);
-      p.before(tick);
-      p.schedule->run(p.world, tick);
-      p.after(tick);
+      const Tick tick = p.replay ? p.replay->begin_tick(p.ticks) : Tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
+      if (p.replay) p.replay_events(tick.index);
+      p.runner->step(tick);
       p.note_history(tick);
       if (p.recorder && p.ticks % (p.recorder->room() / 2) == 0) p.recorder->drain();
       ++p.ticks;
@@ -174,51 +170,38 @@ Status Session::start() {
   if (p.ticks > 0) return Error{"Session::start", "it has run before; call Session::restart() first"};
   if (p.ended) return Error{"Session::start", std::string(p.ended) + "; call Session::restart() first"};
   if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
-  limit_tool_ticks(p.world);
   if (Status s = p.start_drivers(); !s) return s;
   p.ended = "it has run in real time";
   p.history = {};
   p.history.lacking = "it has run in real time, whose steps fall otherwise every time";
-  TouchHooks hooks{[&p](Tick tick) { p.before(tick); }, [&p](Tick tick) { p.after(tick); }, [&p](Tick) { p.idle(); },
-                   [&p] { p.clock_ended(); }};
-  p.clock = std::make_unique<TouchClock>(p.world, *p.schedule, p.soft.get(), p.world.simulation.touch_rate,
-                                         std::numeric_limits<std::uint64_t>::max(), std::move(hooks));
-  try {
-    if (p.recorder) p.recorder->start();
-    p.clock->start();
-  } catch (const std::exception& thrown) {
-    p.clock.reset();
-    p.halt_drivers();
-    p.end("its clocks did not start");
-    return Error{"Session::start", std::string("no thread could be started (") + thrown.what() +
-                                       "); end other programs or raise the limit (ulimit -u), then call "
-                                       "Session::restart()"};
-  }
-  return Done{};
+  if (p.recorder) p.recorder->start();
+  Status started = p.runner->start(std::numeric_limits<std::uint64_t>::max());
+  if (started) return started;
+  p.halt_drivers();
+  p.end("its clocks did not start");
+  return Error{"Session::start", started.error().what + ", then call Session::restart()"};
 }
 
 Status Session::pause(bool paused) {
-  if (!parts_->clock) return Error{"Session::pause", "the clocks do not run; call Session::start() first"};
-  parts_->clock->pause(paused);
+  if (!parts_->clock()) return Error{"Session::pause", "the clocks do not run; call Session::start() first"};
+  parts_->runner->pause(paused);
   return Done{};
 }
 
 bool Session::running() const {
-  return parts_->clock && !parts_->clock->done();
+  return parts_->clock() && !parts_->clock()->done();
 }
 
 Status Session::stop() {
   Parts& p = *parts_;
-  if (!p.clock) return Done{};
-  p.clock->stop();
+  if (!p.clock()) return Done{};
+  p.runner->stop();
   p.halt_drivers();
   p.rows.acquire();
-  p.ticks = p.clock->now() + 1;
+  p.ticks = p.runner->reached() + 1;
   p.time = static_cast<double>(p.ticks) / p.world.simulation.touch_rate;
-  p.overruns = p.clock->overruns();
-  const std::optional<Error> failed = p.clock->error() ? p.clock->error() : p.soft->error();
-  p.clock.reset();
-  if (failed) return *failed;
+  p.overruns = p.runner->overruns();
+  if (p.runner->error()) return *p.runner->error();
   return Done{};
 }
 
@@ -229,14 +212,15 @@ Status Session::restart() {
     const Status ended = end_recording();
     if (stopped && !ended) stopped = ended;
   }
+  parts_->replay.reset();
   parts_->replayed.reset();
   if (Status s = parts_->prepare(); !s) return s;
   return stopped;
 }
 
 double Session::time() const {
-  if (!parts_->clock) return parts_->time;
-  return static_cast<double>(parts_->clock->now()) / parts_->world.simulation.touch_rate;
+  if (!parts_->clock()) return parts_->time;
+  return static_cast<double>(parts_->clock()->now()) / parts_->world.simulation.touch_rate;
 }
 
 }  // namespace pliant

@@ -16,7 +16,7 @@ constexpr const char* kNoSurface = "is not deformable (it has no PLIANT_deformab
 Result<Reading> Session::reading(const std::string& name) const {
   const SessionEffector* const effector = parts_->find_effector(name);
   if (!effector) return parts_->unknown_effector(name);
-  if (parts_->clock) parts_->rows.acquire();
+  if (parts_->clock()) parts_->rows.acquire();
   EffectorRow row = parts_->rows.read()[static_cast<std::size_t>(effector - parts_->effectors.data())];
   parts_->name_contacts(row);
   return row.reading;
@@ -25,18 +25,13 @@ Result<Reading> Session::reading(const std::string& name) const {
 SessionFigures Session::figures() const {
   const Parts& p = *parts_;
   SessionFigures out;
-  if (p.clock) {
-    const TouchFigures& prescribed = p.clock->figures();
-    out = {p.clock->now() + 1, prescribed.p50,      prescribed.p99,
-           prescribed.max,     prescribed.overruns, p.soft->latest().steps};
-  } else {
-    const Histogram& cost = p.schedule->total();
-    out = {p.ticks,
-           cost.percentile_us(0.5),
-           cost.percentile_us(0.99),
-           cost.max_us(),
-           p.overruns,
-           p.soft ? p.soft->figures().steps : 0};  // none after a restart that failed
+  if (p.clock()) {
+    const TouchFigures& newest = p.clock()->figures();
+    out = {p.clock()->now() + 1, newest.p50, newest.p99, newest.max, newest.overruns, p.runner->soft().latest().steps};
+  } else if (p.runner) {  // none after a restart that failed
+    const Histogram& cost = p.runner->schedule().total();
+    out = {p.ticks,    cost.percentile_us(0.5),         cost.percentile_us(0.99), cost.max_us(),
+           p.overruns, p.runner->soft().figures().steps};
   }
   return out;
 }
@@ -54,7 +49,7 @@ Result<std::vector<std::string>> Session::findings() const {
 }
 
 void Session::Parts::look() {
-  if (clock)
+  if (clock())
     view.take(world);
   else
     view.take_all(world, {ticks, 1.0 / world.simulation.touch_rate, time});
@@ -96,7 +91,7 @@ Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out)
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   if (!p.world.registry.has<Deformable>(*entity)) return Error{"`" + object + "`", kNoSurface};
-  if (p.clock) p.rows.acquire();
+  if (p.clock()) p.rows.acquire();
   const Mesh& mesh = *collision_mesh_of(p.world, *entity);
   std::vector<vec3> on_vertex(mesh.vertex_count, vec3(0));
   std::vector<float> copies(mesh.vertex_count, 0.0f);

@@ -13,13 +13,10 @@
 #include "runtime/long_work.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
+#include "systems/prepare_world.h"
 #include "systems/safety/safety.h"
-#include "systems/schedule.h"
-#include "systems/soft/prepare_soft.h"
 #include "systems/soft/under_gravity.h"
-#include "systems/tool/prepare_tools.h"
 #include "systems/touch/local_model.h"
-#include "systems/touch/prepare.h"
 #include "systems/touch/touch_state.h"
 
 namespace pliant {
@@ -59,7 +56,7 @@ Error work_stopped() {
 }
 
 Session::Parts::~Parts() {
-  if (clock) clock->stop();
+  if (runner) runner->stop();
   for (SessionEffector& effector : effectors) effector.link.close();
   if (recorder) static_cast<void>(recorder->finish());
 }
@@ -100,8 +97,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   begin_part(0.4, 0.7);
   auto spawned = spawn_level(scene.level(), &notes);
   if (!spawned) return spawned.error();
-  clock.reset();
-  soft.reset();
+  runner.reset();
   world = std::move(spawned).value();
   ticks = overruns = 0;
   history = {};
@@ -135,8 +131,7 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   restore_bodies();
   begin_part(0.7, 1.0);
   const std::vector<std::string> found = tissue_findings(world);
-  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
-    if (Status s = prepare_system(world); !s) return s;
+  if (Status s = prepare_world(world); !s) return s;
   for (std::string& sentence : tissue_findings(world))
     if (std::find(found.begin(), found.end(), sentence) == found.end()) notes.push_back(std::move(sentence));
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
@@ -148,8 +143,13 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   for (const SessionEffector& effector : effectors)
     devices.emplace(effector.name, world.registry.get<HapticDevice>(effector.device));
 
-  schedule.emplace(touch_schedule());
-  soft = std::make_unique<SoftClock>(world);
+  runner = std::make_unique<Runner>(world);
+  TickPart own;
+  own.before = [this](Tick tick) { this->before(tick); };
+  own.after = [this](Tick tick) { after(tick); };
+  own.idle = [this](Tick) { idle(); };
+  own.end = [this] { clock_ended(); };
+  runner->attach(std::move(own));
   after_pause = false;
   shown = true;
   time = 0.0;
@@ -204,7 +204,7 @@ Result<Entity> Session::Parts::find_object(const std::string& name) const {
 }
 
 Status Session::Parts::stand_still(const char* what) const {
-  if (clock) return Error{what, "the clocks are running; call Session::stop() first"};
+  if (clock()) return Error{what, "the clocks are running; call Session::stop() first"};
   return Done{};
 }
 
@@ -311,12 +311,12 @@ void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
   if (effector.prescribed->acquire()) {
     const PrescribedPose& to = effector.prescribed->read();
     const double since = tick.time - effector.heard_at;
-    effector.lasts = clock && effector.placed ? std::clamp(since, tick.dt, kLongestWay) : tick.dt;
+    effector.lasts = clock() && effector.placed ? std::clamp(since, tick.dt, kLongestWay) : tick.dt;
     effector.from = effector.placed ? effector.now : to;
     effector.heard_at = tick.time;
     effector.placed = true;
   }
-  if (clock && tick.time - effector.heard_at > kPrescribedHolds) effector.placed = false;  // it grows stale
+  if (clock() && tick.time - effector.heard_at > kPrescribedHolds) effector.placed = false;  // it grows stale
   if (!effector.placed) return;
   const PrescribedPose& to = effector.prescribed->read();
   const double share = std::min(1.0, (tick.time - effector.heard_at + tick.dt) / effector.lasts);

@@ -16,9 +16,10 @@
 #include "components/world.h"
 #include "content/level/level.h"
 #include "engine/run/driver_link.h"
+#include "engine/run/pose_recorder.h"
 #include "engine/run/recording.h"
-#include "engine/run/soft_clock.h"
-#include "engine/run/touch_clock.h"
+#include "engine/run/replay.h"
+#include "engine/run/runner.h"
 #include "engine/session/object_shape.h"
 #include "engine/session/session_history.h"
 #include "engine/session/session_view.h"
@@ -26,7 +27,6 @@
 #include "pliant/session.h"
 #include "runtime/exchange.h"
 #include "runtime/recorder.h"
-#include "runtime/schedule.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/touch/contact_energy.h"
 #include "systems/touch/local_model.h"
@@ -72,51 +72,6 @@ struct EffectorRow {
   std::array<vec3, Reading::kMostContacts> weights{};  // [1] barycentric
 };
 
-// One probe's or tool's pose of one tick, on its way into a recording.
-struct PoseRow {
-  std::uint64_t tick = 0;
-  std::uint32_t effector = 0;
-  RecordedPose pose;
-};
-
-// A recording that is being written. Rows come from the clock; who owns the session, or a thread of its own in real
-// time, writes them.
-class SessionRecorder {
- public:
-  SessionRecorder(RecordingWriter writer, std::size_t effectors);
-  // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh.
-  // `felt`: its guard let the force leave.
-  void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready, bool felt);
-  // Owner: an event on its way to the touch clock; its number. Touch clock: the tick that it takes effect in.
-  std::uint32_t announce(const RecordedEvent& event);
-  void stamp(std::uint32_t number, std::uint64_t tick) { stamps_.record({number, tick}); }
-  void write_now(const RecordedEvent& event) { writer_.event(event); }  // before the first tick
-  void drain();
-  std::size_t room() const { return room_; }  // [ticks] that may wait
-  void start();                               // a thread drains from now on
-  Status finish();
-
- private:
-  RecordingWriter writer_;
-  std::size_t room_;                   // [ticks] that may wait
-  std::vector<RecordedPose> last_;     // touch clock's: the last that was a pose, of each
-  std::vector<RecordedPose> pending_;  // of the tick under way
-  std::uint64_t pending_tick_ = 0;
-  Recorder<PoseRow> rows_;
-  std::vector<PoseRow> taken_;
-  struct Stamp {
-    std::uint32_t number = 0;
-    std::uint64_t tick = 0;
-  };
-  void write_events(std::uint64_t until);
-  Recorder<Stamp> stamps_;
-  std::mutex events_mutex_;              // between the owner and the thread that writes
-  std::deque<RecordedEvent> announced_;  // by number, from first_announced_ on
-  std::uint32_t first_announced_ = 1, next_announced_ = 1;
-  std::vector<Stamp> stamped_;  // in order, not yet written
-  std::jthread thread_;
-};
-
 // Parameters that change between ticks, all of their kind: what the touch clock takes of them.
 struct SurfaceSetting {
   DeformableParameters now;
@@ -157,10 +112,8 @@ struct Session::Parts {
   std::map<std::string, DeviceParameters> devices;
   std::map<std::string, LevelNode> bodies;  // soft and rigid bodies, probes and tools: those extensions alone
 
-  std::optional<Schedule<World>> schedule;
-  std::unique_ptr<SoftClock> soft;
-  std::unique_ptr<TouchClock> clock;  // null: lockstep
-  std::uint64_t ticks = 0;            // done, in lockstep and in earlier real time
+  std::unique_ptr<Runner> runner;  // of this world; null after a restart that failed
+  std::uint64_t ticks = 0;         // done, in lockstep and in earlier real time
   std::uint64_t overruns = 0;
   const char* ended = nullptr;                          // why no tick may run until restart()
   double time = 0.0;                                    // [s] where the next lockstep tick begins
@@ -168,8 +121,9 @@ struct Session::Parts {
   mutable TripleBuffer<std::vector<EffectorRow>> rows;  // touch clock -> owner
   SessionView view;                                     // owner's
   std::shared_ptr<int> run;                             // of this world: whoever looks at it knows when it has gone
-  std::unique_ptr<SessionRecorder> recorder;            // null: nothing is recorded
+  std::unique_ptr<PoseRecorder> recorder;               // null: nothing is recorded
   std::optional<Recording> replayed;
+  std::optional<Replay> replay;                 // of `replayed`
   std::map<std::string, std::string> settings;  // NODE.EXT.KEY -> value: what set() changed
   bool after_pause = false;                     // touch clock's: the next tick is the first after a pause
   Tick last;                                    // touch clock's: the tick under way, or the last
@@ -204,7 +158,8 @@ struct Session::Parts {
   Result<Entity> find_object(const std::string& name) const;
   Result<DriverLink*> find_link(const std::string& name, const char* what);
   Error unknown_effector(const std::string& name) const;
-  Status stand_still(const char* what) const;  // an error while the clocks run
+  TouchClock* clock() const { return runner ? runner->clock() : nullptr; }  // null: lockstep
+  Status stand_still(const char* what) const;                               // an error while the clocks run
 
   Status may_give(const SessionEffector& effector) const;  // not if it has a source, or replays
   Status give(SessionEffector& effector, EffectorSource source);
@@ -248,14 +203,13 @@ struct Session::Parts {
   enum class Setting : std::uint8_t { kSend, kKeep };
   Status apply_setting(const std::string& setting, Setting how);
   // In an order in which they hold: a coefficient of sliding friction is below that of static friction. Those refused.
-  std::vector<Error> apply_settings(std::vector<std::string> settings, Setting how);
+  std::vector<Error> apply_settings(std::vector<std::string> waiting, Setting how);
   void note_history(Tick tick);
   SavedState saved_state() const;
   Status run_again(SavedState state);  // from time 0, in a new world
   void go_on(const SavedState& state, std::vector<EffectorSource>& sources, std::vector<DriverLink>& links,
              std::vector<HapticDevice>& devices_before);
   void replay_events(std::uint64_t tick);  // those that take effect before it
-  Tick replayed_tick();                    // its poses are the devices' then
   void read_prescribed(SessionEffector& effector, Tick tick);
   Status start_drivers();  // of real time; those that did are halted where one does not
   void halt_drivers() noexcept;

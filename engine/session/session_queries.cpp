@@ -60,7 +60,7 @@ const std::optional<TriangleBoxes>& boxes_of(Session::Parts& p, std::size_t obje
 }  // namespace
 
 void Session::Parts::see() {
-  if (!clock && looked == ticks + 1) return;
+  if (!clock() && looked == ticks + 1) return;
   look();
   looked = ticks + 1;
 }

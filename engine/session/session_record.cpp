@@ -16,92 +16,6 @@
 #include "systems/safety/safety.h"
 
 namespace pliant {
-namespace {
-
-constexpr std::size_t kMostStamps = 4096;  // events that may wait to be written
-constexpr std::size_t kRoom = 8192;        // ticks that may wait to be written
-constexpr auto kDrainEvery = std::chrono::milliseconds(20);
-
-std::size_t room_for(std::size_t effectors) {
-  return std::clamp<std::size_t>(most(limits::kJournal) / (sizeof(PoseRow) * effectors), 2, kRoom);
-}
-
-}  // namespace
-
-SessionRecorder::SessionRecorder(RecordingWriter writer, std::size_t effectors)
-    : writer_(std::move(writer)),
-      room_(room_for(effectors)),
-      last_(effectors),
-      rows_(room_ * effectors),
-      stamps_(kMostStamps) {}
-
-void SessionRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready,
-                           bool felt) {
-  RecordedPose& last = last_[effector];
-  const bool sound = plausible_position(device.position) && plausible_rotation(device.rotation);
-  if (sound) last = {device.position, device.rotation / glm::length(device.rotation), ready};
-  last.ready = sound && ready;
-  last.felt = felt;
-  rows_.record({tick, effector, last});
-}
-
-std::uint32_t SessionRecorder::announce(const RecordedEvent& event) {
-  const std::lock_guard lock(events_mutex_);
-  announced_.push_back(event);
-  return next_announced_++;
-}
-
-// Stamps are drained after the rows: those of the rows' ticks and of earlier ones are there.
-void SessionRecorder::write_events(std::uint64_t until) {
-  const std::lock_guard lock(events_mutex_);
-  std::size_t done = 0;
-  for (; done < stamped_.size() && stamped_[done].tick <= until; ++done) {
-    while (first_announced_ < stamped_[done].number) announced_.pop_front(), ++first_announced_;
-    RecordedEvent event = announced_.front();
-    announced_.pop_front(), ++first_announced_;
-    event.tick = stamped_[done].tick;
-    writer_.event(event);
-  }
-  stamped_.erase(stamped_.begin(), stamped_.begin() + static_cast<std::ptrdiff_t>(done));
-}
-
-// A full ring, or a tick that ended in its middle, leaves a part of a tick: it is left out.
-void SessionRecorder::drain() {
-  taken_.clear();
-  rows_.drain(taken_);
-  stamps_.drain(stamped_);
-  for (const PoseRow& row : taken_) {
-    if (row.effector == 0) {
-      pending_.clear();
-      pending_tick_ = row.tick;
-    }
-    if (row.tick != pending_tick_ || row.effector != pending_.size()) continue;
-    pending_.push_back(row.pose);
-    if (pending_.size() < last_.size()) continue;
-    write_events(row.tick);
-    writer_.tick(row.tick);
-    for (const RecordedPose& pose : pending_) writer_.pose(pose);
-  }
-}
-
-void SessionRecorder::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-      drain();
-      std::this_thread::sleep_for(kDrainEvery);
-    }
-  });
-}
-
-Status SessionRecorder::finish() {
-  if (thread_.joinable()) thread_.request_stop(), thread_.join();
-  drain();
-  if (Status written = writer_.finish(); !written) return written;
-  if (rows_.lost() > 0)
-    return Error{"recording",
-                 fmt::format("{} poses were lost because writing fell behind; use a faster disk", rows_.lost())};
-  return Done{};
-}
 
 Status Session::record(const std::filesystem::path& file, bool replace) {
   Parts& p = *parts_;
@@ -116,7 +30,7 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
       header.settings.push_back(std::move(setting));
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
-  p.recorder = std::make_unique<SessionRecorder>(std::move(writer).value(), p.effectors.size());
+  p.recorder = std::make_unique<PoseRecorder>(std::move(writer).value(), p.effectors.size());
   // What holds from before. Parameters and drivers are in the header.
   std::vector<RecordedEvent> holds = p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing;
   if (p.ticks > 0)
@@ -177,25 +91,8 @@ void Session::Parts::begin_replay(Recording recording) {
     world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;
   }
   replayed = std::move(recording);
+  replay.emplace(world, *replayed);
   replayed_events = 0;
-}
-
-Tick Session::Parts::replayed_tick() {
-  const double dt = 1.0 / world.simulation.touch_rate;
-  const std::size_t n = static_cast<std::size_t>(ticks);
-  const std::uint64_t index = replayed->ticks[n], next = n > 0 ? replayed->ticks[n - 1] + 1 : index;
-  const Tick tick{index, dt, static_cast<double>(index) * dt,
-                  index > next ? static_cast<double>(index - next) * dt : 0.0};
-  for (std::size_t i = 0; i < effectors.size(); ++i) {
-    const RecordedPose& pose = replayed->poses[n * effectors.size() + i];
-    HapticDevice& device = world.registry.get<HapticDevice>(effectors[i].device);
-    device.position = pose.position;
-    device.rotation = pose.rotation;
-    device.status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
-    if (SafetyState* const safety = safety_of(world, effectors[i].entity)) safety->felt = pose.felt;
-    device.sensed_at = tick.time;
-  }
-  return tick;
 }
 
 Status export_recording(const std::filesystem::path& file, const std::filesystem::path& csv) {

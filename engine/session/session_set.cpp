@@ -306,18 +306,18 @@ Status Session::Parts::apply_setting(const std::string& setting, Setting how) {
   return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
 }
 
-std::vector<Error> Session::Parts::apply_settings(std::vector<std::string> settings, Setting how) {
+std::vector<Error> Session::Parts::apply_settings(std::vector<std::string> waiting, Setting how) {
   std::vector<Error> refused;
-  for (std::size_t before = settings.size() + 1; settings.size() < before;) {
-    before = settings.size();
+  for (std::size_t before = waiting.size() + 1; waiting.size() < before;) {
+    before = waiting.size();
     refused.clear();
     std::vector<std::string> again;
-    for (const std::string& setting : settings)
+    for (const std::string& setting : waiting)
       if (Status applied = apply_setting(setting, how); !applied) {
         refused.push_back(applied.error());
         again.push_back(setting);
       }
-    settings = std::move(again);
+    waiting = std::move(again);
   }
   return refused;
 }

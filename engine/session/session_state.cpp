@@ -144,10 +144,7 @@ Status Session::Parts::run_again(SavedState state) {
       device.status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
       if (SafetyState* const safety = safety_of(world, effectors[i].entity)) safety->felt = pose.felt;
     }
-    soft->reach(tick.time);
-    before(tick);
-    schedule->run(world, tick);
-    after(tick);
+    runner->step(tick);
     time = tick.time + dt;
   }
   history.poses = std::move(state.history.poses);
@@ -213,7 +210,7 @@ Status Session::restore_state(const std::vector<std::uint8_t>& bytes) {
 Status Session::add(const Scene& more) {
   Parts& p = *parts_;
   const char* const kAdd = "Session::add";
-  if (p.clock) return Error{kAdd, "the clocks are running; open the session with it, and take it out before start()"};
+  if (p.clock()) return Error{kAdd, "the clocks are running; open the session with it, and take it out before start()"};
   if (p.recorder) return Error{kAdd, "a recording is under way; call Session::end_recording() first"};
   if (p.replayed) return Error{kAdd, "a recording is replayed; call Session::restart() first"};
   if (p.ended || p.history.lacking)

@@ -57,12 +57,13 @@ void Keeper::keep(Journal& journal) {
   journal.drain(rows_);
   for (const TickRow& row : rows_) keep(row);
   if (bodies_) bodies_->keep();
+  if (recorder_) recorder_->drain();
   if (const std::optional<Error>& full = failure(); full && interrupt_) interrupt_->end(*full);
 }
 
 const std::optional<Error>& Keeper::failure() const {
   if (bodies_ && bodies_->failure()) return bodies_->failure();
-  if (recording_ && recording_->failure()) return recording_->failure();
+  if (recorder_ && recorder_->failure()) return recorder_->failure();
   return csv_->failure();
 }
 
@@ -109,27 +110,18 @@ void Keeper::keep(const TickRow& row) {
   if (placed && summary.contact_ticks == 0) summary.approach.add(r.position, touchable_);
 
   if (row.probe < traces_.size()) traces_[row.probe].add(row.tick, r, row.limited);
-  if (recording_) record(row);
 }
 
-// A full ring may have lost a part of a tick; such a tick is left out.
-void Keeper::record(const TickRow& row) {
-  if (row.probe == 0) {
-    pending_.clear();
-    pending_tick_ = row.tick;
-  }
-  if (row.tick != pending_tick_ || row.probe != pending_.size()) return;
-  pending_.push_back({row.device_position, row.device_rotation, row.device_ready, row.device_felt});
-  if (pending_.size() < names_.size()) return;
-  recording_->tick(row.tick);
-  for (const RecordedPose& pose : pending_) recording_->pose(pose);
+PoseRecorder& Keeper::record_to(RecordingWriter writer) {
+  recorder_ = std::make_unique<PoseRecorder>(std::move(writer), names_.size());
+  return *recorder_;
 }
 
 Status Keeper::finish() {
   std::vector<Status> closed{csv_->close()};
   if (bodies_) closed.push_back(bodies_->finish());
-  if (recorded_nothing()) recording_.reset();
-  if (recording_) closed.push_back(recording_->finish());
+  if (recorded_nothing()) recorder_.reset();
+  if (recorder_) closed.push_back(recorder_->finish());
   for (Status& status : closed)
     if (!status) return status;
   return Done{};

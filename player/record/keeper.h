@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,7 +11,7 @@
 #include "components/world.h"
 #include "content/files/growing_file.h"
 #include "engine/run/journal.h"
-#include "engine/run/recording.h"
+#include "engine/run/pose_recorder.h"
 #include "player/interrupt.h"
 #include "player/record/body_keeper.h"
 #include "player/record/trace.h"
@@ -36,7 +37,8 @@ class Keeper {
   // `csv` is where the rows go. Names are taken from the world now.
   static Result<Keeper> create(const World& world, const std::vector<Entity>& probes,
                                const std::vector<std::string>& sources, const std::filesystem::path& csv);
-  void record_to(RecordingWriter writer) { recording_.emplace(std::move(writer)); }
+  // Rows of the touch clock come from it; it is drained with the journal's.
+  PoseRecorder& record_to(RecordingWriter writer);
   void keep_bodies(BodyKeeper bodies) { bodies_.emplace(std::move(bodies)); }
 
   // A file that cannot be written any more, on a full disk, ends the run.
@@ -46,8 +48,8 @@ class Keeper {
   const std::vector<TickRow>& latest() const { return rows_; }  // what the last keep() took
   // Closes the files and the recording; the first error of any. A recording without a tick is not written.
   Status finish();
-  std::uint64_t rows() const { return kept_; }                                      // of forces.csv
-  bool recorded_nothing() const { return recording_ && recording_->ticks() == 0; }  // so far
+  std::uint64_t rows() const { return kept_; }                                    // of forces.csv
+  bool recorded_nothing() const { return recorder_ && recorder_->ticks() == 0; }  // so far
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
   const std::vector<Trace>& traces() const { return traces_; }  // of those that are plotted: the first kMaxPlotRows
@@ -55,7 +57,6 @@ class Keeper {
  private:
   Keeper() = default;
   void keep(const TickRow& row);
-  void record(const TickRow& row);
   const std::optional<Error>& failure() const;
   struct Last {
     bool any = false;   // with a place that means something
@@ -76,9 +77,7 @@ class Keeper {
   std::vector<std::string> names_;    // of the probes, quoted for CSV
   std::vector<std::string> objects_;  // by entity index, quoted
   std::optional<BodyKeeper> bodies_;
-  std::optional<RecordingWriter> recording_;
-  std::uint64_t pending_tick_ = 0;  // whose poses are being gathered: only whole ticks are recorded
-  std::vector<RecordedPose> pending_;
+  std::unique_ptr<PoseRecorder> recorder_;
 };
 
 }  // namespace pliant

@@ -22,9 +22,6 @@
 #include "player/interrupt.h"
 #include "player/print.h"
 #include "player/verbs/verbs.h"
-#include "systems/soft/prepare_soft.h"
-#include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
@@ -130,8 +127,7 @@ DeformableParameters with_parts(DeformableParameters surface) {
 Result<World> try_out(const Level& level) {
   Result<World> world = spawn(level);
   if (!world) return world;
-  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
-    if (const Status status = prepare_system(*world); !status) return status.error();
+  if (const Status status = prepare_world(*world); !status) return status.error();
   return world;
 }
 

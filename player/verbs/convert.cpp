@@ -15,8 +15,8 @@
 #include "player/print.h"
 #include "player/verbs/left_behind.h"
 #include "player/verbs/panorama_preview.h"
-#include "player/verbs/prepare_world.h"
 #include "player/verbs/verbs.h"
+#include "systems/prepare_world.h"
 
 namespace pliant {
 namespace fs = std::filesystem;

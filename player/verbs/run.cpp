@@ -17,8 +17,8 @@
 #include "engine/run/body_journal.h"
 #include "engine/run/driver_limits.h"
 #include "engine/run/journal.h"
+#include "engine/run/runner.h"
 #include "engine/run/sources.h"
-#include "engine/run/touch_clock.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
 #include "player/run/duration.h"
@@ -32,9 +32,7 @@
 #include "runtime/parallel.h"
 #include "systems/device/hands.h"
 #include "systems/hash_state.h"
-#include "systems/schedule.h"
 #include "systems/soft/soft_state.h"
-#include "systems/tool/prepare_tools.h"
 
 namespace pliant {
 namespace {
@@ -204,10 +202,11 @@ Ran run_headless(const RunOptions& options, TouchLoop& loop) {
   Ran ran;
   ran.mode = options.realtime ? "realtime" : "lockstep";
   try {
-    ran.ended = options.realtime ? run_realtime(loop, ran.overruns) : run_lockstep(loop);
+    ran.ended = options.realtime ? run_realtime(loop) : run_lockstep(loop);
   } catch (const std::exception& error) {
     ran.ended = explain(error);
   }
+  ran.overruns = loop.runner.overruns();
   if (loop.frames) {
     ran.drawn = loop.frames->figures();
     ran.pictures = loop.frames->count();
@@ -235,12 +234,12 @@ Status allow_all(const Prepared& run) {
   return Done{};
 }
 
-Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, TouchLoop& loop, Prepared& next) {
+Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, TouchLoop& loop, DeviceLinks& devices,
+              Prepared& next) {
   const RunOptions& asked = run.asked;
-  WindowSession session{*shown.window, shown.script, loop.world, loop.schedule,
-                        loop.journal,  loop.keeper,  loop.out,   loop.interrupt};
-  session.soft = loop.soft;
-  session.devices = loop.devices;
+  WindowSession session{*shown.window, shown.script, loop.runner.world(), loop.runner, loop.journal,
+                        loop.keeper,   loop.out,     loop.interrupt};
+  if (devices.any()) session.devices = &devices;
   session.level = options.level;
   session.question = question_of(run);
   session.allow = [&run] { return allow_all(run); };
@@ -249,13 +248,13 @@ Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, Touc
   if (!unread.empty()) note(unread);
   const auto keys = settings.keys.find(ui::kStopAction);
   session.stop_keys = keys == settings.keys.end() || keys->second.empty() ? ui::kStopKeys : keys->second;
-  session.rate = loop.rate;
+  session.rate = loop.runner.world().simulation.touch_rate;
   session.ticks = loop.ticks;
   session.frame_width = options.width;
   session.frame_height = options.height;
   session.frame_ticks = loop.frame_ticks;
   // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
-  const std::string field = loop.world.field_place == FieldPlace::kGpu ? "gpu" : "cpu";
+  const std::string field = loop.runner.world().field_place == FieldPlace::kGpu ? "gpu" : "cpu";
   session.open = [&options, &asked, &next, field](const std::string& file) -> std::optional<Error> {
     next = Prepared();
     std::string left;
@@ -350,6 +349,7 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
   }
   if (journal.probes().empty())
     say(run, "the level has no probe and no tool, so nothing is touched; give one with --probe NAME=orbit");
+  PoseRecorder* recorder = nullptr;
   if (!options.record.empty()) {
     RecordingHeader header{world.name, rate, {}, run.scene, run.settings};
     for (std::size_t i = 0; i < journal.probes().size(); ++i) {
@@ -363,20 +363,30 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
     auto writer = RecordingWriter::create(options.record, header, options.force);
     if (!writer) return failed(writer.error());
     interrupt.remove_if_forced(writer->aside());
-    keeper->record_to(std::move(writer).value());
+    recorder = &keeper->record_to(std::move(writer).value());
   }
   std::unique_ptr<Frames> frames;
   if (!shown)
     if (Outcome wrong = make_frames(options, run, frames)) return wrong;
 
-  Schedule<World> schedule(touch_schedule());
-  TouchLoop loop{world, schedule, journal, *keeper, *out, interrupt, rate, ticks, frames.get(), {}, nullptr};
-  loop.replay = run.replay ? &*run.replay : nullptr;
-  if (devices.any()) loop.devices = &devices;
-  if (options.realtime || shown) limit_tool_ticks(world);
-  SoftClock soft(world);
+  Runner runner(world);
+  SoftClock& soft = runner.soft();
+  std::optional<Replay> replay;
+  if (run.replay) {
+    replay.emplace(world, *run.replay);
+    TickPart withheld;
+    withheld.after = [&replay](Tick) { replay->end_tick(); };
+    runner.attach(std::move(withheld));
+  }
+  if (devices.any()) runner.attach(devices.tick_part(world));
+  TickPart noted;
+  noted.after = [&](Tick tick) {
+    if (recorder) recorder->note(world, journal.probes(), tick);
+    journal.note(world, tick);
+  };
+  runner.attach(std::move(noted));
+  TouchLoop loop{runner, journal, *keeper, *out, interrupt, ticks, frames.get(), {}, replay ? &*replay : nullptr};
   if (soft.any()) {
-    loop.soft = &soft;
     soft.note_in(*bodies);
     if (!options.record.empty() && (options.realtime || shown))
       say(run, "the steps of the soft clock are not recorded: a replay of " + options.record +
@@ -387,8 +397,8 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
     loop.frame_ticks = options.fps > 0.0 ? regular_frames(ticks, rate, options.fps) : spread_frames(ticks, spread);
   }
   Prepared other;
-  const Ran ran = shown ? run_shown(options, run, *shown, loop, other) : run_headless(options, loop);
-  soft.stop();  // where an exception left it running
+  const Ran ran = shown ? run_shown(options, run, *shown, loop, devices, other) : run_headless(options, loop);
+  runner.stop();  // where an exception left it running
   if (ran.opened) next = std::move(other);
   if (soft.any()) world.dropped |= world.soft->dropped;
   Hash hash = journal.hash();
@@ -406,7 +416,7 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
   take(finish(*keeper, journal));
 
   RunFigures figures{world,
-                     schedule,
+                     runner.schedule(),
                      journal,
                      *keeper,
                      ran.drawn ? &*ran.drawn : nullptr,
@@ -417,7 +427,7 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
                      ran.overruns,
                      explain_dropped(world.dropped),
                      fmt::format("{:016x}", hash.value()),
-                     loop.soft,
+                     soft.any() ? &soft : nullptr,
                      {},
                      wrong                   ? sentence_of(kFailed, *wrong)
                      : interrupt.requested() ? "interrupted"

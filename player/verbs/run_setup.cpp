@@ -22,11 +22,9 @@
 #include "player/verbs/content_folder.h"
 #include "systems/device/hands.h"
 #include "systems/device/repeat.h"
-#include "systems/soft/prepare_soft.h"
+#include "systems/prepare_world.h"
 #include "systems/soft/under_gravity.h"
-#include "systems/tool/prepare_tools.h"
 #include "systems/touch/local_model.h"
-#include "systems/touch/prepare.h"
 #include "systems/visual/field_cost.h"
 
 namespace pliant {
@@ -358,8 +356,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
   const std::vector<std::string> found = tissue_findings(run.world);
-  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
-    if (const Status status = prepare_system(run.world); !status) return failed(status.error());
+  if (const Status status = prepare_world(run.world); !status) return failed(status.error());
   for (const std::string& sentence : tissue_findings(run.world))
     if (std::find(found.begin(), found.end(), sentence) == found.end()) say(run, sentence);
   for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);

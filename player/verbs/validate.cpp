@@ -8,8 +8,8 @@
 #include "player/exit.h"
 #include "player/print.h"
 #include "player/verbs/content_folder.h"
-#include "player/verbs/prepare_world.h"
 #include "player/verbs/verbs.h"
+#include "systems/prepare_world.h"
 #include "systems/soft/under_gravity.h"
 
 namespace pliant {

@@ -144,7 +144,7 @@ PictureOrder WindowLoop::order(bool shown) {
   if (touch_) {
     state_.touch = touch_->figures();
     state_.paused = touch_->paused();
-    if (s_.soft) state_.soft = s_.soft->latest();
+    if (s_.runner.soft().any()) state_.soft = s_.runner.soft().latest();
   }
   if (s_.devices) {
     s_.devices->view(state_.devices);
@@ -252,22 +252,16 @@ WindowFigures WindowLoop::run() {
     figures_.ended = ready;
     return std::move(figures_);
   }
-  TouchHooks hooks;
-  hooks.after = [this](Tick tick) { s_.journal.note(s_.world, tick); };
-  if (s_.devices) s_.devices->hook(s_.world, hooks);
-  touch_.emplace(s_.world, s_.schedule, s_.soft, s_.rate, s_.ticks, hooks);
   Status status = Done{};
   try {
-    if (s_.devices) status = s_.devices->start();
-    if (status) {
-      touch_->start();
-      status = turn_until_the_end();
-    }
+    status = s_.runner.start(s_.ticks);
+    touch_ = s_.runner.clock();
+    if (status) status = turn_until_the_end();
   } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
     status = explain(error);
   }
-  touch_->stop();
-  if (s_.devices) s_.devices->halt();
+  touch_ = nullptr;
+  s_.runner.stop();
   try {
     keep();
     figures_.hung = !pictures_.wait(kHungEnd);
@@ -279,11 +273,10 @@ WindowFigures WindowLoop::run() {
   }
   figures_.opening = std::move(opening_);
   if (!Window::lost() && !figures_.hung) s_.window.hide_cursor(false);
-  if (!touch_->has_priority()) note(kNoPriority);
-  figures_.overruns = touch_->overruns();
+  if (!s_.runner.has_priority()) note(kNoPriority);
+  figures_.overruns = s_.runner.overruns();
   figures_.ended = status;
-  if (s_.soft && s_.soft->error()) figures_.ended = *s_.soft->error();
-  if (touch_->error()) figures_.ended = *touch_->error();
+  if (s_.runner.error()) figures_.ended = *s_.runner.error();
   return std::move(figures_);
 }
 

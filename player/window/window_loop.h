@@ -71,10 +71,10 @@ class WindowLoop {
   dvec3 probe_at_{0};                                 // [m] where the mouse has its probe or its tool
   dvec3 tool_at_{0};                                  // [m] world, where the device of the carried tool was last
   std::optional<std::size_t> mouse_probe_, carried_;  // numbers in the journal
-  std::optional<TouchClock> touch_;
-  std::vector<ui::Place> widgets_;  // of the last picture
-  std::string wanted_widget_;       // that a script presses once it is there
-  double wanted_since_ = 0.0;       // [s]
+  TouchClock* touch_ = nullptr;                       // null: before it starts
+  std::vector<ui::Place> widgets_;                    // of the last picture
+  std::string wanted_widget_;                         // that a script presses once it is there
+  double wanted_since_ = 0.0;                         // [s]
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
   bool wants_pull_ = false;                    // the press under way was made with Ctrl

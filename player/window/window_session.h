@@ -10,7 +10,7 @@
 #include "components/world.h"
 #include "engine/run/device_links.h"
 #include "engine/run/journal.h"
-#include "engine/run/touch_clock.h"
+#include "engine/run/runner.h"
 #include "player/interrupt.h"
 #include "player/record/keeper.h"
 #include "player/record/output_folder.h"
@@ -23,12 +23,11 @@ struct WindowSession {
   Window& window;
   InputScript& script;  // what a file says beside the hand; may be empty
   World& world;         // prepared
-  Schedule<World>& schedule;
+  Runner& runner;       // of it; devices and the journal are attached
   Journal& journal;
   Keeper& keeper;
   OutputFolder& out;
   const Interrupt& interrupt;
-  SoftClock* soft = nullptr;                  // none: nothing soft
   DeviceLinks* devices = nullptr;             // none: no device
   std::string level;                          // what `R` opens again
   std::string stop_keys;                      // of the emergency stop, "F9"

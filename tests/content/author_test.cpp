@@ -15,9 +15,6 @@
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
-#include "systems/soft/prepare_soft.h"
-#include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
 
 namespace pliant::test {
 namespace {
@@ -52,8 +49,7 @@ const LevelNode& at(const Level& level, std::int32_t node) {
 Result<World> prepared(const Level& level) {
   Result<World> world = spawn(level);
   if (!world) return world;
-  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft})
-    if (const Status status = prepare_system(*world); !status) return status.error();
+  if (const Status status = prepare_world(*world); !status) return status.error();
   return world;
 }
 

@@ -10,10 +10,8 @@
 #include "engine/run/soft_clock.h"
 #include "engine/run/sources.h"
 #include "systems/device/hands.h"
+#include "systems/prepare_world.h"
 #include "systems/schedule.h"
-#include "systems/soft/prepare_soft.h"
-#include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
 
 namespace pliant {
 namespace {
@@ -37,10 +35,8 @@ struct LateWorld {
     for (const Entity hand : hands(world)) devices.push_back(device_of(world, hand));
     if (orbits)
       for (const Entity device : devices) world.registry.get<HapticDevice>(device).driver = DriverKind::kOrbit;
-    for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft}) {
-      const Status prepared = prepare_system(world);
-      EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().message());
-    }
+    const Status prepared = prepare_world(world);
+    EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().message());
     static_cast<void>(make_orbits(world));
     if (driver == DriverKind::kExternal)
       for (const Entity device : devices) world.registry.get<HapticDevice>(device).driver = driver;

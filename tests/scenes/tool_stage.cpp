@@ -6,11 +6,9 @@
 
 #include "content/level/probe_shell.h"
 #include "content/mesh/mesh_build.h"
+#include "systems/prepare_world.h"
 #include "systems/schedule.h"
-#include "systems/soft/prepare_soft.h"
-#include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_step.h"
-#include "systems/touch/prepare.h"
 
 namespace pliant::scenes {
 namespace {
@@ -112,7 +110,7 @@ void ToolStage::prepare() {
     ASSERT(shell.ok());
     probe.shell = world.meshes.add(std::move(*shell));
   }
-  for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft}) ASSERT(prepare_system(world).ok());
+  ASSERT(prepare_world(world).ok());
 }
 
 void ToolStage::step() {
