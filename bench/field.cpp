@@ -11,10 +11,10 @@
 
 #include "bench/measure.h"
 #include "runtime/clock.h"
+#include "scenes/scenes.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/visual/field_gpu.h"
 #include "systems/visual/gpu/context.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

@@ -17,7 +17,7 @@
 #include "editor/paint/coarse.h"
 #include "editor/paint/stroke.h"
 #include "runtime/hash.h"
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

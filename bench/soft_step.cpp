@@ -21,13 +21,13 @@
 
 #include "bench/measure.h"
 #include "runtime/clock.h"
+#include "scenes/paddle.h"
 #include "systems/schedule.h"
 #include "systems/soft/linear/block_cholesky.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
-#include "tests/scenes/paddle.h"
 
 namespace pliant {
 namespace {

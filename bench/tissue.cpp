@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "scenes/tet_shapes.h"
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {

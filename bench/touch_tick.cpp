@@ -15,10 +15,10 @@
 #include "bench/measure.h"
 #include "content/mesh/mesh_build.h"
 #include "runtime/clock.h"
+#include "scenes/scenes.h"
 #include "systems/touch/field_kernels.h"
 #include "systems/touch/prepare.h"
 #include "systems/touch/touch_state.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

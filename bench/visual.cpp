@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "scenes/scenes.h"
 #include "systems/visual/gpu/context.h"
 #include "systems/visual/renderer.h"
 #include "systems/visual/upload.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <iterator>
 
-#include "player/record/csv.h"
+#include "lab/files/csv.h"
 
 namespace pliant {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "player/record/csv.h"
+#include "lab/files/csv.h"
 #include "player/record/plot.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/body/rotation_vector.h"

@@ -12,7 +12,7 @@
 #include "content/files/growing_file.h"
 #include "engine/run/journal.h"
 #include "engine/run/pose_recorder.h"
-#include "player/interrupt.h"
+#include "lab/console/interrupt.h"
 #include "player/record/body_keeper.h"
 #include "player/record/trace.h"
 #include "player/run/approach.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/world.h"
-#include "player/record/output_folder.h"
+#include "lab/files/output_folder.h"
 #include "runtime/clock.h"
 #include "runtime/histogram.h"
 #include "runtime/result.h"

@@ -10,8 +10,8 @@
 #include "engine/run/device_view.h"
 #include "engine/run/journal.h"
 #include "engine/run/soft_clock.h"
+#include "lab/files/output_folder.h"
 #include "player/record/keeper.h"
-#include "player/record/output_folder.h"
 #include "player/run/frames.h"
 #include "runtime/schedule.h"
 

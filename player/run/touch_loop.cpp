@@ -3,8 +3,8 @@
 #include <chrono>
 #include <thread>
 
-#include "player/exit.h"
-#include "player/progress.h"
+#include "lab/console/exit.h"
+#include "lab/console/progress.h"
 #include "runtime/clock.h"
 
 namespace pliant {

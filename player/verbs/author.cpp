@@ -18,9 +18,9 @@
 #include "content/level_file.h"
 #include "content/tets/tet_parts.h"
 #include "engine/pin_advice.h"
-#include "player/exit.h"
-#include "player/interrupt.h"
-#include "player/print.h"
+#include "lab/console/exit.h"
+#include "lab/console/interrupt.h"
+#include "lab/console/print.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {

@@ -6,10 +6,10 @@
 #include "content/files/limits.h"
 #include "content/keys/extension_table.h"
 #include "content/level/unit.h"
-#include "player/exit.h"
-#include "player/progress.h"
+#include "lab/console/exit.h"
+#include "lab/console/progress.h"
+#include "lab/files/content_folder.h"
 #include "player/standard_streams.h"
-#include "player/verbs/content_folder.h"
 #include "player/verbs/device_test.h"
 #include "player/verbs/options.h"
 #include "pliant/content.h"
@@ -87,6 +87,7 @@ int parse_and_run(int argc, const char* const* argv) {
   StudyOptions study_options;
   add_study(app, study_options);
   SweepOptions sweep_options;
+  sweep_options.check = check_run_arguments;
   MergeOptions merging;
   add_sweep(app, sweep_options, merging);
   FitOptions fit_options;

@@ -16,9 +16,9 @@
 #include "devices/servo/claim.h"
 #include "devices/servo/servo.h"
 #include "devices/wrappers/chain.h"
-#include "player/exit.h"
-#include "player/interrupt.h"
-#include "player/print.h"
+#include "lab/console/exit.h"
+#include "lab/console/interrupt.h"
+#include "lab/console/print.h"
 #include "pliant/drivers.h"
 #include "runtime/clock.h"
 

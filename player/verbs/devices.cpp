@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "devices/choose.h"
-#include "player/print.h"
+#include "lab/console/print.h"
 #include "player/verbs/verbs.h"
 #include "pliant/driver.h"
 #include "pliant/drivers.h"

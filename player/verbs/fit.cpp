@@ -1,10 +1,10 @@
 // pliant fit: which of the three kinds is meant.
-#include "player/fit/fit.h"
+#include "lab/fit/fit.h"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "player/exit.h"
+#include "lab/console/exit.h"
 
 namespace pliant {
 namespace {

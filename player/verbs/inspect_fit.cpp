@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "engine/choice/model_choice.h"
-#include "player/print.h"
+#include "lab/console/print.h"
 
 namespace pliant {
 namespace {

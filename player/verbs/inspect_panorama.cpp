@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "content/files/exr.h"
-#include "player/exit.h"
-#include "player/print.h"
+#include "lab/console/exit.h"
+#include "lab/console/print.h"
 
 namespace pliant {
 namespace {

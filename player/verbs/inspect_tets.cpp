@@ -11,8 +11,8 @@
 #include "content/tets/tet_findings.h"
 #include "content/tets/tet_parts.h"
 #include "content/tets/tet_quality.h"
-#include "player/exit.h"
-#include "player/print.h"
+#include "lab/console/exit.h"
+#include "lab/console/print.h"
 #include "systems/soft/under_gravity.h"
 
 namespace pliant {

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "content/level_file.h"
-#include "player/exit.h"
-#include "player/print.h"
-#include "player/verbs/content_folder.h"
+#include "lab/console/exit.h"
+#include "lab/console/print.h"
+#include "lab/files/content_folder.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {

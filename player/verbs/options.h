@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "editor/edit.h"
-#include "player/fit/fit.h"
-#include "player/plot/plot_runs.h"
-#include "player/study/study.h"
-#include "player/sweep/sweep.h"
+#include "lab/fit/fit.h"
+#include "lab/plot/plot_runs.h"
+#include "lab/study/study.h"
+#include "lab/sweep/sweep.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {

@@ -1,5 +1,5 @@
 #include "content/author/object_frame.h"
-#include "player/fit/press_model.h"
+#include "lab/fit/press_model.h"
 #include "player/verbs/options.h"
 
 namespace pliant {

@@ -10,7 +10,7 @@
 #include "content/level/device_request.h"
 #include "engine/run/recording.h"
 #include "engine/run/simulated_hands.h"
-#include "player/exit.h"
+#include "lab/console/exit.h"
 #include "player/verbs/verbs.h"
 #include "runtime/result.h"
 

@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "player/exit.h"
-#include "player/print.h"
-#include "player/verbs/content_folder.h"
+#include "lab/console/exit.h"
+#include "lab/console/print.h"
+#include "lab/files/content_folder.h"
 #include "player/verbs/verbs.h"
 #include "systems/prepare_world.h"
 #include "systems/soft/under_gravity.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "player/exit.h"
+#include "lab/console/exit.h"
 #include "player/run/touch_loop.h"
 #include "runtime/printable.h"
 #include "systems/device/mouse.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "editor/ui/script.h"
-#include "player/exit.h"
+#include "lab/console/exit.h"
 #include "runtime/printable.h"
 
 namespace pliant {

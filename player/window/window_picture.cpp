@@ -9,7 +9,7 @@
 
 #include "content/files/file_io.h"
 #include "content/files/image.h"
-#include "player/exit.h"
+#include "lab/console/exit.h"
 #include "runtime/clock.h"
 
 namespace pliant {

@@ -11,9 +11,9 @@
 #include "engine/run/device_links.h"
 #include "engine/run/journal.h"
 #include "engine/run/runner.h"
-#include "player/interrupt.h"
+#include "lab/console/interrupt.h"
+#include "lab/files/output_folder.h"
 #include "player/record/keeper.h"
-#include "player/record/output_folder.h"
 #include "player/run/frames.h"
 #include "window/window.h"
 

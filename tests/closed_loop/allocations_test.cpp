@@ -5,7 +5,7 @@
 
 #include "devices/simulated/simulated_device.h"
 #include "devices/wrappers/chain.h"
-#include "tests/scenes/count_allocations.h"
+#include "scenes/count_allocations.h"
 
 namespace pliant {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "scenes/scenes.h"
 #include "systems/safety/safety.h"
 #include "systems/schedule.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "scenes/scenes.h"
 #include "systems/schedule.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

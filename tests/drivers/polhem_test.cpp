@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "scenes/count_allocations.h"
 #include "tests/drivers/emulated_polhem.h"
-#include "tests/scenes/count_allocations.h"
 
 namespace pliant {
 namespace {

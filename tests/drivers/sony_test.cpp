@@ -6,8 +6,8 @@
 #include "devices/drivers/motion_filter.h"
 #include "devices/drivers/shaker.h"
 #include "devices/drivers/sony_pad.h"
+#include "scenes/count_allocations.h"
 #include "tests/drivers/emulated_sony.h"
-#include "tests/scenes/count_allocations.h"
 
 namespace pliant {
 namespace {

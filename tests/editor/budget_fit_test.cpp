@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "content/keys/extension_table.h"
+#include "scenes/scenes.h"
 #include "tests/editor/small_level.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

@@ -1,8 +1,8 @@
 // The panel of error budgets as a hand uses it, in a window that nobody sees.
 #include "content/level_file.h"
+#include "scenes/scenes.h"
 #include "tests/editor/small_level.h"
 #include "tests/player/command.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant::testing {
 namespace {

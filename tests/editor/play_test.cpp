@@ -18,7 +18,7 @@
 #include "editor/play/live_edits.h"
 #include "engine/run/sources.h"
 #include "pliant/driver.h"
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

@@ -9,7 +9,7 @@
 #include "engine/choice/model_choice.h"
 #include "engine/choice/solver_choice.h"
 #include "pliant/scene.h"
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

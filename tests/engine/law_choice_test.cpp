@@ -8,7 +8,7 @@
 #include "content/level_file.h"
 #include "engine/choice/model_choice.h"
 #include "pliant/session.h"
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

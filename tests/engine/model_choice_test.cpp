@@ -10,7 +10,7 @@
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
 #include "pliant/session.h"
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

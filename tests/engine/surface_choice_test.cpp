@@ -11,7 +11,7 @@
 #include "engine/choice/model_choice.h"
 #include "engine/choice/surface_truth.h"
 #include "pliant/session.h"
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

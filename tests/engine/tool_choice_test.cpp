@@ -5,7 +5,7 @@
 #include "engine/choice/model_choice.h"
 #include "engine/choice/tool_press.h"
 #include "pliant/scene.h"
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

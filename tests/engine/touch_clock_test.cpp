@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "scenes/scenes.h"
 #include "systems/schedule.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

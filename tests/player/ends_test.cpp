@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "engine/run/recording.h"
-#include "player/interrupt.h"
+#include "lab/console/interrupt.h"
 #include "tests/player/command.h"
 
 namespace pliant::testing {

@@ -4,9 +4,10 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "player/record/csv.h"
-#include "player/sweep/lines.h"
-#include "tests/player/sweep_command.h"
+#include "lab/files/csv.h"
+#include "lab/sweep/lines.h"
+#include "player/verbs/command_line.h"
+#include "tests/lab/sweep_command.h"
 
 namespace pliant::testing {
 namespace {
@@ -99,7 +100,7 @@ TEST_F(WholeFiles, NamesOfProbesNodesAndAxesAreNoFormulas) {
 TEST_F(WholeFiles, AMergeOrAPlotThatIsEndedLeavesNothing) {
   write_plan(R"("latin_hypercube": {"runs": 3000, "seed": 1, "axes": {"*.deformable.stiffness": {"from": 1, "to": 2},
       "*.deformable.reach": {"from": 0.01, "to": 0.02}, "*.deformable.cubic": {"from": 0, "to": 1}}})");
-  const auto plan = read_plan(folder / "plan.json");
+  const auto plan = read_plan(folder / "plan.json", check_run_arguments);
   ASSERT_TRUE(plan);
   ExpandedPlan all;
   std::string text;

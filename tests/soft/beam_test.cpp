@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "scenes/tet_shapes.h"
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {

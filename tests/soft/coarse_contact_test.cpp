@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "content/level/spawn_soft.h"
+#include "scenes/tool_stage.h"
 #include "systems/soft/body/soft_body_state.h"
-#include "tests/scenes/tool_stage.h"
 #include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
 

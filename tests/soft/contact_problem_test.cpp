@@ -10,7 +10,7 @@
 #include <numeric>
 #include <random>
 
-#include "tests/scenes/count_allocations.h"
+#include "scenes/count_allocations.h"
 #include "tests/soft/random_contacts.h"
 
 namespace pliant {

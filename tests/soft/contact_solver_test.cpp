@@ -8,12 +8,12 @@
 #include <random>
 
 #include "content/tets/lattice.h"
+#include "scenes/count_allocations.h"
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/contact/contact_admm.h"
 #include "systems/soft/contact/contact_budget.h"
 #include "systems/soft/contact/contact_sweeps.h"
 #include "systems/soft/linear/pivoted_lu.h"
-#include "tests/scenes/count_allocations.h"
 #include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
 #include "tests/soft/random_contacts.h"

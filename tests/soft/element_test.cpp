@@ -5,8 +5,8 @@
 
 #include <random>
 
+#include "scenes/tet_shapes.h"
 #include "systems/soft/fem/polar.h"
-#include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

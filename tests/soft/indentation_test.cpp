@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/tet_shapes.h"
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {

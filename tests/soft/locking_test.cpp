@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "content/level/spawn_soft.h"
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

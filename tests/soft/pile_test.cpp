@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/soft/body/rigid_state.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 #include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
 

@@ -4,13 +4,13 @@
 
 #include <cmath>
 
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/soft/body/rigid_state.h"
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/touch/prepare.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

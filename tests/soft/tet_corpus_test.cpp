@@ -1,6 +1,6 @@
 // Tetrahedral meshes that others made, as they are, slivers included: each stands on its lowest nodes and settles under
 // its own weight.
-#include "tests/scenes/tet_corpus.h"
+#include "scenes/tet_corpus.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scenes/tet_shapes.h"
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {

@@ -1,5 +1,5 @@
 // Co-rotational tetrahedra by themselves: what every elastic solid must obey. What broken
-// elements must survive is among the hard cases (player/study/hard).
+// elements must survive is among the hard cases (lab/study/hard).
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -7,9 +7,9 @@
 #include <functional>
 #include <utility>
 
+#include "scenes/tet_shapes.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/scenes/tet_shapes.h"
 
 namespace pliant {
 namespace {

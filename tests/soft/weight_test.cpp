@@ -1,12 +1,12 @@
 // What a hand feels of a tool that nothing carries: its weight and the moment of it, which come in slowly.
 #include <gtest/gtest.h>
 
+#include "scenes/scenes.h"
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
-#include "tests/scenes/scenes.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

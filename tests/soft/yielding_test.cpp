@@ -2,12 +2,12 @@
 
 #include <cmath>
 
+#include "scenes/count_allocations.h"
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/soft/body/yielding_body.h"
 #include "systems/touch/contact_law.h"
 #include "systems/touch/touch_state.h"
-#include "tests/scenes/count_allocations.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

@@ -10,6 +10,9 @@
 #include <utility>
 
 #include "content/level_file.h"
+#include "scenes/tet_corpus.h"
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/device/devices.h"
 #include "systems/hash_state.h"
 #include "systems/schedule.h"
@@ -20,9 +23,6 @@
 #include "systems/tool/tool_step.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
-#include "tests/scenes/tet_corpus.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

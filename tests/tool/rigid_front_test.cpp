@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/device/devices.h"
 #include "systems/tool/tool_touch_state.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

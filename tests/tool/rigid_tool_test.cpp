@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 
 namespace pliant {
 namespace {

@@ -9,14 +9,14 @@
 #include <cmath>
 #include <vector>
 
+#include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/device/devices.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare.h"
-#include "tests/scenes/tet_shapes.h"
-#include "tests/scenes/tool_stage.h"
 #include "tests/tool/press_scene.h"
 
 #ifndef PLIANT_SANITIZED

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/scenes/count_allocations.h"
+#include "scenes/count_allocations.h"
 
 namespace pliant {
 namespace {

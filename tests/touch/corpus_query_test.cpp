@@ -6,9 +6,9 @@
 #include <random>
 
 #include "content/level_file.h"
+#include "scenes/brute_force.h"
 #include "systems/touch/surface_query.h"
 #include "systems/touch/triangle_tree.h"
-#include "tests/scenes/brute_force.h"
 
 namespace pliant {
 namespace {

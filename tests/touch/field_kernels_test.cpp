@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "scenes/scenes.h"
 #include "systems/touch/nonlinear_step.h"
 #include "systems/touch/shape.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

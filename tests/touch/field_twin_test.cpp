@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "scenes/scenes.h"
 #include "systems/touch/field.h"
 #include "systems/touch/publish.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

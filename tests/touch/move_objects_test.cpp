@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "scenes/count_allocations.h"
+#include "scenes/scenes.h"
 #include "systems/touch/touch_state.h"
-#include "tests/scenes/count_allocations.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "tests/scenes/scenes.h"
+#include "scenes/scenes.h"
 
 namespace pliant {
 namespace {

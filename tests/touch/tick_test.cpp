@@ -6,14 +6,14 @@
 #include <cmath>
 #include <thread>
 
+#include "scenes/count_allocations.h"
+#include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
 #include "systems/schedule.h"
 #include "systems/touch/amplitude.h"
 #include "systems/touch/prepare.h"
 #include "systems/touch/publish.h"
 #include "systems/touch/touch_state.h"
-#include "tests/scenes/count_allocations.h"
-#include "tests/scenes/scenes.h"
-#include "tests/scenes/touch_laws.h"
 
 namespace pliant {
 namespace {

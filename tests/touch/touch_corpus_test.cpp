@@ -8,8 +8,8 @@
 #include <random>
 
 #include "content/level_file.h"
+#include "scenes/touch_raw.h"
 #include "systems/touch/surface_query.h"
-#include "tests/scenes/touch_raw.h"
 
 namespace pliant {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "tests/scenes/touch_laws.h"
-#include "tests/scenes/touch_raw.h"
+#include "scenes/touch_laws.h"
+#include "scenes/touch_raw.h"
 
 namespace pliant {
 namespace {

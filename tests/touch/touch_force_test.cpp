@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "tests/scenes/scenes.h"
-#include "tests/scenes/touch_laws.h"
+#include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
 
 namespace pliant {
 namespace {

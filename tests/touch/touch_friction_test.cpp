@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
 #include "systems/safety/safety.h"
-#include "tests/scenes/scenes.h"
-#include "tests/scenes/touch_laws.h"
 
 namespace pliant {
 namespace {

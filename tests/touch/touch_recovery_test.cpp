@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
 #include "systems/touch/local_model.h"
-#include "tests/scenes/scenes.h"
-#include "tests/scenes/touch_laws.h"
 
 namespace pliant {
 namespace {

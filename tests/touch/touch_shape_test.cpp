@@ -6,11 +6,11 @@
 #include <functional>
 #include <vector>
 
+#include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
 #include "systems/touch/contact_energy.h"
 #include "systems/touch/force_field.h"
 #include "systems/touch/local_model.h"
-#include "tests/scenes/scenes.h"
-#include "tests/scenes/touch_laws.h"
 
 namespace pliant {
 namespace {

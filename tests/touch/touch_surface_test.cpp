@@ -5,11 +5,11 @@
 #include <cmath>
 #include <map>
 
+#include "scenes/touch_laws.h"
+#include "scenes/touch_raw.h"
 #include "systems/touch/foot.h"
 #include "systems/touch/publish.h"
 #include "systems/touch/surface_query.h"
-#include "tests/scenes/touch_laws.h"
-#include "tests/scenes/touch_raw.h"
 
 namespace pliant {
 namespace {
@@ -26,7 +26,7 @@ dvec3 surface_on_the_way(const Mesh& mesh, dvec3 along) {
   return x;
 }
 
-// What it feels there is a hard case (player/study/hard).
+// What it feels there is a hard case (lab/study/hard).
 TEST(TouchSurface, ASphereInAGrooveShowsAnArrowForEachWall) {
   Stage stage;
   stage.add(scenes::valley(40, 0.2, M_PI / 4), frictionless());

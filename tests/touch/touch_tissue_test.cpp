@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/scenes/touch_laws.h"
-#include "tests/scenes/touch_raw.h"
+#include "scenes/touch_laws.h"
+#include "scenes/touch_raw.h"
 
 namespace pliant {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "components/curved_patch.h"
+#include "scenes/scenes.h"
 #include "systems/touch/surface_query.h"
-#include "tests/scenes/scenes.h"
 
 namespace pliant {
 namespace {

@@ -16,7 +16,7 @@
 #include "devices/servo/servo.h"
 #include "devices/simulated/simulated_device.h"
 #include "runtime/clock.h"
-#include "tests/scenes/count_allocations.h"
+#include "scenes/count_allocations.h"
 #include "tests/two_devices/seconds_to_run.h"
 
 namespace pliant {

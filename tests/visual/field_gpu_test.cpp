@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "scenes/scenes.h"
 #include "systems/touch/touch_state.h"
 #include "systems/visual/gpu/context.h"
-#include "tests/scenes/scenes.h"
 #include "tests/visual/read_back.h"
 
 namespace pliant {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <random>
 
+#include "scenes/scenes.h"
 #include "systems/touch/publish.h"
 #include "systems/touch/touch_state.h"
 #include "systems/visual/gpu/context.h"
 #include "systems/visual/upload.h"
-#include "tests/scenes/scenes.h"
 #include "tests/visual/read_back.h"
 
 namespace pliant {

@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "content/level_file.h"
+#include "scenes/scenes.h"
 #include "systems/schedule.h"
 #include "systems/touch/prepare.h"
 #include "systems/touch/publish.h"
 #include "systems/visual/renderer.h"
-#include "tests/scenes/scenes.h"
 #include "tests/visual/scene.h"
 
 namespace pliant {

@@ -1,0 +1,188 @@
+#include "lab/fit/press_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/keys/extensions.h"
+#include "systems/touch/contact_law.h"
+
+namespace pliant {
+namespace {
+
+using R = DeformableRange;
+constexpr double kFlattestPress = 5.0;  // [1] below 0: hardly a slope is left at the deepest place
+constexpr double kSteepest = 50.0;      // [1] exponent at the deepest place: beyond it a double overflows soon
+
+struct Sizes {
+  double depth = 0.0, force = 0.0, span = 0.0, least_step = 0.0;  // [m] [N] [s] [s]
+  double slope = 0.0;                                             // [N/m] of a line through zero
+};
+
+// Where the indenter met the surface at the depth `met` [m].
+Sizes sizes_of(const PressRecord& record, double met) {
+  Sizes out;
+  double fd = 0.0, dd = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double d = std::max(record.depth[i] - met, 0.0);
+    out.depth = std::max(out.depth, d);
+    out.force = std::max(out.force, std::abs(record.force[i]));
+    fd += record.force[i] * d;
+    dd += d * d;
+  }
+  out.slope = fd / dd;
+  if (record.time.empty()) return out;
+  out.span = record.time.back() - record.time.front();
+  out.least_step = out.span;
+  for (std::size_t i = 1; i < record.size(); ++i)
+    out.least_step = std::min(out.least_step, record.time[i] - record.time[i - 1]);
+  return out;
+}
+
+// [m] Where it may have met the surface: before the record begins, as far as the record reaches, or anywhere in it but
+// in its last tenth; and where a fit looks first.
+struct ContactRange {
+  double low = 0.0, high = 0.0;
+  std::vector<double> starts{0.0};
+};
+ContactRange contact_range(const PressRecord& record, bool open) {
+  ContactRange out;
+  if (!open) return out;
+  const auto [least, most] = std::minmax_element(record.depth.begin(), record.depth.end());
+  out.low = std::min(*least, 0.0) - (*most - *least);
+  out.high = *most - 0.1 * (*most - *least);
+  out.starts = {std::clamp(0.0, out.low, out.high)};
+  if (*least > 0.1 * *most) out.starts.push_back(*least);
+  return out;
+}
+
+// [Pa] Of a sphere on a half-space with the record's largest force at its deepest place.
+double sphere_modulus(const Sizes& size, const ModelWish& wish) {
+  const double plane = size.force / (4.0 / 3.0 * std::sqrt(wish.radius) * std::pow(size.depth, 1.5));
+  return plane * (1 - wish.poisson * wish.poisson);
+}
+
+// Where fits of a law's own parameters begin.
+std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size, const ModelWish& wish) {
+  const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max), d = size.depth;
+  if (law == "hertz") return {{sphere_modulus(size, wish)}};
+  if (law == "cubic") return {{0.9 * k, 0.1 * k / (d * d)}, {0.3 * k, k / (d * d)}};
+  if (law == "exponential") return {{0.9 * k, 0.3 / d}, {0.2 * k, 3.0 / d}, {1.3 * k, -0.5 / d}};
+  if (law != "sls") return {{k}};
+  std::vector<std::vector<double>> starts;
+  for (const double share : {0.01, 0.05, 0.25, 1.0}) starts.push_back({0.6 * k, 0.4 * k, share * size.span});
+  return starts;
+}
+
+ModelParameter parameter(const char* key, const char* unit, Range range, double scale) {
+  return {key, unit, {scale, range.min, range.max, scale}};
+}
+
+}  // namespace
+
+const std::vector<std::string>& press_laws() {
+  static const std::vector<std::string> laws{"linear", "cubic", "exponential", "sls", "hertz"};
+  return laws;
+}
+
+std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const ModelWish& wish,
+                                      std::string& why) {
+  const ContactRange contact = contact_range(record, wish.contact);
+  // Bounds hold wherever it met the surface, starts go by where.
+  const Sizes size = sizes_of(record, contact.low);
+  if (law == "sls" && record.time.empty()) {
+    why = "the law sls needs a column of time";
+    return std::nullopt;
+  }
+  if (wish.damping && record.time.empty()) {
+    why = "damping needs a column of time";
+    return std::nullopt;
+  }
+  if (law == "hertz" && !(wish.radius > 0)) {
+    why = "the law hertz needs the radius of a spherical indenter; say --radius";
+    return std::nullopt;
+  }
+  PressModel model;
+  model.law = law;
+  model.wish = wish;
+  auto& list = model.parameters;
+  const Sizes usual = sizes_of(record, contact.starts[0]);
+  const double k = std::clamp(usual.slope, R::kStiffness.min, R::kStiffness.max);
+  if (law == "hertz")
+    list.push_back(parameter("young", "Pa", {1e-3, 1e12}, sphere_modulus(usual, wish)));
+  else
+    list.push_back(parameter("stiffness", "N/m", R::kStiffness, k));
+  if (law == "cubic") {
+    list.push_back(parameter("cubic", "N/m3", R::kCubic, k / (usual.depth * usual.depth)));
+  } else if (law == "exponential") {
+    list.push_back(parameter("stiffening", "1/m",
+                             {std::max(R::kStiffening.min, -kFlattestPress / size.depth),
+                              std::min(R::kStiffening.max, kSteepest / size.depth)},
+                             1.0 / usual.depth));
+  } else if (law == "sls") {
+    list.push_back(parameter("relaxation.stiffness", "N/m", R::kRelaxationStiffness, k));
+    list.push_back(parameter(
+        "relaxation.time", "s",
+        {std::max(R::kRelaxationTime.min, 0.2 * size.least_step), std::min(R::kRelaxationTime.max, 20 * size.span)},
+        0.1 * size.span));
+  }
+  if (wish.damping) list.push_back(parameter("contact_damping", "N s/m", R::kContactDamping, 0.01 * k * size.span));
+  if (wish.contact)
+    list.push_back(parameter("contact", "m", {contact.low, contact.high}, 0.1 * (contact.high - contact.low)));
+  for (const double met : contact.starts)
+    for (std::vector<double> start : law_starts(law, sizes_of(record, met), wish)) {
+      if (wish.damping) start.push_back(0.1 * list[start.size()].box.scale);
+      if (wish.contact) start.push_back(met);
+      for (std::size_t i = 0; i < list.size(); ++i) start[i] = std::clamp(start[i], list[i].box.low, list[i].box.high);
+      model.starts.push_back(Eigen::Map<Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size())));
+    }
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].box.start = model.starts[0][static_cast<Eigen::Index>(i)];
+  return model;
+}
+
+Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
+  Deformable out;
+  out.poisson = wish.poisson;
+  if (law == "cubic") out.spring = SpringLaw::kCubic;
+  if (law == "exponential") out.spring = SpringLaw::kExponential;
+  if (law == "sls") out.spring = SpringLaw::kStandardLinearSolid;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string& key = parameters[i].key;
+    const double value = p[static_cast<Eigen::Index>(i)];
+    if (key == "stiffness") out.stiffness = value;
+    if (key == "cubic") out.cubic = value;
+    if (key == "stiffening") out.stiffening = value;
+    if (key == "relaxation.stiffness") out.relaxation_stiffness = value;
+    if (key == "relaxation.time") out.relaxation_time = value;
+    if (key == "contact_damping") out.contact_damping = value;
+    if (key == "young") {
+      out.young = value;
+      out.stiffness = calibrated_stiffness(value, wish.poisson, 0.0);
+    }
+  }
+  return out;
+}
+
+void PressModel::predict(const PressRecord& record, const Eigen::VectorXd& p, std::vector<double>& force) const {
+  const Deformable surface = deformable(p);
+  const double met = wish.contact ? p[p.size() - 1] : 0.0;
+  ContactLaw contact = contact_law(surface, motion(surface, 1e-3), 1.0, wish.radius);
+  force.resize(record.size());
+  double before = 0.0, q = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double depth = std::max(0.0, record.depth[i] - met);
+    const double dt = i > 0 && !record.time.empty() ? record.time[i] - record.time[i - 1] : 0.0;
+    if (contact.arm > 0 && dt > 0) {
+      // q' = (d - q) / tau, exact for a depth that changes evenly (field_kernels.cpp: step_relaxed).
+      const double over = dt / surface.relaxation_time, left = std::exp(-over), ramp = -std::expm1(-over) / over;
+      q = depth - (left * (before - q) + ramp * (depth - before));
+      contact.relaxed_depth = std::max(q, 0.0);
+    }
+    double newton = contact.stored(depth).force;
+    if (surface.contact_damping > 0 && dt > 0 && depth > 0)
+      newton = std::max(0.0, newton + surface.contact_damping * (depth - before) / dt);
+    force[i] = newton;
+    before = depth;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,167 @@
+// What ships and what people bring, touched by the built-in orbit: no tick in which the safety layer had to withhold a
+// force.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "content/level_file.h"
+#include "engine/run/limits.h"
+#include "engine/run/sources.h"
+#include "engine/session/session_inside.h"
+#include "lab/files/content_folder.h"
+#include "lab/study/hard/hard_case.h"
+#include "systems/device/reading.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kOrbit = 4.2;          // [s] a turn of the orbit and a little
+constexpr double kLeastContact = 0.05;  // [1] of the ticks of a run: less, and nothing was judged
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code absent;
+  for (fs::recursive_directory_iterator at(folder, absent), end; !absent && at != end; at.increment(absent))
+    for (const char* kind : {".gltf", ".glb", ".obj", ".drc"})
+      if (at->path().extension() == kind) found.push_back(at->path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// A file may name several objects alike, a session does not.
+void tell_apart(Level& level) {
+  std::set<std::string> names;
+  for (LevelNode& node : level.nodes)
+    for (int i = 2; !names.insert(node.name).second; ++i) node.name = fmt::format("{} ({})", node.name, i);
+}
+
+bool has_bodies(const Level& level) {
+  return std::any_of(level.nodes.begin(), level.nodes.end(),
+                     [](const LevelNode& node) { return node.soft_body || node.rigid_body; });
+}
+
+void without_friction(Level& level) {
+  for (LevelNode& node : level.nodes) {
+    if (node.deformable) node.deformable->friction_static = node.deformable->friction_sliding = 0.0;
+    if (node.soft_body) node.soft_body->friction_static = node.soft_body->friction_sliding = 0.0;
+    if (node.rigid_body) node.rigid_body->friction_static = node.rigid_body->friction_sliding = 0.0;
+  }
+}
+
+// What was judged of many files.
+struct Judged {
+  HardFigure worst;
+  int files = 0, refused = 0, left_out = 0;
+  double least_contact = 1.0;  // [1] of the ticks of a run
+  HardFigure figure(const std::string& of) {
+    worst.need(files > 0, "no file was judged");
+    worst.looked_at(
+        fmt::format("{} {}, each with friction and without, in contact in {:.0f} % of the ticks or more{}{}", files, of,
+                    100 * least_contact, refused ? fmt::format("; {} more hold nothing to touch", refused) : "",
+                    left_out ? fmt::format("; {} left out", left_out) : ""));
+    return worst;
+  }
+};
+
+// Every probe and tool follows its orbit: ticks in which a force was withheld from any of them.
+void orbit(Judged& judged, const Level& level, const std::string& where) {
+  HardFigure& worst = judged.worst;
+  auto session = Session::open(Scene(level));
+  worst.need(session.ok(), where + (session ? "" : ": " + session.error().message()));
+  if (!session) return;
+  const World& world = SessionInside::of(*session).world;
+  const auto ticks = static_cast<std::uint64_t>(kOrbit * world.simulation.touch_rate);
+  std::uint64_t touching = 0;
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    if (!session->step()) {
+      worst.need(false, where + ": it did not run");
+      return;
+    }
+    bool any = false;
+    for (const SessionEffector& effector : SessionInside::of(*session).effectors)
+      any = any || reading(world, effector.entity).in_contact;
+    touching += any;
+  }
+  const double contact = static_cast<double>(touching) / static_cast<double>(ticks);
+  judged.least_contact = std::min(judged.least_contact, contact);
+  worst.need(contact >= kLeastContact, fmt::format("{}: in contact in {:.1f} % of the ticks", where, 100 * contact));
+  double withheld = 0;
+  for (const SessionEffector& effector : SessionInside::of(*session).effectors) {
+    const HandSafety safety = find_safety(world, effector.entity);
+    for (const SafetyState* state : {safety.force, safety.torque})
+      if (state) withheld += static_cast<double>(state->tally.of(SafetyLimit::kWithheld).ticks);
+  }
+  worst.add(withheld, where);
+}
+
+// `sound`: it must load; else it may be refused, in a sentence that names it.
+void judge(Judged& judged, const fs::path& file, bool sound, bool bodies) {
+  const std::string name = file.filename().string();
+  auto loaded = load_level(file);
+  if (!loaded) {
+    const std::string message = loaded.error().message();
+    judged.worst.need(!sound, message);
+    judged.worst.need(message.find(name) != std::string::npos, name + ": " + message);
+    ++judged.refused;
+    return;
+  }
+  Level level = *std::move(loaded);
+  if (has_bodies(level) && !bodies) {
+    ++judged.left_out;
+    return;
+  }
+  if (!level.has_pliant()) {
+    make_touchable(level);
+    tell_apart(level);
+    const Status added = add_probes(level, {{"orbiting probe", DriverKind::kOrbit, {}, {}, false, {}}});
+    judged.worst.need(added.ok(), added ? "" : added.error().message());
+    if (!added) return;
+  }
+  for (LevelNode& node : level.nodes)
+    if (node.device) node.device->driver = DriverKind::kOrbit;
+  ++judged.files;
+  orbit(judged, level, name);
+  without_friction(level);
+  orbit(judged, level, name + ", without friction");
+}
+
+HardFigure shipped(const HardSetting& setting) {
+  Judged judged;
+  for (const fs::path& file : shipped_levels()) judge(judged, file, true, !setting.brief);
+  return judged.figure("levels");
+}
+
+HardFigure corpus(const HardSetting& setting) {
+  Judged judged;
+  if (!fs::exists(setting.corpus)) {
+    judged.worst.absent("the corpus");
+    return judged.worst;
+  }
+  for (const bool draco : {false, true})
+    for (const fs::path& file : files_in(setting.corpus / (draco ? "meshes-draco" : "meshes-valid"))) {
+      if (setting.brief && fs::file_size(file) > 400'000)
+        ++judged.left_out;
+      else
+        judge(judged, file, !draco, true);
+    }
+  return judged.figure("meshes");
+}
+
+}  // namespace
+
+std::vector<HardCase> hard_levels() {
+  constexpr const char* kOrbits =
+      "with friction and without, in contact in 5 % of the ticks at least: ticks in which the safety layer "
+      "withheld "
+      "a force";
+  return {
+      {"NothingIsWithheldOnAnyLevelThatShips", "methods.md 3.10: every level that ships", kOrbits, "ticks", 0, shipped},
+      {"NothingIsWithheldOnAnySoundMeshOfTheCorpus", "methods.md 3.10: every sound mesh of the corpus", kOrbits,
+       "ticks", 0, corpus},
+  };
+}
+
+}  // namespace pliant

@@ -1,0 +1,315 @@
+// Time that does not pass evenly: ticks that are missed, samples that are early, late or absent, and stalls.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "engine/session/session_inside.h"
+#include "lab/study/hard/hard_case.h"
+#include "runtime/clock.h"
+#include "scenes/touch_laws.h"
+#include "scenes/touch_raw.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kStall = 0.05;  // [s]
+
+// A clock that misses ticks and a device that is sampled when the machine gets to it: some poses are old, some ticks
+// have none, some have two of which the later one counts.
+HardFigure uneven_ticks(const HardSetting&) {
+  HardFigure worst;
+  std::mt19937 random(5);
+  const auto share = [&] { return std::uniform_real_distribution(0.0, 1.0)(random); };
+  Stage stage;
+  stage.add(scenes::sphere(20, 0.1), frictionless());
+  constexpr double kPath = 6.0;  // [s]
+  const auto path = [](double t) {
+    const double a = 0.4 * std::sin(2 * M_PI * t / kPath);
+    return (0.1 + 0.003 * std::cos(2 * M_PI * t)) * dvec3(std::sin(a), std::cos(a), 0);
+  };
+  const Entity probe = stage.add_probe(path(0));
+  stage.prepare();
+  RawMeter meter;
+  scenes::WorkMeter sent;
+  double sensed_at = 0.0;
+  int missed = 0, without = 0, twice = 0;
+  while (stage.time() < kPath) {
+    if (share() < 0.1) {
+      const auto ticks = static_cast<std::uint64_t>(1 + 8 * share());
+      stage.skip(ticks);
+      missed += static_cast<int>(ticks);
+    }
+    if (share() > 0.1 || stage.time() - sensed_at > 0.5 * kStaleAfter) {
+      if (share() < 0.3) stage.place(probe, path(sensed_at + share() * (stage.time() - sensed_at))), ++twice;
+      sensed_at = std::max(sensed_at, stage.time() - 1e-3 * share());
+      stage.place(probe, path(std::min(sensed_at, kPath)));
+    } else {
+      ++without;
+    }
+    stage.tick(stage.time() - sensed_at);
+    meter.add(stage, probe, stage.read(probe).position);
+    sent.add(stage.read(probe));
+    worst.need(std::isfinite(length(raw_force(stage, probe))), "the force");
+    worst.need(length(stage.read(probe).force - raw_force(stage, probe)) < 1e-12, "what is sent is not the force");
+  }
+  stage.place(probe, path(kPath));
+  stage.tick();
+  meter.add(stage, probe, path(kPath));
+  worst.need((stage.world.dropped & (kDroppedJump | kDroppedStale | kDroppedNonFinite)) == 0, "a pose was dropped");
+  worst.need(meter.most > 1e-4, "it was not pressed");
+  worst.add(meter.work / meter.most);
+  worst.looked_at(fmt::format("{} ticks missed, {} without a sample, {} with two", missed, without, twice));
+  return worst;
+}
+
+// What a device with limits is sent around a stall of the touch clock.
+class Sent {
+ public:
+  Sent(HardFigure& worst, double slew, double dt)
+      : worst_(worst), rise_(slew * dt), change_(std::max(slew, kLeastFall) * dt) {}
+  // What its size rises by over the slew limit, or all that changes over the limit of what is let go.
+  void add(dvec3 force, const std::string& where) {
+    worst_.need(std::isfinite(length(force)), where + ": no number");
+    const double rise = length(force) - length(last_);
+    if (started_) worst_.add(std::max(rise / rise_, length(force - last_) / change_), where);
+    last_ = force;
+    started_ = true;
+  }
+  dvec3 last() const { return last_; }
+
+ private:
+  HardFigure& worst_;
+  double rise_, change_;  // [N] in a tick
+  dvec3 last_{0};
+  bool started_ = false;
+};
+
+// The clock misses 49 ticks in the middle of a press. The hand has gone on meanwhile: deeper, or out of the surface.
+HardFigure stalled_ticks(const HardSetting&) {
+  HardFigure worst;
+  for (const bool out : {false, true})
+    for (const double contact_damping : {0.0, 3.0})
+      for (const double friction : {0.0, 0.3}) {
+        const std::string where = fmt::format("{}, damping {:g} N s/m, friction {:g}", out ? "leaves" : "presses on",
+                                              contact_damping, friction);
+        Stage stage;
+        Deformable d = frictionless();
+        d.contact_damping = contact_damping;
+        d.friction_static = d.friction_sliding = friction;
+        stage.add(scenes::sheet(20, 0.2), d);
+        const Entity probe = stage.add_probe({-0.02, 0.001, 0});
+        HapticDevice& device = stage.device(probe);
+        device.max_force = 3.3;
+        device.max_slew = 200;
+        stage.prepare();
+        Sent sent(worst, device.max_slew, stage.dt());
+        const auto look = [&](const ProbeReading& r) { sent.add(r.force, where); };
+        stage.move(probe, {-0.02, -0.004, 0}, 0.2, look);
+        worst.need(std::abs(sent.last().y - law(d, 0.004)) < 0.1 * law(d, 0.004), where + ": not pressed");
+        const dvec3 to = out ? dvec3(0, 0.005, 0.01) : dvec3(0, -0.006, 0.01);
+        stage.skip(static_cast<std::uint64_t>(std::lround(kStall / stage.dt())) - 1);
+        stage.move(probe, to, stage.dt(), look);
+        worst.need((stage.world.dropped & (kDroppedJump | kDroppedStale)) == 0, where + ": it counted as a jump");
+        worst.need(stage.read(probe).in_contact != out, where + ": the contact");
+        for (int i = 0; i < 20; ++i) {
+          stage.tick();
+          look(stage.read(probe));
+        }
+        worst.need(std::abs(sent.last().y - (out ? 0.0 : law(d, 0.006))) < 1e-6, where + ": not back to the law");
+        worst.need(friction > 0 || std::hypot(sent.last().x, sent.last().z) < 1e-6, where + ": sideways");
+      }
+  return worst;
+}
+
+// No sample came in the stall either: the pose is old in the first tick after it.
+HardFigure stalled_samples(const HardSetting&) {
+  HardFigure worst;
+  Stage stage;
+  const Deformable d = frictionless();
+  stage.add(scenes::sheet(20, 0.2), d);
+  const Entity probe = stage.add_probe({0, 0.001, 0});
+  stage.prepare();
+  stage.move(probe, {0, -0.004, 0}, 0.2);
+  worst.need(std::abs(stage.read(probe).force.y - law(d, 0.004)) < 1e-6, "not pressed");
+  stage.skip(static_cast<std::uint64_t>(std::lround(kStall / stage.dt())) - 1);
+  stage.tick(kStall);
+  worst.add(length(stage.read(probe).force), "an old pose");
+  worst.need((stage.world.dropped & kDroppedStale) != 0, "nothing said so");
+  stage.move(probe, {0, -0.006, 0}, 0.1,
+             [&](const ProbeReading& r) { worst.add(length(r.force), "the gate is shut"); });
+  stage.move(probe, {0, 0.001, 0}, 0.1);
+  stage.move(probe, {0, -0.004, 0}, 0.2);
+  worst.need(std::abs(stage.read(probe).force.y - law(d, 0.004)) < 1e-6, "the force stayed away");
+  return worst;
+}
+
+// A device in a hand that goes to where it is sent at 50 mm/s of real time, and everything that it was written.
+struct RealHand {
+  struct Write {
+    std::uint64_t ns;
+    dvec3 force;
+  };
+  std::atomic<double> target{0.002};  // [m] height
+  std::atomic<double> force{0.0};     // [N] upwards, as written last
+  double rate = 0.0;
+  std::vector<Write> writes;  // of the thread that writes, until it has ended
+};
+class RealDevice final : public Driver {
+ public:
+  explicit RealDevice(RealHand& hand) : hand_(hand) { hand.writes.reserve(100'000); }
+  Status open(const std::string&) override { return Done{}; }
+  DeviceCapabilities capabilities() const override { return {.max_force = 3.3, .rate = hand_.rate}; }
+  bool read(DeviceSample& sample) override {
+    const std::uint64_t now = now_ns();
+    const double most = at_ > 0 ? 0.05e-9 * static_cast<double>(now - at_) : 0.0, to = hand_.target;
+    at_ = now;
+    height_ += std::clamp(to - height_, -most, most);
+    // A hand is never quite still.
+    tremor_ = -tremor_;
+    sample.position = {0, height_ + tremor_, 0};
+    return true;
+  }
+  void write(const DeviceWrench& wrench) override {
+    if (hand_.writes.size() < hand_.writes.capacity()) hand_.writes.push_back({now_ns(), wrench.force});
+    hand_.force = wrench.force.y;
+  }
+  void close() override {}
+
+ private:
+  RealHand& hand_;
+  std::uint64_t at_ = 0;
+  double height_ = 0.002, tremor_ = 1e-8;
+};
+
+template <class Done>
+bool within(double seconds, Done done) {
+  for (const std::uint64_t begin = now_ns(); !done(); std::this_thread::sleep_for(std::chrono::milliseconds(1)))
+    if (ms_since(begin) > 1e3 * seconds) return false;
+  return true;
+}
+
+constexpr double kLate = 6.0;  // [ms] between two ticks, or two of a servo's periods: the machine was late by itself
+constexpr int kTries = 5;
+
+enum class RealRun : std::uint8_t { kJudged, kLateElsewhere };
+
+// The clocks of a session run; its touch clock is kept from going on for 50 ms. Without a servo the first tick after it
+// goes on from there; a device with one is let go of as soon as the model is old, and its hand must let go too.
+RealRun real_stall(HardFigure& worst, double rate) {
+  const std::string where = rate > 0 ? "servo" : "no servo";
+  RealHand hand;  // outlives the session, which writes it zero at its end
+  hand.rate = rate;
+  Scene scene;
+  const Primitive sheet = scenes::sheet(20, 0.2);
+  DeformableParameters surface = frictionless();
+  scene.add_surface("sheet", {sheet.position, sheet.index}, surface);
+  DeviceParameters limits;
+  limits.max_slew = 200;
+  scene.add_probe("finger", {}, limits);
+  auto session = Session::open(scene);
+  worst.need(session.ok(), where + ": it does not open");
+  if (!session) return RealRun::kJudged;
+  worst.need(session->connect("finger", std::make_unique<RealDevice>(hand)).ok(), where + ": it does not connect");
+
+  std::atomic<bool> stall{false};
+  std::atomic<std::uint64_t> stalled{0};  // [tick]
+  std::atomic<int> late{0};
+  std::uint64_t before = 0;
+  SessionInside::of(*session).noted = [&](Tick tick) {
+    if (before > 0 && 1e3 * static_cast<double>(tick.index - before) * tick.dt > kLate && stalled != before) ++late;
+    before = tick.index;
+    if (!stall.exchange(false)) return;
+    stalled = tick.index;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kStall));
+  };
+  const auto force_is = [&](double depth) {
+    return within(3.0, [&] { return std::abs(hand.force - surface.stiffness * depth) < 1e-3; });
+  };
+  const auto let_go = [&] { return within(3.0, [&] { return hand.force == 0.0; }); };
+  bool held = true;
+  worst.need(session->start().ok(), where + ": it does not start");
+  hand.target = -0.004;
+  held = force_is(0.004);
+  hand.target = -0.006;
+  const std::uint64_t begin = now_ns();
+  stall = true;
+  held = within(1.0, [&] { return stalled > 0; }) && held;
+  const bool fell = rate > 0 ? let_go() : true;
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const bool shut = rate > 0 ? hand.force == 0.0 : true;
+  if (rate > 0) {
+    hand.target = 0.002;
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    hand.target = -0.006;
+  }
+  const bool back = force_is(0.006);
+  hand.target = 0.002;
+  const bool left = let_go();
+  const Status stopped = session->stop();
+  const bool missed = session->figures().overruns >= 40;
+  for (std::size_t i = 1; rate > 0 && i < hand.writes.size(); ++i)
+    late += 1e-6 * static_cast<double>(hand.writes[i].ns - hand.writes[i - 1].ns) > kLate;
+  if (late > 0) return RealRun::kLateElsewhere;  // the machine itself
+  worst.need(stopped.ok(), where + ": it does not stop");
+  worst.need(held, where + ": the law before it");
+  worst.need(missed, where + ": there was no stall");
+  worst.need(fell, where + ": the force stays while nobody renews it");
+  worst.need(shut, where + ": the force comes back by itself");
+  worst.need(back, where + ": not back to the law");
+  worst.need(left, where + ": a force in free space");
+  if (rate > 0) {
+    for (const RealHand::Write& write : hand.writes)
+      worst.need(std::isfinite(length(write.force)), where + ": a number");
+    // From the last tick's model on it holds for kModelHolds; then nothing leaves.
+    for (const RealHand::Write& write : hand.writes) {
+      const double since = 1e-9 * (static_cast<double>(write.ns) - static_cast<double>(begin));
+      if (since > 0.02 && since < 0.2) worst.need(write.force == dvec3(0), where + ": a force that nobody renews");
+    }
+  } else {
+    Sent sent(worst, limits.max_slew, 1e-3);
+    for (const RealHand::Write& write : hand.writes) sent.add(write.force, where);
+  }
+  worst.need(!hand.writes.empty() && hand.writes.back().force == dvec3(0), where + ": the last force is not zero");
+  return RealRun::kJudged;
+}
+
+HardFigure stalled_session(const HardSetting&) {
+  HardFigure worst;
+  for (const double rate : {0.0, 1000.0}) {
+    int tries = 0;
+    while (real_stall(worst, rate) == RealRun::kLateElsewhere && ++tries < kTries) {
+    }
+    if (tries == kTries)
+      worst.absent(fmt::format("a machine whose clocks are not late by {:g} ms by themselves", kLate));
+  }
+  return worst;
+}
+
+}  // namespace
+
+std::vector<HardCase> hard_time() {
+  constexpr const char* kStallEntry = "methods.md 3.9: a 50 ms stall";
+  return {
+      {"TicksThatAreMissedAndSamplesThatJitterGiveOutNoEnergy", "methods.md 3.9: dt jitter",
+       "up to 8 ticks missed, samples up to 5 ms old, none or two in a tick: work of the raw force over a closed path, "
+       "the same as is sent",
+       "of the stored energy [1]", 1e-3, uneven_ticks},
+      {"AfterAStallTheForceGoesOnWithinItsSlewLimit", kStallEntry,
+       "the hand presses on or leaves, contact damping and friction with and without: largest change of what is sent "
+       "in a tick; back to the law within 20 ms; no jump counted",
+       "of the limit [1]", 1 + 1e-9, stalled_ticks},
+      {"AStallWithoutSamplesEndsTheForceUntilTheHandLetsGo", kStallEntry,
+       "none at once and while the gate is shut, said so, then the law", "N", 0, stalled_samples},
+      {"ARealTimeSessionSurvivesAStallOfItsTouchClock", kStallEntry,
+       "without a servo: change of what a driver is written in a tick, back to the law. With a servo: nothing leaves "
+       "while the model is old and until the hand lets go, then the law",
+       "of the slew limit [1]", 1 + 1e-9, stalled_session},
+  };
+}
+
+}  // namespace pliant

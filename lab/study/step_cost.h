@@ -1,0 +1,24 @@
+// What a soft step costs, part by part, by tetrahedra and by contacts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/paddle.h"
+
+namespace pliant {
+
+enum class StepPart : std::uint8_t { kAll, kFreeMotion, kProximity, kContacts, kLinearise };
+inline constexpr StepPart kStepParts[] = {StepPart::kAll, StepPart::kFreeMotion, StepPart::kProximity,
+                                          StepPart::kContacts, StepPart::kLinearise};
+const char* name_of(StepPart part);
+
+struct StepCost {
+  std::size_t tetrahedra = 0;
+  double contacts = 0.0;   // mean
+  std::vector<double> ms;  // of kStepParts, median over steps, processor time of this thread
+};
+// A paddle of tissue that is pressed on studs and circles there (scenes/paddle.h).
+StepCost measure_step(scenes::PaddleCells cells, scenes::StudBed bed, int steps);
+
+}  // namespace pliant

@@ -1,0 +1,47 @@
+// The force of a touch before any safety, what is stored, and the work that a hand gets.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/scenes.h"
+#include "systems/touch/touch_state.h"
+
+namespace pliant {
+
+using scenes::Stage;
+
+inline dvec3 raw_force(const Stage& stage, Entity probe) {
+  return stage.world.registry.get<Probe>(probe).force;
+}
+inline double stored(const Stage& stage) {
+  double sum = 0.0;
+  for (const ObjectState& object : stage.world.touch->objects) sum += object.stored;
+  return sum;
+}
+
+// Work done on the hand by the raw force, before any safety, trapezoidal; and the most that was ever stored.
+struct RawMeter {
+  double work = 0.0, most = 0.0;
+  dvec3 force{0}, position{0};
+  bool started = false;
+  void add(const Stage& stage, Entity probe, dvec3 x) {
+    const dvec3 f = raw_force(stage, probe);
+    if (started) work += 0.5 * dot(f + force, x - position);
+    force = f;
+    position = x;
+    started = true;
+    most = std::max(most, stored(stage));
+  }
+};
+
+inline Primitive painted_sheet(int cells, double size) {
+  Primitive p = scenes::sheet(cells, size);
+  for (const vec3& x : p.position) {  // 100 to 600 N/m over 16 mm
+    const double s = std::clamp((static_cast<double>(x.x) + 0.008) / 0.016, 0.0, 1.0);
+    p.stiffness.push_back(static_cast<float>(1.0 + 5.0 * s));
+  }
+  return p;
+}
+
+}  // namespace pliant

@@ -1,0 +1,380 @@
+// `pliant fit` on measured presses: what data were made with comes back, within the intervals that are said.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+#include "lab/files/csv.h"
+#include "lab/fit/fit_record.h"
+#include "tests/player/command.h"
+
+namespace pliant {
+namespace {
+
+using testing::CommandTest;
+using ::testing::HasSubstr;
+using testing::Json;
+using testing::read_text;
+using testing::Said;
+using testing::write_text;
+
+double depth_at(double t) {  // up, a rest, down [m]
+  return 0.006 * (t < 1 ? t : t < 2 ? 1.0 : std::max(0.0, 3 - t));
+}
+
+// The force of a surface with these keys along that path, by the closed forms of methods.md 1.2 rather than by the
+// engine: the standard linear solid by the convolution of its ramps.
+double truth(const std::string& law, double t) {
+  const double d = depth_at(t);
+  if (law == "linear") return 250 * d;
+  if (law == "cubic") return 150 * d + 4e6 * d * d * d;
+  if (law == "exponential") return 90 / 180.0 * std::expm1(180 * d);
+  if (law == "hertz") return 4.0 / 3.0 * 8e3 / (1 - 0.45 * 0.45) * std::sqrt(0.004) * std::pow(d, 1.5);
+  // sls: q = k1 tau v (1 - e^(-s/tau)) since each change of the rate v.
+  const double k = 200, k1 = 150, tau = 0.4, v = 0.006;
+  const auto ramp = [&](double since) { return since > 0 ? k1 * tau * v * -std::expm1(-since / tau) : 0.0; };
+  return std::max(0.0, k * d + ramp(t) - ramp(t - 1) - ramp(t - 2));
+}
+
+PressRecord record_of(const std::string& law, double noise, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, noise);
+  PressRecord out;
+  out.name = law;
+  for (int i = 0; i < 150; ++i) {
+    const double t = 0.0199 * i;
+    out.time.push_back(t);
+    out.depth.push_back(depth_at(t));
+    out.force.push_back(truth(law, t) + normal(random));
+    out.contact.push_back(true);
+  }
+  return out;
+}
+
+const std::vector<std::pair<std::string, std::vector<double>>> kTruths{
+    {"linear", {250}}, {"cubic", {150, 4e6}}, {"exponential", {90, 180}}, {"hertz", {8e3}}, {"sls", {200, 150, 0.4}}};
+
+TEST(FitPress, WithoutNoiseEveryLawGivesItsParametersBack) {
+  for (const auto& [law, values] : kTruths) {
+    RecordWish wish;
+    wish.law = law;
+    wish.model.radius = law == "hertz" ? 0.004 : 0.0;
+    const auto fit = fit_record(record_of(law, 0.0, 1), wish);
+    ASSERT_TRUE(fit.ok()) << fit.error().message();
+    for (std::size_t i = 0; i < values.size(); ++i)
+      // The record's path is cut between rows where its rate changes, which the sampled solid cannot know.
+      EXPECT_NEAR(fit->laws[0].parameters[i].value / values[i], 1.0, law == "sls" ? 0.02 : 1e-6) << law << i;
+  }
+}
+
+TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHundred) {
+  for (const auto& [law, values] : kTruths) {
+    if (law == "sls") continue;  // the truth is not quite the sampled law: above
+    std::vector<int> inside(values.size(), 0);
+    constexpr int kSeeds = 400;
+    for (unsigned seed = 0; seed < kSeeds; ++seed) {
+      RecordWish wish;
+      wish.law = law;
+      wish.model.radius = law == "hertz" ? 0.004 : 0.0;
+      wish.confidence = 0.9;
+      const auto fit = fit_record(record_of(law, 0.01, seed), wish);
+      ASSERT_TRUE(fit.ok());
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const FittedParameter& p = fit->laws[0].parameters[i];
+        inside[i] += p.low <= values[i] && values[i] <= p.high;
+      }
+    }
+    // Of 400 trials at 0.9: mean 360, standard deviation 6; four of these, which intervals of any width do not reach.
+    for (const int count : inside) EXPECT_NEAR(count, 360, 24) << law;
+  }
+}
+
+TEST(FitPress, TheLawThatTheDataHaveIsTheOneThatIsTaken) {
+  for (const auto& [law, values] : kTruths) {
+    RecordWish wish;
+    wish.model.radius = law == "hertz" ? 0.004 : 0.0;
+    const auto fit = fit_record(record_of(law, 0.003, 7), wish);
+    ASSERT_TRUE(fit.ok());
+    EXPECT_EQ(fit->laws[fit->best].model.law, law);
+    EXPECT_LT(fit->laws[fit->best].held_rms, 0.006) << law;
+  }
+}
+
+TEST(FitPress, ABoxHoldsAndWhatStandsOnItHasNoInterval) {
+  // A force that falls behind a line cannot stiffen: the exponent goes to its least.
+  PressRecord record = record_of("linear", 0.0, 1);
+  for (double& f : record.force) f = 20 * (1 - std::exp(-f / 20));
+  RecordWish wish;
+  wish.law = "cubic";
+  const auto fit = fit_record(record, wish);
+  ASSERT_TRUE(fit.ok());
+  EXPECT_TRUE(fit->laws[0].parameters[1].on_bound);
+  EXPECT_EQ(fit->laws[0].parameters[1].value, 0.0);
+  EXPECT_EQ(fit->laws[0].parameters[1].low, fit->laws[0].parameters[1].high);
+}
+
+TEST(FitPress, AnyShareOfTheRowsIsHeldOutInStretchesAllOverTheRecord) {
+  for (const std::size_t rows : {8u, 9u, 37u, 150u, 5000u})
+    for (const double share : {0.001, 0.01, 0.1, 0.2, 0.25, 0.3, 0.4, 0.45, 0.5}) {
+      const std::vector<bool> held = held_rows(rows, share);
+      const auto count = std::count(held.begin(), held.end(), true);
+      EXPECT_EQ(count, std::max(1L, std::lround(share * static_cast<double>(rows)))) << rows << ' ' << share;
+      // None is longer than a twentieth, and each half of the record has its part.
+      std::size_t run = 0, longest = 0;
+      for (const bool each : held) longest = std::max(longest, run = each ? run + 1 : 0);
+      EXPECT_LE(longest, rows / 20 + 2) << rows << ' ' << share;
+      if (count < 2) continue;
+      const auto first = std::count(held.begin(), held.begin() + static_cast<long>(rows / 2), true);
+      EXPECT_GE(first, count / 4) << rows << ' ' << share;
+      EXPECT_LE(first, count - count / 4) << rows << ' ' << share;
+    }
+  EXPECT_EQ(held_rows(100, 0.0), std::vector<bool>(100, false));
+}
+
+TEST(FitPress, TheLawThatTheDataHaveIsTakenWhateverShareIsHeldOut) {
+  for (const auto& [law, values] : kTruths)
+    for (const double share : {0.0, 0.02, 0.1, 0.4, 0.5}) {
+      RecordWish wish;
+      wish.model.radius = law == "hertz" ? 0.004 : 0.0;
+      wish.hold_out = share;
+      const auto fit = fit_record(record_of(law, 0.001, 11), wish);
+      ASSERT_TRUE(fit.ok());
+      if (share == 0.0)  // the one with more parameters never has the larger error on what it was fitted to
+        EXPECT_LT(fit->laws[fit->best].rms, 0.0012) << law;
+      else
+        EXPECT_EQ(fit->laws[fit->best].model.law, law) << share;
+    }
+  RecordWish wish;
+  wish.hold_out = 0.02;  // three rows
+  const auto few = fit_record(record_of("cubic", 0.0, 1), wish);
+  ASSERT_TRUE(few.ok());
+  EXPECT_THAT(few->notes, ::testing::Contains(HasSubstr("too few to tell laws apart")));
+}
+
+// The same presses, measured from another zero of depth.
+PressRecord moved(PressRecord record, double by) {
+  for (double& depth : record.depth) depth += by;
+  return record;
+}
+
+TEST(FitPress, WhereTheIndenterMetTheSurfaceIsFoundWhereverTheRecordBegins) {
+  for (const auto& [law, values] : kTruths)
+    for (const double zero : {0.0, 0.001, 0.0095, -0.002}) {
+      RecordWish wish;
+      wish.law = law;
+      wish.model.radius = law == "hertz" ? 0.004 : 0.0;
+      wish.model.contact = true;
+      const auto fit = fit_record(moved(record_of(law, 0.0, 1), zero), wish);
+      ASSERT_TRUE(fit.ok()) << fit.error().message();
+      const LawFit& best = fit->laws[0];
+      EXPECT_EQ(best.parameters.back().key, "contact");
+      EXPECT_NEAR(best.parameters.back().value, zero, law == "sls" ? 2e-4 : 1e-6) << law;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_NEAR(best.parameters[i].value / values[i], 1.0, law == "sls" ? 0.1 : 1e-3) << law << i << ' ' << zero;
+    }
+}
+
+TEST(FitPress, ARecordThatBeginsPressedHasABoxForItsContact) {
+  // Depths of 9.5 to 9.975 mm: all of the record lies in what was the last tenth.
+  for (const double met : {0.0, 0.009, 0.0094}) {
+    PressRecord record;
+    record.name = "preload";
+    for (int i = 0; i < 40; ++i) {
+      record.depth.push_back(0.0095 + 0.000475 * i / 39);
+      record.force.push_back(200 * (record.depth.back() - met));
+      record.contact.push_back(true);
+    }
+    for (const std::string law : {"linear", "cubic", "exponential"}) {
+      RecordWish wish;
+      wish.law = law;
+      wish.model.contact = true;
+      const auto fit = fit_record(record, wish);
+      ASSERT_TRUE(fit.ok()) << fit.error().message();
+      const FitParameter& box = fit->laws[0].model.parameters.back().box;
+      const FittedParameter& contact = fit->laws[0].parameters.back();
+      EXPECT_LT(box.low, box.high);
+      EXPECT_GE(contact.value, box.low) << law << met;
+      EXPECT_LE(contact.value, box.high) << law << met;
+      if (law != "linear") continue;
+      EXPECT_NEAR(contact.value, met, 1e-6);
+      EXPECT_NEAR(fit->laws[0].parameters[0].value, 200, 0.1);
+    }
+  }
+}
+
+TEST(FitPress, TheDamperOfTheContactIsFound) {
+  PressRecord record;
+  record.name = "damped";
+  for (int i = 0; i <= 200; ++i) {  // down and up by a sine: at the engine's own rule, force from 0 on
+    const double t = 0.01 * i, d = 0.004 * (1 - std::cos(M_PI * t)) / 2;
+    record.time.push_back(t);
+    record.depth.push_back(d);
+    const double rate = i ? (d - record.depth[static_cast<std::size_t>(i) - 1]) / 0.01 : 0.0;
+    record.force.push_back(std::max(0.0, 300 * d + (d > 0 ? 20 * rate : 0.0)));
+    record.contact.push_back(d > 0);
+  }
+  RecordWish wish;
+  wish.law = "linear";
+  wish.model.damping = true;
+  const auto fit = fit_record(record, wish);
+  ASSERT_TRUE(fit.ok()) << fit.error().message();
+  EXPECT_EQ(fit->laws[0].parameters[1].key, "contact_damping");
+  EXPECT_NEAR(fit->laws[0].parameters[0].value, 300, 1e-3);
+  EXPECT_NEAR(fit->laws[0].parameters[1].value, 20, 1e-3);
+  record.time.clear();
+  const auto timeless = fit_record(record, wish);
+  ASSERT_FALSE(timeless.ok());
+  EXPECT_THAT(timeless.error().message(), HasSubstr("damping needs a column of time"));
+}
+
+TEST(FitPress, AnIntervalEndsWhereItsKeysRangeDoes) {
+  bool cut = false;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RecordWish wish;
+    wish.law = "cubic";
+    const auto fit = fit_record(record_of("linear", 0.05, seed), wish);
+    ASSERT_TRUE(fit.ok());
+    const FittedParameter& cubic = fit->laws[0].parameters[1];
+    EXPECT_GE(cubic.low, 0.0);
+    EXPECT_LE(cubic.low, cubic.value);
+    cut = cut || (!cubic.on_bound && cubic.low == 0.0);
+  }
+  EXPECT_TRUE(cut) << "no seed's interval would have left the range";
+}
+
+TEST(FitPress, StudentsTIsTheTables) {
+  EXPECT_NEAR(student_t(0.95, 1), 12.7062, 1e-3);
+  EXPECT_NEAR(student_t(0.95, 10), 2.22814, 1e-4);
+  EXPECT_NEAR(student_t(0.99, 30), 2.74999, 1e-4);
+  EXPECT_NEAR(student_t(0.95, 1e5), 1.95998, 1e-3);
+}
+
+TEST(FitPress, ColumnsAreReadByNameAndUnitAndWhatIsWrongIsSaidInASentence) {
+  const auto said = [](const std::string& text) {
+    const auto record = parse_press(text, "d.csv");
+    return record ? std::string() : record.error().message();
+  };
+  std::string rows;
+  for (int i = 1; i <= 9; ++i) rows += std::to_string(i) + ";" + std::to_string(2 * i) + "\n";
+  const auto good = parse_press("Indentation [mm];Load (mN)\r\n" + rows, "d.csv");
+  ASSERT_TRUE(good.ok()) << good.error().message();
+  EXPECT_DOUBLE_EQ(good->depth[3], 0.004);
+  EXPECT_DOUBLE_EQ(good->force[3], 0.008);
+  EXPECT_THAT(said("depth,force_N\n1,1\n"), HasSubstr("column 'depth' does not say its unit; write depth_mm"));
+  EXPECT_THAT(said("depth_ft,force_N\n1,1\n"), HasSubstr("has the unit 'ft'; must be one of m, cm, mm"));
+  EXPECT_THAT(said("depth_mm\n1\n"), HasSubstr("has no column of force"));
+  EXPECT_THAT(said("depth_mm,force_N\n1,nan\n"), HasSubstr("d.csv:2: its force is 'nan', which is no finite number"));
+  EXPECT_THAT(said("depth_mm,force_N\n1\n"), HasSubstr("d.csv:2: has 1 cells where the header has 2"));
+  EXPECT_THAT(said("depth_mm,force_N\n1,1\n"), HasSubstr("has 1 rows; a fit takes at least 8"));
+  EXPECT_THAT(said("time_s,depth_mm,force_N\n0,1,1\n0,2,2\n"), HasSubstr("d.csv:3: its time does not grow"));
+  EXPECT_THAT(said(""), HasSubstr("is empty"));
+}
+
+TEST(FitPress, TablesAsProgramsWriteThemAreRead) {
+  const auto read = [](const std::string& head, const std::string& row) {
+    std::string text = head + "\n";
+    for (int i = 1; i <= 9; ++i) {
+      std::string line = row;
+      while (line.find('#') != std::string::npos) line.replace(line.find('#'), 1, std::to_string(i));
+      text += line + "\r\n";
+    }
+    const auto record = parse_press(text, "d.csv");
+    EXPECT_TRUE(record.ok()) << head << ": " << (record ? "" : record.error().message());
+    if (record) {
+      EXPECT_DOUBLE_EQ(record->depth[3], 0.0045) << head;
+      EXPECT_DOUBLE_EQ(record->force[3], 1.4) << head;
+    }
+    return record ? record->notes : std::vector<std::string>();
+  };
+  // Separators at the end of rows, of the header, or of both.
+  read("depth_mm,force_N", "#.5,1.#,");
+  read("depth_mm,force_N,", "#.5,1.#");
+  read("depth_mm;force_N;;", "#.5;1.#;;");
+  read("depth_mm\tforce_N\t", "#.5\t1.#\t");
+  // Decimal commas where commas are not between cells.
+  read("depth_mm;force_N", "#,5;1,#");
+  read("depth_mm\tforce_N", "#,5\t+1,#");
+  // Commas and quotes in names and texts.
+  read("\"note, any\";depth_mm;force (N)", "x;#,5;1,#");
+  read("note,depth_mm,force_N", "\"a \"\"soft\"\", wet pad\",#.5,1.#");
+  read("note,depth_mm,force_N", "\"\"\"\",#.5,\"1.#\"");
+  // What else has such a name is not read.
+  EXPECT_THAT(
+      read("f_Hz,load_cell,depth_mm,force_N", "1,2,#.5,1.#"),
+      ::testing::ElementsAre(HasSubstr("'f_Hz' is not read: 'Hz' is no unit of force"), HasSubstr("'load_cell'")));
+  EXPECT_THAT(read("t_degC,depth_mm,d,force_N", "1,#.5,0,1.#"), ::testing::SizeIs(2));
+  const auto said = [](const std::string& text) {
+    const auto record = parse_press(text, "d.csv");
+    return record ? std::string() : record.error().message();
+  };
+  EXPECT_THAT(said("depth_mm,force_N\n1,5,2,5\n"), HasSubstr("where its commas are decimal, put semicolons"));
+  EXPECT_THAT(said("depth_mm;force_N\n1.234,5;1\n"),
+              HasSubstr("'1.234,5', which is no finite number (a decimal comma"));
+  EXPECT_THAT(said("depth_mm,load_cell\n1,1\n"), HasSubstr("column 'load_cell' has the unit 'cell'; must be one of N"));
+  EXPECT_THAT(said("depth_mm,force_N,time_days\n1,1\n"), HasSubstr("column 'time_days' has the unit 'days'"));
+  EXPECT_THAT(said("depth_mm,force_N\n1,\n"), HasSubstr("its force is ''"));
+}
+
+TEST(FitPress, WhatCsvTextWritesIsReadBack) {
+  std::vector<std::string> cells;
+  for (const char* name : {"tip", "a,b", "\"", "\"\"", "\",\"", "a \"soft\", wet pad", ",", "\",", " x", ""}) {
+    csv_cells(csv_text(name) + ",1," + csv_text(name), ',', cells);
+    ASSERT_EQ(cells.size(), 3u) << name;
+    EXPECT_EQ(cells[0], name);
+    EXPECT_EQ(cells[2], name);
+  }
+  csv_cells("", ',', cells);
+  EXPECT_EQ(cells, std::vector<std::string>{""});
+  csv_cells("a,,", ',', cells);
+  EXPECT_EQ(cells, (std::vector<std::string>{"a", "", ""}));
+  csv_cells("\"not closed, at all", ',', cells);
+  EXPECT_EQ(cells, std::vector<std::string>{"not closed, at all"});
+}
+
+TEST(FitPress, RowsOfAToolAreRefused) {
+  const std::string head = "time_s,probe,in_contact,depth_m,fx,fy,fz,fn,tx,ty,tz\n";
+  std::string rows;
+  for (int i = 1; i <= 9; ++i)
+    rows += std::to_string(i) + ",hand,1,0.00" + std::to_string(i) + ",0,1,0,1,0,0," + (i == 9 ? "0.1" : "0") + "\n";
+  const auto record = parse_press(head + rows, "forces.csv");
+  ASSERT_FALSE(record.ok());
+  EXPECT_THAT(record.error().message(), HasSubstr("forces.csv: `hand` is a tool"));
+}
+
+using FitCommandTest = CommandTest;
+
+TEST_F(FitCommandTest, AFitIsTheSameBytesTwiceAndTheLevelFeelsWhatWasMeasured) {
+  std::string csv = "time_s,depth_mm,force_mN\n";
+  const PressRecord record = record_of("exponential", 0.002, 3);
+  for (std::size_t i = 0; i < record.size(); ++i)
+    csv += std::to_string(record.time[i]) + "," + std::to_string(record.depth[i] * 1e3) + "," +
+           std::to_string(record.force[i] * 1e3) + "\n";
+  write_text(folder / "press.csv", csv);
+  for (const std::string name : {"a", "b"}) {
+    const Said fit =
+        pliant({"fit", "press.csv", "--level", "minimal", "--object", "sheet", "-o", name + ".glb", "--report", name});
+    ASSERT_EQ(fit.status, 0) << fit.err;
+  }
+  for (const char* file : {"fit.json", "fit_residuals.csv", "fit.png"})
+    EXPECT_EQ(read_text(folder / "a" / file), read_text(folder / "b" / file)) << file;
+  EXPECT_EQ(read_text(folder / "a.glb"), read_text(folder / "b.glb"));
+  const Json report = Json::parse(read_text(folder / "a" / "fit.json"));
+  EXPECT_EQ(report["best"], "exponential");
+  EXPECT_NEAR(report["laws"][2]["parameters"][1]["value"].get<double>(), 180, 3);
+}
+
+TEST_F(FitCommandTest, WhatCannotBeFittedIsSaidAndNothingIsWritten) {
+  write_text(folder / "press.csv", "depth_mm,force_N\n1,1\n2,2\n");
+  Said said = pliant({"fit", "press.csv"});
+  EXPECT_EQ(said.status, 1);
+  EXPECT_THAT(said.err, HasSubstr("press.csv: has 2 rows; a fit takes at least 8"));
+  EXPECT_FALSE(testing::fs::exists(folder / "out"));
+  said = pliant({"fit"});
+  EXPECT_EQ(said.status, 2);
+  said = pliant({"fit", "minimal", "--object", "sheat", "-o", "x.glb"});
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.err, HasSubstr("did you mean sheet?"));
+}
+
+}  // namespace
+}  // namespace pliant

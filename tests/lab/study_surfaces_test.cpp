@@ -1,0 +1,78 @@
+// The study `surfaces` against closed forms: of its surfaces themselves, and of facets on a sphere.
+#include "lab/study/study_surfaces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+TEST(StudySurfaces, LoopsAreClosedOnTheirSurfaceAndTheirNormalsStandOnIt) {
+  for (const SmoothSurface& surface : {smooth_sphere(), smooth_torus(), smooth_saddle()}) {
+    EXPECT_LT(length(surface.loop(0).p - surface.loop(1).p), 1e-12) << surface.name;
+    const Mesh mesh = surface.mesh(5000);
+    EXPECT_NEAR(static_cast<double>(mesh.triangles.size()), 5000, 250) << surface.name;
+    for (double s = 0; s < 1; s += 0.01) {
+      const dvec3 along = normalize(surface.loop(s + 1e-6).p - surface.loop(s - 1e-6).p);
+      EXPECT_LT(std::abs(dot(along, surface.loop(s).n)), 1e-6) << surface.name << ' ' << s;
+      EXPECT_NEAR(length(surface.loop(s).n), 1, 1e-12);
+    }
+  }
+}
+
+TEST(StudySurfaces, AMeshFacesTheWayThatItsSurfaceDoes) {
+  for (const SmoothSurface& surface : {smooth_sphere(), smooth_torus(), smooth_saddle()}) {
+    const FeltErrors errors = feel(surface.mesh(5000), surface, FeltSurface::kVirtualVertex, 200);
+    EXPECT_LT(errors.turned, 20) << surface.name;
+  }
+}
+
+// A facet of a circle of radius R, seen from the depth d behind it, ends at e / (2 (R - d)) from its middle's
+// direction.
+TEST(StudySurfaces, FacetsTurnTheForceByHalfAnEdgeOverTheRadius) {
+  const SmoothSurface sphere = smooth_sphere();
+  const Mesh mesh = sphere.mesh(5000);
+  const FeltErrors errors = feel(mesh, sphere, FeltSurface::kFacets, 20'000);
+  const double edge = mesh.mean_edge, want = edge / 2 / 0.1 * 180 / M_PI;
+  EXPECT_GT(errors.turned, 0.5 * want);
+  EXPECT_LT(errors.turned, 2.0 * want);
+}
+
+// What is conservative gives out no more than the sum over samples resolves; what is not gives out more.
+TEST(StudySurfaces, FacetsAndPatchesAreConservativeAndInterpolatedNormalsAreNot) {
+  const SmoothSurface torus = smooth_torus();
+  const Mesh mesh = torus.mesh(5000);
+  const FeltErrors facets = feel(mesh, torus, FeltSurface::kFacets, 20'000);
+  EXPECT_LT(facets.work, 3 * facets.floor);
+  EXPECT_LT(facets.work, 3e-4);
+  EXPECT_LT(feel(mesh, torus, FeltSurface::kPatches, 20'000).work, 1e-4);
+  for (const FeltSurface felt : {FeltSurface::kShading, FeltSurface::kVirtualVertex}) {
+    const FeltErrors errors = feel(mesh, torus, felt, 20'000);
+    EXPECT_GT(errors.work, 1e-2) << name_of(felt);
+    EXPECT_LT(errors.floor, 0.05 * errors.work) << name_of(felt);
+  }
+}
+
+TEST(StudySurfaces, PatchesGainMoreThanFacetsWhenTheMeshGetsFiner) {
+  const SmoothSurface sphere = smooth_sphere();
+  const Mesh coarse = sphere.mesh(5000), fine = sphere.mesh(20'000);
+  const auto gain = [&](FeltSurface felt) {
+    return feel(coarse, sphere, felt, 5000).ripple / feel(fine, sphere, felt, 5000).ripple;
+  };
+  EXPECT_NEAR(gain(FeltSurface::kFacets), 4, 1.5);  // half the edge, a quarter of the sagitta
+  EXPECT_GT(gain(FeltSurface::kPatches), 8);
+}
+
+TEST(StudySurfaces, ErrorsRepeatToTheBit) {
+  const SmoothSurface saddle = smooth_saddle();
+  for (const FeltSurface felt : kFeltSurfaces) {
+    const FeltErrors one = feel(saddle.mesh(5000), saddle, felt, 500), two = feel(saddle.mesh(5000), saddle, felt, 500);
+    EXPECT_EQ(one.ripple, two.ripple);
+    EXPECT_EQ(one.direction, two.direction);
+    EXPECT_EQ(one.work, two.work);
+  }
+}
+
+}  // namespace
+}  // namespace pliant
