@@ -5,15 +5,11 @@
 
 #include "content/files/limits.h"
 #include "content/keys/extension_table.h"
-#include "content/level/unit.h"
 #include "lab/console/exit.h"
 #include "lab/console/progress.h"
-#include "lab/files/content_folder.h"
 #include "player/standard_streams.h"
-#include "player/verbs/device_test.h"
 #include "player/verbs/options.h"
 #include "pliant/content.h"
-#include "pliant/drivers.h"
 #include "pliant/process.h"
 
 namespace pliant {
@@ -58,45 +54,17 @@ Error unknown_verb(const std::string& word, const std::vector<CLI::App*>& verbs)
   return {"arguments", "unknown verb '" + word + "'" + (near.empty() ? "; see `pliant --help`" : near)};
 }
 
+constexpr AddVerb kVerbs[] = {add_run,   add_author, add_inspect, add_convert, add_validate, add_devices,
+                              add_study, add_sweep,  add_fit,     add_plot,    add_edit};
+
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"Pliant: touch soft things, feel the force at 1 kHz", "pliant"};
   app.set_version_flag("--version", "pliant " PLIANT_VERSION);
   app.require_subcommand(1);
   app.footer("Examples:\n  pliant run\n  pliant inspect organ.glb\n  pliant run --help");
 
-  RunOptions run_options;
-  ConvertOptions conversion;
-  std::string validated;
-  InspectOptions inspection;
-  bool devices_json = false;
-  AuthorOptions authoring;
-  add_run(app, run_options);
-  add_author(app, authoring);
-  add_files(app, inspection, conversion, validated);
-  CLI::App* verb = app.add_subcommand("devices", "haptic and pointing devices found, and how to use each");
-  verb->add_flag("--json", devices_json, "as JSON");
-  DeviceTestOptions device_test;
-  CLI::Option* test =
-      verb->add_option("--test", device_test.id, "what this one senses, live")->type_name("ID")->check(named());
-  verb->add_option("--seconds", device_test.seconds, "how long it is looked at [s] (10)")
-      ->check(within(0.1, 86400.0))
-      ->needs(test);
-  verb->add_flag("--push", device_test.push, "pushes gently along each axis, once that was confirmed")->needs(test);
-  verb->footer(
-      "Examples:\n  pliant devices --json\n  pliant devices --test spacemouse\n  pliant devices --test falcon --push");
-  StudyOptions study_options;
-  add_study(app, study_options);
-  SweepOptions sweep_options;
-  sweep_options.check = check_run_arguments;
-  MergeOptions merging;
-  add_sweep(app, sweep_options, merging);
-  FitOptions fit_options;
-  add_fit(app, fit_options);
-  PlotOptions plot_options;
-  add_plot(app, plot_options);
-  EditOptions edit_options;
-  std::string edit_unit = "m";
-  add_edit(app, edit_options, edit_unit);
+  int status = kDone;
+  for (const AddVerb add : kVerbs) add(app, status);
 
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const auto is_asked = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
@@ -108,25 +76,7 @@ int parse_and_run(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return fail(kUsage, usage_error(app, error));
   }
-  const std::string name = app.get_subcommands().front()->get_name();
-  if (name == "run") return run_options.list ? list_levels() : run(run_options);
-  if (name == "inspect") return inspect(inspection);
-  if (name == "convert") return convert(conversion);
-  if (name == "author") return author(authoring);
-  if (name == "validate") return validate(validated);
-  if (name == "devices") return device_test.id.empty() ? devices(devices_json) : test_device(device_test);
-  if (name == "study") return study(study_options);
-  if (name == "fit") return fit(fit_options);
-  if (name == "plot") return plot_runs(plot_options);
-  if (name == "sweep")
-    return app.get_subcommand("sweep")->got_subcommand("merge") ? merge_sweep(merging) : sweep(sweep_options);
-  const Result<double> unit = parse_unit(edit_unit);
-  if (!unit) return fail(kUsage, unit.error());
-  edit_options.unit = *unit;
-  edit_options.levels = shipped_levels();
-  register_all_drivers();
-  const Status edited = edit(edit_options);
-  return edited ? kDone : fail(kFailed, edited.error());
+  return status;
 }
 
 }  // namespace
@@ -135,7 +85,7 @@ Status check_run_arguments(const std::vector<std::string>& arguments) {
   CLI::App app;
   RunOptions run;
   const double factor = limit_factor();  // --limits would hold at once
-  add_run(app, run);
+  add_run_options(app, run);
   std::vector<std::string> words(arguments.rbegin(), arguments.rend());  // CLI11 takes them from behind
   words.emplace_back("run");
   std::optional<Error> wrong;

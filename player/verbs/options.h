@@ -1,27 +1,31 @@
-// What the verbs of `pliant` take: options, their ranges and their help.
+// The verbs of `pliant`: options, their ranges and their help. A new verb is a file with a function like these, and a
+// line of the table in command_line.cpp.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-#include "editor/edit.h"
-#include "lab/fit/fit.h"
-#include "lab/plot/plot_runs.h"
-#include "lab/study/study.h"
-#include "lab/sweep/sweep.h"
 #include "player/verbs/verbs.h"
 
 namespace pliant {
 
-void add_run(CLI::App& app, RunOptions& run);
-void add_files(CLI::App& app, InspectOptions& inspection, ConvertOptions& conversion, std::string& validated);
-void add_author(CLI::App& app, AuthorOptions& options);
-void add_edit(CLI::App& app, EditOptions& options, std::string& unit);
-void add_study(CLI::App& app, StudyOptions& options);
-void add_sweep(CLI::App& app, SweepOptions& options, MergeOptions& merging);
-void add_fit(CLI::App& app, FitOptions& options);
-void add_plot(CLI::App& app, PlotOptions& options);
+// Adds a verb with its options. Where the command line asks for it, its callback does it and leaves its exit status.
+using AddVerb = void (*)(CLI::App& app, int& status);
+void add_run(CLI::App& app, int& status);
+void add_author(CLI::App& app, int& status);
+void add_inspect(CLI::App& app, int& status);
+void add_convert(CLI::App& app, int& status);
+void add_validate(CLI::App& app, int& status);
+void add_devices(CLI::App& app, int& status);
+void add_study(CLI::App& app, int& status);
+void add_sweep(CLI::App& app, int& status);
+void add_fit(CLI::App& app, int& status);
+void add_plot(CLI::App& app, int& status);
+void add_edit(CLI::App& app, int& status);
+
+// Those of `run` alone.
+CLI::App* add_run_options(CLI::App& app, RunOptions& run);
 
 // --- For those above.
 

@@ -1,52 +1,69 @@
+#include <memory>
 #include <tuple>
 
 #include "content/author/instruments.h"
 #include "content/author/object_frame.h"
 #include "content/author/presets.h"
+#include "content/level/unit.h"
 #include "content/level_file.h"
+#include "editor/edit.h"
 #include "engine/choice/model_choice.h"
+#include "lab/console/exit.h"
+#include "lab/files/content_folder.h"
 #include "player/verbs/options.h"
+#include "pliant/drivers.h"
 
 namespace pliant {
 
-void add_files(CLI::App& app, InspectOptions& inspection, ConvertOptions& conversion, std::string& validated) {
+void add_inspect(CLI::App& app, int& status) {
+  const auto options = std::make_shared<InspectOptions>();
   CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
-  verb->add_option("file", inspection.file, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
-  verb->add_flag("--json", inspection.json, "as JSON");
-  CLI::Option* fit = verb->add_flag("--fit", inspection.fit, "which models error budgets choose, and the evidence");
-  verb->add_option("--error", inspection.error, "with --fit: error budget of every surface and soft body")
+  verb->add_option("file", options->file, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
+  verb->add_flag("--json", options->json, "as JSON");
+  CLI::Option* fit = verb->add_flag("--fit", options->fit, "which models error budgets choose, and the evidence");
+  verb->add_option("--error", options->error, "with --fit: error budget of every surface and soft body")
       ->check(within(kErrorBudget.min, kErrorBudget.max))
       ->needs(fit);
-  add_unit(verb, inspection.unit, "what one unit of a bare mesh is (m)");
+  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
   add_limits(verb);
   verb->footer(
       "Examples:\n  pliant inspect organ.glb\n  pliant inspect scan.stl --unit mm\n  pliant inspect organ.glb --fit "
       "--error 0.3");
+  verb->callback([options, &status] { status = inspect(*options); });
+}
 
-  verb = app.add_subcommand("convert", "any mesh format to glTF or GLB; an EXR panorama to a cube map preview (PNG)");
-  verb->add_option("in", conversion.in, "what to read")->required()->check(named());
-  verb->add_option("out", conversion.out, "what to write: .glb, .gltf, or .png for a panorama")
+void add_convert(CLI::App& app, int& status) {
+  const auto options = std::make_shared<ConvertOptions>();
+  CLI::App* verb =
+      app.add_subcommand("convert", "any mesh format to glTF or GLB; an EXR panorama to a cube map preview (PNG)");
+  verb->add_option("in", options->in, "what to read")->required()->check(named());
+  verb->add_option("out", options->out, "what to write: .glb, .gltf, or .png for a panorama")
       ->required()
       ->check(named());
   CLI::Option* draco =
-      verb->add_option("--draco", conversion.draco_bits, "compress (anew) with this many bits per position (8 to 24)")
+      verb->add_option("--draco", options->draco_bits, "compress (anew) with this many bits per position (8 to 24)")
           ->check(within(SaveOptions::kDracoBits.min, SaveOptions::kDracoBits.max));
-  verb->add_flag("--no-draco", conversion.no_draco, "write plain what is compressed, for every viewer")
-      ->excludes(draco);
-  verb->add_flag("--reorder", conversion.reorder, "weld, clean and put vertices in spatial order");
-  verb->add_flag("--force", conversion.force, "replace what is there");
+  verb->add_flag("--no-draco", options->no_draco, "write plain what is compressed, for every viewer")->excludes(draco);
+  verb->add_flag("--reorder", options->reorder, "weld, clean and put vertices in spatial order");
+  verb->add_flag("--force", options->force, "replace what is there");
   add_limits(verb);
-  add_unit(verb, conversion.unit, "what one unit of the input is (m)");
+  add_unit(verb, options->unit, "what one unit of the input is (m)");
   verb->footer(
       "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
-
-  verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
-  verb->add_option("level", validated, "level")->required()->check(named());
-  add_limits(verb);
-  verb->footer("Example:\n  pliant validate level.gltf");
+  verb->callback([options, &status] { status = convert(*options); });
 }
 
-void add_author(CLI::App& app, AuthorOptions& options) {
+void add_validate(CLI::App& app, int& status) {
+  const auto options = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
+  verb->add_option("level", *options, "level")->required()->check(named());
+  add_limits(verb);
+  verb->footer("Example:\n  pliant validate level.gltf");
+  verb->callback([options, &status] { status = validate(*options); });
+}
+
+void add_author(CLI::App& app, int& status) {
+  const auto options = std::make_shared<AuthorOptions>();
   std::vector<std::string> presets, tools, sides{"none"};
   for (const TissuePreset& preset : tissue_presets()) presets.emplace_back(preset.word);
   for (const Instrument& tool : instruments()) tools.emplace_back(tool.word);
@@ -54,44 +71,59 @@ void add_author(CLI::App& app, AuthorOptions& options) {
   for (const Side side : {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack})
     sides.emplace_back(word_of(side));
   CLI::App* verb = app.add_subcommand("author", "a first level from an organ's mesh: soft, pinned, with an instrument");
-  verb->add_option("in", options.in, "mesh or level")->required()->check(named());
-  verb->add_option("-o,--out", options.out, "the level: .glb or .gltf")->required()->check(named())->type_name("FILE");
+  verb->add_option("in", options->in, "mesh or level")->required()->check(named());
+  verb->add_option("-o,--out", options->out, "the level: .glb or .gltf")->required()->check(named())->type_name("FILE");
   for (const auto& [name, nodes, what] :
-       {std::tuple("--soft", &options.soft, "becomes a soft body (default: the largest mesh); may be repeated"),
-        std::tuple("--surface", &options.surface, "becomes a deformable surface instead; may be repeated")})
+       {std::tuple("--soft", &options->soft, "becomes a soft body (default: the largest mesh); may be repeated"),
+        std::tuple("--surface", &options->surface, "becomes a deformable surface instead; may be repeated")})
     verb->add_option(name, *nodes, what)->take_all()->allow_extra_args(false)->check(named())->type_name("NODE");
-  verb->add_option("--preset", options.preset, "tissue: " + joined(presets) + " (liver)")->check(one_of(presets));
-  verb->add_option("--pin", options.pin, "which side of what is soft is held: " + joined(sides) + " (bottom)")
+  verb->add_option("--preset", options->preset, "tissue: " + joined(presets) + " (liver)")->check(one_of(presets));
+  verb->add_option("--pin", options->pin, "which side of what is soft is held: " + joined(sides) + " (bottom)")
       ->check(one_of(sides));
-  verb->add_option("--tool", options.tool, joined(tools) + " (rod where something is soft)")->check(one_of(tools));
-  verb->add_flag("--probe", options.probe, "a probe, too");
-  verb->add_flag("--force", options.force, "replace what is there");
+  verb->add_option("--tool", options->tool, joined(tools) + " (rod where something is soft)")->check(one_of(tools));
+  verb->add_flag("--probe", options->probe, "a probe, too");
+  verb->add_flag("--force", options->force, "replace what is there");
   add_limits(verb);
-  add_unit(verb, options.unit, "what one unit of a bare mesh is (m)");
+  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
   verb->footer(
       "Examples:\n"
       "  pliant author organ.glb -o level.glb\n"
       "  pliant author organ.glb --soft capsule --preset liver --pin bottom --tool sphere_tip -o level.glb\n"
       "  pliant author scan.stl --unit mm --surface scan --preset skin -o level.glb");
+  verb->callback([options, &status] { status = author(*options); });
 }
 
-void add_edit(CLI::App& app, EditOptions& options, std::string& unit) {
+void add_edit(CLI::App& app, int& status) {
+  const auto options = std::make_shared<EditOptions>();
+  const auto unit = std::make_shared<std::string>("m");
   CLI::App* verb = app.add_subcommand("edit", "the editor: from a mesh to a level that can be touched");
-  verb->add_option("file", options.file, "a level, or any mesh; none: the start page");
-  verb->add_option("--unit", unit, "of a bare mesh: m, cm, mm, in, or metres for one unit")->capture_default_str();
+  verb->add_option("file", options->file, "a level, or any mesh; none: the start page");
+  verb->add_option("--unit", *unit, "of a bare mesh: m, cm, mm, in, or metres for one unit")->capture_default_str();
   verb->add_option_function<std::string>(
       "--size",
-      [&options](const std::string& text) {
+      [options](const std::string& text) {
         RunOptions size;
         if (const std::string wrong = parse_size(text, size); !wrong.empty()) throw CLI::ValidationError(wrong);
-        options.width = size.width;
-        options.height = size.height;
+        options->width = size.width;
+        options->height = size.height;
       },
       "of the window, WxH [1600x900]");
-  verb->add_option("--input", options.input, "a script of what a hand does (docs/editor.md)");
-  verb->add_option("--out", options.out, "folder of the script's screenshots")->capture_default_str();
-  verb->add_option("--config", options.config, "folder of settings; else ~/.config/pliant");
+  verb->add_option("--input", options->input, "a script of what a hand does (docs/editor.md)");
+  verb->add_option("--out", options->out, "folder of the script's screenshots")->capture_default_str();
+  verb->add_option("--config", options->config, "folder of settings; else ~/.config/pliant");
   verb->footer("Examples:\n  pliant edit\n  pliant edit organ.glb --unit mm");
+  verb->callback([options, unit, &status] {
+    const Result<double> metres = parse_unit(*unit);
+    if (!metres) {
+      status = fail(kUsage, metres.error());
+      return;
+    }
+    options->unit = *metres;
+    options->levels = shipped_levels();
+    register_all_drivers();
+    const Status edited = edit(*options);
+    status = edited ? kDone : fail(kFailed, edited.error());
+  });
 }
 
 }  // namespace pliant

@@ -1,3 +1,5 @@
+#include <memory>
+
 #include "components/haptic_device.h"
 #include "components/world.h"
 #include "content/keys/enum_words.h"
@@ -6,7 +8,7 @@
 
 namespace pliant {
 
-void add_run(CLI::App& app, RunOptions& run) {
+CLI::App* add_run_options(CLI::App& app, RunOptions& run) {
   CLI::App* verb = app.add_subcommand("run", "run a level or touch a bare mesh; writes forces, plot, pictures, report");
   CLI::Option* level =
       verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)")
@@ -68,6 +70,14 @@ void add_run(CLI::App& app, RunOptions& run) {
       "  pliant run organ.glb --probe finger=orbit --set '*.deformable.stiffness=500' --frames 4\n"
       "  pliant run scan_in_millimetres.stl --unit mm\n"
       "  pliant run level.gltf --probe tip=script:press.csv --record press.pose --out out/press");
+  return verb;
+}
+
+void add_run(CLI::App& app, int& status) {
+  const auto options = std::make_shared<RunOptions>();
+  add_run_options(app, *options)->callback([options, &status] {
+    status = options->list ? list_levels() : run(*options);
+  });
 }
 
 }  // namespace pliant
