@@ -11,7 +11,7 @@
 #include "engine/run/recording.h"
 #include "engine/run/simulated_hands.h"
 #include "lab/console/exit.h"
-#include "player/verbs/verbs.h"
+#include "player/level/run_options.h"
 #include "runtime/result.h"
 
 namespace pliant {

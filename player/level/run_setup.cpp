@@ -1,4 +1,4 @@
-#include "player/verbs/run_setup.h"
+#include "player/level/run_setup.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

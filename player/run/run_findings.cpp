@@ -1,0 +1,56 @@
+#include "player/run/run_findings.h"
+
+#include <fmt/format.h>
+
+#include "player/run/tool_words.h"
+#include "systems/device/hands.h"
+#include "systems/soft/soft_state.h"
+
+namespace pliant {
+namespace {
+
+// Something in this run could move this probe or tool.
+bool is_moved(const RunFigures& figures, std::size_t hand) {
+  const HapticDevice* device = find_device(figures.world, figures.journal.probes()[hand]);
+  const DriverKind driver = device ? device->driver : DriverKind::kNull;
+  if (driver == DriverKind::kMouse) return figures.mode == "window";
+  if (driver == DriverKind::kExternal) {
+    const std::string& source = figures.keeper.summaries()[hand].source;
+    return source == "hand" || source.starts_with("hand:") || source.starts_with("replay:") ||
+           (source.starts_with("device:") && source != "device:");
+  }
+  return driver != DriverKind::kNull;
+}
+
+}  // namespace
+
+std::vector<std::string> explain_run(RunFigures& figures, DeviceLinks& devices) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < figures.journal.probes().size(); ++i) {
+    const Entity hand = figures.journal.probes()[i];
+    const ProbeSummary& summary = figures.keeper.summaries()[i];
+    figures.misses.emplace_back();
+    if (summary.contact_ticks == 0 && devices.never_ready(hand)) {
+      // its device says why
+    } else if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
+      sentences.push_back(fmt::format("{} `{}` never touched anything: nothing moves it; give it --probe {}=orbit",
+                                      summary.tool ? "tool" : "probe", summary.name, summary.name));
+    } else if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
+      figures.misses.back() = find_miss(figures.world, summary.approach, probe->radius);
+      sentences.push_back(explain_miss(summary.name, figures.misses.back()));
+    } else if (summary.contact_ticks == 0) {
+      sentences.push_back("tool `" + summary.name +
+                          "` never touched anything; move its device into contact (script, or --probe " + summary.name +
+                          "=orbit)");
+    }
+    for (std::string& sentence : explain_limits(figures.world, hand, summary.name))
+      sentences.push_back(std::move(sentence));
+    for (std::string& sentence : explain_tool(figures.world, summary)) sentences.push_back(std::move(sentence));
+  }
+  if (figures.soft)
+    for (std::string& sentence : explain_soft_steps(figures.world, figures.soft->figures()))
+      sentences.push_back(std::move(sentence));
+  return sentences;
+}
+
+}  // namespace pliant
