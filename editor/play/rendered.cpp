@@ -2,6 +2,7 @@
 
 #include "content/level_file.h"
 #include "editor/play/scene_view.h"
+#include "systems/prepare_world.h"
 
 namespace pliant {
 

@@ -22,6 +22,7 @@
 #include "lab/console/interrupt.h"
 #include "lab/console/print.h"
 #include "player/verbs/verbs.h"
+#include "systems/prepare_world.h"
 
 namespace pliant {
 namespace fs = std::filesystem;

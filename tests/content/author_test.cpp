@@ -15,6 +15,7 @@
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
+#include "systems/prepare_world.h"
 
 namespace pliant::test {
 namespace {
