@@ -1,5 +1,7 @@
 #include "editor/play/rendered.h"
 
+#include <memory>
+
 #include "content/level_file.h"
 #include "editor/play/scene_view.h"
 #include "systems/prepare_world.h"
