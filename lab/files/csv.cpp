@@ -91,6 +91,11 @@ void csv_cells(std::string_view line, char mark, std::vector<std::string>& cells
   cells.resize(count);
 }
 
+std::size_t csv_column(const std::vector<std::string>& header, std::string_view name) {
+  const auto found = std::find(header.begin(), header.end(), name);
+  return found == header.end() ? kNoColumn : static_cast<std::size_t>(found - header.begin());
+}
+
 void put(std::string& line, double value) {
   fmt::format_to(std::back_inserter(line), ",{:.9g}", (std::abs(value) < 1e-100 ? 0.0 : value) + 0.0);
 }

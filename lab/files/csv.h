@@ -1,6 +1,7 @@
 // Text and numbers as the files in CSV have them: forces.csv and bodies.csv.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,10 @@ std::string csv_text(const std::string& name);
 // The cells of a line, with `mark` between them: one more than there are marks. In a cell in quotes, which blanks may
 // stand before, marks mean nothing and two quotes are one. The apostrophes of csv_text() are taken off.
 void csv_cells(std::string_view line, char mark, std::vector<std::string>& cells);
+
+// Which cell of a header is `name`; kNoColumn: none.
+inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+std::size_t csv_column(const std::vector<std::string>& header, std::string_view name);
 
 // Appends a comma and the value, with nine digits: exact for a float, and 1e-9 relative for what is kept in double. -0
 // becomes 0, and so does what has decayed to (nearly) less than a double holds, so that every reader takes it.

@@ -76,22 +76,16 @@ Result<RunSeries> read_series(const fs::path& run) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     return line;
   };
-  std::map<std::string, std::size_t> column;
-  std::vector<std::string> cells;
-  csv_cells(take_line(), ',', cells);
-  for (std::size_t i = 0; i < cells.size(); ++i) column[cells[i]] = i;
-  const std::size_t columns = cells.size();
+  std::vector<std::string> header;
+  csv_cells(take_line(), ',', header);
+  const auto place = [&](const char* name) { return csv_column(header, name); };
   for (const char* name : {"time_s", "depth_m", "fn"})
-    if (!column.contains(name))
+    if (place(name) == kNoColumn)
       return Error{file.string(), std::string("has no column `") + name + "`; name a forces.csv that a run wrote"};
   RunSeries out;
   out.run = run.string();
   for (const char* name : {"ft", "in_contact", "object", "probe"})
-    if (!column.contains(name)) out.notes.push_back(out.run + ": has no column `" + name + "`");
-  const auto place = [&](const char* name) {
-    const auto found = column.find(name);
-    return found == column.end() ? std::numeric_limits<std::size_t>::max() : found->second;
-  };
+    if (place(name) == kNoColumn) out.notes.push_back(out.run + ": has no column `" + name + "`");
   const std::size_t time = place("time_s"), depth = place("depth_m"), normal = place("fn"), tangential = place("ft"),
                     contact = place("in_contact"), object = place("object"), probe = place("probe"),
                     torque = place("tx");
@@ -99,12 +93,13 @@ Result<RunSeries> read_series(const fs::path& run) {
   const bool told = !tools.empty();
   std::map<std::string, std::size_t> number;
   std::size_t row = 1;
+  std::vector<std::string> cells;
   while (!text.empty()) {
     const std::string_view line = take_line();
     ++row;
     if (line.empty()) continue;
     csv_cells(line, ',', cells);
-    if (cells.size() < columns) cells.resize(columns);  // empty ones at the end
+    if (cells.size() < header.size()) cells.resize(header.size());  // empty ones at the end
     const std::string name = probe < cells.size() ? cells[probe] : std::string("probe");
     const auto [found, fresh] = number.try_emplace(name, out.series.size());
     if (fresh) {

@@ -8,31 +8,30 @@
 #include <vector>
 
 #include "content/files/file_io.h"
+#include "lab/files/csv.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-// [N] of each probe, in the order of the report: every tick has a row for each. Columns are counted from the end, where
-// all are numbers; names before them may hold commas.
+// [N] of each probe, in the order of the report: every tick has a row for each, and names may repeat.
 std::vector<double> rms_forces(const fs::path& file, std::size_t probes) {
   std::ifstream in(file);
   std::string line;
   if (probes == 0 || !std::getline(in, line)) return {};
-  const std::size_t at = line.find(",fn,ft");
-  if (at == std::string::npos) return {};
-  const auto after =
-      static_cast<std::size_t>(std::count(line.begin() + static_cast<std::ptrdiff_t>(at), line.end(), ','));
+  std::vector<std::string> cells;
+  csv_cells(line, ',', cells);
+  const std::size_t columns = cells.size(), normal = csv_column(cells, "fn"), tangential = csv_column(cells, "ft");
+  if (normal == kNoColumn || tangential == kNoColumn) return {};
   std::vector<double> sum(probes, 0.0);
   std::size_t row = 0;
   for (; std::getline(in, line); ++row) {
-    std::size_t comma = line.size();
-    for (std::size_t i = 0; i < after && comma != std::string::npos; ++i) comma = line.rfind(',', comma - 1);
-    if (comma == std::string::npos) return {};
-    char* end = nullptr;
-    const double normal = std::strtod(line.c_str() + comma + 1, &end);
-    const double tangential = *end == ',' ? std::strtod(end + 1, nullptr) : 0.0;
-    sum[row % probes] += normal * normal + tangential * tangential;
+    csv_cells(line, ',', cells);
+    if (cells.size() != columns) return {};
+    for (const std::size_t column : {normal, tangential}) {
+      const double force = std::strtod(cells[column].c_str(), nullptr);
+      sum[row % probes] += force * force;
+    }
   }
   if (row == 0 || row % probes != 0) return {};
   for (double& each : sum) each = std::sqrt(each / static_cast<double>(row / probes));
