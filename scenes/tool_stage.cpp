@@ -156,7 +156,7 @@ dvec3 ToolStage::contact_force(Entity on, Entity other) {
 double ToolStage::kinetic_energy() {
   double sum = 0.0;
   for (const std::uint32_t i : soft().moving) {
-    const auto* tissue = dynamic_cast<const SoftBodyState*>(soft().bodies[i].get());
+    const auto* tissue = soft().bodies[i]->as_tissue();
     if (!tissue) continue;
     for (std::size_t n = 0; n < tissue->tissue().mass().size(); ++n) {
       const dvec3 v = tissue->tissue().velocity()[n];
@@ -169,7 +169,7 @@ double ToolStage::kinetic_energy() {
 double ToolStage::elastic_energy() {
   double sum = 0.0;
   for (const std::uint32_t i : soft().moving)
-    if (const auto* tissue = dynamic_cast<const SoftBodyState*>(soft().bodies[i].get()))
+    if (const auto* tissue = soft().bodies[i]->as_tissue())
       sum += tissue->tissue().elastic_energy();
   return sum;
 }

@@ -55,14 +55,14 @@ BodyJournal::BodyJournal(const World& world, std::size_t steps)
     bodies_.push_back(body.entity);
     rotation_.push_back(pose ? pose->rotation : dquat(1, 0, 0, 0));
     rest_.emplace_back();
-    const auto* soft = dynamic_cast<const SoftBodyState*>(&body);
+    const auto* soft = body.as_tissue();
     if (!soft || soft->has_handle()) continue;
     rest_.back() = world.tet_meshes[world.registry.get<SoftBody>(body.entity).tets].nodes;
     const dvec3 centre = centre_of_mass(rest_.back(), soft->tissue().mass());
     for (dvec3& node : rest_.back()) node -= centre;
   }
   for (std::uint32_t i = 0; i < soft_.bodies.size(); ++i) {
-    const auto* tool = dynamic_cast<const ToolBody*>(soft_.bodies[i].get());
+    const auto* tool = soft_.bodies[i]->as_tool();
     if (!tool || !tool->has_handle()) continue;
     tools_.push_back(std::make_unique<Tool>());
     tools_.back()->entity = tool->entity;
@@ -81,11 +81,11 @@ void BodyJournal::note_bodies(std::uint64_t step, double time) {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     const Body& body = *soft_.bodies[index_[i]];
     Pose pose;
-    if (const auto* rigid = dynamic_cast<const RigidState*>(&body))
+    if (const auto* rigid = body.as_rigid())
       pose = rigid->pose();
-    else if (const auto* tool = dynamic_cast<const ToolBody*>(&body); tool && tool->has_handle())
+    else if (const auto* tool = body.as_tool(); tool && tool->has_handle())
       pose = tool->handle().object_pose();
-    else if (const auto* soft = dynamic_cast<const SoftBodyState*>(&body))
+    else if (const auto* soft = body.as_tissue())
       pose = mean_pose(soft->tissue(), rest_[i], rotation_[i]);
     rotation_[i] = pose.rotation;
     recorder_.record({step, time, i, pose.position, pose.rotation});

@@ -109,12 +109,12 @@ SoftSnapshot first_snapshot(const SoftState& soft) {
     if (soft.bodies[i]->kind == BodyKind::kProbe) continue;  // a marker shows it
     snapshot.objects.emplace_back();
     soft.bodies[i]->show(snapshot.objects.back());
-    if (const auto* tissue = dynamic_cast<const SoftBodyState*>(soft.bodies[i].get()))
+    if (const auto* tissue = soft.bodies[i]->as_tissue())
       for (std::size_t part = 0; part < tissue->part_count(); ++part) {
         snapshot.objects.emplace_back();
         tissue->show_part(part, snapshot.objects.back());
       }
-    const auto* body = dynamic_cast<const ToolBody*>(soft.bodies[i].get());
+    const auto* body = soft.bodies[i]->as_tool();
     if (body && body->has_handle()) snapshot.handles.push_back({body->entity, body->handle().object_pose(), {}, {}});
   }
   return snapshot;
@@ -132,7 +132,7 @@ bool come_through(const World& world, const Body& body, const std::vector<dvec3>
 // shape and falls on it instead.
 void settle_tools(const World& world, SoftState& soft) {
   for (const std::unique_ptr<Body>& body : soft.bodies) {
-    auto* tool = dynamic_cast<ToolBody*>(body.get());
+    auto* tool = body->as_tool();
     if (tool) check_in("settling " + soft_name(world, tool->entity));
     if (!tool || !tool->has_handle()) continue;
     const std::vector<dvec3> rest = tool->surface_position;

@@ -30,9 +30,9 @@ void show_bodies(const SoftState& soft, SoftSnapshot& out) {
     const Body& body = *soft.bodies[i];
     if (body.kind == BodyKind::kProbe) continue;
     body.show(out.objects[object++]);
-    if (const auto* tissue = dynamic_cast<const SoftBodyState*>(&body))
+    if (const auto* tissue = body.as_tissue())
       for (std::size_t part = 0; part < tissue->part_count(); ++part) tissue->show_part(part, out.objects[object++]);
-    const auto* tool = dynamic_cast<const ToolBody*>(&body);
+    const auto* tool = body.as_tool();
     if (!tool || !tool->has_handle()) continue;
     const Vector6 wrench = tool->handle_wrench();
     const vec3 middle(tool->handle().motion().pose.position), wanted(tool->device_target().pose.position);

@@ -33,7 +33,7 @@ void change(Body& body, const SoftSetting& now) {
   body.set_elasticity(now.young, now.poisson, {now.rayleigh[0], now.rayleigh[1]});
 }
 void change(Body& body, const CouplingSetting& now) {
-  if (auto* tool = dynamic_cast<ToolBody*>(&body)) tool->set_coupling(now);
+  if (auto* tool = body.as_tool()) tool->set_coupling(now);
 }
 
 // Contacts with a body that has no solution in this step.

@@ -81,7 +81,7 @@ std::vector<std::string> explain_sag(const World& world) {
   std::vector<std::string> all;
   if (!world.soft) return all;
   for (const std::unique_ptr<Body>& body : world.soft->bodies) {
-    const auto* tissue = dynamic_cast<const SoftBodyState*>(body.get());
+    const auto* tissue = body->as_tissue();
     if (!tissue || tissue->has_handle()) continue;
     const TetMesh& tets = tissue->tets();
     const Pose* pose = world.registry.find<Pose>(body->entity);

@@ -22,7 +22,7 @@ std::uint32_t body_of(const SoftState& soft, Entity tool) {
 
 // Null where there is no such body, or nobody holds it by a handle.
 ToolBody* tool_body(const SoftState& soft, std::uint32_t index) {
-  auto* const body = index < soft.bodies.size() ? dynamic_cast<ToolBody*>(soft.bodies[index].get()) : nullptr;
+  auto* const body = index < soft.bodies.size() ? soft.bodies[index]->as_tool() : nullptr;
   return body && body->has_handle() ? body : nullptr;
 }
 

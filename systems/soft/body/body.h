@@ -59,9 +59,20 @@ struct BodyLoads {
 // Which bodies meet: all but what a probe presses by another law or passes through (probe_tool.h).
 enum class BodyKind : std::uint8_t { kBody, kSurface, kProbe };
 
+class SoftBodyState;
+class ToolBody;
+class RigidState;
+
 class Body {
  public:
   virtual ~Body() = default;
+
+  // Its kind, where a step needs more than a linear system; null: another.
+  virtual const SoftBodyState* as_tissue() const { return nullptr; }
+  virtual const ToolBody* as_tool() const { return nullptr; }
+  virtual ToolBody* as_tool() { return nullptr; }
+  virtual const RigidState* as_rigid() const { return nullptr; }
+  virtual bool is_surface() const { return false; }  // a P1 surface
 
   bool meets(const Body& other) const {
     if (absent || other.absent || taken_out || other.taken_out || (size() == 0 && other.size() == 0)) return false;

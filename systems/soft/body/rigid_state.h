@@ -12,6 +12,7 @@ namespace pliant {
 // asks for. The step then has the mean angular velocity of that turn as its v*.
 class RigidState : public Body {
  public:
+  const RigidState* as_rigid() const override { return this; }
   RigidState(const Mesh& surface, const Pose& pose, const RigidMass& mass);
 
   int size() const override { return 6; }

@@ -15,6 +15,7 @@ namespace pliant {
 
 class SoftBodyState final : public ToolBody {
  public:
+  const SoftBodyState* as_tissue() const override { return this; }
   // `tets` and `collision mesh` outlive it. `handle`: null where none is (its nodes, if any, then move freely).
   // `placement`: object frame to world at the start.
   SoftBodyState(const TetMesh& tets, const Mesh& surface, const SoftBody& body, const Handle6* handle,

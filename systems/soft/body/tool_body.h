@@ -27,6 +27,8 @@ struct CouplingSetting {
 
 class ToolBody : public Body {
  public:
+  const ToolBody* as_tool() const override { return this; }
+  ToolBody* as_tool() override { return this; }
   void set_coupling(const CouplingSetting& now) {
     settings_.translation = now.translation;
     settings_.rotation = now.rotation;

@@ -25,6 +25,7 @@ namespace pliant {
 
 class YieldingBody final : public ImmovableBody {
  public:
+  bool is_surface() const override { return true; }
   // `slot`: its place in TouchState::objects. `mesh` outlives it.
   YieldingBody(const Mesh& mesh, const Deformable& deformable, const Pose& pose, std::size_t slot);
 

@@ -310,7 +310,7 @@ Proximity::Proximity(const std::vector<std::unique_ptr<Body>>& bodies) : parts_(
     parts_->collision_meshes.emplace_back(*body);
     parts_->mean_edge.push_back(static_cast<double>(body->collision_mesh->mean_edge));
     parts_->own_margin.push_back(margin_of(*body));
-    parts_->yields.push_back(dynamic_cast<const YieldingBody*>(body.get()) != nullptr);
+    parts_->yields.push_back(body->is_surface());
   }
   parts_->seen.assign(bodies.size(), false);
 }
