@@ -81,21 +81,28 @@ int parse_and_run(int argc, const char* const* argv) {
 
 }  // namespace
 
-Status check_run_arguments(const std::vector<std::string>& arguments) {
-  CLI::App app;
-  RunOptions run;
-  const double factor = limit_factor();  // --limits would hold at once
-  add_run_options(app, run);
+Status check_arguments(const std::vector<std::string>& arguments) {
+  CLI::App app{"", "pliant"};
+  app.require_subcommand(1);
+  int ignored = kDone;
+  for (const AddVerb add : kVerbs) add(app, ignored);
+  for (CLI::App* const verb : app.get_subcommands([](const CLI::App*) { return true; })) verb->callback({});
+  const double factor = limit_factor();                                  // --limits would hold at once
   std::vector<std::string> words(arguments.rbegin(), arguments.rend());  // CLI11 takes them from behind
-  words.emplace_back("run");
   std::optional<Error> wrong;
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {
-    wrong = usage_error(app, error);
+    if (error.get_exit_code() != 0) wrong = usage_error(app, error);
   }
   set_limit_factor(factor);
   return wrong ? Status(*wrong) : Status(Done{});
+}
+
+Status check_run_arguments(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{"run"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return check_arguments(words);
 }
 
 int command_line(int argc, const char* const* argv) {

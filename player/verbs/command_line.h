@@ -10,7 +10,8 @@ namespace pliant {
 
 int command_line(int argc, const char* const* argv);
 
-// Whether `pliant run` takes these options with these values; the error is what it would say. Nothing runs.
+// Whether `pliant` takes these words, and `pliant run` these options; the error is what it would say. Nothing runs.
+Status check_arguments(const std::vector<std::string>& words);
 Status check_run_arguments(const std::vector<std::string>& arguments);
 
 }  // namespace pliant
