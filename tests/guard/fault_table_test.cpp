@@ -1,6 +1,6 @@
 // Every fault of a device, with the largest force afterwards and the time until it is safe: a table that is compared
 // with docs/devices/safety.md. On a simulated clock with a simulated hand, so that it is exact. PLIANT_WRITE_FAULTS=1
-// writes the file.
+// writes it there.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
