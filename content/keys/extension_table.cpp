@@ -154,8 +154,8 @@ std::vector<Key> deformable_keys() {
   keys.push_back(
       number("volume", "1", R::kVolume, d(&D::volume), "share of the volume conserved by the shape `volume`"));
   keys.push_back(number("contact_radius", "m", {R::kContactRadius, {1e-4, 1.0}}, d(&D::contact_radius),
-                        "radius of the indenter that the shapes punch, hertz and kelvinlet are of, beside a probe's "
-                        "own contact circle; 0: a fifth of `reach`"));
+                        "indenter's radius of the shapes punch, hertz and kelvinlet, beside a probe's own contact "
+                        "circle; 0: a fifth of `reach`"));
   keys.push_back(number("friction_static", "1", kFrictionRange, d(&D::friction_static),
                         "coefficient of static friction, at least that of sliding"));
   keys.push_back(
@@ -177,13 +177,12 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
   keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
                         "thickness of the layer, which is bonded to something rigid, with `young`; 0: deep"));
-  keys.push_back(choice("carries", d(&D::carries),
-                        "which meshes that are only drawn are dented with it: none, or those that lie inside of it or "
-                        "below its node, the less the deeper they lie"));
+  keys.push_back(
+      choice("carries", d(&D::carries),
+             "drawn meshes that are dented with it: none, or those inside of it or below its node, less with depth"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
-                        "error budget: the cheapest shape, distance, reach and contact radius whose measured error on "
-                        "this surface is within it, and with `young` the cheapest force law, where no key says them; "
-                        "0: none"));
+                        "error budget: takes the cheapest unstated shape, distance, reach, contact radius and, with "
+                        "`young`, force law whose measured error is within it; 0: none"));
   return keys;
 }
 
@@ -227,7 +226,7 @@ std::vector<Key> probe_keys() {
   keys.push_back(
       choice("meets", at(&LevelNode::probe, &Probe::meets), "yielding surfaces, soft and rigid bodies, or both"));
   keys.push_back(pair("coupling", "N/m, N s/m", at(&LevelNode::probe, &Probe::coupling),
-                      "spring and damper between the device and what meets soft and rigid bodies"));
+                      "spring and damper between the device and the probe that meets bodies"));
   Key color = key(
       "color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
       [](vec3 c) {
@@ -247,12 +246,12 @@ std::vector<Key> device_keys() {
   using H = HapticDevice;
   const auto d = [](auto member) { return at(&LevelNode::device, member); };
   std::vector<Key> keys;
-  keys.push_back(choice("driver", d(&H::driver), "what moves the probe"));
+  keys.push_back(choice("driver", d(&H::driver), "source of the motion"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
-  keys.push_back(text("id", KeyType::kText, d(&H::id),
-                      "which device, with the driver `external`: DRIVER, DRIVER:ID, any-force, any-pose, any or mouse, "
-                      "or several of these in turn, separated by semicolons; behind each, after a bar, what maps its "
-                      "workspace: scale=2, clutch=BUTTON, frame=X:Y:Z, border=40mm"));
+  keys.push_back(text(
+      "id", KeyType::kText, d(&H::id),
+      "device of the driver `external`: DRIVER, DRIVER:ID, any-force, any-pose, any, mouse, or several in turn, "
+      "separated by semicolons; behind each, after a bar, wrappers: scale=2, clutch=BUTTON, frame=X:Y:Z, border=40mm"));
   keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
                         "workspace of a device with the driver `external` to world"));
   keys.push_back(
@@ -276,33 +275,32 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
                         fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
-  keys.push_back(box("focus", s(&S::focus),
-                     "where the lattice is finer, a box in the object frame: cells in it are as large as `cell` says, "
-                     "and grow with the distance to six times that; left out: the same all over"));
   keys.push_back(
-      choice("fill", s(&S::fill),
-             "what is filled: all that the surface encloses, the cavity of a thin wall too, or only the wall"));
+      box("focus", s(&S::focus),
+          "box in the object frame with cells of `cell`, growing to six times outside; left out: even cells"));
+  keys.push_back(choice("fill", s(&S::fill),
+                        "fills all that the surface encloses, the cavity of a thin wall too, or only the wall"));
   keys.push_back(number("thickness", "m", {SoftBodyRange::kThickness, {1e-4, 0.5}}, s(&S::thickness),
                         "of a wall, inwards from the surface; 0: the wall as the surface has it"));
   keys.push_back(
       text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
   keys.push_back(
-      box("pinned", s(&S::pinned), "what is held fast: a box in the object frame; left out: the attribute _PINNED"));
+      box("pinned", s(&S::pinned), "pinned part: a box in the object frame; left out: the attribute _PINNED"));
   keys.push_back(
       number("friction_static", "1", kFrictionRange, s(&S::friction_static), "coefficient of static friction"));
   keys.push_back(
       number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
-  keys.push_back(choice("solver", s(&S::solver), "what solves the linear systems; `auto` by size, as measured"));
-  keys.push_back(choice("under_gravity", s(&S::under_gravity),
-                        "what the mesh is, and how the body begins: `falls`, the shape without weight, from which it "
-                        "falls; `settled`, the same, and it begins where it rests on what is pinned; `modelled`, the "
-                        "shape under its weight, which it keeps until it is touched"));
-  keys.push_back(choice("carries", s(&S::carries),
-                        "which meshes that are only drawn go with its tissue: none, or those that lie inside of it or "
-                        "below its node (vessels, lumps)"));
+  keys.push_back(choice("solver", s(&S::solver), "linear solver; `auto` by size, as measured"));
+  keys.push_back(
+      choice("under_gravity", s(&S::under_gravity),
+             "meaning of the mesh: `falls`, the shape without weight, from which it falls; `settled`, the same, "
+             "beginning at rest on its pins; `modelled`, the shape under its weight, kept until touched"));
+  keys.push_back(
+      choice("carries", s(&S::carries),
+             "drawn meshes that go with its tissue: none, or those inside of it or below its node (vessels, lumps)"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
-                        "error budget: the cheapest cell, soft step and solver whose measured error on this body is "
-                        "within it, and of a tool the cheapest force, where no key says them; 0: none"));
+                        "error budget: takes the cheapest unstated cell, soft step, solver and, of a tool, force whose "
+                        "measured error is within it; 0: none"));
   return keys;
 }
 
@@ -310,9 +308,9 @@ std::vector<Key> handle_keys() {
   using H = Handle6;
   const auto h = [](auto member) { return at(&LevelNode::handle, member); };
   std::vector<Key> keys;
-  keys.push_back(box("box", h(&H::box),
-                     "which part of a soft body is rigid: a box in the object frame; left out: the attribute _HANDLE"));
-  keys.push_back(choice("attachment", h(&H::attachment), "how tissue is held to the handle"));
+  keys.push_back(
+      box("box", h(&H::box), "rigid part of a soft body: a box in the object frame; left out: the attribute _HANDLE"));
+  keys.push_back(choice("attachment", h(&H::attachment), "how tissue joins the handle"));
   keys.push_back(
       pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
   keys.push_back(pair("coupling.rotation", "N m/rad, N m s/rad", h(&H::rotation), "the same for rotation"));
@@ -320,10 +318,10 @@ std::vector<Key> handle_keys() {
                         "saturation of the coupling's force"));
   keys.push_back(number("coupling.max_torque", "N m", {kSaturationRange, {1e-3, 10.0}}, h(&H::max_torque),
                         "saturation of the coupling's torque"));
-  keys.push_back(flag("carried", h(&H::carried), "hold up the tool's weight, so that the hand does not feel it"));
-  keys.push_back(choice("force", h(&H::force),
-                        "how the touch clock makes its force: held from the last soft step, by the linear model, or "
-                        "with the contacts solved again in every tick"));
+  keys.push_back(flag("carried", h(&H::carried), "carries the tool's weight, so that the hand does not feel it"));
+  keys.push_back(choice(
+      "force", h(&H::force),
+      "force of the touch clock: held from the last soft step, linear model, or contacts solved again in every tick"));
   keys.push_back(text("device", KeyType::kNode, h(&H::device),
                       "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
   return keys;
@@ -348,7 +346,7 @@ std::vector<Key> motion_keys() {
   const auto m = [](auto member) { return at(&LevelNode::motion, member); };
   std::vector<Key> keys;
   keys.push_back(text("script", KeyType::kText, m(&M::script),
-                      "CSV of where the node is in its parent's frame, relative to the level; instead of animations"));
+                      "CSV of poses in the parent's frame, relative to the level; instead of animations"));
   keys.push_back(text("animation", KeyType::kText, m(&M::animation),
                       "name of the glTF animation that moves it; left out: every one that names the node"));
   keys.push_back(flag("repeat", m(&M::repeat), "starts over at the end; else the end holds"));
@@ -425,21 +423,20 @@ std::vector<Extension> make_table() {
   table.push_back(extension("deformable", "The node's mesh is a deformable surface (P1).", &LevelNode::deformable,
                             deformable_keys()));
   table.back().settle = settle_deformable;
-  table.push_back(extension("probe", "What a person holds against the surface.", &LevelNode::probe, probe_keys()));
+  table.push_back(extension("probe", "Touches surfaces and bodies.", &LevelNode::probe, probe_keys()));
   table.push_back(extension("haptic_device", "Moves a probe, and may push back.", &LevelNode::device, device_keys()));
   table.back().settle = settle_device;
   table.push_back(
       extension("soft_body", "The node's mesh is tissue with inertia.", &LevelNode::soft_body, soft_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->soft_body); };
-  table.push_back(extension("handle",
-                            "What a person holds a soft body by, its rigid part, or a rigid one, the whole of it.",
+  table.push_back(extension("handle", "The rigid part of a tool: of a soft body a part, of a rigid one the whole.",
                             &LevelNode::handle, handle_keys()));
   table.push_back(extension("rigid_body", "The node's mesh is rigid.", &LevelNode::rigid_body, rigid_body_keys()));
   table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->rigid_body); };
   table.push_back(extension("motion", "How an animation or a script carries the node, and all below it.",
                             &LevelNode::motion, motion_keys()));
   table.back().settle = settle_motion;
-  table.push_back(extension("environment", "What surrounds the scene.", &Level::environment, environment_keys()));
+  table.push_back(extension("environment", "Surroundings of the scene.", &Level::environment, environment_keys()));
   Extension simulation;
   simulation.name = "simulation";
   simulation.doc = "Clocks and gravity.";

@@ -1,6 +1,6 @@
 // Driver "falcon": Novint Falcon over libusb (an FTDI chip, 0403:cb48). Its firmware has to be loaded after each
 // power-up; the file is the maker's and comes from the user: "falcon:FILE", or falcon.bin in the user's folder of data
-// (see docs/devices/network.md). Facts from libnifalcon (BSD).
+// (see docs/devices/protocols.md). Facts from libnifalcon (BSD).
 //
 // Axes are the world's: x right, y up, z towards the user; the origin is the middle of its workspace. Until someone has
 // pulled its handle all the way out and pushed it in again (homing) its pose is not known.

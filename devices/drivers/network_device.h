@@ -1,5 +1,5 @@
 // Driver "network": a device at the other end of UDP, which senses its pose and renders the local model itself
-// (network_frame.h; docs/devices/network.md). Its id is the device's address: PORT, ADDRESS:PORT or nothing for port
+// (network_frame.h; docs/devices/protocols.md). Its id is the device's address: PORT, ADDRESS:PORT or nothing for port
 // 17716 of this machine; and behind it ,key=FILE or ,key-env=NAME where both have a key (network_key.h).
 //
 // Either side that hears nothing for 20 ms renders nothing: the wire may fall silent at any time. While the device is

@@ -1,5 +1,5 @@
-// The frames of the network device, a protocol of our own over UDP: docs/devices/network.md has every byte. A codec of
-// pure functions; nothing here allocates.
+// The frames of the network device, a protocol of our own over UDP: docs/devices/protocols.md has every byte. A codec
+// of pure functions; nothing here allocates.
 //
 // Numbers are little-endian, reals IEEE single precision, matrices by columns. Positions in metres, forces in newtons,
 // axes are the world's: right-handed, Y up. Quaternions are w x y z, device frame to world.

@@ -65,7 +65,7 @@ Result<SerialIdentity> SerialDevice::ask(PacketPort& port, const std::function<b
   }
   return Error{
       "serial `" + id_ + "`",
-      "does not answer as a device of Pliant; see docs/devices/network.md for what it has to say, and check its speed"};
+      "does not answer as a device of Pliant; see docs/devices/protocols.md for its lines, and check its speed"};
 }
 
 Status SerialDevice::open(const std::string& id) {

@@ -1,5 +1,5 @@
-// The lines of the serial device, a protocol of our own (docs/devices/network.md): text, so that it can be watched and
-// typed, with a check sum at its end. A codec of pure functions.
+// The lines of the serial device, a protocol of our own (docs/devices/protocols.md): text, so that it can be watched
+// and typed, with a check sum at its end. A codec of pure functions.
 //
 //   device:  P <ms> <x> <y> <z> <buttons> <grip>*<sum>     where it is
 //   engine:  F <n> <x> <y> <z>*<sum>                       what to render; n counts lines

@@ -1,7 +1,7 @@
 // The device's side of Pliant's network protocol, to be copied into the firmware of a device of one's own: this file
 // needs nothing of Pliant, only sockets, and libcrypto for the key (leave out what is between #ifdef PLIANT_KEY and
 // #endif where there is none). Where a real one reads encoders and drives motors, this one simulates a handle of 100 g
-// that a spring pulls down. docs/devices/network.md explains every byte.
+// that a spring pulls down. docs/devices/protocols.md explains every byte.
 //
 //   network_device [PORT [KEYFILE]]    then: pliant run LEVEL --probe NAME=device:network:PORT[,key=KEYFILE]
 #include <arpa/inet.h>

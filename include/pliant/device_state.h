@@ -110,7 +110,7 @@ struct DroppedFrames {
   std::uint64_t checksum = 0;   // its check sum is wrong
   std::uint64_t number = 0;     // holds a number that is none, or that cannot be
   std::uint64_t rotation = 0;   // holds a rotation that is not of unit length
-  std::uint64_t key = 0;        // not of this key, or without one (docs/devices/network.md)
+  std::uint64_t key = 0;        // not of this key, or without one (docs/devices/protocols.md)
   std::uint64_t foreign = 0;    // from another address or session
   std::uint64_t late = 0;       // doubled, overtaken, replayed, or with a time that runs backwards
   std::uint64_t lost = 0;       // gaps in the count of frames

@@ -1,6 +1,6 @@
 // Every fault of a device, with the largest force afterwards and the time until it is safe: a table that is compared
-// with docs/devices/faults.md. On a simulated clock with a simulated hand, so that it is exact. PLIANT_WRITE_FAULTS=1
-// writes the file.
+// with docs/devices/safety.md. On a simulated clock with a simulated hand, so that it is exact. PLIANT_WRITE_FAULTS=1
+// writes it there.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -326,7 +326,7 @@ TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) 
   }
   // Those that need processes, or never come to move: each has a test of its own in process_fault_test.cpp.
   table += kOthers;
-  const std::string path = std::string(PLIANT_SOURCE_DIR) + "/docs/devices/faults.md";
+  const std::string path = std::string(PLIANT_SOURCE_DIR) + "/docs/devices/safety.md";
   std::ifstream in(path);
   std::stringstream kept;
   kept << in.rdbuf();
