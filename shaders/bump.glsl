@@ -12,7 +12,7 @@ vec3 normal_mapped(vec3 n, vec4 tangent, vec2 uv, float scale) {
   return normalize(scale * (m.x * t + m.y * tangent.w * cross(n, t)) + m.z * n);
 }
 
-// `height` [m] is that of white above black.
+// `height` [m]: of white above black.
 vec3 height_mapped(vec3 n, vec3 position, vec2 uv, float height) {
   vec3 along_x = dFdx(position), along_y = dFdy(position);
   vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);
