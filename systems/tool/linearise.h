@@ -1,8 +1,8 @@
 // The soft clock's side of the exchange with the touch clock (methods.md 2.6, 2.8, 2.9). Three calls, in this order, in
 // a soft step of T [s]:
-//  take_inputs       before the bodies' free_step: target poses of the handles
-//  linearise         after apply_impulses and before the bodies advance: model of each handle
-//  publish_models    last: updates the models with the handle's path since, and publishes them
+//   take_inputs       before the bodies' free_step: target poses of the handles
+//   linearise         after apply_impulses and before the bodies advance: model of each handle
+//   publish_models    last: updates the models with the handle's path since, and publishes them
 //
 // A soft step that begins with an input of time t ends at t: the device is extrapolated back by T times its velocity,
 // so that it ends the step at its sensed pose. Once the touch clock moves the handle, the handle's pose is prescribed

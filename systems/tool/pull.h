@@ -2,7 +2,7 @@
 // device. They use the probe's `coupling`; the force is at most the device's `max_force`. A patch rather than a node: a
 // single node of a soft lattice would be drawn out to a spike. The step is implicit over the soft step, and exact. W is
 // the compliance of the patch (J A^-1 J^T), v* its velocity without the spring:
-//  lambda = (1 + (T b + T^2 k) W)^-1 T (k (x_d - x - T v*) + b (v_d - v*)),
+//   lambda = (1 + (T b + T^2 k) W)^-1 T (k (x_d - x - T v*) + b (v_d - v*)),
 // so that it is stable for any stiffness and any mass of the body. On release the spring is removed; the body keeps its
 // velocity.
 #pragma once

@@ -1,6 +1,6 @@
 // Amplitude of each contact's field, such that the surface is at every probe's depth (methods.md 1.3). Fields overlap,
 // so the amplitudes solve a small linear complementarity problem
-//  A alpha >= d,  alpha >= 0,  alpha . (A alpha - d) = 0,    A_ij = share of contact j's field at contact i.
+//   A alpha >= d,  alpha >= 0,  alpha . (A alpha - d) = 0,    A_ij = share of contact j's field at contact i.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // The elastic force on every probe as minus the gradient of one stored energy (methods.md 1.10). W_i is the stored
 // energy of contact i of an object as if it were alone:
-//  e_i = sqrt(2 W_i),   U = max over loads l >= 0 of  e.l - 1/2 l.A l,   A_ii = 1,
-//  A_ij = phi(|p_i - p_j| / R) max(0, n_i.n_j)
+//   e_i = sqrt(2 W_i),   U = max over loads l >= 0 of  e.l - 1/2 l.A l,   A_ii = 1,
+//   A_ij = phi(|p_i - p_j| / R) max(0, n_i.n_j)
 // A lone contact has U = W. Coincident contacts share one W. Distant contacts are not coupled. By the envelope theorem
-//  -dU/dx_i = -(l_i / e_i) dW_i/dx_i + l_i sum_j l_j dA_ij/dx_i
+//   -dU/dx_i = -(l_i / e_i) dW_i/dx_i + l_i sum_j l_j dA_ij/dx_i
 // the last term is the slope of the neighbours' dents (P1 3.5, "actual normal").
 //
 // phi must be positive definite in space, which the drawn shapes with a rim are not. It is a mixture of two Wendland

@@ -1,6 +1,6 @@
 // Stored energy and force of one contact, as if it were alone (methods.md 1.8, 1.10). The law of the depth d behind the
 // rest surface is
-//  F(d) = law(d) - law(y) + k1 (d - q),   never negative,   W = its integral from where it is zero,
+//   F(d) = law(d) - law(y) + k1 (d - q),   never negative,   W = its integral from where it is zero,
 // y: depth of the free surface. It is 0 at rest. For a recovering surface it is the depth without the contact; it also
 // covers unpushed depth (Contact::unpushed). q: the tissue's viscous extension at the foot (standard linear solid).
 //

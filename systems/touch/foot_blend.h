@@ -2,8 +2,8 @@
 // a convex crease is below both sides. Its depth is then a smooth minimum of its depths below each side. The force
 // therefore turns continuously from one side's normal to the other's, and fades where the point leaves through the
 // other side. With depths s_i, smallest m:
-//  ln s = min over weights of  sum w_i ln s_i + (D/2) (sum w_i^2 - 1),   w_i >= 0,  sum w_i = 1
-//  => w_i = max(0, (c - ln s_i) / D),   ds = s sum w_i ds_i / s_i
+//   ln s = min over weights of  sum w_i ln s_i + (D/2) (sum w_i^2 - 1),   w_i >= 0,  sum w_i = 1
+//   => w_i = max(0, (c - ln s_i) / D),   ds = s sum w_i ds_i / s_i
 // (sparsemax; Martins & Astudillo 2016). It depends only on ratios of depths, and sides deeper than e^D m have no
 // effect. It is continuously differentiable: the energy W(s) is conservative.
 #pragma once

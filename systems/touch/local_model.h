@@ -1,5 +1,5 @@
 // One vertex as a mass, a damper and a spring along its normal (P1 eq. 1; methods.md 1.1, 1.2):
-//  m h'' = -b h' - F(h) + f
+//   m h'' = -b h' - F(h) + f
 // with its exact step for the linear laws, a passive step for the others, and the force laws themselves.
 //
 // Legend: m mass [kg], b damping [N s/m], k stiffness [N/m], f force [N], h height [m] (< 0: pushed in), v = h' [m/s],

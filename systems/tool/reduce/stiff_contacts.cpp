@@ -12,7 +12,7 @@ constexpr double kStiffShare = 0.1;
 }  // namespace
 
 // A handle driven only by an inertia of 1 / kRigidCompliance at every contact pushes with
-//  (W + kRigidCompliance)^-1 J v.
+//   (W + kRigidCompliance)^-1 J v.
 // The inertia's share of it, kRigidCompliance (W + kRigidCompliance)^-1 J, is 1 where nothing is compliant, and close
 // to zero where tissue is.
 void mark_stiff(const Eigen::MatrixXd& W, CondensedContacts& out) {
