@@ -5,8 +5,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostWalked = 16;      // gone over; a way of an edge or two needs fewer
-constexpr double kWalkCrease = 0.5;  // [1] cosine between triangles: sharper edges end a surface
+constexpr int kMostWalked = 16;      // triangles crossed; a distance of an edge or two needs fewer
+constexpr double kWalkCrease = 0.5;  // [1] cosine between triangles: a surface ends at sharper edges
 
 struct Facet {
   uvec3 corners;
@@ -20,7 +20,7 @@ Facet facet_at(const Body& body, std::uint32_t triangle) {
   return {c, e, f, cross(e, f)};
 }
 
-// The same way, as long, in the facet's plane.
+// The vector rotated into the facet's plane, with its length kept.
 dvec3 laid_flat(dvec3 by, const Facet& facet) {
   const dvec3 flat = by - dot(by, facet.normal) / dot(facet.normal, facet.normal) * facet.normal;
   const double size = length(flat);
