@@ -23,8 +23,8 @@ inline constexpr std::uint32_t kTreeWidth = 4;           // children of an inner
 inline constexpr std::uint32_t kBorder = 0xffffffffu;    // no triangle across this edge
 inline constexpr std::uint32_t kNotSplit = 0xffffffffu;  // split_normals of a triangle that uses its vertices' normals
 
-// Eight boxes in structure-of-arrays layout, so that one query tests all eight at once; four cache lines. A place holds
-// a node (count 0) or a run of at most kTreeNodeWidth triangles; places from `used` on hold an empty box.
+// Eight boxes in structure-of-arrays layout, so that one query tests all eight at once; four cache lines. A place is a
+// node (count 0) or a run of at most kTreeNodeWidth triangles; places from `used` on are empty boxes.
 inline constexpr std::uint32_t kTreeNodeWidth = 8;
 struct alignas(64) TreeNode {
   float low[3][kTreeNodeWidth];         // [m] object frame

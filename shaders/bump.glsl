@@ -1,5 +1,5 @@
-// Relief finer than the mesh: a tangent-space normal map, or the slope of a height map (Mikkelsen, Bump Mapping
-// Unparametrized Surfaces on the GPU, 2010: screen derivatives stand in for tangents).
+// Relief finer than the mesh: a tangent-space normal map, or the slope of a height map. For the latter screen
+// derivatives replace tangents (Mikkelsen, Bump Mapping Unparametrized Surfaces on the GPU, 2010).
 
 layout(binding = 3) uniform sampler2D normal_map;
 layout(binding = 6) uniform sampler2D height_map;  // r

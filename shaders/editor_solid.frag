@@ -16,7 +16,7 @@ layout(location = 10) uniform vec4 line_color;
 layout(location = 0) out vec4 color;
 layout(location = 1) out uint picked;
 
-// Even steps for the eye, dark to light for whoever does not see the hue.
+// Perceptually even colour ramp, dark to light, so that it is legible without the hue.
 vec3 ramp(float t) {
   const vec3 c0 = vec3(0.2777, 0.0054, 0.3341), c1 = vec3(0.1051, 1.4046, 1.3846), c2 = vec3(-0.3309, 0.2148, 0.0951),
              c3 = vec3(-4.6342, -5.7991, -19.3324), c4 = vec3(6.2283, 14.1799, 56.6906),

@@ -1,6 +1,6 @@
-// One step of the free surface by the cubic and the exponential law, as in systems/touch/nonlinear_step.cpp: the
-// discrete gradient, or backward Euler for steps that are long for the spring (methods.md 1.2). Heights [m], forces per
-// unit of stiffness [m], mass m/k [s2], damping b/k [s].
+// One step of the free surface by the cubic and the exponential law, as in systems/touch/nonlinear_step.cpp. Discrete
+// gradient, or backward Euler for steps that are long for the spring (methods.md 1.2). Heights [m], forces per unit of
+// stiffness [m], mass m/k [s2], damping b/k [s].
 
 uniform uint law;  // SpringLaw: 0 linear, 1 cubic, 2 exponential, 3 standard linear solid
 uniform float cubic, stiffening;  // [1/m2] [1/m]

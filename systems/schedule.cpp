@@ -1,4 +1,4 @@
-// READ FIRST. What happens, in order.
+// READ FIRST. The order of systems.
 #include "systems/schedule.h"
 
 #include "systems/device/devices.h"

@@ -82,5 +82,5 @@ SHARED vec2 shape_hertz(float u, float inner) {
 }
 
 // Share of the field at a vertex, by the angle between its normal and the contact's: all up to 75 degrees, nothing from
-// 90 on, so that the far side of a thin part is not dented.
+// 90 on. The far side of a thin part is therefore not dented.
 SHARED float shape_facing(float cosine) { return clamp(4.0f * cosine, 0.0f, 1.0f); }

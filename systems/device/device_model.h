@@ -3,7 +3,7 @@
 // Probe: the slopes of its contacts' laws along their normals, and of their bristles across them while they stick. The
 // rotation of the normals is left out, so that the matrices are negative semi-definite. Tool: the coupling to its
 // handle, which continues with its velocity. Where the safety layer reduced the wanted force, the slopes are reduced
-// with it: a clipped force has no slope along it, and behind a closed gate all slopes are zero.
+// with it. A clipped force has no slope along it; behind a closed gate all slopes are zero.
 #pragma once
 
 #include "components/world.h"

@@ -32,7 +32,7 @@ void read_mouse(World& world, Tick tick) {
     for (auto [entity, probe] : world.registry.view<Probe>())
       if (world.registry.get<HapticDevice>(probe.device).driver == DriverKind::kMouse)
         probe.hold = mouse.samples.read().hold;
-    free = free_now && mouse.free && arrived;  // leaving a press is travelled, not jumped: force acts along the way
+    free = free_now && mouse.free && arrived;  // the way out of a press is traversed, not jumped: force acts along it
     mouse.free = free_now;
     mouse.from = free ? mouse.to : mouse.position;
     mouse.lasts = std::max(mouse.lasts, length(mouse.to - mouse.from) / kMouseFastest);

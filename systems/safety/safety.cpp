@@ -33,8 +33,8 @@ double stoppable(double budget, double step, double fall) {
 }
 
 // Passivity controller: reduces the component of the force along the motion where the hand would get more energy than
-// it gave. It opposes the motion only to dissipate excess energy, in proportion to the speed of a slow hand, and never
-// by more than the wanted force: in free space there is no drag. Components across the motion are unchanged.
+// it gave. It opposes the motion only to dissipate excess energy, in proportion to the speed of a slow hand. It never
+// exceeds the wanted force: in free space there is no drag. Components across the motion are unchanged.
 dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wanted, dvec3 weight, dvec3 dx,
                   double dt) {
   const double way = length(dx);

@@ -4,7 +4,7 @@
 //   linearise         after apply_impulses and before the bodies advance: model of each handle
 //   publish_models    last: updates the models with the handle's path since, and publishes them
 //
-// A soft step that begins with an input of time t ends at t: the device is extrapolated back by T times its velocity,
+// A soft step that begins with an input of time t ends at t. The device is extrapolated back by T times its velocity,
 // so that it ends the step at its sensed pose. Once the touch clock moves the handle, the handle's pose is prescribed
 // instead, since two handles on one device would oscillate independently. The path since then is in
 // ToolTouchState::path.

@@ -3,7 +3,7 @@
 // single node of a soft lattice would be drawn out to a spike. The step is implicit over the soft step, and exact. W is
 // the compliance of the patch (J A^-1 J^T), v* its velocity without the spring:
 //   lambda = (1 + (T b + T^2 k) W)^-1 T (k (x_d - x - T v*) + b (v_d - v*)),
-// so that it is stable for any stiffness and any mass of the body. On release the spring is removed; the body keeps its
+// which is stable for any stiffness and any mass of the body. On release the spring is removed; the body keeps its
 // velocity.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace pliant {
 
 // Tunables. Unit, usual value, and what changing it does.
 inline constexpr double kPullPatch = 0.04;    // [1] of the body's diagonal: radius of the patch of a soft body
-inline constexpr double kPullComesIn = 0.15;  // [s] ramp of the spring; shorter: the beginning of a hold jerks
+inline constexpr double kPullComesIn = 0.15;  // [s] ramp of the spring; shorter: grabbing a body jerks
 
 // [N] of a spring of `stiffness` [N/m] at a stretch [m], saturated like a coupling.
 dvec3 pull_force(dvec3 stretch, double stiffness, double most);

@@ -113,8 +113,8 @@ Vector6 contact_tick(ToolTouchState& tool, const HandleModel& model, TickHandle&
 // continues its motion. If the offset were found while the handle follows the new description alone, it would contain
 // the tissue's resistance to a jerk that is gone in the next tick. Besides, a new model's contacts stop within a tick
 // or two all bodies that still approach each other at the step's end. So the contacts are first solved without effect,
-// and the linear model gives only the response to changes of the handle's motion: where contacts slide, it does not
-// know the direction of the force.
+// and the linear model gives only the response to changes of the handle's motion. It lacks the direction of the force
+// where contacts slide.
 void step(ToolTouchState& tool, const HandleModel& model, const Handle6& settings, Tick tick) {
   const RigidMotion target = tool.sensed.at(model.centre);
   const CouplingForce coupling = coupling_force(settings, tool.handle, target);
@@ -243,8 +243,8 @@ void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
 
-// The device between two poses `elapsed` [s] apart, `since` [s] after the first: constant acceleration, a good model of
-// a hand over a short time; over a longer one, its mean velocity.
+// The device between two poses `elapsed` [s] apart, `since` [s] after the first. Over a short time: constant
+// acceleration, a good model of a hand. Over a longer one: its mean velocity.
 RigidMotion on_the_way(const RigidMotion& before, const RigidMotion& now, double elapsed, double since) {
   const Vector6 mean = now.velocity;
   const Vector6 gains = elapsed < kEvenWay ? Vector6(2.0 / elapsed * (mean - before.velocity)) : Vector6::Zero();

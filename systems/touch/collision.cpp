@@ -149,7 +149,8 @@ Foot follow_foot(const Search& s, Foot foot, dvec3 from, dvec3 to) {
 }
 
 // Whether p is on a wall through which this tip was pressed. Such a tip is beyond the wall but still in contact with
-// its entry side. A wall that has the held foot behind it is ignored, or it would catch the tip on its way back.
+// its entry side. A wall is ignored if the contact's foot is behind it; otherwise it would catch the tip on its way
+// back.
 bool pressed_through(const Search& s, const ProbeTip& tip, dvec3 p, dvec3 outward) {
   const double flush = s.early() * length(outward);
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {

@@ -1,6 +1,6 @@
-// Contacts -> the field around them: the zones that each contact reaches, the coefficient that makes its shape
-// volume-preserving on this mesh, and the amplitudes that bring the surface to every probe's depth. The dent of a
-// contact that ends is folded into the residual. (P1 section 3; methods.md 1.3 and 1.8.)
+// Contacts -> the field around them. Computes the zones that each contact reaches and the coefficient that makes its
+// shape volume-preserving on this mesh. Also the amplitudes that bring the surface to every probe's depth. The dent of
+// a contact that ends is folded into the residual. (P1 section 3; methods.md 1.3 and 1.8.)
 #include "systems/touch/force_field.h"
 
 #include <algorithm>

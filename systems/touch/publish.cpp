@@ -15,7 +15,7 @@ void mark_dirty(ObjectState& object, HeightField& field, std::uint32_t zone) {
   object.dirty.push_back(zone);
 }
 
-// Copies dirty zones, newest first, as many as the snapshot holds. True when none is left.
+// Copies dirty zones, newest first, up to the snapshot's capacity. True when none is left.
 bool copy_zones(ObjectState& object, HeightField& field, ObjectSnapshot& out) {
   out.object = object.entity;
   out.awake_vertices = field.awake_vertices;

@@ -38,8 +38,8 @@ FieldSource in_frame(const FieldSource& source, const Pose& from, const Pose& to
   return out;
 }
 
-// Echoes of one source, seen from one of the objects that it dents, in the objects beyond its seams, recursively: where
-// four nodes meet, the fourth is not a neighbour of the first.
+// Creates the echoes of one source, seen from one of the objects that it dents, in the objects beyond its seams.
+// Recursive: where four nodes meet, the fourth is not a neighbour of the first.
 void echo(World& world, SourceLink master, std::uint32_t slot, std::uint32_t number, Tick tick);
 
 void echo_in(World& world, SourceLink master, std::uint32_t slot, std::uint32_t number, std::uint32_t beyond_slot,

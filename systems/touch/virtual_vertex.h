@@ -46,8 +46,9 @@ bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, doub
 // Barycentrics of the closest point of a flat triangle.
 dvec3 closest_barycentric(const dvec3 (&corner)[3], dvec3 x);
 
-// False only if no interpolated normal of the triangle can reach x: x is then farther beside the triangle's plane than
-// the most inclined corner normal leans (its closest point is sqrt(distance2) away [m]). Saves solving the cubic.
+// False only if no interpolated normal of the triangle can reach x. This is so if x is farther beside the triangle's
+// plane than the most inclined corner normal leans; its closest point is sqrt(distance2) away [m]. Saves solving the
+// cubic.
 bool may_have_virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x, double distance2);
 
 // The closest point of the triangle, with the interpolated normal there; the sign of its height is the side of that

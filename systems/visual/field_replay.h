@@ -1,4 +1,4 @@
-// A field without a closed form, stepped on the GPU. shaders/replay.comp performs the steps of the CPU kernels
+// A field without a closed form, stepped on the GPU. The shader replay.comp performs the steps of the CPU kernels
 // (field_kernels.h), tick by tick, from the inputs that the touch clock streams (components/field_feed.h). The ticks of
 // a frame are one dispatch, with one work group for each zone that was awake in any of them. The state stays on the
 // GPU.

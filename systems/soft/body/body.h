@@ -1,7 +1,6 @@
 // A body in the soft step: a linear system A v = b over its degrees of freedom, solved by a black box, and a collision
-// mesh whose points move with those degrees of freedom (J). Kinds: rigid (rigid_state.h), soft, with a handle (a tool)
-// or without (soft_body_state.h), fixed (no degrees of freedom), yielding (a P1 surface: no degrees of freedom, but
-// compliance).
+// mesh that moves with them (J). Kinds: rigid (rigid_state.h), soft, with a handle (a tool) or without
+// (soft_body_state.h), fixed (no degrees of freedom), yielding (a P1 surface: no degrees of freedom, but compliance).
 #pragma once
 
 #include <span>

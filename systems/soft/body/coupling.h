@@ -8,8 +8,8 @@
 // Two linearisations. The tangents are the force's derivatives. The secants g = |s(f)| / |f| freeze the factor by which
 // saturation weakens spring and damper. Their quadratic touches the coupling's energy from above (tanh is concave, and
 // rotations close faster than their vectors). A step implicit in the secants therefore never gains energy, for any T. A
-// step implicit in the tangents may, when it crosses from the saturated range into the slope: from 0.1 m away, with T =
-// 0.1 s, seven times the initial energy (measured).
+// step implicit in the tangents may, when it crosses from the saturated range into the slope. Measured from 0.1 m away,
+// with T = 0.1 s: seven times the initial energy.
 #pragma once
 
 #include "components/soft_body.h"

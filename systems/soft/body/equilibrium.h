@@ -2,10 +2,9 @@
 // unloaded shape whose equilibrium is the given one (the inverse elastostatic problem: Govindjee and Mihalic 1996; as a
 // fixed point, Sellier, An iterative method for the inverse elasto-static problem, J. Fluids Struct. 27, 2011).
 //
-// Equilibrium is a minimum of elastic energy and potential. It is found by implicit steps from rest, each of a length T
-// that is doubled while the energy falls and halved where it would rise (pseudo-transient continuation: Kelley and
-// Keyes 1998). Long steps are Newton steps; short ones follow the gradient, so that it converges to a stable state or
-// not at all.
+// Equilibrium is a minimum of elastic energy and potential. It is found by implicit steps from rest. Their length T is
+// doubled while the energy falls and halved where it would rise (pseudo-transient continuation: Kelley and Keyes 1998).
+// Long steps are Newton steps; short ones follow the gradient, so that it converges to a stable state or not at all.
 #pragma once
 
 #include <stop_token>

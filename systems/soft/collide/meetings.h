@@ -1,5 +1,5 @@
-// Finds the features of two collision meshes that meet within a step, or of one collision mesh with itself: vertices
-// and triangles, edges and edges. meeting_filter.h decides which of these meetings are contacts.
+// Finds the features of two collision meshes that meet within a step, or of one mesh with itself: vertices and
+// triangles, edges and edges. The contacts among these meetings are selected by meeting_filter.h.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,7 @@
 // Contacts where neither tissue nor objects are compliant: a rigid part of the tool on a fixed body, a rigid object
-// between the two, very hard tissue. While the soft step prescribes the handle's motion, the force of such a contact is
-// set by the inertia of that prescribed motion: thousands of newtons, more than any hand gives. It is left to the touch
-// tick, where the handle has its physical inertia and is coupled to its device.
+// between the two, very hard tissue. While the soft step prescribes the handle's motion, the inertia of that motion
+// determines the force of such a contact: thousands of newtons, more than any hand gives. It is left to the touch tick,
+// where the handle has its physical inertia and is coupled to its device.
 #pragma once
 
 #include "systems/tool/handle_model.h"
