@@ -47,7 +47,7 @@ struct DeviceRange {
   static constexpr Range kScale{0.0, 1e6, true};   // [1]
   static constexpr Range kMaxForce{0.0, 1e3};      // [N]
   static constexpr Range kMaxStiffness{0.0, 1e7};  // [N/m]
-  static constexpr Range kMaxSlew{1.0, 1e7};       // [N/s] slower, and no contact could be felt
+  static constexpr Range kMaxSlew{1.0, 1e7};       // [N/s] below it no contact could be felt
 };
 
 }  // namespace pliant

@@ -35,7 +35,7 @@ struct Probe : ProbeParameters {
   dvec3 velocity{0};           // [m/s] world
   dvec3 previous{0};           // [m] world, one tick ago: the start of the swept segment
   dquat previous_rotation{1, 0, 0, 0};
-  bool placed = false;  // false until the device has given a first pose; then `previous` means something
+  bool placed = false;  // false until the device has given a first pose; then `previous` is valid
   bool fresh = false;   // this tick's pose is the first one
   ProbeHold hold;       // writer: read_mouse, or the caller that sets its pose
 

@@ -39,7 +39,7 @@ enum DroppedBit : std::uint32_t {  // 8 was used by an earlier bit and stays unu
   kDroppedMotion = 128,   // a body's motion was not a number and it was stopped: reduce `soft_step`
   kDroppedStale = 16,     // a device's pose was stale and its force went to zero: check its connection
   kDroppedJump = 256,  // a device jumped farther than a hand can move, and its force went to zero: check its tracking
-  kDroppedSetBack = 512,  // a tool got away from its device and was set back into the hand: reduce `soft_step`
+  kDroppedSetBack = 512,  // a tool got away from its device and was set back to it: reduce `soft_step`
 };
 
 struct MouseInput;  // systems/device/mouse.h: mouse input of a window

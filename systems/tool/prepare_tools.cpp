@@ -69,7 +69,7 @@ void find_weight(const World& world, ToolTouchState& tool) {
   tool.weight = weight.mass * world.simulation.gravity;
 }
 
-// Two tools on one device would each be sent its whole force.
+// Two probes or tools on one device would each be reported its whole force.
 Status check_free(const World& world, Entity tool, Entity device) {
   const auto moves = [&](Entity other) {
     return Error{"tool `" + tool_name(world, tool) + "`",

@@ -102,7 +102,7 @@ class Loads {
       for (std::size_t j = first[i]; j <= i; ++j) {
         double sum = A_[at[i]][at[j]] + (i == j ? even_[at[i]] : 0.0);
         for (std::size_t k = std::max(first[i], first[j]); k < j; ++k) sum -= L_[i][k] * L_[j][k];
-        // Normals that differ much can make A slightly indefinite: such a contact carries no load.
+        // Normals that differ much can make A slightly indefinite: the pivot of such a contact is clamped.
         L_[i][j] = i == j ? std::sqrt(std::max(sum, kEven)) : sum / L_[j][j];
       }
     }

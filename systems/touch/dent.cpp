@@ -50,7 +50,7 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
   if (source.now.amplitude == 0.0f && source.before.amplitude == 0.0f) return;
   // A tip that stops does not throw the surface on: its release has no inward speed.
   if (source.now.amplitude > source.before.amplitude) source.before = source.now;
-  if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
+  if (deformable.response == Response::kLag) return;  // then the residual is already the whole state
   if (object.on_gpu) return remember_release(object, {source.now, source.before, tick.time}, world.dropped);
   const float inv_dt = static_cast<float>(1 / tick.dt);
   object.teller.fold(source.told, source.before, source.now);

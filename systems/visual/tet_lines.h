@@ -1,4 +1,4 @@
-// The inside of soft bodies, for inspection: the edges of their tetrahedra, drawn over everything.
+// The inside of soft bodies, for inspection: the edges of their tetrahedra, drawn over all surfaces.
 #pragma once
 
 #include <cstddef>

@@ -68,7 +68,7 @@ class RigidHandle {
 
   dvec3 centre_{0};
   double mass_ = 0.0;           // [kg]
-  dmat3 inertia_{1}, lent_{0};  // [kg m2] object axes; lent_ is contained in inertia_
+  dmat3 inertia_{1}, lent_{0};  // [kg m2] object axes; lent_ is the substituted part of inertia_
   std::vector<dvec3> rest_arm_, arm_;
   RigidMotion motion_;
 };
