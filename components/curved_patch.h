@@ -66,8 +66,7 @@ inline CurvedPatch curved_patch(const Mesh& mesh, std::uint32_t triangle) {
         if (o[k] == t[j]) across_j = dvec3(mesh.normal(other, k));
       }
     }
-    const auto offset = [&](dvec3 along, dvec3 own, dvec3 across) {  // offset of a control point from the chord at
-                                                                     // `along` / 3
+    const auto offset = [&](dvec3 along, dvec3 own, dvec3 across) {  // offset of a control point from the chord
       dvec3 off = -(dot(along, own) / 3) * own;
       if (crease) {
         const dvec3 line = cross(own, across);

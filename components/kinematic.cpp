@@ -10,8 +10,7 @@ namespace {
 
 using glm::dvec4;
 
-constexpr double kSame = 1e-6;  // [1] relative tolerance: a motion whose end differs from its beginning by less is
-                                // closed
+constexpr double kSame = 1e-6;  // [1] relative: a motion whose end differs from its beginning by less is closed
 
 // The keys on both sides of a time, and its position between them.
 struct Span {

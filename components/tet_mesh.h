@@ -48,8 +48,7 @@ struct CarriedPart {
   Entity entity;
   Handle<Mesh> mesh;                 // in the body's object frame
   std::vector<Embedding> embedding;  // of each of its vertices
-  std::vector<vec3> aside;           // [m] of vertices outside of the tissue: offset from their embedded place; else
-                                     // empty
+  std::vector<vec3> aside;           // [m] of vertices outside of the tissue: offset from their embedding; else empty
 };
 
 struct TetMesh {

@@ -41,8 +41,7 @@ vec3 seen_through(Surface s, Through t, float depth) {
     vec3 far_normal = s.normal - 2.0 * along * inside;  // of the ball, where the chord ends
     leaves -= t.thickness * along * inside;
     remains = exp(t.absorption * t.thickness * along);
-    way = refract(inside, -far_normal, t.ior);          // never totally reflected: the exit angle equals the entry
-                                                        // angle
+    way = refract(inside, -far_normal, t.ior);          // never totally reflected: exit and entry angles are equal
   }
   // The blur of a rough surface fades as its index approaches that of air.
   vec3 surrounding = radiance_from(way, s.roughness * clamp(2.0 * t.ior - 2.0, 0.0, 1.0));

@@ -15,8 +15,7 @@ layout(std430, binding = 4) readonly buffer Coefficients { float coefficient[]; 
 struct Source {
   vec4 place, push, kind;
 };
-layout(std430, binding = 5) readonly buffer Sources { Source sources[]; };  // each tick's, then the ended ones: now,
-                                                                            // before
+layout(std430, binding = 5) readonly buffer Sources { Source sources[]; };  // each tick's, then ended ones: now, before
 // Input records, in sequence (systems/visual/field_replay.h):
 //   a tick, 2:  (known sources, ended sources), (first source, first fold, -, -)
 //   a run, 3:   (first tick, ticks, zone, flags), (sources, sources of the tick before), (offsets, fold offsets, -, -)

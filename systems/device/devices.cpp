@@ -34,8 +34,7 @@ dvec3 rendered(dvec3 wanted, bool renders) {
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
-  const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // ready without a pose: the pose is
-                                                                             // unknown
+  const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // ready without a pose: unknown pose
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
   soften(world, tool.entity, device, tool.force_safety);

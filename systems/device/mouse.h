@@ -7,8 +7,7 @@
 
 namespace pliant {
 
-inline constexpr double kMouseSilence = 0.25;      // [s] time-out without a sample: no more poses, so safety sends no
-                                                   // force
+inline constexpr double kMouseSilence = 0.25;      // [s] time-out without a sample: no poses, so safety sends no force
 inline constexpr double kMouseSlowestFrame = 0.1;  // [s] a pose that arrives later than this is reached in this time
 
 // [m/s] Faster, a jump of the pointer would be felt as a blow. Delayed frames arrive in successive ticks, so the time

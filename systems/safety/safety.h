@@ -40,7 +40,7 @@ inline constexpr double kEngageForce = 0.2;        // [N] the gate opens once th
 inline constexpr double kWeightTime = 0.5;         // [s] in which a weight fades in, once the gate is open
 inline constexpr double kStaleAfter = 0.010;       // [s] a pose older than this counts as lost
 inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
-inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy, which the hand may get in
+inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy: what the hand may get in
                                                    // addition
 inline constexpr double kPassivityFloor = 1e-12;   // [J] what rounding may add
 inline constexpr double kCountedShare = 0.01;      // [1] of the wanted force: less missing is not counted
@@ -95,8 +95,7 @@ constexpr std::uint8_t bit(SafetyLimit limit) {
 }
 
 struct SafetyState {
-  double share = 1.0;        // [1] share of the force that is sent, for the device's stiffness limit
-                             // (systems/device/softening.h)
+  double share = 1.0;        // [1] share of the force that is sent: stiffness limit (systems/device/softening.h)
   double least_share = 1.0;  // [1] its minimum so far
   bool felt = true;          // false: the guard behind blocked the force after this tick (engine/driver_link.h)
   bool engaged = false;      // gate: closed at start and after every loss, opens on a small computed force

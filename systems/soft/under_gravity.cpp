@@ -12,8 +12,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFarAtEnd = 0.1;    // [1] of a body's size: a larger displacement from the start is reported after a
-                                     // run
+constexpr double kFarAtEnd = 0.1;    // [1] of a body's size: larger displacements from the start are reported
 constexpr double kOutOfScene = 5.0;  // [1] of its size: a body that has fallen this far is not supported
 
 std::string name_in_quotes(const World& world, Entity entity) {

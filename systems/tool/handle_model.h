@@ -56,8 +56,7 @@ struct CondensedContacts {
   Rows from_modes;                           // 3 count x modes: contact velocity per q'
   std::array<Rows6, 2> from_handle_by_slip;  // [1/m] their derivatives by slip along either tangent: a sliding
   std::array<Rows, 2> from_modes_by_slip;    // contact acts at another point (contact_geometry.h: find_turning)
-  Eigen::MatrixXd flexibility;               // [m/N] 3 count x 3 count: residual flexibility beyond the modes, without
-                                             // inertia
+  Eigen::MatrixXd flexibility;               // [m/N] 3 count x 3 count: residual flexibility, without inertia
   double flexibility_lag = 0.0;              // [s] its damping: stretch + lag stretch' = flexibility f
   Vector force;                              // [N] 3 count, at the model's time
   Vector gap;                                // [m] count: > 0: still open; < 0: penetration being corrected

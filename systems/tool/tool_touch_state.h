@@ -17,10 +17,8 @@ namespace pliant {
 
 // Tunables of the touch tick. Unit, usual value, and what changing it does.
 inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: time constant with which a stale model fades
-inline constexpr double kJoinShare = 3.0 / 8.0;   // [1] of T: duration of the linear cross-fade between two models;
-                                                  // shorter: steeper
-inline constexpr int kSettleTicks = 3;            // ticks of a new model before its contacts act; fewer: its impacts
-                                                  // cause jumps
+inline constexpr double kJoinShare = 3.0 / 8.0;   // [1] of T: duration of the cross-fade of models; shorter: steeper
+inline constexpr int kSettleTicks = 3;            // ticks of a new model before its contacts act; fewer: jumps
 inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to zero
 inline constexpr int kLateTicks = 3;              // successive ticks over budget before the linear model takes over
 inline constexpr int kTickSweeps = 20;            // largest number of Gauss-Seidel sweeps in a tick; warm-started
@@ -31,8 +29,7 @@ inline constexpr double kMostStretch = 2.0;       // [m] a handle farther from i
 inline constexpr double kRunaway = 50.0;          // [m/s] as has one that is faster,
 inline constexpr double kRunawayTurn = 1000.0;    // [rad/s] or rotates faster
 inline constexpr std::size_t kMostFollowed = 32;  // largest number of (merged) ticks by which a model is updated
-inline constexpr int kMostCaughtUp = 8;   // missed ticks up to this number are caught up one by one; more cost too
-                                          // long,
+inline constexpr int kMostCaughtUp = 8;   // missed ticks up to this are caught up one by one; more cost too long,
 inline constexpr int kLongCatchUps = 16;  // and are caught up in this number of steps
 inline constexpr double kEvenWay = 0.05;  // [s] interval over which a hand's acceleration is assumed constant
 inline constexpr std::size_t kPathLength = 4096;  // ticks of the handle's path that can wait for the soft clock

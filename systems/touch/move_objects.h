@@ -18,8 +18,7 @@ struct MovingNode {
   std::int32_t parent = -1;         // index among the moving nodes; -1: the parent does not move
   std::int32_t object = -1;         // index into TouchState::objects; -1: not touchable
   Handle<PrescribedMotion> motion;  // invalid: it only moves with its parent
-  LocalTransform rest;              // rest transform in its parent's frame, for properties that `motion` does not
-                                    // prescribe
+  LocalTransform rest;              // rest transform in its parent's frame, for what `motion` does not prescribe
   dmat4 above{1};                   // of a parent that does not move, to world
   dmat4 world{1};                   // node to world
   bool drawn = false;

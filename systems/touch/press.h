@@ -12,8 +12,7 @@
 
 namespace pliant {
 
-inline constexpr std::uint32_t kMaxPresses = 16;  // points per object: more make no visible difference and cost time in
-                                                  // every tick
+inline constexpr std::uint32_t kMaxPresses = 16;  // points per object: more look the same, and cost time
 
 // One point of tissue at a P1 surface. Object frame of that surface.
 struct PressPoint {

@@ -8,7 +8,7 @@ namespace pliant {
 struct ProbeReading {
   dvec3 position{0};  // [m] world
   bool in_contact = false;
-  Entity object = kNoEntity;      // of the contact with the largest normal force; also set while only inside
+  Entity object = kNoEntity;      // of the contact with the largest normal force; also while only inside
                                   // (Contact::state)
   double depth = 0.0;             // [m] below the undeformed surface along the interpolated normal; 0 when outside
   double height = 0.0;            // [m] of the surface there, <= 0 pushed in

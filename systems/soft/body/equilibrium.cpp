@@ -16,8 +16,7 @@ constexpr double kFirstStep = 0.05, kLongestStep = 1e4;  // [s]
 constexpr double kShortestStep = 1e-5;                   // [s] shorter: the energy cannot be reduced any more
 constexpr double kNewtonStep = 10.0;                     // [s] from here on inertia is negligible
 constexpr int kMostSteps = 200, kMostInverse = 60;
-constexpr double kAtRest = 1e-5;               // [1] of the size: convergence criterion on a node's motion in a long
-                                               // step
+constexpr double kAtRest = 1e-5;               // [1] of the size: convergence criterion on motion in a long step
 constexpr double kStays = 5e-3;                // [1] of the size: largest motion of a valid shape when it is released
 constexpr double kLeastVolume = 0.05;          // [1] of an element's: flatter elements have no unloaded shape
 constexpr double kLeastCorrection = 1.0 / 64;  // [1] of a correction

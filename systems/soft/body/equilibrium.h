@@ -17,8 +17,7 @@
 namespace pliant {
 
 struct Equilibrium {
-  bool held = false;         // something is pinned or on a handle; else there is no equilibrium, and the other members
-                             // are unset
+  bool held = false;         // something is pinned or on a handle; else there is no equilibrium and the rest is empty
   bool converged = false;    // false: it did not converge, or was stopped
   double most = 0.0;         // [m] largest displacement of a node
   double size = 0.0;         // [m] diagonal of the body's box

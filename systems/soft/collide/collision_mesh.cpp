@@ -12,8 +12,7 @@ namespace {
 constexpr double kNearEdges = 2.5;   // [mean edges] along the surface: closer neighbours never collide
 constexpr double kFlatShare = 0.05;  // [rad] edges whose triangles are coplanar within this cannot touch
 constexpr double kHollow = 0.98;     // [1] cosine across a concave edge: sharper ones are touched on their flanks
-constexpr double kSmooth = 0.8;      // [1] cosine between a vertex's normal and its triangles': below it the vertex is
-                                     // sharp
+constexpr double kSmooth = 0.8;      // [1] cosine between a vertex's normal and its triangles': below it, it is sharp
 constexpr int kRigid = 6;            // degrees of freedom
 constexpr float kRounding = 4e-7f;   // [1] of coordinates: boxes are single precision
 

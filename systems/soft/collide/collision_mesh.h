@@ -76,7 +76,7 @@ class CollisionMesh {
   dvec3 vertex_normal(std::uint32_t v) const { return vertex_normal_[v]; }  // [1] unit
   bool smooth(std::uint32_t v) const {
     return smooth_[v] != 0;
-  }                                                                  // no triangle around it deviates by more than 37
+  }                                                                  // no triangle around it deviates by over 37
                                                                      // degrees
   double curvature(std::uint32_t v) const { return curvature_[v]; }  // [1/m] mean; > 0: bulges
   // The shape at rest, object frame.
@@ -84,8 +84,7 @@ class CollisionMesh {
     std::vector<dvec3> normal, vertex_normal;
     std::vector<std::uint8_t> smooth;
     std::vector<double> curvature;
-    std::vector<dmat3> bend;  // [1/m] per vertex: shape operator, the normal changes by bend dx along the surface;
-                              // symmetric
+    std::vector<dmat3> bend;  // [1/m] per vertex: shape operator, the normal changes by bend dx; symmetric
   };
   const Shape& rest() const { return rest_; }
   dmat3 turn(std::uint32_t t) const;         // rotation of a triangle from rest

@@ -10,8 +10,8 @@ namespace {
 constexpr double kAlike = 0.9;       // [1] cosine between normals of similar contacts
 constexpr double kGrowth = 1.1;      // [1] of the spacing, if too many are left: regular meshes lose half at once
 constexpr double kSteady = 0.05;     // [edges] a new contact must be deeper by this to replace one of the last step
-constexpr double kTouches = 0.1;     // [edges] closer contacts touch already; thinned too far, their neighbours would
-                                     // sink in:
+constexpr double kTouches = 0.1;     // [edges] closer contacts touch already; thinned too far, neighbours would sink
+                                     // in:
 constexpr double kDenseShare = 0.5;  // [1] their spacing relative to that of contacts that do not touch yet
 constexpr double kWidest = 1e3;      // [1] limit of the spacing's growth: by then one contact per direction is left
 

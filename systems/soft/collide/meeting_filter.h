@@ -24,8 +24,7 @@ struct Found {
 struct PairView {
   double margin = 0.0;  // [m] distance within which pairs are included although they do not touch yet
   Reach reach;
-  dvec3 way{0};  // [1] for pairs that began inside each other, until they are separated: direction in which the first
-                 // is pushed
+  dvec3 way{0};  // [1] for pairs that began inside each other, until separated: direction in which the first is pushed
   const ContactMemory& memory;
   const SideMemory& sides;  // of the last step; for missed contacts, of this one
 };

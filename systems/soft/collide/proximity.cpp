@@ -19,13 +19,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlender = 2.0;  // [1] ratio of a mean edge to the shortest local one: beyond it, the shortest one
-                                  // counts
+constexpr double kSlender = 2.0;  // [1] mean edge over the shortest local one: beyond it, the shortest one counts
 constexpr double kDeepestWithin = 10.0;  // [margins] largest self-penetration that is tracked
 constexpr double kDeeper = 1.5;
 constexpr double kRises = 0.95;  // [1] of a penetration: remainder while it is being corrected
-constexpr double kSunk = 0.1;    // [margins] contacts dropped by thinning are added if they are deeper than this and
-                                 // stay so
+constexpr double kSunk = 0.1;    // [margins] contacts dropped by thinning are added if deeper than this and lasting
 
 // Tunables of the margin within which pairs are included although they do not touch yet.
 constexpr double kMarginOfEdge = 0.1;   // [1] of a mean edge: less misses contacts that begin within the step

@@ -13,8 +13,7 @@ constexpr int kSweepsBetween = 10, kMostBetween = 20;  // sweeps before a Newton
 constexpr int kDense = 240, kMostUnknowns = 900;       // up to the former a dense solver is faster
 constexpr double kMostWork = 4e7;                      // [1] multiplications in total: about 5 ms
 constexpr int kDrops = 4;                              // number of times that a step is recomputed
-constexpr double kTogether = 2.0;                      // [1] contacts reached within this multiple of the first are
-                                                       // dropped together
+constexpr double kTogether = 2.0;                      // [1] contacts reached within this multiple of the first
 // [1] of the diagonal. With less at first, rigid bodies with more contacts than degrees of freedom get unbounded
 // impulses while an opening contact is assumed closed.
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e-2;

@@ -14,8 +14,7 @@ struct ContactPoint {
   std::uint32_t body_a = 0, body_b = 0;  // into SoftState::bodies; equal: self-collision
   SurfacePoint a, b;
   dvec3 normal{0, 1, 0};                     // [1] world, unit, from b's outside towards a; at the end of the step
-  double gap = 0.0;                          // [m] along it, for the step's linear law: the gap at the end is gap + T
-                                             // u_n
+  double gap = 0.0;                          // [m] along it, for the step's linear law: at the end it is gap + T u_n
   double depth = 0.0;                        // [m] >= 0: penetration of a in b at the beginning of the step
   double end_gap = 0.0;                      // [m] predicted along the normal, after look_again
   bool predicted = false;                    // normal and gap are those of the step's end
@@ -26,8 +25,7 @@ struct ContactPoint {
   double reach = 0.0;                        // [m] of slip: beyond it, an open contact no longer exists
   dmat3 axes{1};                             // columns: normal, two tangents (steady from step to step)
   double mu_static = 0.4, mu_sliding = 0.3;  // [1] of the pair
-  std::uint64_t key = 0;                     // the same pair of features has the same key in the next step, for warm
-                                             // starts
+  std::uint64_t key = 0;                     // the same pair of features has the same key in the next step: warm start
   dvec3 impulse{0};                          // [N s] along the axes, on a; of the last solve
   bool sliding = false;
   bool joined = false;       // added although thinning dropped it: without it the bodies sink in

@@ -78,8 +78,7 @@ dmat3 leaning_axes(dvec2 lean);
 
 struct SweepLimits {
   int sweeps = 50;
-  double tolerance = 1e-6;      // [1] of the fastest closing velocity without impulses: convergence criterion on the
-                                // residual
+  double tolerance = 1e-6;      // [1] of the fastest closing without impulses: convergence of the residual
   std::uint64_t budget_ns = 0;  // 0: no limit; checked after every sweep
   int newtons = 0;              // limit of linear solves for Newton steps, per part; 0: only sweeps
 };

@@ -9,8 +9,7 @@ namespace pliant {
 
 enum class Scheme : std::uint8_t {
   kEuler,     // implicit: dissipative, first order
-  kMidpoint,  // implicit: second order; if iterated to convergence it conserves momenta exactly, and energy while
-              // forces are linear
+  kMidpoint,  // implicit: second order; iterated to convergence it conserves momenta, and energy for linear forces
 };
 
 struct TissueStep {

@@ -6,8 +6,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFillIn = 2.0;  // [1] estimated multiplications over the sum of squared column counts, for a pile's
-                                 // system
+constexpr double kFillIn = 2.0;  // [1] multiplications over the sum of squared column counts, for a pile's system
 
 }  // namespace
 

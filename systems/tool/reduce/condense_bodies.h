@@ -7,8 +7,7 @@
 namespace pliant {
 
 // Tunables. Unit, usual value, and what changing it does.
-inline constexpr double kExplained = 1e-6;      // [1] of the largest compliance: softer directions become modes,
-                                                // stiffer ones do not
+inline constexpr double kExplained = 1e-6;      // [1] of the largest compliance: stiffer directions get no mode
 inline constexpr int kMostBodyModes = 48;       // of one body: cost of a step against accuracy at many contacts
 inline constexpr double kHighestPerTick = 1.0;  // [rad] frequency x tick: faster modes become springs
 
